@@ -1,0 +1,25 @@
+# What mbk stands on. Everything comes from Debian 12's packages (tools/packages lists them).
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(tl-expected REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(ZLIB REQUIRED)
+pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+
+# Settings that every target of this project shares.
+add_library(mbk_settings INTERFACE)
+target_compile_features(mbk_settings INTERFACE cxx_std_20)
+target_compile_definitions(mbk_settings INTERFACE EIGEN_MPL2_ONLY)
+target_compile_options(mbk_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                       -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion)
+if(MBK_WARNINGS_AS_ERRORS)
+  target_compile_options(mbk_settings INTERFACE -Werror)
+endif()
+
+if(MBK_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()

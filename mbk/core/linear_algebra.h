@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mbk {
+
+using Index = Eigen::Index;
+using Vector = Eigen::VectorXd;  ///< a column of numbers; a signal has one entry per sample
+using Matrix = Eigen::MatrixXd;  ///< columns are contiguous; signals stand in columns, one row per sample
+
+/// Finite numbers only. `allFinite` of Eigen says the same, but not where.
+[[nodiscard]] inline Index first_non_finite(const Eigen::Ref<const Vector>& values) {
+  for (Index i = 0; i < values.size(); ++i) {
+    if (!(values[i] - values[i] == 0.0)) return i;
+  }
+  return -1;
+}
+
+}  // namespace mbk

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <compare>
+#include <numbers>
+
+namespace mbk {
+
+struct RadPerSec;
+
+/// Frequency in cycles per second. A different type from RadPerSec, so that a factor 2π cannot get lost.
+struct Hertz {
+  double value = 0.0;
+  constexpr Hertz() = default;
+  constexpr explicit Hertz(double hz) : value(hz) {}
+  constexpr explicit Hertz(RadPerSec omega);
+  auto operator<=>(const Hertz&) const = default;
+};
+
+/// Angular frequency in radians per second.
+struct RadPerSec {
+  double value = 0.0;
+  constexpr RadPerSec() = default;
+  constexpr explicit RadPerSec(double omega) : value(omega) {}
+  constexpr explicit RadPerSec(Hertz frequency) : value(2.0 * std::numbers::pi * frequency.value) {}
+  auto operator<=>(const RadPerSec&) const = default;
+};
+
+constexpr Hertz::Hertz(RadPerSec omega) : value(omega.value / (2.0 * std::numbers::pi)) {}
+
+}  // namespace mbk
