@@ -34,13 +34,13 @@ struct SourceFile {
 /// What was measured, sample by sample, exactly as it was recorded: never resampled, padded, sorted or cleaned.
 /// Gaps, jitter, backward time and non-finite values stay in it; recording::inspect reports them.
 struct Recording {
-  Vector time;                       ///< [s], as recorded; not necessarily even or increasing
-  bool time_from_rate = false;       ///< true where the file holds no time and the user gave the rate
-  std::vector<Channel> channels;     ///< each as long as `time`
+  Vector time;                    ///< [s], as recorded; not necessarily even or increasing
+  bool time_from_rate = false;    ///< true where the file holds no time and the user gave the rate
+  std::vector<Channel> channels;  ///< each as long as `time`
   std::vector<Event> events;
   std::map<std::string, std::string> metadata;  ///< participant number, posture, protocol, robot, …
-  std::vector<SourceFile> sources;   ///< one, or several for numbered parts
-  std::vector<std::string> notes;    ///< what the reader wants its user to know, in words
+  std::vector<SourceFile> sources;              ///< one, or several for numbered parts
+  std::vector<std::string> notes;               ///< what the reader wants its user to know, in words
 
   [[nodiscard]] Index samples() const { return time.size(); }
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/core/linear_algebra.h"
+#include "mbk/core/result.h"
+
+namespace mbk::numeric {
+
+/// Rows [begin, end) that follow each other in time without a break.
+struct RowRange {
+  Index begin = 0, end = 0;
+  [[nodiscard]] Index size() const { return end - begin; }
+};
+
+/// Linear regression of q outputs on the same p regressors, y_j = Zᵀθ_j + e_j, where the stacked coefficients
+/// θ = [θ_1; …; θ_q] may be tied by a linear structure, θ = S φ.
+struct LinearFit {
+  Matrix coefficients;   ///< p×q, θ_j in column j
+  Vector free;           ///< φ, k
+  Matrix structure;      ///< S, pq×k; the identity where nothing is tied
+  Matrix inverse_gram;   ///< (Sᵀ (I ⊗ ZᵀZ) S)⁻¹, k×k
+  int rank = 0;          ///< of the regressors, each scaled to unit length; < p where they cannot be told apart
+  double condition = 0;  ///< largest over smallest singular value of the scaled regressors; ∞ where rank < p
+};
+
+/// Ordinary least squares by one Householder QR of [Z | Y], each column of Z scaled to unit length; the structure is
+/// then imposed on the small triangle, so that tied and free fits pass through the same code.
+/// @param Z N×p    @param Y N×q    @param S pq×k, full column rank; empty = nothing tied
+/// @returns the fit; where rank < p (singular values below p·ε of the largest) the coefficients are those of
+/// smallest norm and must not be used.   @fails N < p; shapes differ; a value is not finite (first bad row named).
+[[nodiscard]] Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matrix& S = {});
+
+/// Covariance of φ that holds for coloured and correlated residuals (Newey & West 1987):
+///   V = A Ω A,  A = inverse_gram,  Ω = Σ_l (1 − |l|/(L + 1)) Σ_t s_t s_{t+l}ᵀ,  s_t = Sᵀ(e_t ⊗ z_t).
+/// The weights are the autocorrelation of a rectangle, so that Ω = Σ_t g_t g_tᵀ/(L + 1) with g the sums of s over
+/// L + 1 consecutive samples: one pass, and positive semidefinite by construction. Products never cross a break.
+/// @param residuals N×q    @param ranges rows that count, in order    @param lags L ≥ 0, samples
+[[nodiscard]] Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,
+                                           const std::vector<RowRange>& ranges, Index lags);
+
+}  // namespace mbk::numeric

@@ -1,0 +1,66 @@
+#include "mbk/numeric/statistics.h"
+
+#include <cmath>
+#include <limits>
+
+namespace mbk::numeric {
+
+double variance(const Eigen::Ref<const Vector>& values) {
+  if (values.size() < 2) return 0.0;
+  return (values.array() - values.mean()).square().sum() / static_cast<double>(values.size() - 1);
+}
+
+double variance_accounted_for(const Vector& measured, const Vector& residual) {
+  const double total = variance(measured);
+  if (!(total > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  return 100.0 * (1.0 - variance(residual) / total);
+}
+
+double root_mean_square(const Vector& values) {
+  return values.size() == 0 ? 0.0 : std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+std::pair<double, double> positive_interval95(double value, double standard_error) {
+  const double factor = std::exp(kNormal95 * standard_error / value);
+  return {value / factor, value * factor};
+}
+
+std::pair<double, double> interval95(double value, double standard_error) {
+  return {value - kNormal95 * standard_error, value + kNormal95 * standard_error};
+}
+
+namespace {
+
+/// P(X ≤ k) for X ~ Binomial(n, p).
+double binomial_at_most(int k, int n, double p) {
+  if (k >= n || p <= 0.0) return 1.0;
+  if (p >= 1.0) return 0.0;
+  double sum = 0.0;
+  for (int i = 0; i <= k; ++i) {
+    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0) + i * std::log(p) +
+                    (n - i) * std::log1p(-p));
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::pair<double, double> binomial_interval(int successes, int trials, double confidence) {
+  const double tail = 0.5 * (1.0 - confidence);
+  // Both tails fall or rise monotonically in p, so that each limit is found by bisection.
+  const auto solve = [&](auto&& too_low) {
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (too_low(middle) ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  };
+  const double lower =
+      successes == 0 ? 0.0 : solve([&](double p) { return 1.0 - binomial_at_most(successes - 1, trials, p) < tail; });
+  const double upper =
+      successes == trials ? 1.0 : solve([&](double p) { return binomial_at_most(successes, trials, p) > tail; });
+  return {lower, upper};
+}
+
+}  // namespace mbk::numeric

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <utility>
+
+#include "mbk/core/linear_algebra.h"
+
+namespace mbk::numeric {
+
+/// z with P(|Z| < z) = 0.95 for a standard normal Z.
+inline constexpr double kNormal95 = 1.959963984540054;
+
+/// Σ(x − x̄)²/(n − 1), in two passes; 0 for fewer than two values.
+[[nodiscard]] double variance(const Eigen::Ref<const Vector>& values);
+
+/// Variance accounted for, 100 (1 − var(f − f̂)/var(f)) [%]   (Dyck 2013, eq. 3.10).
+/// It ignores a constant error and may be negative: always show the RMSE beside it. NaN where f is constant.
+[[nodiscard]] double variance_accounted_for(const Vector& measured, const Vector& residual);
+
+/// √(mean of squares).
+[[nodiscard]] double root_mean_square(const Vector& values);
+
+/// Interval of a positive quantity whose logarithm is taken as normal: value · exp(±1.96 se/value). It cannot cross 0.
+[[nodiscard]] std::pair<double, double> positive_interval95(double value, double standard_error);
+
+/// value ± 1.96 se.
+[[nodiscard]] std::pair<double, double> interval95(double value, double standard_error);
+
+/// Exact (Clopper–Pearson) interval of a binomial proportion, by bisection of the binomial tails.
+/// @param successes 0…trials    @param confidence e.g. 0.99
+[[nodiscard]] std::pair<double, double> binomial_interval(int successes, int trials, double confidence);
+
+}  // namespace mbk::numeric

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/core/linear_algebra.h"
+#include "mbk/core/result.h"
+#include "mbk/core/units.h"
+#include "mbk/preprocess/windows.h"
+
+namespace mbk::preprocess {
+
+/// The frequencies at which the limb was moved.
+struct Band {
+  Hertz low, high;
+};
+
+/// Excited band of a motion: `low` is where 5 % of the power of the position lies below, `high` where 95 % of the
+/// power of the velocity does, looking up to a tenth of the sample rate. For lines of equal amplitude that is the
+/// lowest and the highest line.
+/// @param motion N×n, reference or hand position; each cut must lie inside it    @fails a cut is shorter than 8
+/// samples.
+[[nodiscard]] Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, Hertz sample_rate);
+
+}  // namespace mbk::preprocess

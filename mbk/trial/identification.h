@@ -1,0 +1,81 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/core/linear_algebra.h"
+#include "mbk/impedance/model.h"
+#include "mbk/trial/prepared_trial.h"
+#include "mbk/trial/warning.h"
+
+namespace mbk {
+
+/// What the parameters may be.
+enum class Structure {
+  full,         ///< M, B, K free (eq. 3.2–3.3)
+  symmetric,    ///< M, B and K symmetric
+  mass_spring,  ///< M = m I, B = 0, K symmetric (eq. 3.8–3.9)
+};
+
+[[nodiscard]] constexpr std::string_view text(Structure structure) {
+  switch (structure) {
+    case Structure::full:
+      return "full";
+    case Structure::symmetric:
+      return "symmetric";
+    case Structure::mass_spring:
+      return "mass-spring";
+  }
+  return "unknown";
+}
+
+/// How well the model explains the force, axis by axis.
+struct Fit {
+  Vector vaf;             ///< [%], on held-back data where there are any (eq. 3.10)
+  Vector rmse;            ///< [N], on the same data; a constant error counts
+  Vector vaf_in_sample;   ///< [%], on the data that made the parameters of this check
+  bool held_back = true;  ///< false: no data were held back, and vaf is in-sample
+};
+
+/// Did the perturbation ask enough of the limb?
+struct Excitation {
+  int rank = 0;              ///< of the regressors
+  double condition = 0;      ///< of the centred regressors, each scaled to unit length
+  double motion_ratio = 1;   ///< smallest over largest standard deviation of position over directions; 1 axis: 1
+  double motion = 0;         ///< largest standard deviation of position [m]
+  double inertia_share = 0;  ///< of the force's variance: what only the inertial term can explain, smallest direction
+  double duration = 0;       ///< [s] of data behind the parameters
+};
+
+/// §3.5.4 of Dyck 2013: the same fit on every n-th sample.
+struct DecimationCheck {
+  double rate_hz = 0;  ///< after decimation
+  impedance::Model model;
+  double largest_change = 0;  ///< of M, B, K, relative to the largest element of its matrix
+};
+
+/// An impedance, how sure it is, how well it fits, and whether it may be used.
+struct Identification {
+  impedance::Model model;
+  Matrix covariance;                    ///< of `parameters`, 3n²+n square
+  std::vector<std::string> parameters;  ///< m_xx m_xy m_yx m_yy b_… k_… x0 y0; one axis: m b k x0
+  impedance::Model standard_error;      ///< √ of its diagonal, in the model's shape
+  std::string method = "ls";
+  Structure structure = Structure::full;
+  double hac_lag_s = 0;         ///< reach of the autocovariance in the standard errors [s]
+  double handle_mass = 0;       ///< [kg] taken off the diagonal of M
+  std::string parameters_from;  ///< "identification" or "all": the data behind the parameters
+  Fit fit;
+  Excitation excitation;
+  std::optional<DecimationCheck> decimation;
+  Index samples = 0;                      ///< behind the parameters
+  std::vector<Preparation> preparations;  ///< one per pooled trial
+  std::vector<SourceFile> sources;
+  std::vector<double> durations, rates;  ///< per source: [s] and [Hz]
+  int axes = 2;
+  std::vector<Warning> warnings;
+  bool usable = true;
+};
+
+}  // namespace mbk

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/core/linear_algebra.h"
+#include "mbk/core/units.h"
+#include "mbk/trial/protocol.h"
+#include "mbk/trial/recording.h"
+#include "mbk/trial/warning.h"
+
+namespace mbk {
+
+/// What a stretch of samples is for.
+enum class Purpose { identification, validation };
+
+/// Rows [begin, end) of a PreparedTrial, consecutive in time; a perturbation or a part of one.
+struct Stretch {
+  Index begin = 0, end = 0;
+  Purpose purpose = Purpose::identification;
+  [[nodiscard]] Index size() const { return end - begin; }
+};
+
+/// How the signals of a PreparedTrial were made, so that any number can be traced and made again.
+struct Preparation {
+  Mode mode = Mode::improved;
+  Procedure procedure = Procedure::chapter3;  ///< meaningful in reference mode
+  Protocol protocol = Protocol::free;
+  std::string protocol_rule;      ///< why that protocol, in words
+  std::string window_rule;        ///< which samples count, in words
+  double from_s = 0, to_s = 0;    ///< [s] from the recording's first sample: first and last sample that count
+  std::optional<double> split_s;  ///< [s] where identification ends and validation begins
+  int perturbations = 1;          ///< stretches that were cut out
+  int smoothing_order = 6;        ///< Savitzky–Golay N
+  int smoothing_window = 101;     ///< Savitzky–Golay W [samples]
+  std::optional<Hertz> cutoff;    ///< zero-phase Butterworth low-pass of order 5; none = not applied
+  std::string cutoff_rule;        ///< how the cutoff came about, in words
+  Hertz band_low, band_high;      ///< excited band that the filters let through
+  bool acceleration_from_sensor = false;
+  bool cut_before_filter = true;
+};
+
+/// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame.
+struct PreparedTrial {
+  int axes = 2;                    ///< n, 1 or 2
+  double sample_time = 0;          ///< T [s]
+  Vector time;                     ///< N, [s] from the recording's first sample
+  Matrix position;                 ///< N×n, x [m]
+  Matrix velocity;                 ///< N×n, ẋ [m/s]
+  Matrix acceleration;             ///< N×n, ẍ [m/s²]
+  Matrix force_hand_on_robot;      ///< N×n, F_h [N]: what the limb exerts on the machine
+  Matrix reference;                ///< N×n, unfiltered; empty where none was recorded
+  std::vector<Stretch> stretches;  ///< in order of time; rows outside them do not count
+  Preparation preparation;
+  std::vector<SourceFile> sources;
+  double recording_duration = 0;  ///< [s]
+  std::vector<Warning> warnings;  ///< about the recording and its preparation
+};
+
+}  // namespace mbk
