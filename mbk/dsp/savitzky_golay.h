@@ -37,7 +37,7 @@ struct SavitzkyGolay {
 /// The frequency at which the smoothing filter's gain is 1/√2, to 1e-9 relative by bisection.
 [[nodiscard]] Result<Hertz> savitzky_golay_cutoff(const SavitzkyGolay& filter, Hertz sample_rate);
 
-/// The shortest window of that order whose −3 dB frequency does not exceed `cutoff`, by Schafer's estimate
+/// The shortest window of that order whose −3 dB frequency does not exceed `cutoff`, within 5 %, by Schafer's estimate
 /// f_c ≈ (N + 1)/(3.2 m − 4.6) of Nyquist with W = 2m + 1 (Schafer 2011; eq. 3.6 of Dyck 2013 misprints it),
 /// and at least the shortest window that smooths at all, N + 3 made odd.
 [[nodiscard]] int savitzky_golay_window(int order, Hertz cutoff, Hertz sample_rate);

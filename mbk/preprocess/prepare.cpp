@@ -206,6 +206,14 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   return dsp::filter_zero_phase(*lowpass, all, padding);
 }
 
+/// From the mean interval where the record has no break, since the median interval carries the rounding of the time
+/// stamps; from the median one otherwise.
+Hertz mean_rate(const Recording& recording, const Inspection& inspection) {
+  const double mean = inspection.duration / static_cast<double>(recording.samples() - 1);
+  const bool unbroken = inspection.gaps.empty() && inspection.backward_times == 0 && inspection.duplicated_times == 0;
+  return unbroken && mean > 0.0 ? Hertz(1.0 / mean) : Hertz(inspection.rate_hz);
+}
+
 int axes_of(const Recording& recording, int wanted) {
   if (wanted != 0) return wanted;
   return recording.find("position") != nullptr || recording.find("reaction") != nullptr ? 1 : 2;
@@ -219,7 +227,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (samples < 2 || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
-  const Hertz rate(inspection.rate_hz);
+  const Hertz rate = mean_rate(recording, inspection);
 
   PreparedTrial trial;
   trial.axes = axes_of(recording, options.axes);

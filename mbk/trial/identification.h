@@ -14,7 +14,7 @@ namespace mbk {
 /// What the parameters may be.
 enum class Structure {
   full,         ///< M, B, K free (eq. 3.2–3.3)
-  symmetric,    ///< M, B and K symmetric
+  symmetric,    ///< M and K symmetric, B free
   mass_spring,  ///< M = m I, B = 0, K symmetric (eq. 3.8–3.9)
 };
 

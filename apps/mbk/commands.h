@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace mbk::app {
+
+/// What a command does once its options are parsed; returns the exit code.
+using Action = std::function<int()>;
+
+/// Each adds one subcommand to `app` and gives the action to run when it was chosen.
+Action add_measure(CLI::App& app);
+Action add_identify(CLI::App& app);
+Action add_ellipse(CLI::App& app);
+Action add_info(CLI::App& app);
+Action add_validate(CLI::App& app);
+
+}  // namespace mbk::app

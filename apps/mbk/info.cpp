@@ -1,0 +1,41 @@
+#include <memory>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/measure_options.h"
+#include "mbk/recording/inspection.h"
+#include "mbk/report/text.h"
+#include "mbk/result/json.h"
+
+namespace mbk::app {
+namespace {
+
+int run(const MeasureArguments& arguments) {
+  const auto recordings = read_recordings(arguments);
+  if (!recordings) return report_error(recordings.error());
+  std::string text;
+  for (const Recording& recording : *recordings) {
+    const Inspection inspection = recording::inspect(recording);
+    if (!arguments.json && !text.empty()) text += "\n";
+    text += arguments.json ? result::to_json(recording, inspection) : report::info_text(recording, inspection);
+  }
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_info(CLI::App& app) {
+  auto arguments = std::make_shared<MeasureArguments>();
+  CLI::App* command = app.add_subcommand("info", "what is in a recording: channels, rate, gaps, problems");
+  command->footer(
+      "Examples:\n"
+      "  mbk info log.mat\n"
+      "  mbk info --parts log_1.mat log_2.mat\n"
+      "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
+      "Nothing is repaired: gaps, repeated or backward time and values that are no numbers are reported.");
+  add_reading_options(*command, *arguments);
+  add_output_options(*command, *arguments);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/measure_options.h"
+#include "mbk/analyse/summary.h"
+#include "mbk/report/text.h"
+#include "mbk/result/json.h"
+
+namespace mbk::app {
+namespace {
+
+using result::Measured;
+
+/// Says "3 of 8: log_3.mat" on stderr once the work has taken a second.
+class Progress {
+ public:
+  Progress(std::size_t total, bool quiet) : total_(total), quiet_(quiet) {}
+
+  void finished(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    if (quiet_ || total_ < 2 || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(1)) return;
+    fmt::print(stderr, "{} of {}: {}\n", done_, total_, name);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::size_t total_, done_ = 0;
+  bool quiet_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// One result per recording, several at a time; the order is that of the recordings.
+std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordings,
+                                           const measurement::Options& options, const MeasureArguments& arguments) {
+  std::vector<Result<Measured>> results(recordings.size(), bad_data("not measured"));
+  Progress progress(recordings.size(), arguments.quiet);
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < recordings.size(); i = next++) {
+      results[i] = measurement::measure({recordings[i]}, options);
+      progress.finished(recordings[i].sources.empty() ? "" : recordings[i].sources.front().path);
+    }
+  };
+  const std::size_t wanted = arguments.threads > 0 ? arguments.threads : std::thread::hardware_concurrency();
+  std::vector<std::jthread> workers;
+  for (std::size_t k = 1; k < std::min(wanted, recordings.size()); ++k) workers.emplace_back(work);
+  work();
+  workers.clear();
+  return results;
+}
+
+/// The work of `measure` and `identify`, which differ only in whether the ellipses are shown.
+int run(const MeasureArguments& arguments, bool with_findings) {
+  const auto options = measurement_options(arguments);
+  if (!options) return report_error(options.error());
+  const auto recordings = read_recordings(arguments);
+  if (!recordings) return report_error(recordings.error());
+
+  std::vector<Result<Measured>> results;
+  if (arguments.pool) {
+    results.push_back(measurement::measure(*recordings, *options));
+  } else {
+    results = measure_each(*recordings, *options, arguments);
+  }
+  std::vector<Measured> measured;
+  for (Result<Measured>& one : results) {
+    if (!one) return report_error(one.error());
+    if (!with_findings) one->findings.reset();
+    measured.push_back(std::move(*one));
+  }
+  std::optional<Summary> summary;
+  if (measured.size() > 1) {
+    std::vector<Identification> identifications;
+    for (const Measured& one : measured) identifications.push_back(one.identification);
+    auto mean = analyse::summarise(identifications);
+    if (!mean) return report_error(mean.error());
+    summary = std::move(*mean);
+  }
+
+  std::string text;
+  if (arguments.json) {
+    text = summary ? result::to_json(measured, summary) : result::to_json(measured.front());
+  } else {
+    for (const Measured& one : measured) {
+      if (!text.empty()) text += "\n";
+      text += report::result_text(one.identification, one.findings);
+    }
+    if (summary) text += "\n" + report::summary_text(*summary);
+  }
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  for (const Measured& one : measured) {
+    if (!one.identification.usable) return kNotUsable;
+  }
+  return kFine;
+}
+
+Action add(CLI::App& app, const char* name, const char* summary, const char* footer, bool with_findings) {
+  auto arguments = std::make_shared<MeasureArguments>();
+  CLI::App* command = app.add_subcommand(name, summary);
+  command->footer(footer);
+  add_reading_options(*command, *arguments);
+  add_measuring_options(*command, *arguments);
+  add_output_options(*command, *arguments);
+  return [arguments, with_findings] { return run(*arguments, with_findings); };
+}
+
+}  // namespace
+
+Action add_measure(CLI::App& app) {
+  return add(app, "measure", "recording → inertia M, damping B, stiffness K, equilibrium x0, ellipses, warnings",
+             "Examples:\n"
+             "  mbk measure log.mat\n"
+             "      a 19-row log of a planar robot; protocol, window and filters are chosen and printed\n"
+             "  mbk measure --mode reference log.mat\n"
+             "      the published procedure, sample for sample\n"
+             "  mbk measure --axes 1 --channels x=position_rad,F=torque_Nm --split 40 ankle.csv\n"
+             "      one joint from a CSV file, the first 40 s to identify, the rest held back\n"
+             "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
+             "      several trials: one result each, their mean and the standard error between them\n\n"
+             "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable.",
+             true);
+}
+
+Action add_identify(CLI::App& app) {
+  return add(app, "identify", "only the model: M, B, K, x0 with intervals and fit",
+             "Examples:\n"
+             "  mbk identify log.mat --json\n"
+             "  mbk identify --structure mass-spring rig.mat\n"
+             "      a payload on springs: one mass, no damping, symmetric stiffness",
+             false);
+}
+
+}  // namespace mbk::app

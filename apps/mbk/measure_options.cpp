@@ -1,0 +1,197 @@
+#include "apps/mbk/measure_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "mbk/recording/channel_map.h"
+
+namespace mbk::app {
+namespace {
+
+/// One of a few words, named in the message when it is none of them.
+CLI::Option* add_choice(CLI::App& command, const char* name, std::string& target,
+                        const std::vector<std::string>& choices, const std::string& help) {
+  std::string joined;
+  for (const std::string& choice : choices) joined += (joined.empty() ? "" : "|") + choice;
+  return command.add_option(name, target, help)
+      ->type_name(joined)
+      ->check([choices, joined](const std::string& given) -> std::string {
+        for (const std::string& choice : choices) {
+          if (choice == given) return "";
+        }
+        return fmt::format("'{}' is none of {}", given, joined);
+      });
+}
+
+/// The numeric validators of the parser print 300 digits; these say the limit.
+CLI::Validator positive() {
+  return {[](const std::string& given) -> std::string {
+            double value = 0.0;
+            const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), value);
+            const bool good = error == std::errc() && end == given.data() + given.size() && value > 0.0 && value < 1e12;
+            return good ? "" : fmt::format("'{}' is not a positive number", given);
+          },
+          ""};
+}
+
+}  // namespace
+
+void add_reading_options(CLI::App& command, MeasureArguments& arguments) {
+  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3) or .csv")->required();
+  command
+      .add_option("--channels", arguments.channels,
+                  "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
+                  "(or rows of a wide matrix, or names in the file); x=2:mm converts, Fx=-10 flips. Channels: time, "
+                  "x, y, Fx, Fy, xr, yr, q1, q2, tau1, tau2, ax, ay; one axis: time, x, F, xr, a")
+      ->type_name("MAP");
+  command.add_option("--variable", arguments.variable, "which variable of a MAT file, where several could be meant")
+      ->type_name("NAME");
+  command.add_option("--rate", arguments.rate_hz, "sample rate, where the file holds no time")
+      ->type_name("HZ")
+      ->check(positive());
+  command.add_option("--axes", arguments.axes, "1 or 2; otherwise by the channels that are there")
+      ->type_name("N")
+      ->check([](const std::string& n) { return n == "1" || n == "2" ? "" : "must be 1 or 2"; });
+  command.add_flag("--parts", arguments.parts, "the FILEs are numbered parts of one record: join them");
+}
+
+void add_measuring_options(CLI::App& command, MeasureArguments& a) {
+  const char* const group = "What counts";
+  add_choice(command, "--mode", a.mode, {"default", "reference"},
+             "reference: the published procedure, sample for sample")
+      ->group(group);
+  add_choice(command, "--procedure", a.procedure, {"chapter3", "chapter5"},
+             "in reference mode: W 101, 5 Hz, ẍ from the position | W 151, 4.5 Hz, ẍ from the accelerometer")
+      ->group(group);
+  add_choice(command, "--protocol", a.protocol, {"auto", "sinusoidal", "underdamped", "free"},
+             "how the limb was perturbed; auto looks at the reference and says what it saw")
+      ->group(group);
+  command.add_option("--from", a.from_s, "first second that counts, from the start of the recording")
+      ->type_name("S")
+      ->group(group);
+  command.add_option("--split", a.split_s, "data before it identify, data after it are held back")
+      ->type_name("S")
+      ->group(group);
+  command.add_option("--to", a.to_s, "last second that counts")->type_name("S")->group(group);
+  command.add_flag("--pool", a.pool, "one fit over all FILEs; otherwise one result each and a summary")->group(group);
+
+  const char* const filters = "Filters";
+  command.add_option("--sg-window", a.sg_window, "Savitzky–Golay window W, odd")->type_name("W")->group(filters);
+  command.add_option("--sg-order", a.sg_order, "Savitzky–Golay order N (6)")->type_name("N")->group(filters);
+  command.add_option("--cutoff", a.cutoff, "zero-phase Butterworth low-pass; otherwise by the excited band")
+      ->type_name("HZ|none")
+      ->check([](const std::string& given) -> std::string { return given == "none" ? "" : positive()(given); })
+      ->group(filters);
+  add_choice(command, "--extension", a.extension, {"odd", "even", "constant"},
+             "how signals are continued at their ends for the zero-phase filter (odd)")
+      ->group(filters);
+  command.add_option("--padding", a.padding, "by how many samples (15)")
+      ->type_name("N")
+      ->check([](const std::string& given) -> std::string { return given == "0" ? "" : positive()(given); })
+      ->group(filters);
+  add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")->group(filters);
+  command
+      .add_option("--resample", a.resample_hz, "put an uneven clock right first, by straight lines; never done unasked")
+      ->type_name("HZ")
+      ->check(positive())
+      ->group(filters);
+
+  const char* const model = "Model";
+  add_choice(command, "--method", a.method, {"ls"}, "least squares")->group(model);
+  add_choice(command, "--structure", a.structure, {"full", "symmetric", "mass-spring"},
+             "full; symmetric: M and K symmetric; mass-spring: M = m I, no damping, K symmetric")
+      ->group(model);
+  add_choice(command, "--parameters-from", a.parameters_from, {"identification", "all"},
+             "all: parameters from every window, fit judged on the held-back half (default for underdamped)")
+      ->group(model);
+  command.add_option("--handle-mass", a.handle_mass, "mass between sensor and hand, taken off the inertia (0)")
+      ->type_name("KG")
+      ->check([](const std::string& given) -> std::string { return given == "0" ? "" : positive()(given); })
+      ->group(model);
+  command.add_option("--hac-lag", a.hac_lag_s, "reach of the residual's correlation in the standard errors (0.5)")
+      ->type_name("S")
+      ->check(positive())
+      ->group(model);
+  command.add_flag("--decimate-check", a.decimate_check, "fit again at 100 Hz and say what changes")->group(model);
+  command.add_option("--threads", a.threads, "files measured at a time (as many as there are cores)")
+      ->type_name("N")
+      ->group(model);
+}
+
+void add_output_options(CLI::App& command, MeasureArguments& arguments) {
+  command.add_flag("--json", arguments.json, "for machines: schema mbk.result/1, SI units, every digit");
+  command.add_option("--out", arguments.output.file, "write to this file instead of standard output")
+      ->type_name("FILE");
+  command.add_flag("--overwrite", arguments.output.overwrite, "replace that file where it is there");
+  command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
+}
+
+Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {
+  recording::ReadOptions options;
+  if (!arguments.channels.empty()) {
+    auto map = recording::parse_channel_map(arguments.channels);
+    if (!map) return tl::unexpected(map.error());
+    options.channels = std::move(*map);
+  }
+  if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
+  options.axes = arguments.axes;
+  options.variable = arguments.variable;
+  return options;
+}
+
+Result<measurement::Options> measurement_options(const MeasureArguments& a) {
+  measurement::Options options;
+  preprocess::Options& p = options.preprocess;
+  p.mode = a.mode == "reference" ? Mode::reference : Mode::improved;
+  p.procedure = a.procedure == "chapter5" ? Procedure::chapter5 : Procedure::chapter3;
+  if (a.protocol == "sinusoidal") p.protocol = Protocol::sinusoidal;
+  if (a.protocol == "underdamped") p.protocol = Protocol::underdamped;
+  if (a.protocol == "free") p.protocol = Protocol::free;
+  p.axes = a.axes;
+  p.smoothing_order = a.sg_order;
+  p.smoothing_window = a.sg_window;
+  p.no_lowpass = a.cutoff == "none";
+  if (!a.cutoff.empty() && !p.no_lowpass) {
+    double hz = 0.0;
+    std::from_chars(a.cutoff.data(), a.cutoff.data() + a.cutoff.size(), hz);
+    p.cutoff = Hertz(hz);
+  }
+  if (a.acceleration == "sensor") p.acceleration = preprocess::AccelerationSource::sensor;
+  if (a.acceleration == "derivative") p.acceleration = preprocess::AccelerationSource::derivative;
+  p.window = {a.from_s, a.split_s, a.to_s};
+  p.padding.samples = a.padding;
+  p.padding.extension = a.extension == "even"       ? dsp::Extension::even
+                        : a.extension == "constant" ? dsp::Extension::constant
+                                                    : dsp::Extension::odd;
+  identify::Options& i = options.identify;
+  if (a.structure == "symmetric") i.structure = Structure::symmetric;
+  if (a.structure == "mass-spring") i.structure = Structure::mass_spring;
+  if (a.parameters_from == "all") i.parameters_from = identify::ParametersFrom::all;
+  if (a.parameters_from == "identification") i.parameters_from = identify::ParametersFrom::identification;
+  i.handle_mass = a.handle_mass;
+  i.hac_lag_s = a.hac_lag_s;
+  i.decimate_check = a.decimate_check;
+  if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
+  return options;
+}
+
+Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments) {
+  const auto options = read_options(arguments);
+  if (!options) return tl::unexpected(options.error());
+  std::vector<Recording> recordings;
+  if (arguments.parts) {
+    auto whole = recording::read_parts(arguments.files, *options);
+    if (!whole) return tl::unexpected(whole.error());
+    recordings.push_back(std::move(*whole));
+    return recordings;
+  }
+  for (const std::filesystem::path& file : arguments.files) {
+    auto one = recording::read(file, *options);
+    if (!one) return tl::unexpected(one.error());
+    recordings.push_back(std::move(*one));
+  }
+  return recordings;
+}
+
+}  // namespace mbk::app

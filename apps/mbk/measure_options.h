@@ -1,0 +1,50 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/mbk/output.h"
+#include "mbk/core/result.h"
+#include "mbk/measurement/measure.h"
+#include "mbk/recording/read.h"
+
+namespace mbk::app {
+
+/// What the options of `measure` and `identify` say, as typed.
+struct MeasureArguments {
+  std::vector<std::filesystem::path> files;
+  bool parts = false;
+  std::string channels, variable;
+  std::optional<double> rate_hz, resample_hz;
+  int axes = 0;
+  std::string mode = "default", procedure = "chapter3", protocol = "auto", method = "ls";
+  std::optional<int> sg_window, sg_order;
+  std::string cutoff, acceleration, parameters_from, structure = "full", extension = "odd";
+  long padding = 15;
+  double handle_mass = 0.0;
+  std::optional<double> from_s, split_s, to_s;
+  double hac_lag_s = 0.5;
+  bool decimate_check = false, pool = false;
+  unsigned threads = 0;
+  bool json = false, quiet = false;
+  Output output;
+};
+
+/// Adds FILE… and how to read it: --channels, --variable, --rate, --parts.
+void add_reading_options(CLI::App& command, MeasureArguments& arguments);
+
+/// Adds everything that decides what is measured and how.
+void add_measuring_options(CLI::App& command, MeasureArguments& arguments);
+
+/// Adds --json, --out, --overwrite, --quiet.
+void add_output_options(CLI::App& command, MeasureArguments& arguments);
+
+[[nodiscard]] Result<recording::ReadOptions> read_options(const MeasureArguments& arguments);
+[[nodiscard]] Result<measurement::Options> measurement_options(const MeasureArguments& arguments);
+
+/// Every FILE as a recording; with --parts all of them as one.
+[[nodiscard]] Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments);
+
+}  // namespace mbk::app

@@ -1,0 +1,51 @@
+#include "apps/mbk/output.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "mbk/recording/write_file.h"
+
+namespace mbk::app {
+
+int report_error(const Error& error) {
+  std::fflush(stdout);
+  fmt::print(stderr, "mbk: {}\n", error.line());
+  switch (error.kind) {
+    case ErrorKind::usage:
+      return kWrongUsage;
+    case ErrorKind::data:
+      return kBadData;
+    case ErrorKind::not_usable:
+      return kNotUsable;
+  }
+  return kBadData;
+}
+
+Result<void> Output::write(const std::string& text) const {
+  if (file) return recording::write_file(*file, text, overwrite);
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    return bad_data("standard output could not be written", "is the disk full?");
+  }
+  return {};
+}
+
+Result<std::string> read_text(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLargest = 256u << 20u;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    return bad_data(std::filesystem::exists(file, error) ? "not a file" : "no such file", "check the name",
+                    file.string());
+  }
+  if (std::filesystem::file_size(file, error) > kLargest) return bad_data("larger than 256 MB", "", file.string());
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.good() && !stream.eof()) return bad_data("cannot be read", "check its permissions", file.string());
+  if (text.empty()) return bad_data("the file is empty", "", file.string());
+  return text;
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "mbk/core/result.h"
+
+namespace mbk::app {
+
+inline constexpr int kFine = 0, kWrongUsage = 2, kBadData = 3, kNotUsable = 4;
+
+/// Prints "mbk: where: what; what to do" on stderr and gives the exit code of that kind of error.
+int report_error(const Error& error);
+
+/// Where a command's text goes: standard output, or a file that is written under a temporary name and then renamed,
+/// and never overwritten unless asked.
+struct Output {
+  std::optional<std::filesystem::path> file;
+  bool overwrite = false;
+
+  [[nodiscard]] Result<void> write(const std::string& text) const;
+};
+
+/// The whole of a text file, at most 256 MB.
+[[nodiscard]] Result<std::string> read_text(const std::filesystem::path& file);
+
+}  // namespace mbk::app

@@ -1,0 +1,69 @@
+#include "mbk/measurement/measure.h"
+
+#include <fmt/format.h>
+
+#include "mbk/analyse/ellipses.h"
+#include "mbk/preprocess/resample.h"
+#include "mbk/recording/inspection.h"
+
+namespace mbk::measurement {
+namespace {
+
+void warn_of_clipping(const Inspection& inspection, PreparedTrial& trial) {
+  for (const ChannelFacts& facts : inspection.channels) {
+    if (!facts.clipped) continue;
+    trial.warnings.push_back({WarningCode::clipping,
+                              fmt::format("channel '{}' rests at its extreme again and again ({:g} to {:g} {}): the "
+                                          "sensor or converter was at its limit",
+                                          facts.name, facts.minimum, facts.maximum, facts.unit),
+                              "perturb less, or raise the sensor's range; choose a window without it"});
+  }
+}
+
+Result<PreparedTrial> prepare_one(const Recording& recording, const Options& options) {
+  if (!options.resample) {
+    const Inspection inspection = recording::inspect(recording);
+    auto trial = preprocess::prepare(recording, inspection, options.preprocess);
+    if (trial) warn_of_clipping(inspection, *trial);
+    return trial;
+  }
+  const auto even = preprocess::resample(recording, *options.resample);
+  if (!even) return tl::unexpected(even.error());
+  auto trial = preprocess::prepare(*even, recording::inspect(*even), options.preprocess);
+  if (trial) {
+    warn_of_clipping(recording::inspect(recording), *trial);
+    trial->warnings.push_back({WarningCode::resampled,
+                               fmt::format("the samples were put on an even clock of {:g} Hz by straight lines between "
+                                           "them",
+                                           options.resample->value),
+                               "record with a steady clock"});
+  }
+  return trial;
+}
+
+}  // namespace
+
+Result<result::Measured> measure(const std::vector<Recording>& recordings, const Options& options) {
+  std::vector<PreparedTrial> trials;
+  for (const Recording& recording : recordings) {
+    auto trial = prepare_one(recording, options);
+    if (!trial) {
+      return tl::unexpected(recording.sources.empty() ? trial.error() : trial.error().in(recording.sources[0].path));
+    }
+    trials.push_back(std::move(*trial));
+  }
+  auto identification = identify::identify_impedance(trials, options.identify);
+  if (!identification) {
+    const bool one_file = recordings.size() == 1 && !recordings[0].sources.empty();
+    return tl::unexpected(one_file ? identification.error().in(recordings[0].sources[0].path) : identification.error());
+  }
+  result::Measured measured{std::move(*identification), std::nullopt};
+  if (measured.identification.axes == 2) {
+    auto findings = analyse::analyse_ellipses(measured.identification);
+    if (!findings) return tl::unexpected(findings.error());
+    measured.findings = std::move(*findings);
+  }
+  return measured;
+}
+
+}  // namespace mbk::measurement

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mbk/core/result.h"
+#include "mbk/core/units.h"
+#include "mbk/identify/impedance_fit.h"
+#include "mbk/preprocess/prepare.h"
+#include "mbk/result/json.h"
+#include "mbk/trial/recording.h"
+
+namespace mbk::measurement {
+
+/// Everything that may be chosen on the way from a recording to a result.
+struct Options {
+  preprocess::Options preprocess;
+  identify::Options identify;
+  std::optional<Hertz> resample;  ///< put the samples on an even clock first
+};
+
+/// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
+/// @fails as its steps; where a recording has a source, the message names its file.
+[[nodiscard]] Result<result::Measured> measure(const std::vector<Recording>& recordings, const Options& options);
+
+}  // namespace mbk::measurement

@@ -1,0 +1,45 @@
+#include "mbk/numeric/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace mbk::numeric {
+namespace {
+
+TEST(Statistics, VarianceIsNormalisedByOneLessThanTheCount) {
+  EXPECT_DOUBLE_EQ(variance((Vector(4) << 1, 2, 3, 4).finished()), 5.0 / 3.0);
+  EXPECT_EQ(variance(Vector::Constant(1, 3.0)), 0.0);
+  EXPECT_EQ(variance(Vector()), 0.0);
+}
+
+TEST(Statistics, VarianceKeepsItsDigitsFarFromZero) {
+  EXPECT_NEAR(variance((Vector(3) << 1e9 + 1, 1e9 + 2, 1e9 + 3).finished()), 1.0, 1e-9);
+}
+
+TEST(Statistics, VarianceAccountedForIgnoresAnOffsetAndMayBeNegative) {
+  const Vector force = (Vector(4) << 1, -1, 1, -1).finished();
+  EXPECT_DOUBLE_EQ(variance_accounted_for(force, Vector::Constant(4, 7.0)), 100.0);
+  EXPECT_DOUBLE_EQ(variance_accounted_for(force, 0.5 * force), 75.0);
+  EXPECT_DOUBLE_EQ(variance_accounted_for(force, 2.0 * force), -300.0);
+  EXPECT_TRUE(std::isnan(variance_accounted_for(Vector::Ones(4), force)));
+}
+
+TEST(Statistics, BinomialIntervalIsClopperAndPearsons) {
+  // Beta quantiles: B(0.005; 380, 21) and B(0.995; 381, 20), from SciPy.
+  const auto [lower, upper] = binomial_interval(380, 400, 0.99);
+  EXPECT_NEAR(lower, 0.9149188396, 1e-9);
+  EXPECT_NEAR(upper, 0.9738313266, 1e-9);
+  EXPECT_EQ(binomial_interval(0, 10, 0.95).first, 0.0);
+  EXPECT_NEAR(binomial_interval(0, 10, 0.95).second, 1.0 - std::pow(0.025, 0.1), 1e-12);  // closed form
+  EXPECT_EQ(binomial_interval(10, 10, 0.95).second, 1.0);
+}
+
+TEST(Statistics, APositiveQuantityHasAPositiveInterval) {
+  const auto [low, high] = positive_interval95(2.0, 3.0);
+  EXPECT_GT(low, 0.0);
+  EXPECT_DOUBLE_EQ(low * high, 4.0);
+}
+
+}  // namespace
+}  // namespace mbk::numeric

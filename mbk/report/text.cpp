@@ -1,0 +1,251 @@
+#include "mbk/report/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+#include "mbk/numeric/statistics.h"
+#include "mbk/report/picture.h"
+
+namespace mbk::report {
+namespace {
+
+constexpr std::array<const char*, 3> kLinearUnits = {"kg", "N·s/m", "N/m"};
+constexpr std::array<const char*, 3> kOneAxisUnits = {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad"};
+
+/// A value and its half width with the digits that mean something: 1.2002 ± 0.0011.
+std::string with_interval(double value, double half_width) {
+  if (!std::isfinite(value)) return "undefined";
+  if (!std::isfinite(half_width)) return fmt::format("{:.4g}", value);
+  if (half_width == 0.0) return fmt::format("{:.6g}", value);
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width))), 0, 9);
+  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, half_width, decimals);
+}
+
+std::string range(const Interval& interval, int decimals, double scale = 1.0) {
+  if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return "";
+  return fmt::format("[{:.{}f}, {:.{}f}]", scale * interval.first, decimals, scale * interval.second, decimals);
+}
+
+/// Left-aligned columns; the width of each is that of its longest cell.
+std::string table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns(row[k]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line = "  ";
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      line += row[k];
+      if (k + 1 < row.size()) line.append(widths[k] - columns(row[k]) + 3, ' ');
+    }
+    while (!line.empty() && line.back() == ' ') line.pop_back();
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string per_axis(const Vector& values, std::string_view unit, int decimals) {
+  if (values.size() == 1) return fmt::format("{:.{}f} {}", values[0], decimals, unit);
+  return fmt::format("x {:.{}f}, y {:.{}f} {}", values[0], decimals, values[1], decimals, unit);
+}
+
+std::string inputs_line(const Identification& id) {
+  std::string text;
+  for (std::size_t i = 0; i < id.sources.size(); ++i) {
+    text += fmt::format("{}   {:.1f} s at {:.6g} Hz   {}\n", id.sources[i].path, id.durations[i], id.rates[i],
+                        id.sources[i].format);
+  }
+  return text;
+}
+
+std::string how_made(const Identification& id) {
+  const Preparation& how = id.preparations.front();
+  std::vector<std::vector<std::string>> rows;
+  rows.push_back({"mode", how.mode == Mode::reference
+                              ? fmt::format("reference, {} of the published procedure", text(how.procedure))
+                              : "default"});
+  rows.push_back({"protocol", fmt::format("{} ({})", text(how.protocol), how.protocol_rule)});
+  rows.push_back({"window", how.window_rule});
+  std::string filters = fmt::format("Savitzky–Golay N {} W {}", how.smoothing_order, how.smoothing_window);
+  filters += how.cutoff ? fmt::format(", then zero-phase Butterworth {:.3g} Hz: {}", how.cutoff->value, how.cutoff_rule)
+                        : ", no low-pass";
+  rows.push_back({"filters", filters});
+  rows.push_back(
+      {"acceleration", how.acceleration_from_sensor ? "from the accelerometer" : "second derivative of position"});
+  std::string data = fmt::format("{:.1f} s", id.excitation.duration);
+  data += id.parameters_from == "all" ? ", all that counts" : "";
+  if (id.preparations.size() > 1) data += fmt::format(", {} trials pooled", id.preparations.size());
+  rows.push_back({"parameters", data});
+  if (id.handle_mass > 0.0) rows.push_back({"handle", fmt::format("{:g} kg taken off the inertia", id.handle_mass)});
+  if (id.structure != Structure::full) rows.push_back({"structure", std::string(text(id.structure))});
+  return table(rows);
+}
+
+std::string model_table(const impedance::Model& model, const impedance::Model& spread, double factor) {
+  const Index n = model.axes();
+  const auto& units = n == 1 ? kOneAxisUnits : kLinearUnits;
+  std::vector<std::vector<std::string>> rows;
+  if (n == 2) rows.push_back({"", "xx", "xy", "yx", "yy", ""});
+  const std::array<std::pair<const char*, Matrix impedance::Model::*>, 3> parts = {
+      {{"inertia M", &impedance::Model::M},
+       {"damping B", &impedance::Model::B},
+       {"stiffness K", &impedance::Model::K}}};
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    std::vector<std::string> row = {parts[k].first};
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i < n; ++i) {
+        row.push_back(with_interval((model.*parts[k].second)(j, i), factor * (spread.*parts[k].second)(j, i)));
+      }
+    }
+    row.push_back(units[k]);
+    rows.push_back(std::move(row));
+  }
+  std::vector<std::string> equilibrium = {"equilibrium x0"};
+  for (Index j = 0; j < n; ++j) {
+    equilibrium.push_back(n == 1 ? with_interval(model.x0[j], factor * spread.x0[j])
+                                 : with_interval(1e3 * model.x0[j], 1e3 * factor * spread.x0[j]));
+  }
+  equilibrium.push_back(n == 1 ? "m or rad" : "mm (x, y)");
+  rows.push_back(std::move(equilibrium));
+  return table(rows);
+}
+
+std::string warnings_text(const std::vector<Warning>& warnings) {
+  std::string text;
+  for (const Warning& warning : warnings) {
+    text += fmt::format("  ! {}: {}\n    try: {}\n", mbk::text(warning.code), warning.message, warning.remedy);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ellipses_text(const Findings& findings) {
+  std::vector<std::vector<std::string>> rows = {
+      {"ellipse", "area", "", "shape", "", "orientation", "", "antisymmetry"}};
+  std::vector<EllipsePanel> panels;
+  const double degrees = 180.0 / std::numbers::pi;
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    const EllipseFinding& finding = findings.ellipses[k];
+    const impedance::Ellipse& e = finding.ellipse;
+    panels.push_back({e, kMatrixNames[k], kLinearUnits[k]});
+    std::vector<std::string> row = {kMatrixNames[k]};
+    if (e.lambda_min > 0.0) {
+      const int decimals = e.area < 100.0 ? 2 : 0;
+      row.insert(row.end(), {fmt::format("{:.{}f}", e.area, decimals), range(finding.area95, decimals),
+                             fmt::format("{:.2f}", e.shape), range(finding.shape95, 2)});
+    } else {
+      row.insert(row.end(), {"none", fmt::format("(λ {:.3g}, {:.3g})", e.lambda_min, e.lambda_max), "", ""});
+    }
+    row.insert(row.end(), {fmt::format("{:.1f}°", degrees * e.orientation), range(finding.orientation95, 1, degrees)});
+    if (k != 1) {
+      const AntisymmetryFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
+      row.push_back(std::isfinite(a.zmean_percent)
+                        ? fmt::format("z_mean {:.1f} % {}", a.zmean_percent, range(a.zmean95, 1))
+                        : fmt::format("{:.3g} {}", a.value, range(a.value95, 2)));
+    }
+    rows.push_back(std::move(row));
+  }
+  return table(rows) + "  (area in the square of the matrix's unit; brackets are 95 % intervals)\n\n" +
+         draw_ellipses(panels);
+}
+
+std::string result_text(const Identification& id, const std::optional<Findings>& findings) {
+  std::string text = inputs_line(id) + how_made(id) + "\n";
+  text += model_table(id.model, id.standard_error, numeric::kNormal95);
+  text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n\n";
+  text += table(
+      {{id.fit.held_back ? "fit on held-back data" : "fit on the same data", "VAF " + per_axis(id.fit.vaf, "%", 2),
+        "RMSE " + per_axis(id.fit.rmse, id.axes == 1 ? "N or N·m" : "N", 3)},
+       {"fit in sample", "VAF " + per_axis(id.fit.vaf_in_sample, "%", 2)}});
+  if (id.decimation) {
+    text += table({{fmt::format("at {:g} Hz", id.decimation->rate_hz),
+                    fmt::format("the model differs by {:.2g} % of each matrix's largest element",
+                                100.0 * id.decimation->largest_change)}});
+  }
+  if (findings) text += "\n" + ellipses_text(*findings);
+  if (!id.warnings.empty()) text += "\n" + warnings_text(id.warnings);
+  if (!id.usable) text += "\n  NOT USABLE: do not report this model; see the warnings above.\n";
+  return text;
+}
+
+std::string summary_text(const Summary& summary) {
+  return fmt::format("mean of {} trials\n", summary.trials) +
+         model_table(summary.mean, summary.between_trial_standard_error, 1.0) +
+         "  (± is the standard error between trials)\n";
+}
+
+std::string info_text(const Recording& recording, const Inspection& inspection) {
+  std::string text;
+  for (const SourceFile& source : recording.sources) {
+    text += fmt::format("{}   {}   sha256 {}…\n", source.path, source.format, source.sha256.substr(0, 16));
+  }
+  std::vector<std::vector<std::string>> rows;
+  rows.push_back({"samples", fmt::format("{}, {:.3f} s", inspection.samples, inspection.duration)});
+  rows.push_back({"rate", fmt::format("{:.6g} Hz{}", inspection.rate_hz,
+                                      recording.time_from_rate ? " (as given; the file holds no time)" : "")});
+  rows.push_back({"clock", fmt::format("intervals {:.4g} to {:.4g} ms, standard deviation {:.2g} ms",
+                                       1e3 * inspection.interval_minimum, 1e3 * inspection.interval_maximum,
+                                       1e3 * inspection.interval_deviation)});
+  text += table(rows) + "\n";
+  rows = {{"channel", "unit", "from", "to", ""}};
+  for (const ChannelFacts& facts : inspection.channels) {
+    std::string remark;
+    if (facts.non_finite > 0) {
+      remark = fmt::format("! {} values are not numbers, the first at sample {}", facts.non_finite,
+                           facts.first_non_finite + 1);
+    } else if (facts.constant) {
+      remark = "constant";
+    } else if (facts.clipped) {
+      remark = "! rests at its extreme again and again: clipped?";
+    }
+    rows.push_back(
+        {facts.name, facts.unit, fmt::format("{:.6g}", facts.minimum), fmt::format("{:.6g}", facts.maximum), remark});
+  }
+  text += table(rows);
+
+  std::vector<std::string> problems;
+  const auto times = [](Index count) { return count == 1 ? std::string("once") : fmt::format("{} times", count); };
+  if (inspection.duplicated_times > 0) {
+    problems.push_back(fmt::format("time repeats {}, first at sample {}", times(inspection.duplicated_times),
+                                   inspection.first_duplicated + 1));
+  }
+  if (inspection.backward_times > 0) {
+    problems.push_back(fmt::format("time runs backwards {}, first at sample {}", times(inspection.backward_times),
+                                   inspection.first_backward + 1));
+  }
+  if (inspection.non_finite_times > 0) {
+    problems.push_back(fmt::format("time is not a number {}, first at sample {}", times(inspection.non_finite_times),
+                                   inspection.first_non_finite_time + 1));
+  }
+  constexpr std::size_t kShown = 5;
+  for (std::size_t k = 0; k < inspection.gaps.size() && k < kShown; ++k) {
+    const Gap& gap = inspection.gaps[k];
+    problems.push_back(
+        fmt::format("a gap of {:.4g} s after sample {} ({:.3f} s)", gap.length, gap.sample + 1, gap.time));
+  }
+  if (inspection.gaps.size() > kShown)
+    problems.push_back(fmt::format("and {} gaps more", inspection.gaps.size() - kShown));
+  if (inspection.interval_deviation > 0.01 * inspection.interval_median && inspection.gaps.empty()) {
+    problems.push_back("the clock jitters by more than 1 % of its interval");
+  }
+  text += problems.empty() ? "\n  no gap, no jitter to speak of, time runs on\n" : "\n";
+  for (const std::string& problem : problems) text += "  ! " + problem + "\n";
+  for (const std::string& note : recording.notes) text += "  note: " + note + "\n";
+  if (!recording.metadata.empty()) {
+    rows.clear();
+    for (const auto& [key, value] : recording.metadata) rows.push_back({key, value});
+    text += "\n" + table(rows);
+  }
+  return text;
+}
+
+}  // namespace mbk::report

@@ -1,0 +1,316 @@
+#include "mbk/result/json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "mbk/core/version.h"
+
+namespace mbk::result {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kResultSchema = "mbk.result/1";
+constexpr const char* kResultsSchema = "mbk.results/1";
+
+/// null where a number is undefined.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json list(const Vector& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(number(value));
+  return array;
+}
+
+Json rows(const Matrix& matrix) {
+  Json array = Json::array();
+  for (Index i = 0; i < matrix.rows(); ++i) array.push_back(list(matrix.row(i).transpose()));
+  return array;
+}
+
+Json model_json(const impedance::Model& model) {
+  return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
+}
+
+Json interval(const Interval& value, double scale = 1.0) {
+  return Json::array({number(scale * value.first), number(scale * value.second)});
+}
+
+Json header(const char* schema) {
+  return {{"schema", schema}, {"software", fmt::format("mbk {}", version())}};
+}
+
+Json inputs_json(const std::vector<SourceFile>& sources) {
+  Json inputs = Json::array();
+  for (const SourceFile& source : sources) {
+    inputs.push_back({{"file", source.path}, {"sha256", source.sha256}, {"format", source.format}});
+  }
+  return inputs;
+}
+
+Json warnings_json(const std::vector<Warning>& warnings) {
+  Json array = Json::array();
+  for (const Warning& warning : warnings) {
+    array.push_back({{"code", text(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
+  }
+  return array;
+}
+
+Json preparation_json(const Preparation& how) {
+  Json json = {{"protocol", text(how.protocol)},
+               {"protocol_rule", how.protocol_rule},
+               {"window_rule", how.window_rule},
+               {"from_s", how.from_s},
+               {"to_s", how.to_s},
+               {"savitzky_golay", {{"order", how.smoothing_order}, {"window", how.smoothing_window}}},
+               {"cutoff_hz", how.cutoff ? Json(how.cutoff->value) : Json(nullptr)},
+               {"cutoff_rule", how.cutoff_rule},
+               {"excited_band_hz", {how.band_low.value, how.band_high.value}},
+               {"acceleration", how.acceleration_from_sensor ? "sensor" : "derivative"},
+               {"cut_before_filter", how.cut_before_filter}};
+  if (how.split_s) json["split_s"] = *how.split_s;
+  if (how.protocol == Protocol::underdamped) json["perturbations"] = how.perturbations;
+  if (how.mode == Mode::reference) json["procedure"] = text(how.procedure);
+  return json;
+}
+
+Json ellipses_json(const Findings& findings) {
+  Json json = Json::object();
+  const double degrees = 180.0 / std::numbers::pi;
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    const EllipseFinding& finding = findings.ellipses[k];
+    json[kMatrixNames[k]] = {{"area", number(finding.ellipse.area)},
+                             {"shape", number(finding.ellipse.shape)},
+                             {"orientation_deg", number(degrees * finding.ellipse.orientation)},
+                             {"eigenvalues", {number(finding.ellipse.lambda_min), number(finding.ellipse.lambda_max)}},
+                             {"interval95",
+                              {{"area", interval(finding.area95)},
+                               {"shape", interval(finding.shape95)},
+                               {"orientation_deg", interval(finding.orientation95, degrees)}}}};
+  }
+  return json;
+}
+
+Json antisymmetry_json(const Findings& findings) {
+  const auto one = [](const AntisymmetryFinding& finding) {
+    return Json{{"value", number(finding.value)},
+                {"value_interval95", interval(finding.value95)},
+                {"zmean_percent", number(finding.zmean_percent)},
+                {"interval95", interval(finding.zmean95)}};
+  };
+  return {{"inertia", one(findings.antisymmetry[0])}, {"stiffness", one(findings.antisymmetry[1])}};
+}
+
+Json result_json(const Measured& measured) {
+  const Identification& id = measured.identification;
+  const Preparation& how = id.preparations.front();
+  Json json = header(kResultSchema);
+  json["inputs"] = inputs_json(id.sources);
+  for (std::size_t i = 0; i < id.sources.size(); ++i) {
+    json["inputs"][i]["duration_s"] = id.durations[i];
+    json["inputs"][i]["rate_hz"] = id.rates[i];
+  }
+  json["mode"] = text(how.mode);
+  json["protocol"] = text(how.protocol);
+  json["method"] = id.method;
+  json["axes"] = id.axes;
+  json["structure"] = text(id.structure);
+  json["model"] = model_json(id.model);
+  json["standard_error"] = model_json(id.standard_error);
+  json["fit"] = {{"VAF", list(id.fit.vaf)},
+                 {"RMSE", list(id.fit.rmse)},
+                 {"validated_on", id.fit.held_back ? "held-back" : "in-sample"},
+                 {"VAF_in_sample", list(id.fit.vaf_in_sample)}};
+  if (measured.findings) {
+    json["ellipses"] = ellipses_json(*measured.findings);
+    json["antisymmetry"] = antisymmetry_json(*measured.findings);
+  }
+  json["alternatives"] = Json::array();
+  json["disagreement"] = nullptr;
+  json["warnings"] = warnings_json(id.warnings);
+  json["usable"] = id.usable;
+  json["covariance"] = {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}};
+  json["estimation"] = {{"parameters_from", id.parameters_from},
+                        {"samples", id.samples},
+                        {"duration_s", id.excitation.duration},
+                        {"hac_lag_s", id.hac_lag_s},
+                        {"handle_mass_kg", id.handle_mass}};
+  json["excitation"] = {{"rank", id.excitation.rank},
+                        {"condition", number(id.excitation.condition)},
+                        {"motion_ratio", number(id.excitation.motion_ratio)},
+                        {"motion", number(id.excitation.motion)},
+                        {"inertia_share", number(id.excitation.inertia_share)}};
+  if (id.decimation) {
+    json["decimate_check"] = {{"rate_hz", id.decimation->rate_hz},
+                              {"model", model_json(id.decimation->model)},
+                              {"largest_relative_change", id.decimation->largest_change}};
+  }
+  json["preparation"] = Json::array();
+  for (const Preparation& one : id.preparations) json["preparation"].push_back(preparation_json(one));
+  return json;
+}
+
+// Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
+
+/// Thrown within this file only.
+struct Malformed {
+  std::string message;
+};
+
+double number_from(const Json& json) {
+  if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (!json.is_number()) throw Malformed{fmt::format("a number was expected, and '{}' stands there", json.dump())};
+  return json.get<double>();
+}
+
+Matrix matrix_from(const Json& object, const char* name, Index expected_rows, Index expected_columns) {
+  const auto found = object.find(name);
+  if (found == object.end()) throw Malformed{fmt::format("'{}' is missing", name)};
+  const auto wrong = [&] {
+    return Malformed{fmt::format("'{}' is not a {}×{} matrix", name, expected_rows, expected_columns)};
+  };
+  if (!found->is_array() || static_cast<Index>(found->size()) != expected_rows) throw wrong();
+  Matrix matrix(expected_rows, expected_columns);
+  for (Index i = 0; i < expected_rows; ++i) {
+    const Json& row = (*found)[static_cast<std::size_t>(i)];
+    // A vector (expected_columns = 1) is written as a plain list.
+    if (expected_columns == 1 && !row.is_array()) {
+      matrix(i, 0) = number_from(row);
+      continue;
+    }
+    if (!row.is_array() || static_cast<Index>(row.size()) != expected_columns) throw wrong();
+    for (Index j = 0; j < expected_columns; ++j) matrix(i, j) = number_from(row[static_cast<std::size_t>(j)]);
+  }
+  return matrix;
+}
+
+impedance::Model model_from(const Json& json, const char* name, Index n) {
+  const auto found = json.find(name);
+  if (found == json.end() || !found->is_object()) throw Malformed{fmt::format("'{}' is missing", name)};
+  return {matrix_from(*found, "M", n, n), matrix_from(*found, "B", n, n), matrix_from(*found, "K", n, n),
+          found->contains("x0") ? Vector(matrix_from(*found, "x0", n, 1))
+                                : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN())};
+}
+
+Vector row_major(const impedance::Model& model) {
+  Vector values(3 * model.M.size() + model.x0.size());
+  values << Vector(model.M.transpose().reshaped()), Vector(model.B.transpose().reshaped()),
+      Vector(model.K.transpose().reshaped()), model.x0;
+  return values;
+}
+
+Identification identification_from(const Json& json) {
+  if (!json.is_object() || json.value("schema", "") != kResultSchema) {
+    throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
+  }
+  Identification id;
+  const auto model = json.find("model");
+  const bool one_axis = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array() &&
+                        (*model)["M"].size() == 1;
+  id.axes = one_axis ? 1 : 2;
+  const Index n = id.axes, count = 3 * n * n + n;
+  id.model = model_from(json, "model", n);
+  id.covariance = Matrix::Constant(count, count, std::numeric_limits<double>::quiet_NaN());
+  if (json.contains("standard_error")) {
+    id.standard_error = model_from(json, "standard_error", n);
+    id.covariance = row_major(id.standard_error).cwiseAbs2().asDiagonal();
+  }
+  if (const auto covariance = json.find("covariance"); covariance != json.end() && covariance->is_object()) {
+    id.covariance = matrix_from(*covariance, "matrix", count, count);
+  }
+  id.method = json.value("method", "ls");
+  id.usable = json.value("usable", true);
+  if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
+    for (const Json& input : *inputs) {
+      id.sources.push_back({input.value("file", ""), input.value("format", ""), input.value("sha256", "")});
+    }
+  }
+  return id;
+}
+
+}  // namespace
+
+std::string to_json(const Measured& measured) {
+  return result_json(measured).dump(2) + "\n";
+}
+
+std::string to_json(const std::vector<Measured>& results, const std::optional<Summary>& summary) {
+  Json json = header(kResultsSchema);
+  json["results"] = Json::array();
+  for (const Measured& measured : results) json["results"].push_back(result_json(measured));
+  if (summary) {
+    json["summary"] = {{"trials", summary->trials},
+                       {"model", model_json(summary->mean)},
+                       {"between_trial_standard_error", model_json(summary->between_trial_standard_error)}};
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string to_json(const Findings& findings) {
+  Json json = header("mbk.ellipse/1");
+  json["ellipses"] = ellipses_json(findings);
+  json["antisymmetry"] = antisymmetry_json(findings);
+  return json.dump(2) + "\n";
+}
+
+std::string to_json(const Recording& recording, const Inspection& inspection) {
+  Json json = header("mbk.info/1");
+  json["inputs"] = inputs_json(recording.sources);
+  json["samples"] = inspection.samples;
+  json["duration_s"] = number(inspection.duration);
+  json["rate_hz"] = number(inspection.rate_hz);
+  json["interval_s"] = {{"minimum", number(inspection.interval_minimum)},
+                        {"median", number(inspection.interval_median)},
+                        {"maximum", number(inspection.interval_maximum)},
+                        {"standard_deviation", number(inspection.interval_deviation)}};
+  json["gaps"] = Json::array();
+  for (const Gap& gap : inspection.gaps) {
+    json["gaps"].push_back(
+        {{"after_sample", gap.sample + 1}, {"time_s", number(gap.time)}, {"length_s", number(gap.length)}});
+  }
+  json["duplicated_times"] = inspection.duplicated_times;
+  json["backward_times"] = inspection.backward_times;
+  json["non_finite_times"] = inspection.non_finite_times;
+  json["channels"] = Json::array();
+  for (const ChannelFacts& facts : inspection.channels) {
+    json["channels"].push_back({{"name", facts.name},
+                                {"unit", facts.unit},
+                                {"minimum", number(facts.minimum)},
+                                {"maximum", number(facts.maximum)},
+                                {"non_finite", facts.non_finite},
+                                {"constant", facts.constant},
+                                {"clipped", facts.clipped}});
+  }
+  json["metadata"] = Json::object();
+  for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
+  json["notes"] = recording.notes;
+  return json.dump(2) + "\n";
+}
+
+Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
+  const char* const remedy = "give a file that 'mbk measure --json' or 'mbk identify --json' wrote";
+  try {
+    const Json json = Json::parse(text);
+    std::vector<Identification> all;
+    if (json.is_object() && json.value("schema", "") == kResultsSchema) {
+      for (const Json& one : json.at("results")) all.push_back(identification_from(one));
+    } else {
+      all.push_back(identification_from(json));
+    }
+    return all;
+  } catch (const Malformed& malformed) {
+    return bad_data(malformed.message, remedy);
+  } catch (const nlohmann::json::parse_error& error) {
+    return bad_data(fmt::format("not valid JSON, byte {}", error.byte), remedy);
+  } catch (const nlohmann::json::exception& error) {
+    return bad_data(fmt::format("not a result of mbk ({})", error.what()), remedy);
+  }
+}
+
+}  // namespace mbk::result

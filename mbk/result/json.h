@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/core/result.h"
+#include "mbk/trial/findings.h"
+#include "mbk/trial/identification.h"
+#include "mbk/trial/inspection.h"
+#include "mbk/trial/recording.h"
+#include "mbk/trial/summary.h"
+
+namespace mbk::result {
+
+/// What `measure` found for one recording, or for several pooled.
+struct Measured {
+  Identification identification;
+  std::optional<Findings> findings;  ///< absent where they were not asked for, or with one axis
+};
+
+/// Schema "mbk.result/1". SI units; numbers carry every digit; absent = not computed, null = undefined.
+[[nodiscard]] std::string to_json(const Measured& measured);
+
+/// Schema "mbk.results/1": several results and, where there is one, their summary.
+[[nodiscard]] std::string to_json(const std::vector<Measured>& results, const std::optional<Summary>& summary);
+
+/// Schema "mbk.ellipse/1": the ellipses and antisymmetry of one result.
+[[nodiscard]] std::string to_json(const Findings& findings);
+
+/// Schema "mbk.info/1": what is in a recording.
+[[nodiscard]] std::string to_json(const Recording& recording, const Inspection& inspection);
+
+/// Reads back what `to_json` wrote, schema mbk.result/1 or mbk.results/1: model, covariance (from the standard errors
+/// where a file holds no covariance; NaN where it holds neither), fit, warnings and inputs.
+/// @fails not JSON (line and column); another schema; a matrix of the wrong shape (its path is named).
+[[nodiscard]] Result<std::vector<Identification>> identifications_from_json(std::string_view text);
+
+}  // namespace mbk::result
