@@ -1,0 +1,396 @@
+#include "mbk/recording/assemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "mbk/recording/channel_table.h"
+#include "mbk/recording/inspection.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr double kRateTolerance = 1e-3;  ///< relative: what clocks of two machines differ by at most
+constexpr std::size_t kMostListed = 12;
+
+/// One row or column of an array.
+struct Line {
+  const Array* array = nullptr;
+  Index index = 0;
+  bool row = false;
+
+  [[nodiscard]] Index size() const { return row ? array->values.cols() : array->values.rows(); }
+};
+
+/// A channel and where it stands in the file.
+struct Signal {
+  const ChannelKind* kind = nullptr;
+  Line line;
+  const Unit* unit = nullptr;  ///< of the file; nullptr: SI, or unknown where the kind measures several things
+  bool negate = false;
+  std::string source;  ///< for messages
+};
+
+bool is_vector(const Array& array) {
+  return std::min(array.values.rows(), array.values.cols()) == 1 && array.values.size() > 1;
+}
+
+bool is_matrix(const Array& array) {
+  return std::min(array.values.rows(), array.values.cols()) > 1;
+}
+
+Line vector_of(const Array& array) {
+  return {&array, 0, array.values.rows() == 1 && array.values.cols() > 1};
+}
+
+std::string shape(const Array& array) {
+  return fmt::format("{}×{}", array.values.rows(), array.values.cols());
+}
+
+std::string quoted(std::vector<std::string> names) {
+  const std::size_t more = names.size() > kMostListed ? names.size() - kMostListed : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// "it has 3 columns: time_s, position_rad, torque_Nm".
+std::string inventory(const Contents& contents) {
+  std::vector<std::string> names;
+  for (const Array& array : contents.arrays) {
+    if (!contents.table) {
+      names.push_back(fmt::format("{} ({})", array.name, shape(array)));
+    } else if (!array.name.empty()) {
+      names.push_back(array.name);
+    }
+  }
+  if (!contents.table) return names.empty() ? "it has no numeric variable" : "it has the variables " + quoted(names);
+  const std::string count =
+      fmt::format("it has {} column{}", contents.arrays.size(), contents.arrays.size() == 1 ? "" : "s");
+  return names.empty() ? count + " without names" : count + ": " + quoted(names);
+}
+
+const Array* find(const Contents& contents, std::string_view name) {
+  const auto array = std::ranges::find(contents.arrays, name, &Array::name);
+  return array == contents.arrays.end() ? nullptr : &*array;
+}
+
+class Assembler {
+ public:
+  Assembler(const Contents& contents, const ReadOptions& options) : contents_(contents), options_(options) {}
+
+  Result<Recording> run() {
+    recording_.notes = contents_.notes;
+    if (options_.axes < 0 || options_.axes > 2) {
+      return bad_usage(fmt::format("{} axes are not possible", options_.axes), "pass --axes 1 or --axes 2");
+    }
+    if (auto ok = options_.channels.empty() ? recognise() : follow_map(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+    extract();
+    if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
+    return std::move(recording_);
+  }
+
+ private:
+  // ---- which signals ----
+
+  Result<void> recognise() {
+    const auto logs = find_logs();
+    if (!logs) return tl::unexpected(logs.error());
+    if (*logs != nullptr) return take_logs(**logs);
+    take_names();
+    if (std::ranges::any_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) return {};
+    for (const Array& array : contents_.arrays) {
+      if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
+    }
+    const bool time = !signals_.empty();
+    return bad_data(
+        fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
+        contents_.table ? "say which is which, as in --channels time=1,x=2,Fx=3"
+                        : "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)");
+  }
+
+  static tl::unexpected<Error> tall(const Array& array) {
+    return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(array), kLogsRows),
+                    "if its columns are the signals, name them: --channels time=1,x=2,y=3,Fx=10,Fy=11; it is not "
+                    "transposed by itself",
+                    fmt::format("variable '{}'", array.name));
+  }
+
+  /// The logs matrix, or nullptr where there is none.
+  Result<const Array*> find_logs() const {
+    if (contents_.table) return nullptr;
+    const Array* named = find(contents_, options_.variable.empty() ? "logs" : options_.variable);
+    if (!options_.variable.empty() && named == nullptr && !names_structure()) {
+      return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
+    }
+    if (named != nullptr) {
+      if (named->values.rows() == kLogsRows) return named;
+      if (named->values.cols() == kLogsRows) return tall(*named);
+      return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
+                      "name its rows or columns, as in --channels x=2,y=3,Fx=10",
+                      fmt::format("variable '{}'", named->name));
+    }
+    std::vector<std::string> names;
+    const Array* found = nullptr;
+    for (const Array& array : contents_.arrays) {
+      if (array.values.rows() != kLogsRows || array.values.cols() < 2 || !within_variable(array)) continue;
+      names.push_back(array.name);
+      found = &array;
+    }
+    if (names.size() > 1) {
+      return bad_usage(fmt::format("several matrices have {} rows: {}", kLogsRows, quoted(names)),
+                       "say which with --variable NAME");
+    }
+    return found;
+  }
+
+  Result<void> take_logs(const Array& logs) {
+    std::vector<std::string> absent;
+    for (const ChannelKind& kind : channel_kinds()) {
+      if (kind.logs_row == 0) continue;
+      const Line line{&logs, kind.logs_row - 1, true};
+      if (kind.name != "time" && logs.values.row(line.index).array().isNaN().all()) {
+        absent.emplace_back(kind.name);
+      } else {
+        signals_.push_back({&kind, line, nullptr, false, fmt::format("row {}", kind.logs_row)});
+      }
+    }
+    recording_.notes.push_back(fmt::format(
+        "variable '{}' ({}) was read as a logs matrix; its rows 4, 5, 8, 9, 16 and 17 have no name and were left aside",
+        logs.name, shape(logs)));
+    if (!absent.empty()) {
+      recording_.notes.push_back(fmt::format("not recorded (NaN throughout): {}", quoted(absent)));
+    }
+    return {};
+  }
+
+  void take_names() {
+    struct Candidate {
+      const Array* array;
+      ColumnName name;
+    };
+    std::vector<Candidate> candidates;
+    std::vector<std::vector<const ChannelKind*>> meanings;
+    std::vector<std::string> aside;
+    for (const Array& array : contents_.arrays) {
+      const auto leaf = std::string_view(array.name).substr(array.name.rfind('.') + 1);
+      ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf);
+      if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
+        aside.push_back(array.name);
+        continue;
+      }
+      meanings.push_back(name.kinds);
+      candidates.push_back({&array, std::move(name)});
+    }
+    const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
+    for (const Candidate& candidate : candidates) {
+      const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
+      if (kind == nullptr) {
+        aside.push_back(candidate.array->name);
+      } else {
+        signals_.push_back({kind, vector_of(*candidate.array), candidate.name.unit, false, candidate.array->name});
+      }
+    }
+    std::erase(aside, "");
+    if (!aside.empty()) {
+      recording_.notes.push_back(
+          fmt::format("left aside, as their names are not those of channels: {}", quoted(aside)));
+    }
+  }
+
+  Result<void> follow_map() {
+    std::vector<std::vector<const ChannelKind*>> meanings;
+    for (const ChannelSource& entry : options_.channels) meanings.push_back(kinds_called(entry.channel));
+    const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
+    for (std::size_t i = 0; i < options_.channels.size(); ++i) {
+      const ChannelSource& entry = options_.channels[i];
+      // A name that means one thing only is taken as it stands, whatever the number of axes.
+      const ChannelKind* kind = meanings[i].size() == 1 ? meanings[i].front() : kind_for_axes(meanings[i], axes);
+      if (kind == nullptr) {
+        return bad_usage(fmt::format("unknown channel '{}'", entry.channel),
+                         fmt::format("did you mean '{}'?", nearest_channel_name(entry.channel)));
+      }
+      const auto line = source(entry);
+      if (!line) return tl::unexpected(line.error());
+      Signal signal{kind, *line, nullptr, entry.negate, entry.source};
+      if (!entry.unit.empty()) {
+        signal.unit = find_unit(entry.unit);
+        if (signal.unit == nullptr || !kind->accepts(*signal.unit)) {
+          return bad_data(fmt::format("channel {} cannot be in '{}'", kind->name, entry.unit),
+                          fmt::format("possible are {}", unit_names(kind->measures)));
+        }
+      } else if (const ColumnName name = parse_column_name(line->array->name);
+                 is_named(*line) && name.unit != nullptr && kind->accepts(*name.unit)) {
+        signal.unit = name.unit;
+        recording_.notes.push_back(
+            fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
+      }
+      signals_.push_back(std::move(signal));
+    }
+    return {};
+  }
+
+  /// Whether the array's name is that of this one line.
+  [[nodiscard]] bool is_named(const Line& line) const { return contents_.table || !is_matrix(*line.array); }
+
+  Result<Line> source(const ChannelSource& entry) const {
+    if (const Array* array = find(contents_, entry.source)) {
+      if (contents_.table || is_vector(*array)) return vector_of(*array);
+      return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
+                                  entry.source, shape(*array)),
+                      is_matrix(*array)
+                          ? fmt::format("pass --variable {} and a number, as in {}=2", entry.source, entry.channel)
+                          : "name a signal");
+    }
+    Index number = 0;
+    const char* const end = entry.source.data() + entry.source.size();
+    if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
+        error != std::errc() || stop != end) {
+      return bad_data(
+          fmt::format("channel {}: there is no '{}'; {}", entry.channel, entry.source, inventory(contents_)));
+    }
+    if (contents_.table) {
+      if (number < 1 || number > std::ssize(contents_.arrays)) {
+        return bad_data(
+            fmt::format("channel {}: there is no column {}; {}", entry.channel, number, inventory(contents_)),
+            "columns are counted from 1");
+      }
+      return vector_of(contents_.arrays[static_cast<std::size_t>(number - 1)]);
+    }
+    const auto matrix = numbered_matrix();
+    if (!matrix) return tl::unexpected(matrix.error());
+    const Array& array = **matrix;
+    const bool wide = array.values.cols() >= array.values.rows();
+    const Index lines = wide ? array.values.rows() : array.values.cols();
+    if (number < 1 || number > lines) {
+      return bad_data(fmt::format("channel {}: there is no {} {}; the matrix is {}", entry.channel,
+                                  wide ? "row" : "column", number, shape(array)),
+                      "they are counted from 1", fmt::format("variable '{}'", array.name));
+    }
+    return Line{&array, number - 1, wide};
+  }
+
+  /// The MAT variable whose rows or columns the numbers of the map count.
+  Result<const Array*> numbered_matrix() const {
+    if (!options_.variable.empty()) {
+      if (const Array* named = find(contents_, options_.variable)) return named;
+      return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
+    }
+    if (const Array* logs = find(contents_, "logs")) return logs;
+    std::vector<const Array*> matrices;
+    for (const Array& array : contents_.arrays) {
+      if (is_matrix(array)) matrices.push_back(&array);
+    }
+    if (matrices.empty()) {
+      for (const Array& array : contents_.arrays) {
+        if (is_vector(array)) matrices.push_back(&array);
+      }
+    }
+    if (matrices.size() == 1) return matrices.front();
+    return bad_usage(fmt::format("numbers could count the lines of several variables; {}", inventory(contents_)),
+                     "say which with --variable NAME");
+  }
+
+  [[nodiscard]] bool within_variable(const Array& array) const {
+    return options_.variable.empty() || array.name == options_.variable ||
+           array.name.starts_with(options_.variable + ".");
+  }
+  [[nodiscard]] bool names_structure() const {
+    return std::ranges::any_of(contents_.arrays, [&](const Array& array) { return within_variable(array); });
+  }
+
+  // ---- what they hold ----
+
+  Result<void> check() const {
+    if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
+      return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");
+    }
+    const Signal& first = signals_.front();
+    for (std::size_t i = 0; i < signals_.size(); ++i) {
+      const Signal& signal = signals_[i];
+      for (std::size_t j = 0; j < i; ++j) {
+        if (signals_[j].kind != signal.kind) continue;
+        return bad_data(fmt::format("'{}' and '{}' both are {}", signals_[j].source, signal.source, signal.kind->name),
+                        fmt::format("say which with --channels {}=NAME,…", signal.kind->name));
+      }
+      if (signal.line.size() != first.line.size()) {
+        return bad_data(fmt::format("{} ('{}') has {} samples, {} ('{}') has {}", first.kind->name, first.source,
+                                    first.line.size(), signal.kind->name, signal.source, signal.line.size()),
+                        "channels of one recording must have equal lengths; name them with --channels");
+      }
+    }
+    if (first.line.size() == 0) return bad_data("the recording has no samples", "nothing was recorded");
+    return {};
+  }
+
+  void extract() {
+    const Index samples = signals_.front().line.size();
+    std::vector<Vector> values(signals_.size(), Vector(samples));
+    // Blocks of samples, so that the rows of a wide matrix are gathered from memory that is still in the cache.
+    constexpr Index kBlock = 256;
+    for (Index begin = 0; begin < samples; begin += kBlock) {
+      const Index count = std::min(kBlock, samples - begin);
+      for (std::size_t s = 0; s < signals_.size(); ++s) {
+        const Line& line = signals_[s].line;
+        if (line.row) {
+          values[s].segment(begin, count) = line.array->values.row(line.index).segment(begin, count).transpose();
+        } else {
+          values[s].segment(begin, count) = line.array->values.col(line.index).segment(begin, count);
+        }
+      }
+    }
+    for (std::size_t s = 0; s < signals_.size(); ++s) {
+      const Signal& signal = signals_[s];
+      Vector& channel = values[s];
+      if (signal.unit != nullptr && signal.unit->multiply != signal.unit->divide) {
+        channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
+      }
+      if (signal.negate) channel = -channel;
+      if (signal.kind->name == "time") {
+        recording_.time = std::move(channel);
+        continue;
+      }
+      const auto unit = signal.unit != nullptr ? si_unit(signal.unit->dimension) : signal.kind->default_unit();
+      recording_.channels.push_back(
+          {std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame), std::move(channel)});
+    }
+  }
+
+  Result<void> settle_time() {
+    if (options_.rate && !(options_.rate->value > 0.0 && std::isfinite(options_.rate->value))) {
+      return bad_usage(fmt::format("rate {} Hz is not positive", options_.rate->value),
+                       "pass the sample rate: --rate 1000");
+    }
+    if (recording_.time.size() == 0) {
+      if (!options_.rate) {
+        return bad_usage("the file holds no time that is recognised",
+                         "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
+      }
+      recording_.time_from_rate = true;
+      const Index samples = recording_.channels.front().values.size();
+      recording_.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / options_.rate->value;
+      return {};
+    }
+    if (!options_.rate || recording_.time.size() < 2) return {};
+    const double own = inspect(recording_).rate_hz;
+    if (std::abs(own - options_.rate->value) <= kRateTolerance * options_.rate->value) return {};
+    return bad_usage(
+        fmt::format("rate {} Hz contradicts the file's own time, which runs at {:.6g} Hz", options_.rate->value, own),
+        "leave --rate out, or correct the unit of time (--channels time=…:ms)");
+  }
+
+  const Contents& contents_;
+  const ReadOptions& options_;
+  std::vector<Signal> signals_;
+  Recording recording_;
+};
+
+}  // namespace
+
+Result<Recording> assemble(const Contents& contents, const ReadOptions& options) {
+  return Assembler(contents, options).run();
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,76 @@
+#include "mbk/recording/channel_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mbk/recording/channel_table.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::string_view kExample = "write CHANNEL=[-]SOURCE[:UNIT], as in --channels x=2:mm,y=3,Fx=-10,Fy=-11";
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+Result<ChannelSource> parse_entry(std::string_view entry) {
+  const auto equals = entry.find('=');
+  if (equals == entry.npos) {
+    return bad_usage(fmt::format("channel entry '{}' has no '='", entry), std::string(kExample));
+  }
+  const std::string_view name = trimmed(entry.substr(0, equals));
+  std::string_view source = trimmed(entry.substr(equals + 1));
+
+  const auto kinds = kinds_called(name);
+  if (kinds.empty()) {
+    return bad_usage(fmt::format("unknown channel '{}'", name),
+                     fmt::format("did you mean '{}'?", nearest_channel_name(name)));
+  }
+  ChannelSource result;
+  result.channel = kinds.size() == 1 ? kinds.front()->name : kinds.front()->alias;
+
+  if (source.starts_with('-')) {
+    result.negate = true;
+    source = trimmed(source.substr(1));
+  }
+  if (const auto colon = source.rfind(':'); colon != source.npos) {
+    result.unit = trimmed(source.substr(colon + 1));
+    source = trimmed(source.substr(0, colon));
+    std::vector<Dimension> possible;
+    for (const ChannelKind* kind : kinds) possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
+    const Unit* unit = find_unit(result.unit);
+    if (unit == nullptr || std::ranges::find(possible, unit->dimension) == possible.end()) {
+      return bad_data(unit == nullptr ? fmt::format("unknown unit '{}' of channel {}", result.unit, name)
+                                      : fmt::format("channel {} cannot be in {}", name, result.unit),
+                      fmt::format("possible are {}", unit_names(possible)));
+    }
+  }
+  if (source.empty()) {
+    return bad_usage(fmt::format("channel entry '{}' names no source", entry), std::string(kExample));
+  }
+  result.source = source;
+  return result;
+}
+
+}  // namespace
+
+Result<std::vector<ChannelSource>> parse_channel_map(std::string_view text) {
+  std::vector<ChannelSource> map;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    auto entry = parse_entry(trimmed(text.substr(begin, end - begin)));
+    if (!entry) return tl::unexpected(entry.error());
+    if (std::ranges::find(map, entry->channel, &ChannelSource::channel) != map.end()) {
+      return bad_usage(fmt::format("channel {} is named twice", entry->channel), "name each channel once");
+    }
+    map.push_back(std::move(*entry));
+    begin = end + 1;
+  }
+  return map;
+}
+
+}  // namespace mbk::recording

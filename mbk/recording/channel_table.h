@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/recording/si_units.h"
+
+namespace mbk::recording {
+
+/// A channel that mbk knows: one row of the channel table of the documentation.
+struct ChannelKind {
+  std::string_view name;
+  std::string_view alias;               ///< "x" and "xr" are aliases of two kinds: of one axis and of two
+  std::span<const Dimension> measures;  ///< what it may measure; where there are several, the file must say
+  std::string_view frame;               ///< "base", "joint" or ""
+  int axes;                             ///< 1 or 2: the kind of experiment it belongs to; 0: both
+  int logs_row;                         ///< 1-based row of the 19-row `logs` matrix; 0: it has none
+
+  /// SI unit, or "" where several are possible and nothing was said.
+  [[nodiscard]] std::string_view default_unit() const {
+    return measures.size() == 1 ? si_unit(measures.front()) : std::string_view();
+  }
+  [[nodiscard]] bool accepts(const Unit& unit) const;
+};
+
+inline constexpr int kLogsRows = 19;
+
+/// Every kind, time first, in the order of the documentation.
+[[nodiscard]] std::span<const ChannelKind> channel_kinds();
+
+/// The kinds that a name or alias can mean: none, one, or two ("x", "xr"). Case does not count, except in names of one
+/// letter.
+[[nodiscard]] std::vector<const ChannelKind*> kinds_called(std::string_view name);
+
+/// The known name or alias that looks most like `name`.
+[[nodiscard]] std::string_view nearest_channel_name(std::string_view name);
+
+/// 1 or 2, from the names that mean only one thing: `F` speaks for one axis, `y` or `Fx` for two; two where none
+/// speaks.
+[[nodiscard]] int axes_of(std::span<const std::vector<const ChannelKind*>> meanings);
+
+/// The one of `kinds` that belongs to so many axes, or nullptr.
+[[nodiscard]] const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int axes);
+
+/// A column name taken apart: "hand_x_mm", "hand_x [mm]" and "hand_x (mm)" are hand_x in mm.
+struct ColumnName {
+  std::vector<const ChannelKind*> kinds;  ///< empty: not a name that mbk knows
+  const Unit* unit = nullptr;             ///< nullptr: the name says none
+};
+[[nodiscard]] ColumnName parse_column_name(std::string_view name);
+
+}  // namespace mbk::recording

@@ -1,0 +1,200 @@
+#include "mbk/recording/mat_hdf5.h"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <cstring>
+#include <mutex>
+
+#include "mbk/recording/byte_view.h"
+#include "mbk/recording/file_bytes.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::size_t kUserBlock = 512;  ///< MATLAB's header before the HDF5 data
+constexpr int kDeepest = 16;
+constexpr unsigned char kSignature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+
+constexpr auto kRemedy = "the file is damaged or cut short: copy it again from where it was recorded";
+
+/// An HDF5 identifier that closes itself.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }
+  [[nodiscard]] bool ok() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Keeps the library from printing its errors.
+class Quiet {
+ public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// The file's length that its superblock claims (HDF5 File Format Specification 3.0, II.A), or nothing where the
+/// superblock is not possible.
+Result<std::uint64_t> claimed_end(ByteView superblock) {
+  const auto fail = [] { return bad_data("its HDF5 superblock is broken", kRemedy); };
+  if (!superblock.holds(0, 96)) return fail();
+  const auto version = superblock.at<std::uint8_t>(8);
+  if (version > 3) return fail();
+  const bool old = version < 2;
+  const auto offset_size = superblock.at<std::uint8_t>(old ? 13 : 9);
+  if (offset_size != 8) return fail();
+  const std::size_t addresses = version == 0 ? 24 : version == 1 ? 28 : 12;
+  return superblock.at<std::uint64_t>(addresses + 2 * std::size_t{offset_size});
+}
+
+std::string text_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return {};
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  if (!attribute.ok()) return {};
+  const Handle type(H5Aget_type(attribute), H5Tclose);
+  const Handle space(H5Aget_space(attribute), H5Sclose);
+  if (!type.ok() || !space.ok() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) return {};
+  const std::size_t size = H5Tget_size(type);
+  if (H5Sget_simple_extent_npoints(space) != 1 || size > 256) return {};
+  std::string text(size, '\0');
+  if (H5Aread(attribute, type, text.data()) < 0) return {};
+  return text.c_str();
+}
+
+bool is_numeric_class(std::string_view name) {
+  return name == "double" || name == "single" || name == "logical" || name.starts_with("int") ||
+         name.starts_with("uint");
+}
+
+class Decoder {
+ public:
+  explicit Decoder(std::uint64_t file_size) : file_size_(file_size) {}
+  Contents contents;
+
+  Result<void> group(hid_t group, const std::string& prefix, int depth) {
+    H5G_info_t info{};
+    if (depth > kDeepest) return bad_data("structures are nested too deeply", kRemedy);
+    if (H5Gget_info(group, &info) < 0) return bad_data("a group cannot be read", kRemedy);
+    for (hsize_t i = 0; i < info.nlinks; ++i) {
+      char name[1024] = {};
+      if (H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name, H5P_DEFAULT) < 0) {
+        return bad_data("a name cannot be read", kRemedy);
+      }
+      H5L_info_t link{};
+      if (H5Lget_info(group, name, &link, H5P_DEFAULT) < 0) return bad_data("a link cannot be read", kRemedy);
+      if (name[0] == '#' || link.type != H5L_TYPE_HARD) continue;  // MATLAB's own; never other files
+      const std::string full = prefix.empty() ? name : prefix + "." + name;
+      const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+      if (!object.ok()) return bad_data("cannot be opened", kRemedy, fmt::format("variable '{}'", full));
+      if (auto done = variable(object, full, depth); !done) return done;
+    }
+    return {};
+  }
+
+ private:
+  Result<void> variable(hid_t object, const std::string& name, int depth) {
+    const std::string type = text_attribute(object, "MATLAB_class");
+    const auto kind = H5Iget_type(object);
+    if (H5Aexists(object, "MATLAB_object_decode") > 0) {
+      return aside(name, type == "function_handle"
+                             ? "a function handle"
+                             : fmt::format("an object of MATLAB class '{}', which only MATLAB can read", type));
+    }
+    if (H5Aexists(object, "MATLAB_sparse") > 0) return aside(name, "a sparse matrix");
+    if (kind == H5I_GROUP) return group(object, name, depth + 1);
+    if (kind != H5I_DATASET) return aside(name, "not a matrix");
+    if (H5Aexists(object, "MATLAB_empty") > 0) return {};
+    if (type == "char") return aside(name, "text");
+    if (type == "cell") return aside(name, "a cell array");
+    if (type.empty() || is_numeric_class(type)) return dataset(object, name);
+    return aside(name, fmt::format("of class '{}'", type));
+  }
+
+  Result<void> dataset(hid_t dataset, const std::string& name) {
+    const auto damaged = [&](std::string what) {
+      return bad_data(std::move(what), kRemedy, fmt::format("variable '{}'", name));
+    };
+    const Handle type(H5Dget_type(dataset), H5Tclose);
+    const Handle space(H5Dget_space(dataset), H5Sclose);
+    if (!type.ok() || !space.ok()) return damaged("its type cannot be read");
+    const auto type_class = H5Tget_class(type);
+    if (type_class == H5T_COMPOUND) return aside(name, "complex");
+    if (type_class == H5T_REFERENCE) return aside(name, "a field of a structure array");
+    if (type_class != H5T_INTEGER && type_class != H5T_FLOAT) return aside(name, "not numeric");
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank != 2) return aside(name, fmt::format("an array of {} dimensions", rank));
+    hsize_t size[2] = {};
+    if (H5Sget_simple_extent_dims(space, size, nullptr) != 2) return damaged("its dimensions cannot be read");
+    std::uint64_t claimed = 0;
+    if (__builtin_mul_overflow(size[0], size[1], &claimed) ||
+        __builtin_mul_overflow(claimed, sizeof(double), &claimed) || claimed > largest_claim(file_size_) ||
+        claimed > largest_claim(H5Dget_storage_size(dataset))) {
+      return damaged(fmt::format("dimensions {}×{} are more than the file can hold", size[1], size[0]));
+    }
+    H5D_space_status_t status{};
+    if (H5Dget_space_status(dataset, &status) < 0 || (claimed > 0 && status != H5D_SPACE_STATUS_ALLOCATED)) {
+      return damaged("a part of it was never written");
+    }
+    Array& array = contents.arrays.emplace_back();
+    array.name = name;
+    array.values.resize(static_cast<Index>(size[1]), static_cast<Index>(size[0]));
+    if (claimed > 0 && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0) {
+      return damaged("its data cannot be read");
+    }
+    return {};
+  }
+
+  Result<void> aside(const std::string& name, std::string_view what) {
+    contents.notes.push_back(fmt::format("variable '{}' is {}; left aside", name, what));
+    return {};
+  }
+
+  std::uint64_t file_size_;
+};
+
+}  // namespace
+
+bool looks_like_mat_hdf5(std::span<const std::byte> file) {
+  return file.size() >= kUserBlock + sizeof kSignature &&
+         std::memcmp(file.data() + kUserBlock, kSignature, sizeof kSignature) == 0;
+}
+
+Result<Contents> decode_mat_hdf5(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  const bool swapped = std::endian::native == std::endian::big;  // HDF5's own numbers are little-endian
+  const auto end = claimed_end({bytes.subspan(kUserBlock), swapped});
+  if (!end) return tl::unexpected(end.error());
+  if (*end > bytes.size()) {
+    return bad_data(fmt::format("the file has {} of the {} bytes that it should have", bytes.size(), *end), kRemedy);
+  }
+  static std::mutex one_at_a_time;  // the library is not safe for several threads
+  const std::lock_guard lock(one_at_a_time);
+  const Quiet quiet;
+  const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!opened.ok()) return bad_data("HDF5 cannot open it", kRemedy);
+  Decoder decoder(bytes.size());
+  decoder.contents.format = "MAT v7.3";
+  const Handle root(H5Gopen2(opened, "/", H5P_DEFAULT), H5Gclose);
+  if (!root.ok()) return bad_data("its root group cannot be read", kRemedy);
+  if (auto done = decoder.group(root, "", 0); !done) return tl::unexpected(done.error());
+  return std::move(decoder.contents);
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,107 @@
+#include "mbk/recording/mat_writer.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <matio.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <limits>
+#include <memory>
+#include <system_error>
+
+#include "mbk/recording/channel_table.h"
+
+namespace mbk::recording {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<Matrix> logs_matrix(const Recording& recording) {
+  Matrix logs = Matrix::Constant(kLogsRows, recording.samples(), std::numeric_limits<double>::quiet_NaN());
+  logs.row(0) = recording.time.transpose();
+  for (const Channel& channel : recording.channels) {
+    int row = 0;
+    for (const ChannelKind& kind : channel_kinds()) {
+      if (kind.name == channel.name) row = kind.logs_row;
+    }
+    if (row == 0) {
+      return bad_usage(fmt::format("channel '{}' has no row in the {}-row logs matrix", channel.name, kLogsRows),
+                       "write it in another format, or leave the channel out");
+    }
+    if (channel.values.size() != recording.samples()) {
+      return bad_data(fmt::format("channel '{}' has {} samples, time has {}", channel.name, channel.values.size(),
+                                  recording.samples()));
+    }
+    logs.row(row - 1) = channel.values.transpose();
+  }
+  return logs;
+}
+
+bool write_matrix(const fs::path& file, Matrix& logs) {
+  const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(
+      Mat_CreateVer(file.c_str(), "MATLAB 5.0 MAT-file, written by mbk", MAT_FT_MAT5), Mat_Close);
+  if (!mat) return false;
+  std::array<std::size_t, 2> dimensions{static_cast<std::size_t>(logs.rows()), static_cast<std::size_t>(logs.cols())};
+  const std::unique_ptr<matvar_t, void (*)(matvar_t*)> variable(
+      Mat_VarCreate("logs", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dimensions.data(), logs.data(), MAT_F_DONT_COPY_DATA),
+      Mat_VarFree);
+  return variable && Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_ZLIB) == 0;
+}
+
+/// Flushes a file or folder to the disk; 0 or the error code.
+int flush(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int code = ::fsync(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  return code;
+}
+
+/// A file that goes away unless it was renamed.
+struct Temporary {
+  fs::path path;
+  ~Temporary() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+};
+
+}  // namespace
+
+Result<void> write_logs(const Recording& recording, const fs::path& file, bool overwrite) {
+  const auto cannot = [&](int code) {
+    return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
+                    "check the folder, its permissions and the space on the disk", file.string());
+  };
+  std::error_code code;
+  if (!overwrite && fs::exists(fs::symlink_status(file, code))) {
+    return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
+  }
+  if (recording.samples() == 0) return bad_data("a recording without samples is not written", "", file.string());
+  constexpr std::uint64_t kLargest = std::uint64_t{1} << 31;  // sizes within a v5 file have 32 bits
+  if (static_cast<std::uint64_t>(recording.samples()) * kLogsRows * sizeof(double) >= kLargest) {
+    return bad_data(fmt::format("{} samples are too many for a MAT v5 file", recording.samples()),
+                    "write it in several parts", file.string());
+  }
+  auto logs = logs_matrix(recording);
+  if (!logs) return tl::unexpected(logs.error().in(file.string()));
+
+  fs::path folder = file.parent_path();
+  if (folder.empty()) folder = ".";
+  const Temporary temporary{folder / fmt::format(".{}.{}.part", file.filename().string(), ::getpid())};
+  // Made by us, so that nothing that is there is followed or replaced.
+  fs::remove(temporary.path, code);
+  const int made = ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (made < 0) return cannot(errno);
+  ::close(made);
+  if (!write_matrix(temporary.path, *logs)) return cannot(EIO);
+  if (const int error = flush(temporary.path); error != 0) return cannot(error);
+  fs::rename(temporary.path, file, code);
+  if (code) return cannot(code.value());
+  if (const int error = flush(folder); error != 0) return cannot(error);
+  return {};
+}
+
+}  // namespace mbk::recording

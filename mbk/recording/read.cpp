@@ -1,0 +1,71 @@
+#include "mbk/recording/read.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <string_view>
+
+#include "mbk/recording/assemble.h"
+#include "mbk/recording/csv.h"
+#include "mbk/recording/file_bytes.h"
+#include "mbk/recording/mat_hdf5.h"
+#include "mbk/recording/mat_level4.h"
+#include "mbk/recording/mat_level5.h"
+#include "mbk/recording/sha256.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::string_view kFormats = "MAT (v4 to v7.3) and CSV are read";
+constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1a\n";
+
+bool is_text(std::string_view bytes) {
+  return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
+    const auto code = static_cast<unsigned char>(c);
+    return code < 0x20 && c != '\t' && c != '\n' && c != '\r';
+  });
+}
+
+Result<Contents> decode(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const bool mat_header = bytes.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
+  if (looks_like_mat_hdf5(bytes)) return decode_mat_hdf5(file, bytes);
+  if (text.starts_with("MATLAB 7.3")) {
+    return bad_data("the MAT v7.3 header is not followed by HDF5 data",
+                    "copy the file again from where it was recorded");
+  }
+  if (mat_header || text.starts_with("MATLAB 5.0")) return decode_mat_level5(bytes);
+  if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
+  if (text.starts_with(kHdf5Signature)) return bad_data("HDF5 files are not read yet", std::string(kFormats));
+  if (is_text(text)) return decode_csv(bytes);
+  if (bytes.size() >= 512 && bytes[1] == std::byte{0x50}) {
+    return bad_data("C3D files are not read yet", std::string(kFormats));
+  }
+  return bad_data("the content is of no known format", std::string(kFormats));
+}
+
+Result<Recording> read_one(const std::filesystem::path& file, const ReadOptions& options) {
+  const auto bytes = read_file(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const auto contents = decode(file, bytes->bytes());
+  if (!contents) return tl::unexpected(contents.error());
+  auto recording = assemble(*contents, options);
+  if (recording) recording->sources = {{file.string(), contents->format, sha256(bytes->bytes())}};
+  return recording;
+}
+
+}  // namespace
+
+Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options) {
+  try {
+    auto recording = read_one(file, options);
+    if (!recording) return tl::unexpected(recording.error().in(file.string()));
+    return recording;
+  } catch (const std::bad_alloc&) {
+    return bad_data("there is not enough memory to read it", "close other programs or split the recording",
+                    file.string());
+  }
+}
+
+}  // namespace mbk::recording

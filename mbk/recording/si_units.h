@@ -1,0 +1,32 @@
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mbk::recording {
+
+/// What a number measures. The one place that knows units; everything behind this edge is SI and radians.
+enum class Dimension { time, length, angle, force, torque, acceleration, angular_acceleration };
+
+/// A unit of a file: value in SI = value · multiply / divide. Two factors, so that 153 mm is exactly 0.153 m.
+struct Unit {
+  std::string_view name;
+  Dimension dimension;
+  double multiply;
+  double divide;
+
+  [[nodiscard]] double to_si(double value) const { return value * multiply / divide; }
+};
+
+/// The unit of exactly that name ("mm", "N.m", "Nm", "m/s2", "m/s^2"), or nullptr. Case counts: mN is not MN.
+[[nodiscard]] const Unit* find_unit(std::string_view name);
+
+/// The SI unit of a dimension, as Channel::unit writes it.
+[[nodiscard]] std::string_view si_unit(Dimension dimension);
+
+/// "m, cm, mm, um, in": every unit that measures one of the dimensions, for messages.
+[[nodiscard]] std::string unit_names(std::span<const Dimension> dimensions);
+
+}  // namespace mbk::recording
