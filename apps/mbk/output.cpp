@@ -26,7 +26,7 @@ int report_error(const Error& error) {
 }
 
 Result<void> Output::write(const std::string& text) const {
-  if (file) return recording::write_file(*file, text, overwrite);
+  if (file) return recording::write_file(*file, overwrite, text);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     return bad_data("standard output could not be written", "is the disk full?");
   }

@@ -15,7 +15,7 @@ void warn_of_clipping(const Inspection& inspection, PreparedTrial& trial) {
     trial.warnings.push_back({WarningCode::clipping,
                               fmt::format("channel '{}' rests at its extreme again and again ({:g} to {:g} {}): the "
                                           "sensor or converter was at its limit",
-                                          facts.name, facts.minimum, facts.maximum, facts.unit),
+                                          facts.name, facts.min, facts.max, facts.unit),
                               "perturb less, or raise the sensor's range; choose a window without it"});
   }
 }

@@ -9,7 +9,7 @@
 namespace mbk::report {
 namespace {
 
-constexpr int kColumns = 22, kRows = 10;                        // characters of one panel
+constexpr int kColumns = 23, kRows = 11;                        // characters of one panel
 constexpr int kDotsWide = 2 * kColumns, kDotsHigh = 4 * kRows;  // Braille: 2 × 4 dots a character
 
 /// A panel of dots.

@@ -193,22 +193,19 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
   rows.push_back({"rate", fmt::format("{:.6g} Hz{}", inspection.rate_hz,
                                       recording.time_from_rate ? " (as given; the file holds no time)" : "")});
   rows.push_back({"clock", fmt::format("intervals {:.4g} to {:.4g} ms, standard deviation {:.2g} ms",
-                                       1e3 * inspection.interval_minimum, 1e3 * inspection.interval_maximum,
-                                       1e3 * inspection.interval_deviation)});
+                                       1e3 * inspection.interval_min, 1e3 * inspection.interval_max,
+                                       1e3 * inspection.interval_standard_deviation)});
   text += table(rows) + "\n";
   rows = {{"channel", "unit", "from", "to", ""}};
   for (const ChannelFacts& facts : inspection.channels) {
     std::string remark;
-    if (facts.non_finite > 0) {
-      remark = fmt::format("! {} values are not numbers, the first at sample {}", facts.non_finite,
-                           facts.first_non_finite + 1);
-    } else if (facts.constant) {
+    if (facts.constant) {
       remark = "constant";
     } else if (facts.clipped) {
       remark = "! rests at its extreme again and again: clipped?";
     }
     rows.push_back(
-        {facts.name, facts.unit, fmt::format("{:.6g}", facts.minimum), fmt::format("{:.6g}", facts.maximum), remark});
+        {facts.name, facts.unit, fmt::format("{:.6g}", facts.min), fmt::format("{:.6g}", facts.max), remark});
   }
   text += table(rows);
 
@@ -222,9 +219,9 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     problems.push_back(fmt::format("time runs backwards {}, first at sample {}", times(inspection.backward_times),
                                    inspection.first_backward + 1));
   }
-  if (inspection.non_finite_times > 0) {
-    problems.push_back(fmt::format("time is not a number {}, first at sample {}", times(inspection.non_finite_times),
-                                   inspection.first_non_finite_time + 1));
+  for (const NonFinite& bad : inspection.non_finite) {
+    problems.push_back(
+        fmt::format("{} is not a number {}, first at sample {}", bad.channel, times(bad.count), bad.first + 1));
   }
   constexpr std::size_t kShown = 5;
   for (std::size_t k = 0; k < inspection.gaps.size() && k < kShown; ++k) {
@@ -234,7 +231,7 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
   }
   if (inspection.gaps.size() > kShown)
     problems.push_back(fmt::format("and {} gaps more", inspection.gaps.size() - kShown));
-  if (inspection.interval_deviation > 0.01 * inspection.interval_median && inspection.gaps.empty()) {
+  if (inspection.interval_standard_deviation > 0.01 * inspection.interval_median && inspection.gaps.empty()) {
     problems.push_back("the clock jitters by more than 1 % of its interval");
   }
   text += problems.empty() ? "\n  no gap, no jitter to speak of, time runs on\n" : "\n";

@@ -265,10 +265,10 @@ std::string to_json(const Recording& recording, const Inspection& inspection) {
   json["samples"] = inspection.samples;
   json["duration_s"] = number(inspection.duration);
   json["rate_hz"] = number(inspection.rate_hz);
-  json["interval_s"] = {{"minimum", number(inspection.interval_minimum)},
+  json["interval_s"] = {{"minimum", number(inspection.interval_min)},
                         {"median", number(inspection.interval_median)},
-                        {"maximum", number(inspection.interval_maximum)},
-                        {"standard_deviation", number(inspection.interval_deviation)}};
+                        {"maximum", number(inspection.interval_max)},
+                        {"standard_deviation", number(inspection.interval_standard_deviation)}};
   json["gaps"] = Json::array();
   for (const Gap& gap : inspection.gaps) {
     json["gaps"].push_back(
@@ -276,14 +276,16 @@ std::string to_json(const Recording& recording, const Inspection& inspection) {
   }
   json["duplicated_times"] = inspection.duplicated_times;
   json["backward_times"] = inspection.backward_times;
-  json["non_finite_times"] = inspection.non_finite_times;
+  json["non_finite"] = Json::array();
+  for (const NonFinite& bad : inspection.non_finite) {
+    json["non_finite"].push_back({{"channel", bad.channel}, {"count", bad.count}, {"first_sample", bad.first + 1}});
+  }
   json["channels"] = Json::array();
   for (const ChannelFacts& facts : inspection.channels) {
     json["channels"].push_back({{"name", facts.name},
                                 {"unit", facts.unit},
-                                {"minimum", number(facts.minimum)},
-                                {"maximum", number(facts.maximum)},
-                                {"non_finite", facts.non_finite},
+                                {"minimum", number(facts.min)},
+                                {"maximum", number(facts.max)},
                                 {"constant", facts.constant},
                                 {"clipped", facts.clipped}});
   }

@@ -7,34 +7,48 @@
 
 namespace mbk {
 
-/// An interval of more than 1.5 × the median one.
+/// An interval of more than 1.5 times the median one.
 struct Gap {
-  Index sample = 0;   ///< the gap is between this sample and the next
-  double time = 0;    ///< [s] of that sample
-  double length = 0;  ///< [s]
+  Index sample = 0;     ///< the last sample before it
+  double time = 0.0;    ///< of that sample [s]
+  double length = 0.0;  ///< to the next sample [s]
 };
 
-/// What one channel holds.
+/// Values of a channel (or of "time") that are NaN or infinite.
+struct NonFinite {
+  std::string channel;
+  Index count = 0;
+  Index first = 0;  ///< sample
+};
+
 struct ChannelFacts {
-  std::string name, unit;
-  double minimum = 0, maximum = 0;  ///< of the finite values
-  Index non_finite = 0;             ///< NaN or ∞
-  Index first_non_finite = -1;
-  bool constant = false;  ///< all finite values are equal
-  bool clipped = false;   ///< force, acceleration or torque that rests exactly at its extreme, repeatedly
+  std::string name;
+  std::string unit;
+  double min = 0.0;  ///< of the finite values; NaN where there is none
+  double max = 0.0;
+  bool constant = false;          ///< one value throughout
+  bool clipped = false;           ///< a force, reaction, acceleration or torque that rests at its extremes
+  double clipped_fraction = 0.0;  ///< of the samples: those in long runs at the extremes
 };
 
-/// Facts about a recording; nothing is repaired.
+/// Facts about a recording; nothing is judged or repaired. Intervals that are not positive or not finite count as
+/// duplicated, backward or non-finite time and stay out of the interval statistics.
 struct Inspection {
   Index samples = 0;
-  double duration = 0;  ///< [s] last minus first time
-  double rate_hz = 0;   ///< 1/median interval; 0 where there are fewer than two samples
-  double interval_minimum = 0, interval_median = 0, interval_maximum = 0;  ///< [s]
-  double interval_deviation = 0;                                           ///< standard deviation [s]
+  double duration = 0.0;  ///< last time − first time [s]
+  double rate_hz = 0.0;   ///< 1 / median interval; NaN where there are fewer than two samples
+
+  double interval_min = 0.0;  ///< [s]; the four are NaN where no interval is positive
+  double interval_median = 0.0;
+  double interval_max = 0.0;
+  double interval_standard_deviation = 0.0;
+
   std::vector<Gap> gaps;
-  Index duplicated_times = 0, first_duplicated = -1;  ///< sample that has the time of the one before it
-  Index backward_times = 0, first_backward = -1;      ///< sample that is earlier than the one before it
-  Index non_finite_times = 0, first_non_finite_time = -1;
+  Index duplicated_times = 0;
+  Index first_duplicated = -1;  ///< sample whose time equals the one before; −1: none
+  Index backward_times = 0;
+  Index first_backward = -1;  ///< sample whose time is before the one before; −1: none
+  std::vector<NonFinite> non_finite;
   std::vector<ChannelFacts> channels;
 };
 
