@@ -65,7 +65,12 @@ std::string inventory(const Contents& contents) {
       names.push_back(array.name);
     }
   }
-  if (!contents.table) return names.empty() ? "it has no numeric variable" : "it has the variables " + quoted(names);
+  if (!contents.table) {
+    std::string text = names.empty() ? "it has no numeric variable" : "it has the variables " + quoted(names);
+    if (!contents.notes.empty()) text += "; " + contents.notes.front();
+    if (contents.notes.size() > 1) text += fmt::format(" (and {} more)", contents.notes.size() - 1);
+    return text;
+  }
   const std::string count =
       fmt::format("it has {} column{}", contents.arrays.size(), contents.arrays.size() == 1 ? "" : "s");
   return names.empty() ? count + " without names" : count + ": " + quoted(names);

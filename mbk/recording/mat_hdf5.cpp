@@ -84,6 +84,19 @@ bool is_numeric_class(std::string_view name) {
          name.starts_with("uint");
 }
 
+/// Whether every number has its place in the file: HDF5 reads what was never written as zeros.
+bool is_written(hid_t dataset, hid_t space, const hsize_t (&size)[2], std::size_t each) {
+  const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
+  if (!properties.ok()) return false;
+  if (H5Pget_layout(properties) != H5D_CHUNKED) return H5Dget_storage_size(dataset) >= size[0] * size[1] * each;
+  hsize_t chunk[2] = {};
+  hsize_t chunks = 0;
+  if (H5Pget_chunk(properties, 2, chunk) != 2 || chunk[0] == 0 || chunk[1] == 0) return false;
+  if (H5Dget_num_chunks(dataset, space, &chunks) < 0) return false;
+  const auto along = [&](int i) { return (size[i] - 1) / chunk[i] + 1; };
+  return chunks == along(0) * along(1);
+}
+
 class Decoder {
  public:
   explicit Decoder(std::uint64_t file_size) : file_size_(file_size) {}
@@ -149,8 +162,7 @@ class Decoder {
         claimed > largest_claim(H5Dget_storage_size(dataset))) {
       return damaged(fmt::format("dimensions {}×{} are more than the file can hold", size[1], size[0]));
     }
-    H5D_space_status_t status{};
-    if (H5Dget_space_status(dataset, &status) < 0 || (claimed > 0 && status != H5D_SPACE_STATUS_ALLOCATED)) {
+    if (claimed > 0 && !is_written(dataset, space, size, H5Tget_size(type))) {
       return damaged("a part of it was never written");
     }
     Array& array = contents.arrays.emplace_back();
@@ -186,8 +198,11 @@ Result<Contents> decode_mat_hdf5(const std::filesystem::path& file, std::span<co
   }
   static std::mutex one_at_a_time;  // the library is not safe for several threads
   const std::lock_guard lock(one_at_a_time);
+  H5dont_atexit();  // after a damaged file the library would complain at exit; everything is closed here
   const Quiet quiet;
-  const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+  const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (!opened.ok()) return bad_data("HDF5 cannot open it", kRemedy);
   Decoder decoder(bytes.size());
   decoder.contents.format = "MAT v7.3";

@@ -1,0 +1,69 @@
+#include "mbk/recording/channel_map.h"
+
+#include <gtest/gtest.h>
+
+namespace mbk::recording {
+namespace {
+
+Error error_of(std::string_view text) {
+  const auto map = parse_channel_map(text);
+  EXPECT_FALSE(map) << text;
+  return map ? Error{} : map.error();
+}
+
+TEST(ParseChannelMap, ReadsSourcesUnitsAndSigns) {
+  const auto map = parse_channel_map("x=2:mm, y=3,Fx=-10,time=clock:ms");
+  ASSERT_TRUE(map);
+  ASSERT_EQ(map->size(), 4u);
+  EXPECT_EQ((*map)[0].channel, "x");  // of one axis or two: not known yet
+  EXPECT_EQ((*map)[0].source, "2");
+  EXPECT_EQ((*map)[0].unit, "mm");
+  EXPECT_FALSE((*map)[0].negate);
+  EXPECT_EQ((*map)[1].channel, "hand_y");
+  EXPECT_EQ((*map)[2].channel, "force_x");
+  EXPECT_EQ((*map)[2].source, "10");
+  EXPECT_TRUE((*map)[2].negate);
+  EXPECT_EQ((*map)[3].channel, "time");
+  EXPECT_EQ((*map)[3].source, "clock");
+}
+
+TEST(ParseChannelMap, KnowsEveryNameOfTheDocumentation) {
+  for (const char* name :
+       {"time", "t",  "hand_x",      "hand_y",      "x",    "y",         "force_x",        "force_y",
+        "Fx",   "Fy", "reference_x", "reference_y", "xr",   "yr",        "joint_1",        "joint_2",
+        "q1",   "q2", "torque_1",    "torque_2",    "tau1", "tau2",      "acceleration_x", "acceleration_y",
+        "ax",   "ay", "position",    "reaction",    "F",    "reference", "acceleration",   "a"}) {
+    EXPECT_TRUE(parse_channel_map(std::string(name) + "=1")) << name;
+  }
+}
+
+TEST(ParseChannelMap, RefusesWhatIsNotAnEntry) {
+  for (const char* text : {"", "x", "x=", "x=-", "x=:mm", "=2", "x=2,", "x=2,,y=3"}) {
+    EXPECT_EQ(error_of(text).kind, ErrorKind::usage) << text;
+  }
+}
+
+TEST(ParseChannelMap, NamesTheNearestChannel) {
+  const Error error = error_of("hnad_x=2");
+  EXPECT_EQ(error.kind, ErrorKind::usage);
+  EXPECT_EQ(error.line(), "unknown channel 'hnad_x'; did you mean 'hand_x'?");
+}
+
+TEST(ParseChannelMap, RefusesAChannelTwice) {
+  EXPECT_EQ(error_of("Fx=2,force_x=3").kind, ErrorKind::usage);
+}
+
+TEST(ParseChannelMap, RefusesUnitsOfTheWrongDimension) {
+  const Error error = error_of("y=2:N");
+  EXPECT_EQ(error.kind, ErrorKind::data);
+  EXPECT_EQ(error.line(), "channel y cannot be in N; possible are m, cm, mm, um, in");
+}
+
+TEST(ParseChannelMap, RefusesUnknownUnits) {
+  const Error error = error_of("y=2:counts");
+  EXPECT_EQ(error.kind, ErrorKind::data);
+  EXPECT_EQ(error.message, "unknown unit 'counts' of channel y");
+}
+
+}  // namespace
+}  // namespace mbk::recording

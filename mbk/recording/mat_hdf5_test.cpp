@@ -1,0 +1,67 @@
+#include "mbk/recording/mat_hdf5.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include <random>
+
+#include "mbk/recording/read.h"
+#include "mbk/recording/test_files.h"
+
+namespace mbk::recording {
+namespace {
+
+using testing::HasSubstr;
+
+/// A v7.3 file with a logs matrix, as matio writes it.
+std::string write_hdf5(const std::filesystem::path& file, Matrix values, matio_compression compression) {
+  mat_t* mat = Mat_CreateVer(file.c_str(), nullptr, MAT_FT_MAT73);
+  std::size_t dimensions[2] = {static_cast<std::size_t>(values.rows()), static_cast<std::size_t>(values.cols())};
+  matvar_t* variable = Mat_VarCreate("logs", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dimensions, values.data(), 0);
+  EXPECT_EQ(Mat_VarWrite(mat, variable, compression), 0);
+  Mat_VarFree(variable);
+  Mat_Close(mat);
+  return test::bytes_of(file);
+}
+
+TEST(DecodeMatHdf5, ReadsPlainAndCompressedMatrices) {
+  const test::Folder folder;
+  for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
+    write_hdf5(folder / "log.mat", test::logs(300), compression);
+    const auto recording = read(folder / "log.mat", {});
+    ASSERT_TRUE(recording) << recording.error().line();
+    EXPECT_EQ(recording->sources[0].format, "MAT v7.3");
+    EXPECT_EQ(recording->find("force_y")->values, test::logs(300).row(10).transpose());
+  }
+}
+
+TEST(DecodeMatHdf5, RefusesAFileCutAnywhere) {
+  const test::Folder folder;
+  for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
+    const std::string whole = write_hdf5(folder / "whole.mat", test::logs(20), compression);
+    for (std::size_t n = 0; n < whole.size(); n += n < 1200 ? 1 : 7) {
+      const auto recording = read(folder.write("cut.mat", std::string_view(whole).substr(0, n)), {});
+      ASSERT_FALSE(recording) << "cut to " << n << " of " << whole.size();
+    }
+  }
+}
+
+TEST(DecodeMatHdf5, SurvivesFlippedBytes) {
+  const test::Folder folder;
+  const std::string whole = write_hdf5(folder / "whole.mat", test::logs(20), MAT_COMPRESSION_ZLIB);
+  std::mt19937 random(20130603);
+  for (int i = 0; i < 1500; ++i) {
+    std::string bytes = whole;
+    const std::size_t at = 512 + random() % (bytes.size() - 512);
+    bytes[at] = static_cast<char>(random());
+    SCOPED_TRACE(at);
+    const auto recording = read(folder.write("flipped.mat", bytes), {});
+    if (recording) {
+      ASSERT_LE(recording->samples(), 1100 * std::ssize(bytes) + (1 << 20));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mbk::recording
