@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mbk/core/result.h"
+#include "mbk/perturbation/jet.h"
+
+namespace mbk::perturbation {
+
+/// Sum of sines on harmonics of one base period,
+///   r(t) = Σ aᵢ sin(2π kᵢ t/T + φᵢ)
+/// in the unit of the amplitudes. Its derivatives are exact.
+class Multisine {
+ public:
+  struct Line {
+    int harmonic = 1;        ///< k > 0: the frequency is k/T
+    double amplitude = 0.0;  ///< a [u]
+    double phase = 0.0;      ///< φ [rad]
+  };
+
+  /// @param period  T [s]
+  /// @fails  T ≤ 0; no lines; k < 1; a harmonic stands twice; a value is not finite.
+  [[nodiscard]] static Result<Multisine> create(double period, std::vector<Line> lines);
+
+  /// Phases uniform on [0, 2π), drawn in the order of the harmonics from the given stream of the seed.
+  /// @fails  harmonics and amplitudes differ in number; as `create`.
+  [[nodiscard]] static Result<Multisine> with_random_phases(double period, const std::vector<int>& harmonics,
+                                                            const std::vector<double>& amplitudes, std::uint64_t seed,
+                                                            std::uint32_t stream = 0);
+
+  /// r, ṙ, r̈ at t [s], any finite t.
+  [[nodiscard]] Jet<double> at(double t) const;
+
+  /// The same signal times a factor.
+  [[nodiscard]] Multisine scaled(double factor) const;
+
+  [[nodiscard]] double period() const { return period_; }
+  [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
+
+ private:
+  Multisine(double period, std::vector<Line> lines) : period_(period), lines_(std::move(lines)) {}
+
+  double period_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace mbk::perturbation
