@@ -14,10 +14,11 @@ add_library(mbk_settings INTERFACE)
 target_compile_features(mbk_settings INTERFACE cxx_std_20)
 target_compile_definitions(mbk_settings INTERFACE EIGEN_MPL2_ONLY)
 target_compile_options(mbk_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                       -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion)
+                       -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion
+                       -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 sees reads beyond small matrices in Eigen's vectorised copies where there are none.
-  target_compile_options(mbk_settings INTERFACE -Wno-array-bounds -Wno-stringop-overread)
+  # GCC 12 sees reads beyond small matrices in Eigen's copies, and overlaps in std::string's, where there are none.
+  target_compile_options(mbk_settings INTERFACE -Wno-array-bounds -Wno-stringop-overread -Wno-restrict)
 endif()
 if(MBK_WARNINGS_AS_ERRORS)
   target_compile_options(mbk_settings INTERFACE -Werror)

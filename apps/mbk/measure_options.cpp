@@ -109,7 +109,7 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
       ->type_name("KG")
       ->check([](const std::string& given) -> std::string { return given == "0" ? "" : positive()(given); })
       ->group(model);
-  command.add_option("--hac-lag", a.hac_lag_s, "reach of the residual's correlation in the standard errors (0.5)")
+  command.add_option("--hac-lag", a.hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
       ->type_name("S")
       ->check(positive())
       ->group(model);

@@ -25,7 +25,7 @@ struct MeasureArguments {
   long padding = 15;
   double handle_mass = 0.0;
   std::optional<double> from_s, split_s, to_s;
-  double hac_lag_s = 0.5;
+  double hac_lag_s = 1.0;
   bool decimate_check = false, pool = false;
   unsigned threads = 0;
   bool json = false, quiet = false;

@@ -19,7 +19,7 @@ constexpr double kLargestCondition = 1e3;      // two digits of a 16-bit sensor 
 constexpr double kSmallestMotionRatio = 0.05;  // across the line of motion the limb moved a twentieth as far
 constexpr double kVafDrop = 10.0;              // points between in-sample and held-back
 constexpr double kPoorVaf = 70.0;              // relaxed arms give 92 % and more, ankles under tonic contraction 87
-constexpr double kShortestDuration = 10.0;     // s; twenty times the reach of the residual's correlation
+constexpr double kShortestDuration = 12.0;     // s; a dozen reaches of the residual's correlation
 constexpr double kCutIntoBand = 0.5;           // a filter below half of the excited band hides the inertia
 constexpr double kDecimationChange = 0.05;
 

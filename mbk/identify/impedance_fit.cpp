@@ -263,12 +263,13 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   result.parameters = parameter_names(first.axes);
   const auto lags = static_cast<Index>(std::llround(options.hac_lag_s / r.sample_time));
   result.hac_lag_s = static_cast<double>(lags) * r.sample_time;
+  for (const RowRange& range : ranges) result.samples += range.size();
   const Matrix residual = r.Y - r.Z * fit->coefficients;
-  result.covariance =
-      model_covariance(*fit, numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags), result.model, r.centre);
+  const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(result.samples));
+  const Matrix V = widening * widening * numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags);
+  result.covariance = model_covariance(*fit, V, result.model, r.centre);
   result.standard_error = standard_errors(result.covariance, n);
 
-  for (const RowRange& range : ranges) result.samples += range.size();
   for (const PreparedTrial& trial : trials) {
     result.preparations.push_back(trial.preparation);
     result.sources.insert(result.sources.end(), trial.sources.begin(), trial.sources.end());

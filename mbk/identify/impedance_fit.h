@@ -20,13 +20,14 @@ struct Options {
   Structure structure = Structure::full;
   std::optional<ParametersFrom> parameters_from;  ///< absent: all for underdamped in default mode, else identification
   double handle_mass = 0.0;                       ///< Λ [kg], taken off the diagonal of M (eq. 3.7)
-  double hac_lag_s = 0.5;  ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
+  double hac_lag_s = 1.0;  ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
   bool decimate_check = false;
 };
 
 /// Least squares of −F = M ẍ + B ẋ + K (x − x₀), that is of −F on [ẍ ẋ x 1]   (Dyck 2013, eq. 3.2, 3.7–3.9).
-/// x₀ = −K⁻¹c; the standard errors are those of Newey & West, which hold for coloured residuals, carried into x₀ by
-/// the delta method. Several trials are one fit: rows are stacked, products of residuals never cross a break.
+/// x₀ = −K⁻¹c; the standard errors are those of Newey & West, which hold for coloured residuals, widened so that
+/// ±1.96 of them is a 95 % interval at this length of data (Kiefer & Vogelsang), and carried into x₀ by the delta
+/// method. Several trials are one fit: rows are stacked, products of residuals never cross a break.
 ///
 /// Do not trust it where the limb pushes back on its own account: position and force are then measured in a closed
 /// loop, and least squares is drawn towards minus the robot's impedance; noise in the position draws the inertia

@@ -90,4 +90,9 @@ Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix
   return fit.inverse_gram * omega.selfadjointView<Eigen::Lower>() * fit.inverse_gram;
 }
 
+double newey_west_widening(double b) {
+  const double within = std::clamp(b, 0.0, 1.0);
+  return 1.0 + within * (2.9694 + within * (0.4160 - within * 0.5324)) / 1.9600;
+}
+
 }  // namespace mbk::numeric

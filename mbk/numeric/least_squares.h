@@ -39,4 +39,9 @@ struct LinearFit {
 [[nodiscard]] Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,
                                            const std::vector<RowRange>& ranges, Index lags);
 
+/// How much wider than ±1.96 standard errors of `newey_west_covariance` a 95 % interval is where the lags are a
+/// fraction `b` = L/N of the data: (1.96 + 2.9694 b + 0.4160 b² − 0.5324 b³)/1.96 (Kiefer & Vogelsang 2005, table 1,
+/// Bartlett).
+[[nodiscard]] double newey_west_widening(double b);
+
 }  // namespace mbk::numeric

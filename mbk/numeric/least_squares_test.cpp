@@ -129,5 +129,11 @@ TEST(NeweyWest, IsTheTextbookCovarianceForWhiteResiduals) {
   EXPECT_TRUE(V.isApprox(textbook, 0.03));
 }
 
+TEST(NeweyWest, WideningIsNoneForShortLagsAndTheFixedBLimitForLongOnes) {
+  EXPECT_EQ(newey_west_widening(0.0), 1.0);
+  EXPECT_NEAR(newey_west_widening(1.0) * 1.96, 4.813, 1e-3);  // Kiefer & Vogelsang 2005: 4.813 with all lags
+  EXPECT_GT(newey_west_widening(0.1), newey_west_widening(0.05));
+}
+
 }  // namespace
 }  // namespace mbk::numeric

@@ -245,4 +245,15 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
   return text;
 }
 
+std::string validation_text(const ValidationTable& validation) {
+  std::vector<std::vector<std::string>> rows = {{"", validation.unit, "99 % interval", "wanted: overlaps", ""}};
+  for (const ValidationRow& row : validation.rows) {
+    rows.push_back({row.what, fmt::format("{:.2f}", row.value), range(row.interval99, 2), range(row.wanted, 0),
+                    row.met() ? "ok" : "FALLS SHORT"});
+  }
+  return fmt::format("{}: {}\n{} runs, seed {}\n", validation.study, validation.question, validation.runs,
+                     validation.seed) +
+         table(rows);
+}
+
 }  // namespace mbk::report

@@ -8,6 +8,7 @@
 #include "mbk/trial/inspection.h"
 #include "mbk/trial/recording.h"
 #include "mbk/trial/summary.h"
+#include "mbk/trial/validation_table.h"
 
 namespace mbk::report {
 
@@ -23,5 +24,8 @@ namespace mbk::report {
 
 /// What is in a recording, and what is wrong with it.
 [[nodiscard]] std::string info_text(const Recording& recording, const Inspection& inspection);
+
+/// A study against known truth, row by row, with what is wanted.
+[[nodiscard]] std::string validation_text(const ValidationTable& table);
 
 }  // namespace mbk::report

@@ -295,6 +295,25 @@ std::string to_json(const Recording& recording, const Inspection& inspection) {
   return json.dump(2) + "\n";
 }
 
+std::string to_json(const ValidationTable& table) {
+  Json json = header("mbk.validation/1");
+  json["study"] = table.study;
+  json["question"] = table.question;
+  json["unit"] = table.unit;
+  json["runs"] = table.runs;
+  json["seed"] = table.seed;
+  json["rows"] = Json::array();
+  for (const ValidationRow& row : table.rows) {
+    json["rows"].push_back({{"what", row.what},
+                            {"value", number(row.value)},
+                            {"interval99", interval(row.interval99)},
+                            {"wanted", interval(row.wanted)},
+                            {"met", row.met()}});
+  }
+  json["met"] = table.met();
+  return json.dump(2) + "\n";
+}
+
 Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
   const char* const remedy = "give a file that 'mbk measure --json' or 'mbk identify --json' wrote";
   try {

@@ -11,6 +11,7 @@
 #include "mbk/trial/inspection.h"
 #include "mbk/trial/recording.h"
 #include "mbk/trial/summary.h"
+#include "mbk/trial/validation_table.h"
 
 namespace mbk::result {
 
@@ -31,6 +32,9 @@ struct Measured {
 
 /// Schema "mbk.info/1": what is in a recording.
 [[nodiscard]] std::string to_json(const Recording& recording, const Inspection& inspection);
+
+/// Schema "mbk.validation/1": a study against known truth.
+[[nodiscard]] std::string to_json(const ValidationTable& table);
 
 /// Reads back what `to_json` wrote, schema mbk.result/1 or mbk.results/1: model, covariance (from the standard errors
 /// where a file holds no covariance; NaN where it holds neither), fit, warnings and inputs.

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/output.h"
+#include "mbk/report/text.h"
+#include "mbk/result/json.h"
+#include "mbk/validation/coverage.h"
+
+namespace mbk::app {
+namespace {
+
+constexpr int kFallsShort = 1;
+
+struct Arguments {
+  std::string study = "coverage";
+  int runs = 400;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  bool json = false, quiet = false;
+};
+
+/// Says how far the runs are, once a second.
+auto progress(const Arguments& arguments) {
+  using Clock = std::chrono::steady_clock;
+  return [&arguments, last = Clock::now()](int done) mutable {
+    if (arguments.quiet || Clock::now() - last < std::chrono::seconds(1)) return;
+    last = Clock::now();
+    fmt::print(stderr, "{}: {} of {} runs\n", arguments.study, done, arguments.runs);
+  };
+}
+
+int run(const Arguments& arguments) {
+  validation::CoverageOptions options;
+  options.runs = arguments.runs;
+  options.seed = arguments.seed;
+  options.threads = arguments.threads;
+  options.progress = progress(arguments);
+  const auto table = validation::coverage(options);
+  if (!table) return report_error(table.error());
+  fmt::print("{}", arguments.json ? result::to_json(*table) : report::validation_text(*table));
+  return table->met() ? kFine : kFallsShort;
+}
+
+}  // namespace
+
+Action add_validate(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("validate", "a method against known truth, as a table");
+  command->footer(
+      "Studies:\n"
+      "  coverage   how often the 95 % intervals of M, B, K and x0 hold the truth (about half a minute)\n\n"
+      "Example:\n"
+      "  mbk validate coverage --runs 2000 --seed 7 --json\n\n"
+      "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage.");
+  command->add_option("STUDY", arguments->study, "coverage")->check([](const std::string& study) {
+    return study == "coverage" ? std::string() : fmt::format("'{}' is no study; there is: coverage", study);
+  });
+  command->add_option("--runs", arguments->runs, "how many simulated trials (400)")->type_name("N");
+  command->add_option("--seed", arguments->seed, "the same seed gives the same table (1)")->type_name("N");
+  command->add_option("--threads", arguments->threads, "runs at a time (as many as there are cores)")->type_name("N");
+  command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/1");
+  command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app
