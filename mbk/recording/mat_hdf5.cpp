@@ -14,9 +14,14 @@ namespace {
 
 constexpr std::size_t kUserBlock = 512;  ///< MATLAB's header before the HDF5 data
 constexpr int kDeepest = 16;
+constexpr int kMostObjects = 100'000;  ///< groups can contain each other: a damaged file must not keep us for ever
 constexpr unsigned char kSignature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
 
 constexpr auto kRemedy = "the file is damaged or cut short: copy it again from where it was recorded";
+
+/// After a damaged file the library complains when the program ends. Everything is closed here, so it need not act
+/// then.
+[[maybe_unused]] const herr_t kNoExitHandler = H5dont_atexit();
 
 /// An HDF5 identifier that closes itself.
 class Handle {
@@ -76,7 +81,7 @@ std::string text_attribute(hid_t object, const char* name) {
   if (H5Sget_simple_extent_npoints(space) != 1 || size > 256) return {};
   std::string text(size, '\0');
   if (H5Aread(attribute, type, text.data()) < 0) return {};
-  return text.c_str();
+  return printable(text.c_str());
 }
 
 bool is_numeric_class(std::string_view name) {
@@ -114,7 +119,8 @@ class Decoder {
       H5L_info_t link{};
       if (H5Lget_info(group, name, &link, H5P_DEFAULT) < 0) return bad_data("a link cannot be read", kRemedy);
       if (name[0] == '#' || link.type != H5L_TYPE_HARD) continue;  // MATLAB's own; never other files
-      const std::string full = prefix.empty() ? name : prefix + "." + name;
+      if (++objects_ > kMostObjects) return bad_data(fmt::format("more than {} variables", kMostObjects), kRemedy);
+      const std::string full = prefix.empty() ? printable(name) : prefix + "." + printable(name);
       const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
       if (!object.ok()) return bad_data("cannot be opened", kRemedy, fmt::format("variable '{}'", full));
       if (auto done = variable(object, full, depth); !done) return done;
@@ -158,13 +164,14 @@ class Decoder {
     if (H5Sget_simple_extent_dims(space, size, nullptr) != 2) return damaged("its dimensions cannot be read");
     std::uint64_t claimed = 0;
     if (__builtin_mul_overflow(size[0], size[1], &claimed) ||
-        __builtin_mul_overflow(claimed, sizeof(double), &claimed) || claimed > largest_claim(file_size_) ||
+        __builtin_mul_overflow(claimed, sizeof(double), &claimed) || claimed > largest_claim(file_size_) - claimed_ ||
         claimed > largest_claim(H5Dget_storage_size(dataset))) {
       return damaged(fmt::format("dimensions {}×{} are more than the file can hold", size[1], size[0]));
     }
     if (claimed > 0 && !is_written(dataset, space, size, H5Tget_size(type))) {
       return damaged("a part of it was never written");
     }
+    claimed_ += claimed;
     Array& array = contents.arrays.emplace_back();
     array.name = name;
     array.values.resize(static_cast<Index>(size[1]), static_cast<Index>(size[0]));
@@ -180,6 +187,8 @@ class Decoder {
   }
 
   std::uint64_t file_size_;
+  std::uint64_t claimed_ = 0;  ///< [bytes], of all datasets so far
+  int objects_ = 0;
 };
 
 }  // namespace
@@ -198,7 +207,6 @@ Result<Contents> decode_mat_hdf5(const std::filesystem::path& file, std::span<co
   }
   static std::mutex one_at_a_time;  // the library is not safe for several threads
   const std::lock_guard lock(one_at_a_time);
-  H5dont_atexit();  // after a damaged file the library would complain at exit; everything is closed here
   const Quiet quiet;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
