@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <zlib.h>
 
 #include <cstring>
 #include <mutex>
@@ -89,17 +90,64 @@ bool is_numeric_class(std::string_view name) {
          name.starts_with("uint");
 }
 
-/// Whether every number has its place in the file: HDF5 reads what was never written as zeros.
-bool is_written(hid_t dataset, hid_t space, const hsize_t (&size)[2], std::size_t each) {
+enum class Filters { none, deflate, other };
+
+/// How a chunked dataset is packed; shuffling does not change its size.
+Filters filters_of(hid_t properties) {
+  Filters found = Filters::none;
+  for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    const auto filter =
+        H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, nullptr);
+    if (filter == H5Z_FILTER_DEFLATE && found == Filters::none) {
+      found = Filters::deflate;
+    } else if (filter != H5Z_FILTER_SHUFFLE) {
+      return Filters::other;
+    }
+  }
+  return found;
+}
+
+/// Whether a chunk holds exactly so many bytes. HDF5 1.10 does not ask, and reads beyond what it inflated.
+bool chunk_is_whole(hid_t dataset, hid_t space, hsize_t index, std::uint64_t chunk_bytes, bool deflated) {
+  hsize_t offset[2] = {};
+  unsigned skipped_filters = 0;
+  haddr_t address = 0;
+  hsize_t stored = 0;
+  if (H5Dget_chunk_info(dataset, space, index, offset, &skipped_filters, &address, &stored) < 0) return false;
+  if (skipped_filters != 0 || stored > compressBound(chunk_bytes)) return false;
+  if (!deflated) return stored == chunk_bytes;
+  Buffer packed(stored);
+  Buffer whole(chunk_bytes);
+  std::uint32_t mask = 0;
+  if (H5Dread_chunk(dataset, H5P_DEFAULT, offset, &mask, packed.data.get()) < 0) return false;
+  uLongf size = chunk_bytes;
+  return uncompress(reinterpret_cast<Bytef*>(whole.data.get()), &size,
+                    reinterpret_cast<const Bytef*>(packed.data.get()), stored) == Z_OK &&
+         size == chunk_bytes;
+}
+
+/// Whether every number is in the file: HDF5 reads what was never written as zeros.
+bool is_whole(hid_t dataset, hid_t space, const hsize_t (&size)[2], std::size_t each, std::uint64_t limit) {
   const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
   if (!properties.ok()) return false;
   if (H5Pget_layout(properties) != H5D_CHUNKED) return H5Dget_storage_size(dataset) >= size[0] * size[1] * each;
   hsize_t chunk[2] = {};
-  hsize_t chunks = 0;
   if (H5Pget_chunk(properties, 2, chunk) != 2 || chunk[0] == 0 || chunk[1] == 0) return false;
-  if (H5Dget_num_chunks(dataset, space, &chunks) < 0) return false;
+  const Filters filters = filters_of(properties);
+  std::uint64_t chunk_bytes = 0;
+  if (__builtin_mul_overflow(chunk[0], chunk[1], &chunk_bytes) ||
+      __builtin_mul_overflow(chunk_bytes, each, &chunk_bytes) || chunk_bytes > limit || filters == Filters::other) {
+    return false;
+  }
   const auto along = [&](int i) { return (size[i] - 1) / chunk[i] + 1; };
-  return chunks == along(0) * along(1);
+  hsize_t chunks = 0;
+  if (H5Dget_num_chunks(dataset, space, &chunks) < 0 || chunks != along(0) * along(1)) return false;
+  for (hsize_t i = 0; i < chunks; ++i) {
+    if (!chunk_is_whole(dataset, space, i, chunk_bytes, filters == Filters::deflate)) return false;
+  }
+  return true;
 }
 
 class Decoder {
@@ -168,8 +216,8 @@ class Decoder {
         claimed > largest_claim(H5Dget_storage_size(dataset))) {
       return damaged(fmt::format("dimensions {}×{} are more than the file can hold", size[1], size[0]));
     }
-    if (claimed > 0 && !is_written(dataset, space, size, H5Tget_size(type))) {
-      return damaged("a part of it was never written");
+    if (claimed > 0 && !is_whole(dataset, space, size, H5Tget_size(type), largest_claim(file_size_))) {
+      return damaged("a part of it was never written, or is packed in an unknown way");
     }
     claimed_ += claimed;
     Array& array = contents.arrays.emplace_back();

@@ -13,6 +13,8 @@ namespace mbk::recording {
 
 /// Decodes a MAT file v7.3: HDF5 whose datasets carry an attribute MATLAB_class and dimensions in reverse order. Real
 /// numeric matrices and those in structures come out as arrays; everything else is named in a note.
+/// Sizes, chunks and lengths are checked here, but the tree of a damaged file is walked by the HDF5 library, which
+/// (1.10.8) may read a few bytes beyond its buffers on forged metadata: do not feed it files from strangers.
 /// @param file   where the bytes came from: the HDF5 library reads it itself
 /// @fails  the file is shorter than its superblock says; a dataset claims more than the file can hold or was never
 ///         written; HDF5 cannot read it.
