@@ -10,6 +10,14 @@
 
 namespace mbk::recording {
 
+/// The text up to its first NUL, with control characters replaced: what a file says goes into messages of one line.
+[[nodiscard]] inline std::string printable(std::string text) {
+  text.resize(std::min(text.find('\0'), text.size()));
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
+  return text;
+}
+
 /// Bytes of a file with their byte order. Offsets are the caller's to check with `holds`.
 struct ByteView {
   std::span<const std::byte> bytes;

@@ -9,8 +9,12 @@
 #include <optional>
 #include <string_view>
 
+#include "mbk/recording/byte_view.h"
+
 namespace mbk::recording {
 namespace {
+
+constexpr std::size_t kMostColumns = 10'000;
 
 struct Line {
   std::size_t number = 0;  ///< from 1
@@ -107,10 +111,10 @@ tl::unexpected<Error> not_a_number(const Line& line, std::size_t column, std::st
   cell = trimmed(cell);
   const std::string where = fmt::format("line {}, column {}", line.number, column);
   if (separator != ',' && cell.find(',') != cell.npos) {
-    return bad_data(fmt::format("'{}' has a decimal comma", cell.substr(0, 40)), "write the file with decimal points",
-                    where);
+    return bad_data(fmt::format("'{}' has a decimal comma", printable(std::string(cell.substr(0, 40)))),
+                    "write the file with decimal points", where);
   }
-  return bad_data(fmt::format("'{}' is not a number", cell.substr(0, 40)),
+  return bad_data(fmt::format("'{}' is not a number", printable(std::string(cell.substr(0, 40)))),
                   "the table must hold numbers, separated by commas, semicolons or tabs", where);
 }
 
@@ -163,6 +167,10 @@ class Table {
     trailing_ = ends_empty && (header_.empty() || header_.size() + 1 == columns_ || header_.back().empty());
     if (trailing_) --columns_;
     if (header_.size() == columns_ + 1 && header_.back().empty()) header_.pop_back();
+    if (columns_ > kMostColumns) {
+      return bad_data(fmt::format("{} columns are more than {}", columns_, kMostColumns), "every sample is one line",
+                      place(first.number));
+    }
     if (header_.empty() || header_.size() == columns_) return {};
     if (!first.terminated && columns_ < header_.size()) {
       columns_ = header_.size();  // the one line there is was not written completely
@@ -218,7 +226,7 @@ class Table {
     const auto rows = static_cast<Index>(values_.size() / columns_);
     contents.arrays.resize(columns_);
     for (std::size_t c = 0; c < columns_; ++c) {
-      if (!header_.empty()) contents.arrays[c].name = header_[c];
+      if (!header_.empty()) contents.arrays[c].name = printable(std::string(header_[c]));
       contents.arrays[c].values.resize(rows, 1);
     }
     for (Index r = 0; r < rows; ++r) {

@@ -87,6 +87,14 @@ TEST(DecodeCsv, NamesLineColumnAndTextOfWhatIsNotANumber) {
       "line 3, column 2: 'two' is not a number; the table must hold numbers, separated by commas, semicolons or tabs");
 }
 
+TEST(DecodeCsv, KeepsControlCharactersOutOfMessages) {
+  EXPECT_THAT(error_of("1\n2\n\x1b[2Jx\n").message, HasSubstr("'?[2Jx' is not a number"));
+}
+
+TEST(DecodeCsv, RefusesATableOfOneEndlessLine) {
+  EXPECT_THAT(error_of(std::string(20'000, ',') + "\n").message, HasSubstr("20000 columns are more than 10000"));
+}
+
 TEST(DecodeCsv, RefusesDecimalCommas) {
   EXPECT_THAT(error_of("t;x\n0,001;1,5\n0,002;1,6\n").line(),
               HasSubstr("line 2, column 1: '0,001' has a decimal comma"));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <zlib.h>
 
 #include <cstring>
 #include <mutex>
@@ -14,9 +15,14 @@ namespace {
 
 constexpr std::size_t kUserBlock = 512;  ///< MATLAB's header before the HDF5 data
 constexpr int kDeepest = 16;
+constexpr int kMostObjects = 100'000;  ///< groups can contain each other: a damaged file must not keep us for ever
 constexpr unsigned char kSignature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
 
 constexpr auto kRemedy = "the file is damaged or cut short: copy it again from where it was recorded";
+
+/// After a damaged file the library complains when the program ends. Everything is closed here, so it need not act
+/// then.
+[[maybe_unused]] const herr_t kNoExitHandler = H5dont_atexit();
 
 /// An HDF5 identifier that closes itself.
 class Handle {
@@ -76,7 +82,7 @@ std::string text_attribute(hid_t object, const char* name) {
   if (H5Sget_simple_extent_npoints(space) != 1 || size > 256) return {};
   std::string text(size, '\0');
   if (H5Aread(attribute, type, text.data()) < 0) return {};
-  return text.c_str();
+  return printable(text.c_str());
 }
 
 bool is_numeric_class(std::string_view name) {
@@ -84,17 +90,76 @@ bool is_numeric_class(std::string_view name) {
          name.starts_with("uint");
 }
 
-/// Whether every number has its place in the file: HDF5 reads what was never written as zeros.
-bool is_written(hid_t dataset, hid_t space, const hsize_t (&size)[2], std::size_t each) {
+/// Whether numbers are stored as processors do. HDF5 1.10 writes beyond its buffers where a damaged file describes
+/// others.
+bool is_ordinary_number(hid_t type) {
+  for (const hid_t ordinary :
+       {H5T_IEEE_F64LE, H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_STD_I8LE,  H5T_STD_U8LE,  H5T_STD_I8BE,
+        H5T_STD_U8BE,   H5T_STD_I16LE,  H5T_STD_U16LE,  H5T_STD_I16BE,  H5T_STD_U16BE, H5T_STD_I32LE, H5T_STD_U32LE,
+        H5T_STD_I32BE,  H5T_STD_U32BE,  H5T_STD_I64LE,  H5T_STD_U64LE,  H5T_STD_I64BE, H5T_STD_U64BE}) {
+    if (H5Tequal(type, ordinary) > 0) return true;
+  }
+  return false;
+}
+
+enum class Filters { none, deflate, other };
+
+/// How a chunked dataset is packed; shuffling does not change its size.
+Filters filters_of(hid_t properties) {
+  Filters found = Filters::none;
+  for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    const auto filter =
+        H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, nullptr);
+    if (filter == H5Z_FILTER_DEFLATE && found == Filters::none) {
+      found = Filters::deflate;
+    } else if (filter != H5Z_FILTER_SHUFFLE) {
+      return Filters::other;
+    }
+  }
+  return found;
+}
+
+/// Whether a chunk holds exactly so many bytes. HDF5 1.10 does not ask, and reads beyond what it inflated.
+bool chunk_is_whole(hid_t dataset, hid_t space, hsize_t index, std::uint64_t chunk_bytes, bool deflated) {
+  hsize_t offset[2] = {};
+  unsigned skipped_filters = 0;
+  haddr_t address = 0;
+  hsize_t stored = 0;
+  if (H5Dget_chunk_info(dataset, space, index, offset, &skipped_filters, &address, &stored) < 0) return false;
+  if (skipped_filters != 0 || stored > compressBound(chunk_bytes)) return false;
+  if (!deflated) return stored == chunk_bytes;
+  Buffer packed(stored);
+  Buffer whole(chunk_bytes);
+  std::uint32_t mask = 0;
+  if (H5Dread_chunk(dataset, H5P_DEFAULT, offset, &mask, packed.data.get()) < 0) return false;
+  uLongf size = chunk_bytes;
+  return uncompress(reinterpret_cast<Bytef*>(whole.data.get()), &size,
+                    reinterpret_cast<const Bytef*>(packed.data.get()), stored) == Z_OK &&
+         size == chunk_bytes;
+}
+
+/// Whether every number is in the file: HDF5 reads what was never written as zeros.
+bool is_whole(hid_t dataset, hid_t space, const hsize_t (&size)[2], std::size_t each, std::uint64_t limit) {
   const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
   if (!properties.ok()) return false;
   if (H5Pget_layout(properties) != H5D_CHUNKED) return H5Dget_storage_size(dataset) >= size[0] * size[1] * each;
   hsize_t chunk[2] = {};
-  hsize_t chunks = 0;
   if (H5Pget_chunk(properties, 2, chunk) != 2 || chunk[0] == 0 || chunk[1] == 0) return false;
-  if (H5Dget_num_chunks(dataset, space, &chunks) < 0) return false;
+  const Filters filters = filters_of(properties);
+  std::uint64_t chunk_bytes = 0;
+  if (__builtin_mul_overflow(chunk[0], chunk[1], &chunk_bytes) ||
+      __builtin_mul_overflow(chunk_bytes, each, &chunk_bytes) || chunk_bytes > limit || filters == Filters::other) {
+    return false;
+  }
   const auto along = [&](int i) { return (size[i] - 1) / chunk[i] + 1; };
-  return chunks == along(0) * along(1);
+  hsize_t chunks = 0;
+  if (H5Dget_num_chunks(dataset, space, &chunks) < 0 || chunks != along(0) * along(1)) return false;
+  for (hsize_t i = 0; i < chunks; ++i) {
+    if (!chunk_is_whole(dataset, space, i, chunk_bytes, filters == Filters::deflate)) return false;
+  }
+  return true;
 }
 
 class Decoder {
@@ -114,7 +179,8 @@ class Decoder {
       H5L_info_t link{};
       if (H5Lget_info(group, name, &link, H5P_DEFAULT) < 0) return bad_data("a link cannot be read", kRemedy);
       if (name[0] == '#' || link.type != H5L_TYPE_HARD) continue;  // MATLAB's own; never other files
-      const std::string full = prefix.empty() ? name : prefix + "." + name;
+      if (++objects_ > kMostObjects) return bad_data(fmt::format("more than {} variables", kMostObjects), kRemedy);
+      const std::string full = prefix.empty() ? printable(name) : prefix + "." + printable(name);
       const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
       if (!object.ok()) return bad_data("cannot be opened", kRemedy, fmt::format("variable '{}'", full));
       if (auto done = variable(object, full, depth); !done) return done;
@@ -151,20 +217,21 @@ class Decoder {
     const auto type_class = H5Tget_class(type);
     if (type_class == H5T_COMPOUND) return aside(name, "complex");
     if (type_class == H5T_REFERENCE) return aside(name, "a field of a structure array");
-    if (type_class != H5T_INTEGER && type_class != H5T_FLOAT) return aside(name, "not numeric");
+    if (!is_ordinary_number(type)) return aside(name, "not numeric");
     const int rank = H5Sget_simple_extent_ndims(space);
     if (rank != 2) return aside(name, fmt::format("an array of {} dimensions", rank));
     hsize_t size[2] = {};
     if (H5Sget_simple_extent_dims(space, size, nullptr) != 2) return damaged("its dimensions cannot be read");
     std::uint64_t claimed = 0;
     if (__builtin_mul_overflow(size[0], size[1], &claimed) ||
-        __builtin_mul_overflow(claimed, sizeof(double), &claimed) || claimed > largest_claim(file_size_) ||
+        __builtin_mul_overflow(claimed, sizeof(double), &claimed) || claimed > largest_claim(file_size_) - claimed_ ||
         claimed > largest_claim(H5Dget_storage_size(dataset))) {
       return damaged(fmt::format("dimensions {}×{} are more than the file can hold", size[1], size[0]));
     }
-    if (claimed > 0 && !is_written(dataset, space, size, H5Tget_size(type))) {
-      return damaged("a part of it was never written");
+    if (claimed > 0 && !is_whole(dataset, space, size, H5Tget_size(type), largest_claim(file_size_))) {
+      return damaged("a part of it was never written, or is packed in an unknown way");
     }
+    claimed_ += claimed;
     Array& array = contents.arrays.emplace_back();
     array.name = name;
     array.values.resize(static_cast<Index>(size[1]), static_cast<Index>(size[0]));
@@ -180,6 +247,8 @@ class Decoder {
   }
 
   std::uint64_t file_size_;
+  std::uint64_t claimed_ = 0;  ///< [bytes], of all datasets so far
+  int objects_ = 0;
 };
 
 }  // namespace
@@ -198,7 +267,6 @@ Result<Contents> decode_mat_hdf5(const std::filesystem::path& file, std::span<co
   }
   static std::mutex one_at_a_time;  // the library is not safe for several threads
   const std::lock_guard lock(one_at_a_time);
-  H5dont_atexit();  // after a damaged file the library would complain at exit; everything is closed here
   const Quiet quiet;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);

@@ -13,6 +13,9 @@ namespace mbk::recording {
 
 /// Decodes a MAT file v7.3: HDF5 whose datasets carry an attribute MATLAB_class and dimensions in reverse order. Real
 /// numeric matrices and those in structures come out as arrays; everything else is named in a note.
+/// Length, number types, chunks and sizes are checked here, but the tree of a damaged file is walked by the HDF5
+/// library, and 1.10.8 can read beyond its buffers, or crash, on damaged metadata (about one in several thousand random
+/// changes to a file full of attributes). A truncated file is always refused.
 /// @param file   where the bytes came from: the HDF5 library reads it itself
 /// @fails  the file is shorter than its superblock says; a dataset claims more than the file can hold or was never
 ///         written; HDF5 cannot read it.

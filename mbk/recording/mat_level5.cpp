@@ -207,7 +207,7 @@ class Decoder {
     const auto name = elements.next("its name");
     if (!name) return tl::unexpected(name.error());
     if (size_of(name->type) != 1 && name->type != kUtf8) return damaged("its name is broken");
-    header.name = outer.empty() ? name->data.text() : outer;
+    header.name = outer.empty() ? printable(name->data.text()) : outer;
     if (depth == 0) name_ = header.name;
     if (header.name.empty()) return {};  // where MATLAB keeps the insides of its objects
     return data(header, elements, depth);
@@ -221,12 +221,12 @@ class Decoder {
         const auto system = elements.next("its type system");
         const auto type = system ? elements.next("its class name") : system;
         if (!type) return tl::unexpected(type.error());
-        return object(header, type->data.text());
+        return object(header, printable(type->data.text()));
       }
       case kObjectClass: {
         const auto type = elements.next("its class name");
         if (!type) return tl::unexpected(type.error());
-        return object(header, type->data.text());
+        return object(header, printable(type->data.text()));
       }
       case kCellClass:
         return aside(header, "a cell array");
@@ -283,8 +283,7 @@ class Decoder {
     }
     std::vector<std::string> fields;
     for (std::size_t i = 0; i < names->data.size(); i += static_cast<std::size_t>(width)) {
-      const std::string field = names->data.part(i, static_cast<std::size_t>(width)).text();
-      fields.emplace_back(field.c_str());
+      fields.push_back(printable(names->data.part(i, static_cast<std::size_t>(width)).text()));
     }
     const auto count = header.count();
     if (!count || *count > kMostElements) return aside(header, "a large structure array");
