@@ -1,0 +1,52 @@
+# shellcheck shell=bash
+# What the scripts in tools/ share. Sourcing it moves to the root of the repository.
+set -euo pipefail
+export LC_ALL=C.UTF-8
+# shellcheck disable=SC2034  # for the scripts that take a path
+caller_directory=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+die() {
+  printf '%s: %s\n' "${0##*/}" "$*" >&2
+  exit 1
+}
+
+# microseconds: the clock, as a whole number
+microseconds() { printf '%s' "${EPOCHREALTIME//[.,]/}"; }
+
+# step WHAT COMMAND...: one line when it goes well, with the time if that was more than a second; otherwise the end
+# of what the command said, where the rest is, and the command's exit code.
+step() {
+  local what=$1 start log code=0 tenths duration=''
+  shift
+  log=build/log/${what// /_}.log
+  mkdir -p build/log
+  printf '%-36s' "$what"
+  start=$(microseconds)
+  "$@" >"$log" 2>&1 || code=$?
+  tenths=$((($(microseconds) - start) / 100000))
+  if ((tenths > 10)); then duration=" ($((tenths / 10)).$((tenths % 10)) s)"; fi
+  if ((code == 0)); then
+    echo "done$duration"
+    return
+  fi
+  echo "FAILED$duration"
+  {
+    echo "the last lines of $PWD/$log:"
+    tail -n 30 "$log" | sed 's/^/  /'
+  } >&2
+  exit "$code"
+}
+
+# build PRESET: configures and builds it
+build() {
+  step "configuring $1" cmake --preset "$1"
+  step "building $1" cmake --build --preset "$1" --parallel "$(nproc)"
+}
+
+# sources: every C++ file of the project, also those that are not committed yet
+sources() {
+  git ls-files --cached --others --exclude-standard -- '*.h' '*.cpp' | while read -r file; do
+    if [[ -e $file ]]; then echo "$file"; fi
+  done | sort -u
+}
