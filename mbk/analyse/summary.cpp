@@ -11,12 +11,13 @@ Result<Summary> summarise(const std::vector<Identification>& identifications) {
   const auto count = static_cast<double>(identifications.size());
   if (identifications.size() < 2) return bad_data(fmt::format("{} trials have no spread", identifications.size()));
   for (const Identification& one : identifications) {
-    if (one.axes != identifications.front().axes) {
-      return bad_data("trials of one and of two axes have no common mean");
+    if (one.axes != identifications.front().axes || one.motion != identifications.front().motion) {
+      return bad_data("trials of different axes or units have no common mean");
     }
   }
   Summary summary;
   summary.trials = static_cast<int>(identifications.size());
+  summary.motion = identifications.front().motion;
   const auto over_trials = [&](auto part) {  // part: pointer to one member of impedance::Model
     using Member = std::remove_cvref_t<decltype(summary.mean.*part)>;
     Member mean = identifications.front().model.*part, squares = mean;

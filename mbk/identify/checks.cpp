@@ -76,7 +76,8 @@ void add_warnings(Identification& identification) {
   const impedance::Model& model = identification.model;
   const Excitation& excitation = identification.excitation;
   const Preparation& how = identification.preparations.front();
-  const bool angular = identification.axes == 1;
+  const Units units = units_of(identification.motion);
+  const bool one_axis = n == 1;
   const auto warn = [&](WarningCode code, std::string message, std::string remedy) {
     identification.warnings.push_back({code, std::move(message), std::move(remedy)});
   };
@@ -104,41 +105,40 @@ void add_warnings(Identification& identification) {
   const SmallestEigenvalue inertia = smallest_eigenvalue(model.M, block(0));
   const SmallestEigenvalue stiffness = smallest_eigenvalue(model.K, block(2));
   const SmallestEigenvalue damping = smallest_eigenvalue(model.B, block(1));
-  const char* const pair = angular ? "" : " in its weakest direction";
+  const auto stated = [&](const SmallestEigenvalue& value, const char* unit) {
+    return fmt::format("{:.3g} ± {:.2g} {}{}", value.value, numeric::kNormal95 * value.standard_error, unit,
+                       one_axis ? "" : " in its weakest direction");
+  };
   if (!(inertia.value > 0.0)) {
     warn(WarningCode::inertia_not_positive,
-         fmt::format("the inertia is {:.3g} ± {:.2g}{}: no limb has that", inertia.value,
-                     numeric::kNormal95 * inertia.standard_error, pair),
+         fmt::format("the inertia is {}: no limb has that", stated(inertia, units.inertia)),
          "raise the filter's --cutoff so that the inertia can be seen, and perturb at higher frequencies");
     identification.usable = false;
   }
   if (!(stiffness.value > 0.0)) {
-    warn(WarningCode::stiffness_not_positive,
-         fmt::format("the stiffness is {:.3g} ± {:.2g}{}", stiffness.value,
-                     numeric::kNormal95 * stiffness.standard_error, pair),
+    warn(WarningCode::stiffness_not_positive, fmt::format("the stiffness is {}", stated(stiffness, units.stiffness)),
          "perturb at lower frequencies and for longer; check the sign of the force (what the limb exerts on the "
          "machine)");
     identification.usable = false;
   }
   if (identification.structure != Structure::mass_spring && !(damping.value > 0.0)) {
     warn(WarningCode::damping_not_positive,
-         fmt::format("the damping is {:.3g} ± {:.2g}{}: the limb feeds in energy, or force and position are not "
-                     "simultaneous",
-                     damping.value, numeric::kNormal95 * damping.standard_error, pair),
+         fmt::format("the damping is {}: the limb feeds in energy, or force and position are not simultaneous",
+                     stated(damping, units.damping)),
          "check for delays between the channels; a voluntary or reflex response also does this");
   }
-  const bool inertia_unsure = inertia.value > 0.0 && inertia.value < numeric::kNormal95 * inertia.standard_error;
-  const bool cut_into = how.cutoff && how.cutoff->value < kCutIntoBand * how.band_high.value;
-  if (inertia_unsure || cut_into) {
+  const double top = how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
+  if (top < kCutIntoBand * how.band_high.value) {
     warn(WarningCode::band_too_narrow,
-         cut_into
-             ? fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left "
-                           "may not show the inertia",
-                           how.cutoff->value, how.band_high.value)
-             : fmt::format("the inertia cannot be told from zero ({:.3g} ± {:.2g}{}) in the band up to {:.3g} Hz",
-                           inertia.value, numeric::kNormal95 * inertia.standard_error, pair,
-                           std::min(how.band_high.value, how.cutoff ? how.cutoff->value : how.band_high.value)),
-         cut_into ? "leave --cutoff to the default, or raise it" : "perturb at higher frequencies");
+         fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left may not "
+                     "show the inertia",
+                     top, how.band_high.value),
+         "leave --cutoff to the default, or raise it");
+  } else if (inertia.value > 0.0 && inertia.value < numeric::kNormal95 * inertia.standard_error) {
+    warn(WarningCode::band_too_narrow,
+         fmt::format("in the band up to {:.3g} Hz the inertia cannot be told from zero: {}", top,
+                     stated(inertia, units.inertia)),
+         "perturb at higher frequencies");
   }
 
   const Fit& fit = identification.fit;
@@ -154,7 +154,7 @@ void add_warnings(Identification& identification) {
   if (fit.vaf.minCoeff() < kPoorVaf) {
     warn(WarningCode::fit_poor,
          fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}", fit.vaf.minCoeff(),
-                     angular ? "reaction" : "force in one axis"),
+                     one_axis ? "reaction" : "force in one axis"),
          "the limb may have acted or reflexes may be strong; do not read M, B and K as a passive limb's");
     if (!(fit.vaf.minCoeff() > 0.0)) identification.usable = false;
   }

@@ -225,7 +225,9 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   if (trials.empty()) return bad_usage("no trial to identify from");
   const PreparedTrial& first = trials.front();
   for (const PreparedTrial& trial : trials) {
-    if (trial.axes != first.axes) return bad_data("trials of one and of two axes cannot be pooled");
+    if (trial.axes != first.axes || trial.motion != first.motion) {
+      return bad_data("trials of different axes or units cannot be pooled");
+    }
     if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
       return bad_data(fmt::format("trials of {:g} Hz and {:g} Hz cannot be pooled", 1.0 / first.sample_time,
                                   1.0 / trial.sample_time),
@@ -245,6 +247,7 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
 
   Identification result;
   result.axes = first.axes;
+  result.motion = first.motion;
   result.structure = options.structure;
   result.handle_mass = options.handle_mass;
   result.fit = judge(r, check->coefficients);
@@ -275,6 +278,7 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
     result.sources.insert(result.sources.end(), trial.sources.begin(), trial.sources.end());
     result.durations.insert(result.durations.end(), trial.sources.size(), trial.recording_duration);
     result.rates.insert(result.rates.end(), trial.sources.size(), 1.0 / trial.sample_time);
+    result.notes.insert(result.notes.end(), trial.notes.begin(), trial.notes.end());
     result.warnings.insert(result.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   }
   result.excitation = measure_excitation(rows_of(r.Z, ranges), rows_of(r.Y, ranges), result.model, fit->rank);

@@ -206,6 +206,18 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   return dsp::filter_zero_phase(*lowpass, all, padding);
 }
 
+/// What moves, by the units of position and force; where one is unknown the other decides.
+Result<Motion> motion_of(const Recording& recording, int axes) {
+  if (axes == 2) return Motion::translation;
+  const std::string &position = recording.find("position")->unit, &reaction = recording.find("reaction")->unit;
+  const bool rotates = position == "rad" || reaction == "N.m", shifts = position == "m" || reaction == "N";
+  if (rotates && shifts) {
+    return bad_data(fmt::format("position in {} and reaction in {} do not belong together", position, reaction),
+                    "correct the units in --channels, as in x=2:deg,F=3:N.m");
+  }
+  return rotates ? Motion::rotation : (shifts ? Motion::translation : Motion::unknown);
+}
+
 /// From the mean interval where the record has no break, since the median interval carries the rounding of the time
 /// stamps; from the median one otherwise.
 Hertz mean_rate(const Recording& recording, const Inspection& inspection) {
@@ -232,6 +244,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   PreparedTrial trial;
   trial.axes = axes_of(recording, options.axes);
   trial.sources = recording.sources;
+  trial.notes = recording.notes;
   trial.recording_duration = inspection.duration + inspection.interval_median;
   Preparation& how = trial.preparation;
   how.mode = options.mode;
@@ -244,6 +257,10 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
 
   const auto signals = select_signals(recording, trial.axes, how.acceleration_from_sensor);
   if (!signals) return tl::unexpected(signals.error());
+
+  const auto motion = motion_of(recording, trial.axes);
+  if (!motion) return tl::unexpected(motion.error());
+  trial.motion = *motion;
 
   const ProtocolFinding found = detect_protocol(signals->reference);
   how.protocol = options.protocol.value_or(found.protocol);

@@ -234,7 +234,29 @@ class Assembler {
       }
       signals_.push_back(std::move(signal));
     }
+    find_time();
     return {};
+  }
+
+  /// A map that does not name the time leaves it to its own name, or to row 1 of a logs matrix.
+  void find_time() {
+    const auto is_time = [](const ChannelKind* kind) { return kind->name == "time"; };
+    if (std::ranges::any_of(signals_, [&](const Signal& s) { return is_time(s.kind); })) return;
+    const ChannelKind* const time = kinds_called("time").front();
+    const Line& first = signals_.front().line;
+    if (!contents_.table && first.row && first.array->values.rows() == kLogsRows) {
+      signals_.push_back({time, {first.array, time->logs_row - 1, true}, nullptr, false, "row 1"});
+      recording_.notes.push_back("time is row 1, as in a logs matrix");
+      return;
+    }
+    for (const Array& array : contents_.arrays) {
+      const ColumnName name = parse_column_name(array.name);
+      const Line line = vector_of(array);
+      if (std::ranges::none_of(name.kinds, is_time) || is_matrix(array) || line.size() != first.size()) continue;
+      signals_.push_back({time, line, name.unit, false, array.name});
+      recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
+      return;
+    }
   }
 
   /// Whether the array's name is that of this one line.
@@ -370,8 +392,8 @@ class Assembler {
     }
     if (recording_.time.size() == 0) {
       if (!options_.rate) {
-        return bad_usage("the file holds no time that is recognised",
-                         "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
+        return bad_data("the file holds no time that is recognised",
+                        "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
       }
       recording_.time_from_rate = true;
       const Index samples = recording_.channels.front().values.size();

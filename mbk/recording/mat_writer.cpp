@@ -1,17 +1,14 @@
 #include "mbk/recording/mat_writer.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <matio.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <limits>
 #include <memory>
-#include <system_error>
 
 #include "mbk/recording/channel_table.h"
+#include "mbk/recording/write_file.h"
 
 namespace mbk::recording {
 namespace {
@@ -50,35 +47,9 @@ bool write_matrix(const fs::path& file, Matrix& logs) {
   return variable && Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_ZLIB) == 0;
 }
 
-/// Flushes a file or folder to the disk; 0 or the error code.
-int flush(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  const int code = ::fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  return code;
-}
-
-/// A file that goes away unless it was renamed.
-struct Temporary {
-  fs::path path;
-  ~Temporary() {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-  }
-};
-
 }  // namespace
 
 Result<void> write_logs(const Recording& recording, const fs::path& file, bool overwrite) {
-  const auto cannot = [&](int code) {
-    return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
-                    "check the folder, its permissions and the space on the disk", file.string());
-  };
-  std::error_code code;
-  if (!overwrite && fs::exists(fs::symlink_status(file, code))) {
-    return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
-  }
   if (recording.samples() == 0) return bad_data("a recording without samples is not written", "", file.string());
   constexpr std::uint64_t kLargest = std::uint64_t{1} << 31;  // sizes within a v5 file have 32 bits
   if (static_cast<std::uint64_t>(recording.samples()) * kLogsRows * sizeof(double) >= kLargest) {
@@ -88,20 +59,7 @@ Result<void> write_logs(const Recording& recording, const fs::path& file, bool o
   auto logs = logs_matrix(recording);
   if (!logs) return tl::unexpected(logs.error().in(file.string()));
 
-  fs::path folder = file.parent_path();
-  if (folder.empty()) folder = ".";
-  const Temporary temporary{folder / fmt::format(".{}.{}.part", file.filename().string(), ::getpid())};
-  // Made by us, so that nothing that is there is followed or replaced.
-  fs::remove(temporary.path, code);
-  const int made = ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (made < 0) return cannot(errno);
-  ::close(made);
-  if (!write_matrix(temporary.path, *logs)) return cannot(EIO);
-  if (const int error = flush(temporary.path); error != 0) return cannot(error);
-  fs::rename(temporary.path, file, code);
-  if (code) return cannot(code.value());
-  if (const int error = flush(folder); error != 0) return cannot(error);
-  return {};
+  return write_file(file, overwrite, [&](const fs::path& temporary) { return write_matrix(temporary, *logs); });
 }
 
 }  // namespace mbk::recording

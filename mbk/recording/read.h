@@ -25,21 +25,20 @@ struct ReadOptions {
 /// variables that carry the names of the channel table ("hand_x", "Fx", "hand_x_mm", "time [ms]"). With a map, a number
 /// is a column of a table or tall matrix, or a row of a wide one (the signals run along the longer side); anything else
 /// is a column or variable name or "structure.field". A matrix is never transposed silently.
+/// A map that leaves out the time leaves it to its own name, or to row 1 of a logs matrix.
 /// Rows of `logs` that are NaN throughout were not recorded and are no channels.
 /// Recording::notes says what was left aside.
 ///
 /// @fails  data: the file cannot be read, is damaged or of another format; nothing is recognised (the message lists
-/// what
-///         there is); a named source is not there; lengths differ.
-///         usage: no time and no rate; a rate that contradicts the time by more than 0.1 %; several matrices could be
+/// what there is); no time and no rate; a named source is not there; lengths differ.
+///         usage: a rate that contradicts the time by more than 0.1 %; several matrices could be
 ///         meant; axes is not 0, 1 or 2.
 [[nodiscard]] Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options);
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.
 /// @fails  usage: no parts, or a name without a number at its end. data: names of different records; a number missing
-/// or
-///         twice; different channels or units; time that does not run on from part to part.
+/// or twice; different channels or units; time that does not run on from part to part.
 [[nodiscard]] Result<Recording> read_parts(std::vector<std::filesystem::path> parts, const ReadOptions& options);
 
 }  // namespace mbk::recording

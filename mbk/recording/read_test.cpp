@@ -226,8 +226,16 @@ TEST_F(Read, ListsTheColumnsWhereNothingIsRecognised) {
 
 // ---- time ----
 
+TEST_F(Read, FindsTheTimeByItsNameWhereTheMapLeavesItOut) {
+  ReadOptions options;
+  options.channels = parse_channel_map("x=angle:deg,F=torque_Nm").value();
+  const Recording recording = good("t_ms,angle,torque_Nm\n0,180,1\n1,90,2\n", options);
+  EXPECT_DOUBLE_EQ(recording.time[1], 0.001);
+  EXPECT_FALSE(recording.time_from_rate);
+}
+
 TEST_F(Read, NeedsARateWhereThereIsNoTime) {
-  EXPECT_EQ(bad("x\n1\n2\n3\n").kind, ErrorKind::usage);
+  EXPECT_EQ(bad("x\n1\n2\n3\n").kind, ErrorKind::data);
   EXPECT_THAT(bad("x\n1\n2\n3\n").remedy, HasSubstr("--rate"));
   ReadOptions options;
   options.rate = Hertz(500);

@@ -15,9 +15,6 @@
 namespace mbk::report {
 namespace {
 
-constexpr std::array<const char*, 3> kLinearUnits = {"kg", "N·s/m", "N/m"};
-constexpr std::array<const char*, 3> kOneAxisUnits = {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad"};
-
 /// A value and its half width with the digits that mean something: 1.2002 ± 0.0011.
 std::string with_interval(double value, double half_width) {
   if (!std::isfinite(value)) return "undefined";
@@ -69,6 +66,11 @@ std::string inputs_line(const Identification& id) {
 std::string how_made(const Identification& id) {
   const Preparation& how = id.preparations.front();
   std::vector<std::vector<std::string>> rows;
+  constexpr std::size_t kNotes = 4;
+  for (std::size_t k = 0; k < std::min(id.notes.size(), kNotes); ++k) rows.push_back({"read", id.notes[k]});
+  if (id.notes.size() > kNotes) {
+    rows.push_back({"", fmt::format("and {} notes more: see 'mbk info'", id.notes.size() - kNotes)});
+  }
   rows.push_back({"mode", how.mode == Mode::reference
                               ? fmt::format("reference, {} of the published procedure", text(how.procedure))
                               : "default"});
@@ -89,9 +91,9 @@ std::string how_made(const Identification& id) {
   return table(rows);
 }
 
-std::string model_table(const impedance::Model& model, const impedance::Model& spread, double factor) {
+std::string model_table(const impedance::Model& model, const impedance::Model& spread, double factor, Motion motion) {
   const Index n = model.axes();
-  const auto& units = n == 1 ? kOneAxisUnits : kLinearUnits;
+  const Units units = units_of(motion);
   std::vector<std::vector<std::string>> rows;
   if (n == 2) rows.push_back({"", "xx", "xy", "yx", "yy", ""});
   const std::array<std::pair<const char*, Matrix impedance::Model::*>, 3> parts = {
@@ -105,7 +107,7 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
         row.push_back(with_interval((model.*parts[k].second)(j, i), factor * (spread.*parts[k].second)(j, i)));
       }
     }
-    row.push_back(units[k]);
+    row.push_back(std::array{units.inertia, units.damping, units.stiffness}[k]);
     rows.push_back(std::move(row));
   }
   std::vector<std::string> equilibrium = {"equilibrium x0"};
@@ -113,7 +115,7 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
     equilibrium.push_back(n == 1 ? with_interval(model.x0[j], factor * spread.x0[j])
                                  : with_interval(1e3 * model.x0[j], 1e3 * factor * spread.x0[j]));
   }
-  equilibrium.push_back(n == 1 ? "m or rad" : "mm (x, y)");
+  equilibrium.push_back(n == 1 ? units.position : "mm (x, y)");
   rows.push_back(std::move(equilibrium));
   return table(rows);
 }
@@ -133,10 +135,11 @@ std::string ellipses_text(const Findings& findings) {
       {"ellipse", "area", "", "shape", "", "orientation", "", "antisymmetry"}};
   std::vector<EllipsePanel> panels;
   const double degrees = 180.0 / std::numbers::pi;
+  const Units units = units_of(Motion::translation);
   for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
     const EllipseFinding& finding = findings.ellipses[k];
     const impedance::Ellipse& e = finding.ellipse;
-    panels.push_back({e, kMatrixNames[k], kLinearUnits[k]});
+    panels.push_back({e, kMatrixNames[k], std::array{units.inertia, units.damping, units.stiffness}[k]});
     std::vector<std::string> row = {kMatrixNames[k]};
     if (e.lambda_min > 0.0) {
       const int decimals = e.area < 100.0 ? 2 : 0;
@@ -160,12 +163,11 @@ std::string ellipses_text(const Findings& findings) {
 
 std::string result_text(const Identification& id, const std::optional<Findings>& findings) {
   std::string text = inputs_line(id) + how_made(id) + "\n";
-  text += model_table(id.model, id.standard_error, numeric::kNormal95);
+  text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
   text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n\n";
-  text += table(
-      {{id.fit.held_back ? "fit on held-back data" : "fit on the same data", "VAF " + per_axis(id.fit.vaf, "%", 2),
-        "RMSE " + per_axis(id.fit.rmse, id.axes == 1 ? "N or N·m" : "N", 3)},
-       {"fit in sample", "VAF " + per_axis(id.fit.vaf_in_sample, "%", 2)}});
+  text += table({{id.fit.held_back ? "fit on held-back data" : "fit on the same data",
+                  "VAF " + per_axis(id.fit.vaf, "%", 2), "RMSE " + per_axis(id.fit.rmse, units_of(id.motion).force, 3)},
+                 {"fit in sample", "VAF " + per_axis(id.fit.vaf_in_sample, "%", 2)}});
   if (id.decimation) {
     text += table({{fmt::format("at {:g} Hz", id.decimation->rate_hz),
                     fmt::format("the model differs by {:.2g} % of each matrix's largest element",
@@ -179,7 +181,7 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
 
 std::string summary_text(const Summary& summary) {
   return fmt::format("mean of {} trials\n", summary.trials) +
-         model_table(summary.mean, summary.between_trial_standard_error, 1.0) +
+         model_table(summary.mean, summary.between_trial_standard_error, 1.0, summary.motion) +
          "  (± is the standard error between trials)\n";
 }
 

@@ -116,11 +116,20 @@ Json result_json(const Measured& measured) {
     json["inputs"][i]["duration_s"] = id.durations[i];
     json["inputs"][i]["rate_hz"] = id.rates[i];
   }
+  if (!id.notes.empty()) json["notes"] = id.notes;
   json["mode"] = text(how.mode);
   json["protocol"] = text(how.protocol);
   json["method"] = id.method;
   json["axes"] = id.axes;
   json["structure"] = text(id.structure);
+  if (id.motion != Motion::unknown) {
+    const Units units = units_of(id.motion);
+    json["units"] = {{"M", units.inertia},
+                     {"B", units.damping},
+                     {"K", units.stiffness},
+                     {"x0", units.position},
+                     {"force", units.force}};
+  }
   json["model"] = model_json(id.model);
   json["standard_error"] = model_json(id.standard_error);
   json["fit"] = {{"VAF", list(id.fit.vaf)},

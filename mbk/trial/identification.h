@@ -55,6 +55,23 @@ struct DecimationCheck {
   double largest_change = 0;  ///< of M, B, K, relative to the largest element of its matrix
 };
 
+/// Units of M, B, K, x₀, position and force.
+struct Units {
+  const char *inertia, *damping, *stiffness, *position, *force;
+};
+
+[[nodiscard]] constexpr Units units_of(Motion motion) {
+  switch (motion) {
+    case Motion::translation:
+      return {"kg", "N·s/m", "N/m", "m", "N"};
+    case Motion::rotation:
+      return {"kg·m²", "N·m·s/rad", "N·m/rad", "rad", "N·m"};
+    case Motion::unknown:
+      break;
+  }
+  return {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad", "m or rad", "N or N·m"};
+}
+
 /// An impedance, how sure it is, how well it fits, and whether it may be used.
 struct Identification {
   impedance::Model model;
@@ -74,6 +91,8 @@ struct Identification {
   std::vector<SourceFile> sources;
   std::vector<double> durations, rates;  ///< per source: [s] and [Hz]
   int axes = 2;
+  Motion motion = Motion::translation;
+  std::vector<std::string> notes;  ///< what the reader said of the recordings
   std::vector<Warning> warnings;
   bool usable = true;
 };

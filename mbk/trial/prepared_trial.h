@@ -12,6 +12,13 @@
 
 namespace mbk {
 
+/// What moves, which decides the units of M, B and K.
+enum class Motion {
+  translation,  ///< m and N: kg, N·s/m, N/m
+  rotation,     ///< rad and N·m: kg·m², N·m·s/rad, N·m/rad
+  unknown,      ///< one axis whose file says neither
+};
+
 /// What a stretch of samples is for.
 enum class Purpose { identification, validation };
 
@@ -43,7 +50,8 @@ struct Preparation {
 
 /// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame.
 struct PreparedTrial {
-  int axes = 2;                    ///< n, 1 or 2
+  int axes = 2;  ///< n, 1 or 2
+  Motion motion = Motion::translation;
   double sample_time = 0;          ///< T [s]
   Vector time;                     ///< N, [s] from the recording's first sample
   Matrix position;                 ///< N×n, x [m]
@@ -54,8 +62,9 @@ struct PreparedTrial {
   std::vector<Stretch> stretches;  ///< in order of time; rows outside them do not count
   Preparation preparation;
   std::vector<SourceFile> sources;
-  double recording_duration = 0;  ///< [s]
-  std::vector<Warning> warnings;  ///< about the recording and its preparation
+  double recording_duration = 0;   ///< [s]
+  std::vector<std::string> notes;  ///< what the reader said of the recording
+  std::vector<Warning> warnings;   ///< about the recording and its preparation
 };
 
 }  // namespace mbk
