@@ -170,15 +170,6 @@ Matrix model_covariance(const numeric::LinearFit& fit, const Matrix& V, const im
   return JS * V * JS.transpose();
 }
 
-impedance::Model standard_errors(const Matrix& covariance, Index n) {
-  const Vector se = covariance.diagonal().cwiseSqrt();
-  const auto square = [&](Index first) {
-    return Matrix(Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-        se.data() + first, n, n));
-  };
-  return {square(0), square(n * n), square(2 * n * n), se.tail(n)};
-}
-
 Vector vaf(const Matrix& Y, const Matrix& residual) {
   Vector result(Y.cols());
   for (Index j = 0; j < Y.cols(); ++j) result[j] = numeric::variance_accounted_for(Y.col(j), residual.col(j));
@@ -271,7 +262,7 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(result.samples));
   const Matrix V = widening * widening * numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags);
   result.covariance = model_covariance(*fit, V, result.model, r.centre);
-  result.standard_error = standard_errors(result.covariance, n);
+  result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
 
   for (const PreparedTrial& trial : trials) {
     result.preparations.push_back(trial.preparation);

@@ -17,4 +17,11 @@ struct Model {
   [[nodiscard]] Index axes() const { return M.rows(); }
 };
 
+/// All numbers of a model in one column: M, B and K row by row, then x₀; 3n² + n of them. The order of every
+/// covariance matrix and of the names of parameters.
+[[nodiscard]] Vector stacked(const Model& model);
+
+/// The model whose numbers `values` are.   @param values 3n² + n of them
+[[nodiscard]] Model unstacked(const Vector& values, Index axes);
+
 }  // namespace mbk::impedance

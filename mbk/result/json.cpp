@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mbk/core/version.h"
+#include "mbk/impedance/model.h"
 
 namespace mbk::result {
 namespace {
@@ -207,13 +208,6 @@ impedance::Model model_from(const Json& json, const char* name, Index n) {
                                 : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN())};
 }
 
-Vector row_major(const impedance::Model& model) {
-  Vector values(3 * model.M.size() + model.x0.size());
-  values << Vector(model.M.transpose().reshaped()), Vector(model.B.transpose().reshaped()),
-      Vector(model.K.transpose().reshaped()), model.x0;
-  return values;
-}
-
 Identification identification_from(const Json& json) {
   if (!json.is_object() || json.value("schema", "") != kResultSchema) {
     throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
@@ -228,7 +222,7 @@ Identification identification_from(const Json& json) {
   id.covariance = Matrix::Constant(count, count, std::numeric_limits<double>::quiet_NaN());
   if (json.contains("standard_error")) {
     id.standard_error = model_from(json, "standard_error", n);
-    id.covariance = row_major(id.standard_error).cwiseAbs2().asDiagonal();
+    id.covariance = impedance::stacked(id.standard_error).cwiseAbs2().asDiagonal();
   }
   if (const auto covariance = json.find("covariance"); covariance != json.end() && covariance->is_object()) {
     id.covariance = matrix_from(*covariance, "matrix", count, count);

@@ -11,21 +11,13 @@
 #include <vector>
 
 #include "mbk/identify/impedance_fit.h"
+#include "mbk/impedance/model.h"
 #include "mbk/laboratory/prescribed_motion.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/numeric/statistics.h"
 
 namespace mbk::validation {
 namespace {
-
-/// M, B and K row by row, then x₀: the order of Identification::parameters.
-Vector row_major(const impedance::Model& model) {
-  const Index n = model.axes();
-  Vector values(3 * n * n + n);
-  values << Vector(model.M.transpose().reshaped()), Vector(model.B.transpose().reshaped()),
-      Vector(model.K.transpose().reshaped()), model.x0;
-  return values;
-}
 
 /// Which parameters of one run lie inside their interval.
 Result<Eigen::Array<bool, Eigen::Dynamic, 1>> held(const CoverageOptions& options, int run) {
@@ -37,8 +29,8 @@ Result<Eigen::Array<bool, Eigen::Dynamic, 1>> held(const CoverageOptions& option
   const auto measured = measurement::measure({*recording}, {});
   if (!measured) return tl::unexpected(measured.error());
   const Identification& id = measured->identification;
-  const Vector error = row_major(id.model) - row_major(lab.limb);
-  const Vector reach = numeric::kNormal95 * row_major(id.standard_error);
+  const Vector error = impedance::stacked(id.model) - impedance::stacked(lab.limb);
+  const Vector reach = numeric::kNormal95 * impedance::stacked(id.standard_error);
   return Eigen::Array<bool, Eigen::Dynamic, 1>(error.array().abs() <= reach.array());
 }
 
