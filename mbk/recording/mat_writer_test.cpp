@@ -23,10 +23,10 @@ Recording example() {
   return recording;
 }
 
-TEST(WriteLogs, IsReadBackBitForBit) {
+TEST(WriteMat, IsReadBackBitForBit) {
   const test::Folder folder;
   const Recording written = example();
-  ASSERT_TRUE(write_logs(written, folder / "log.mat", false));
+  ASSERT_TRUE(write_mat(written, folder / "log.mat", false));
   const auto recording = read(folder / "log.mat", {});
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->sources[0].format, "MAT v7");
@@ -35,10 +35,10 @@ TEST(WriteLogs, IsReadBackBitForBit) {
   for (const Channel& channel : written.channels) EXPECT_EQ(recording->find(channel.name)->values, channel.values);
 }
 
-TEST(WriteLogs, IsReadByMatio) {
+TEST(WriteMat, IsReadByMatio) {
   const test::Folder folder;
   const Recording written = example();
-  ASSERT_TRUE(write_logs(written, folder / "log.mat", false));
+  ASSERT_TRUE(write_mat(written, folder / "log.mat", false));
   mat_t* mat = Mat_Open((folder / "log.mat").c_str(), MAT_ACC_RDONLY);
   ASSERT_NE(mat, nullptr);
   matvar_t* variable = Mat_VarRead(mat, "logs");
@@ -52,37 +52,49 @@ TEST(WriteLogs, IsReadByMatio) {
   Mat_Close(mat);
 }
 
-TEST(WriteLogs, RefusesToOverwriteUnlessTold) {
+TEST(WriteMat, RefusesToOverwriteUnlessTold) {
   const test::Folder folder;
   const auto file = folder.write("log.mat", "precious");
-  const auto refused = write_logs(example(), file, false);
+  const auto refused = write_mat(example(), file, false);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   EXPECT_THAT(refused.error().remedy, HasSubstr("--overwrite"));
   EXPECT_EQ(test::bytes_of(file), "precious");
-  EXPECT_TRUE(write_logs(example(), file, true));
+  EXPECT_TRUE(write_mat(example(), file, true));
   EXPECT_TRUE(read(file, {}));
 }
 
-TEST(WriteLogs, LeavesNothingBehindWhenItFails) {
+TEST(WriteMat, LeavesNothingBehindWhenItFails) {
   const test::Folder folder;
   std::filesystem::create_directory(folder / "log.mat");  // cannot be replaced by a file
-  EXPECT_FALSE(write_logs(example(), folder / "log.mat", true));
+  EXPECT_FALSE(write_mat(example(), folder / "log.mat", true));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 1);
 }
 
-TEST(WriteLogs, RefusesChannelsWithoutARow) {
+TEST(WriteMat, WritesOneAxisAsVariables) {
   const test::Folder folder;
-  Recording recording = example();
-  recording.channels.push_back({"reaction", "N", "", Vector::Zero(200)});
-  const auto refused = write_logs(recording, folder / "log.mat", false);
-  ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("'reaction' has no row"));
+  Recording written;
+  written.time = Vector::LinSpaced(200, 0.0, 0.199);
+  for (const char* name : {"position", "reaction"}) written.channels.push_back({name, "", "", Vector::Random(200)});
+  ASSERT_TRUE(write_mat(written, folder / "trial.mat", false));
+  const auto recording = read(folder / "trial.mat", {});
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->time, written.time);
+  for (const Channel& channel : written.channels) EXPECT_EQ(recording->find(channel.name)->values, channel.values);
 }
 
-TEST(WriteLogs, RefusesAFolderThatIsNotThere) {
+TEST(WriteMat, RefusesChannelsOfAnotherLength) {
   const test::Folder folder;
-  const auto refused = write_logs(example(), folder / "none/log.mat", false);
+  Recording recording = example();
+  recording.channels.push_back({"joint_1", "rad", "joint", Vector::Zero(199)});
+  const auto refused = write_mat(recording, folder / "log.mat", false);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("'joint_1' has 199 samples, time has 200"));
+}
+
+TEST(WriteMat, RefusesAFolderThatIsNotThere) {
+  const test::Folder folder;
+  const auto refused = write_mat(example(), folder / "none/log.mat", false);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::data);
 }
