@@ -46,7 +46,6 @@ int report(const Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  using laboratory::Protocol;
   laboratory::PrescribedMotionOptions options;
   const std::map<std::string, Protocol> protocols{{"sinusoidal", Protocol::sinusoidal},
                                                   {"underdamped", Protocol::underdamped}};

@@ -22,6 +22,7 @@ using perturbation::Random;
 constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;
 
 Result<void> check(const PrescribedMotionOptions& o) {
+  if (o.protocol == Protocol::free) return bad_usage("protocol free moves nothing", "take sinusoidal or underdamped");
   const Index axes = o.limb.axes();
   if (axes != 1 && axes != 2) return bad_usage(fmt::format("a limb with {} axes: 1 or 2 are possible", axes));
   for (const Matrix* matrix : {&o.limb.M, &o.limb.B, &o.limb.K}) {
@@ -115,7 +116,7 @@ std::string as_text(const Matrix& matrix) {
 
 std::map<std::string, std::string> metadata(const PrescribedMotionOptions& o) {
   const auto number = [](double value) { return fmt::format("{:.17g}", value); };
-  return {{"protocol", o.protocol == Protocol::sinusoidal ? "sinusoidal" : "underdamped"},
+  return {{"protocol", std::string(text(o.protocol))},
           {"seed", std::to_string(o.seed)},
           {"truth_M", as_text(o.limb.M)},
           {"truth_B", as_text(o.limb.B)},

@@ -12,15 +12,10 @@
 #include "mbk/perturbation/minimum_jerk.h"
 #include "mbk/perturbation/multisine.h"
 #include "mbk/perturbation/underdamped_pulse.h"
+#include "mbk/trial/protocol.h"
 #include "mbk/trial/recording.h"
 
 namespace mbk::laboratory {
-
-/// How the hand is moved (Dyck 2013, §3.4).
-enum class Protocol {
-  sinusoidal,   ///< ten sines up to 3 Hz within a circle of 2 cm, moving in over the first seconds
-  underdamped,  ///< 16 underdamped steps of 5 mm in random directions, at rest in between
-};
 
 /// Relaxed arm of participant 1 (rebuilt from Dyck 2013, tables 3.3 and 3.5, with k_a = 7.7 N/m), 2 axes.
 [[nodiscard]] impedance::Model relaxed_arm();
@@ -38,6 +33,8 @@ struct Sensors {
 };
 
 struct PrescribedMotionOptions {
+  /// Sinusoidal: ten sines up to 3 Hz within a circle of 2 cm, moving in over the first seconds. Underdamped: 16 steps
+  /// of 5 mm in random directions, at rest in between (Dyck 2013, §3.4).
   Protocol protocol = Protocol::sinusoidal;
   impedance::Model limb = relaxed_arm();      ///< the truth; one or two axes, which is what is recorded
   Vector home = Eigen::Vector2d(0.28, 0.02);  ///< where the hand starts, base frame [m]; one entry per axis
@@ -59,7 +56,8 @@ struct PrescribedMotionOptions {
 class PrescribedMotion {
  public:
   /// With one axis, pulses go along ±x, as many as there would be in all directions.
-  /// @fails  the limb has neither one nor two axes, is not square or not finite; home has another size; a length or
+  /// @fails  protocol is free (nothing moves the hand); the limb has neither one nor two axes, is not square or not
+  /// finite; home has another size; a length or
   ///         time is not above zero; as Multisine and PulseSchedule.
   [[nodiscard]] static Result<PrescribedMotion> create(const PrescribedMotionOptions& options);
 

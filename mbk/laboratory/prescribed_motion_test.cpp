@@ -167,6 +167,7 @@ TEST(PrescribedMotion, MetadataHoldTheTruth) {
 
 TEST(PrescribedMotion, RefusesWhatHasNoMeaning) {
   EXPECT_FALSE(record_prescribed_motion(options(Protocol::sinusoidal), Hertz(0.0)));
+  EXPECT_FALSE(record_prescribed_motion(options(Protocol::free), kRate));
   PrescribedMotionOptions o = options(Protocol::sinusoidal);
   o.home = Vector::Zero(1);
   EXPECT_EQ(record_prescribed_motion(o, kRate).error().message, "home must have 2 finite entries");

@@ -30,8 +30,8 @@ Log as_log(const Recording& r) {
           samples(r, "acceleration_x"), samples(r, "acceleration_y")};
 }
 
-laboratory::Protocol of_laboratory(Protocol protocol) {
-  return protocol == Protocol::sinusoidal ? laboratory::Protocol::sinusoidal : laboratory::Protocol::underdamped;
+mbk::Protocol of_laboratory(Protocol protocol) {
+  return protocol == Protocol::sinusoidal ? mbk::Protocol::sinusoidal : mbk::Protocol::underdamped;
 }
 
 PrescribedMotionOptions noise_free(Protocol protocol) {
