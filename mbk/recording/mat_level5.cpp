@@ -16,35 +16,12 @@ constexpr std::size_t kHeaderSize = 128;
 constexpr int kDeepest = 16;               ///< structures within structures
 constexpr std::size_t kMostElements = 64;  ///< of a structure array that is still read
 
-enum DataType : std::uint32_t {
-  kInt8 = 1,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kSingle,
-  kDouble = 9,
-  kInt64 = 12,
-  kUint64,
-  kMatrix,
-  kCompressed,
-  kUtf8,
-  kUtf16,
-  kUtf32
-};
-enum ArrayClass : std::uint32_t {
-  kCellClass = 1,
-  kStructClass,
-  kObjectClass,
-  kCharClass,
-  kSparseClass,
-  kDoubleClass,
-  kSingleClass,
-  kUint64Class = 15,
-  kFunctionClass,
-  kOpaqueClass
-};
+// Types of data elements.
+constexpr std::uint32_t kInt8 = 1, kUint8 = 2, kInt16 = 3, kUint16 = 4, kInt32 = 5, kUint32 = 6, kSingle = 7,
+                        kDouble = 9, kInt64 = 12, kUint64 = 13, kMatrix = 14, kCompressed = 15, kUtf8 = 16;
+// Classes of arrays.
+constexpr std::uint32_t kCellClass = 1, kStructClass = 2, kObjectClass = 3, kCharClass = 4, kSparseClass = 5,
+                        kDoubleClass = 6, kUint64Class = 15, kFunctionClass = 16, kOpaqueClass = 17;
 
 tl::unexpected<Error> damaged(std::string what) {
   return bad_data(std::move(what), "the file is damaged or cut short: copy it again from where it was recorded");

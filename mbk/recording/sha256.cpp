@@ -132,8 +132,8 @@ std::string digest(std::span<const std::byte> bytes, Compress compress) {
 
 std::string sha256(std::span<const std::byte> bytes) {
 #if defined(__x86_64__)
-  static const bool fast = has_sha_instructions();
-  if (fast) return digest(bytes, compress_sha_instructions);
+  static const bool kFast = has_sha_instructions();
+  if (kFast) return digest(bytes, compress_sha_instructions);
 #endif
   return digest(bytes, compress_portable);
 }
