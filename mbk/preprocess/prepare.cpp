@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mbk/dsp/butterworth.h"
 #include "mbk/dsp/savitzky_golay.h"
@@ -130,6 +131,29 @@ Result<void> check_finite(const Recording& recording, const Signals& signals, co
     }
   }
   return {};
+}
+
+/// The position must move well beyond the steps in which it is recorded.
+void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::vector<Warning>& warnings) {
+  constexpr double kStepsEnough = 20.0;  // standard deviations of the motion in steps: the rounding is then 1.4 % of it
+  double step = std::numeric_limits<double>::infinity(), motion = 0.0;
+  for (const Cut& cut : plan.cuts) {
+    const Matrix piece = signals.position.middleRows(cut.begin, cut.end - cut.begin);
+    const Matrix centred = piece.rowwise() - piece.colwise().mean();
+    motion = std::max(motion, std::sqrt(centred.cwiseAbs2().colwise().mean().maxCoeff()));
+    const Matrix changes = (piece.bottomRows(piece.rows() - 1) - piece.topRows(piece.rows() - 1)).cwiseAbs();
+    for (const double change : changes.reshaped()) {
+      if (change > 0.0) step = std::min(step, change);
+    }
+  }
+  if (motion < kStepsEnough * step) {
+    warnings.push_back({WarningCode::motion_too_small,
+                        std::isinf(step) ? std::string("the position does not move")
+                                         : fmt::format("the position moves by {:.2g} (standard deviation) and is "
+                                                       "recorded in steps of {:.2g}",
+                                                       motion, step),
+                        "perturb more, and check that the position channel and its unit are the right ones"});
+  }
 }
 
 /// Filter settings and the words that say where they come from.
@@ -279,6 +303,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = check_clock(recording, inspection, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_finite(recording, *signals, *plan, trial.axes); !ok) return tl::unexpected(ok.error());
+
+  warn_of_small_motion(*signals, *plan, trial.warnings);
 
   const bool by_reference = how.protocol == Protocol::sinusoidal;
   const auto band = excited_band(by_reference ? signals->reference : signals->position, plan->cuts, rate);

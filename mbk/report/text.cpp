@@ -86,6 +86,12 @@ std::string how_made(const Identification& id) {
   data += id.parameters_from == "all" ? ", all that counts" : "";
   if (id.preparations.size() > 1) data += fmt::format(", {} trials pooled", id.preparations.size());
   rows.push_back({"parameters", data});
+  const Excitation& e = id.excitation;
+  const bool metres = id.motion == Motion::translation;
+  std::string motion =
+      fmt::format("{:.3g} {} rms", metres ? 1e3 * e.motion : e.motion, metres ? "mm" : units_of(id.motion).position);
+  if (id.axes == 2) motion += fmt::format(", {:.0f} % of it across the main direction", 100.0 * e.motion_ratio);
+  rows.push_back({"motion", motion + fmt::format("; condition of the regressors {:.2g}", e.condition)});
   if (id.handle_mass > 0.0) rows.push_back({"handle", fmt::format("{:g} kg taken off the inertia", id.handle_mass)});
   if (id.structure != Structure::full) rows.push_back({"structure", std::string(text(id.structure))});
   return table(rows);
