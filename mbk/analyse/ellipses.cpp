@@ -14,6 +14,7 @@ double standard_error(const Eigen::RowVector4d& gradient, const Eigen::Matrix4d&
 
 EllipseFinding ellipse_finding(const Matrix& Z, const Eigen::Matrix4d& covariance) {
   EllipseFinding finding;
+  finding.symmetric = impedance::symmetric_part(Z);
   finding.ellipse = impedance::ellipse(Z);
   const impedance::EllipseGradient gradient = impedance::ellipse_gradient(Z);
   finding.area95 = numeric::positive_interval95(finding.ellipse.area, standard_error(gradient.area, covariance));

@@ -92,7 +92,11 @@ std::string how_made(const Identification& id) {
       fmt::format("{:.3g} {} rms", metres ? 1e3 * e.motion : e.motion, metres ? "mm" : units_of(id.motion).position);
   if (id.axes == 2) motion += fmt::format(", {:.0f} % of it across the main direction", 100.0 * e.motion_ratio);
   rows.push_back({"motion", motion + fmt::format("; condition of the regressors {:.2g}", e.condition)});
-  if (id.handle_mass > 0.0) rows.push_back({"handle", fmt::format("{:g} kg taken off the inertia", id.handle_mass)});
+  if (id.handle_mass > 0.0) {
+    rows.push_back({"handle", fmt::format("{:g} kg taken off the inertia", id.handle_mass)});
+  } else if (how.mode == Mode::reference && how.procedure == Procedure::chapter5) {
+    rows.push_back({"handle", "nothing taken off the inertia (the published handle of 0.135 kg: --handle-mass 0.135)"});
+  }
   if (id.structure != Structure::full) rows.push_back({"structure", std::string(text(id.structure))});
   return table(rows);
 }

@@ -90,6 +90,7 @@ Json ellipses_json(const Findings& findings) {
                              {"shape", number(finding.ellipse.shape)},
                              {"orientation_deg", number(degrees * finding.ellipse.orientation)},
                              {"eigenvalues", {number(finding.ellipse.lambda_min), number(finding.ellipse.lambda_max)}},
+                             {"symmetric_part", rows(finding.symmetric)},
                              {"interval95",
                               {{"area", interval(finding.area95)},
                                {"shape", interval(finding.shape95)},

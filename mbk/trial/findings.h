@@ -13,6 +13,7 @@ using Interval = std::pair<double, double>;  ///< 95 %
 
 /// An ellipse and how sure it is. Area and shape by the delta method on their logarithms, the orientation on itself.
 struct EllipseFinding {
+  Matrix symmetric;  ///< (Z + Zᵀ)/2, whose ellipse it is
   impedance::Ellipse ellipse;
   Interval area95, shape95;
   Interval orientation95;  ///< [rad]; may reach outside [0, π): the angle is only defined mod π
