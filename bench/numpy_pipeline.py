@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""The published procedure (Dyck 2013, appendix C, sinusoidal protocol) with NumPy and SciPy.
+
+What a skilled user would write for the same job as `mbk measure --mode reference`: an array for each quantity, one
+library call for each step, no loops. Prints M, B, K, x0 and the VAF as JSON, and the seconds spent after the imports.
+
+usage: numpy_pipeline.py [--savgol-filter] LOG.mat
+
+The Savitzky-Golay weights come from a fit on an abscissa scaled to [-1, 1]. With --savgol-filter they are those of
+scipy.signal.savgol_filter, which fits on the sample numbers -50 ... 50: their powers up to the sixth span ten orders
+of magnitude, the weights of the second derivative then do not quite add up to zero, and what is left over of the
+position goes into K.
+"""
+
+import json
+import math
+import sys
+import time
+
+import numpy as np
+from scipy.io import loadmat
+from scipy.ndimage import convolve1d
+from scipy.signal import butter, savgol_filter, sosfiltfilt
+
+RATE = 1000.0  # [Hz]
+BEGIN, END = 11999, 62000  # samples of the published window
+IDENTIFY = 40000  # samples that make the parameters; the rest is held back
+ORDER, WINDOW = 6, 101  # Savitzky-Golay
+CUTOFF = 5.0  # [Hz]
+
+
+def savitzky_golay(signal, derivative):
+    """The derivative at the centre of each window; the first and last half window are not to be used."""
+    half = (WINDOW - 1) // 2
+    t = np.arange(-half, half + 1) / half
+    fit = np.linalg.pinv(np.vander(t, ORDER + 1, increasing=True))  # row d: weights of the coefficient of t**d
+    weights = fit[derivative] * math.factorial(derivative) * (RATE / half) ** derivative
+    return convolve1d(signal, weights[::-1])
+
+
+def scipys_own(signal, derivative):
+    return savgol_filter(signal, WINDOW, ORDER, deriv=derivative, delta=1.0 / RATE)
+
+
+def measure(path, smooth):
+    logs = loadmat(path, variable_names=["logs"])["logs"][:, BEGIN:END]
+    position, force = logs[1:3], logs[9:11]
+
+    signals = np.vstack([smooth(position, 2), smooth(position, 1), smooth(position, 0), smooth(force, 0)])
+    lost = (WINDOW - 1) // 2 + 1
+    signals = signals[:, lost:-lost]
+    lowpass = butter(5, CUTOFF, fs=RATE, output="sos")
+    signals = sosfiltfilt(lowpass, signals, padlen=15)
+
+    Z = np.vstack([signals[:6], np.ones(signals.shape[1])]).T
+    Y = -signals[6:].T
+    P = np.linalg.lstsq(Z[:IDENTIFY], Y[:IDENTIFY], rcond=None)[0]
+    residual = Y[IDENTIFY:] - Z[IDENTIFY:] @ P
+    vaf = 100.0 * (1.0 - residual.var(axis=0, ddof=1) / Y[IDENTIFY:].var(axis=0, ddof=1))
+    M, B, K = P[0:2].T, P[2:4].T, P[4:6].T
+    return {
+        "M": M.tolist(),
+        "B": B.tolist(),
+        "K": K.tolist(),
+        "x0": (-np.linalg.solve(K, P[6])).tolist(),
+        "VAF": vaf.tolist(),
+    }
+
+
+def main():
+    arguments = sys.argv[1:]
+    smooth = savitzky_golay
+    if arguments[:1] == ["--savgol-filter"]:
+        smooth = scipys_own
+        del arguments[0]
+    if len(arguments) != 1 or arguments[0].startswith("-"):
+        print(__doc__.strip())
+        sys.exit(0 if arguments in (["-h"], ["--help"]) else 2)
+    start = time.perf_counter()
+    model = measure(arguments[0], smooth)
+    model["seconds_after_imports"] = time.perf_counter() - start
+    print(json.dumps(model))
+
+
+if __name__ == "__main__":
+    main()
