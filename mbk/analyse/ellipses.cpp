@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mbk/numeric/statistics.h"
 
@@ -9,7 +10,8 @@ namespace mbk::analyse {
 namespace {
 
 double standard_error(const Eigen::RowVector4d& gradient, const Eigen::Matrix4d& covariance) {
-  return std::sqrt(std::max(0.0, (gradient * covariance * gradient.transpose()).value()));
+  const double variance = (gradient * covariance * gradient.transpose()).value();
+  return variance < 0.0 ? 0.0 : std::sqrt(variance);  // NaN, where there is no covariance, stays NaN
 }
 
 EllipseFinding ellipse_finding(const Matrix& Z, const Eigen::Matrix4d& covariance) {
@@ -30,6 +32,10 @@ AntisymmetryFinding antisymmetry_finding(const Matrix& Z, const Eigen::Matrix4d&
   const Eigen::RowVector4d gradient(0.0, 0.5, -0.5, 0.0);
   finding.value95 = numeric::interval95(finding.value, standard_error(gradient, covariance));
   finding.zmean_percent = impedance::antisymmetry_percent(Z);
+  if (std::isnan(finding.zmean_percent) || std::isnan(finding.value95.first)) {
+    finding.zmean95 = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    return finding;
+  }
   // |z_a| folds the interval of z_a at zero; the geometric mean of the eigenvalues is known far better than z_a.
   const impedance::Ellipse e = impedance::ellipse(Z);
   const double scale = 100.0 / std::sqrt(e.lambda_max * e.lambda_min);

@@ -75,7 +75,6 @@ void add_warnings(Identification& identification) {
   const Index n = identification.axes;
   const impedance::Model& model = identification.model;
   const Excitation& excitation = identification.excitation;
-  const Preparation& how = identification.preparations.front();
   const Units units = units_of(identification.motion);
   const bool one_axis = n == 1;
   const auto warn = [&](WarningCode code, std::string message, std::string remedy) {
@@ -127,7 +126,15 @@ void add_warnings(Identification& identification) {
                      stated(damping, units.damping)),
          "check for delays between the channels; a voluntary or reflex response also does this");
   }
-  const double top = how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
+  // Of pooled trials, the one whose filter leaves least of its band.
+  const auto passed = [](const Preparation& how) {
+    return how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
+  };
+  const Preparation& how = *std::min_element(identification.preparations.begin(), identification.preparations.end(),
+                                             [&](const Preparation& a, const Preparation& b) {
+                                               return passed(a) * b.band_high.value < passed(b) * a.band_high.value;
+                                             });
+  const double top = passed(how);
   if (top < kCutIntoBand * how.band_high.value) {
     warn(WarningCode::band_too_narrow,
          fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left may not "
@@ -151,12 +158,17 @@ void add_warnings(Identification& identification) {
                      fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
          "the limb changed during the recording, or there is too little data: look at the parts with --from and --to");
   }
-  if (fit.vaf.minCoeff() < kPoorVaf) {
+  // Written so that NaN, the VAF of a force that never changes, is poor.
+  if (!(fit.vaf.array() >= kPoorVaf).all()) {
+    const bool defined = fit.vaf.array().isFinite().all();
     warn(WarningCode::fit_poor,
-         fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}", fit.vaf.minCoeff(),
-                     one_axis ? "reaction" : "force in one axis"),
-         "the limb may have acted or reflexes may be strong; do not read M, B and K as a passive limb's");
-    if (!(fit.vaf.minCoeff() > 0.0)) identification.usable = false;
+         defined ? fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}", fit.vaf.minCoeff(),
+                               one_axis ? "reaction" : "force in one axis")
+                 : fmt::format("the {} never changes, so that nothing of it can be explained",
+                               one_axis ? "reaction" : "force in one axis"),
+         defined ? "the limb may have acted or reflexes may be strong; do not read M, B and K as a passive limb's"
+                 : "check the force sensor and its channel");
+    if (!(fit.vaf.array() > 0.0).all()) identification.usable = false;
   }
   if (excitation.duration < kShortestDuration) {
     warn(WarningCode::too_little_data,

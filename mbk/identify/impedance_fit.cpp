@@ -214,6 +214,13 @@ std::vector<std::string> parameter_names(int axes) {
 
 Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials, const Options& options) {
   if (trials.empty()) return bad_usage("no trial to identify from");
+  if (!(options.hac_lag_s >= 0.0 && std::isfinite(options.hac_lag_s))) {
+    return bad_usage(
+        fmt::format("a reach of the residual's correlation of {:g} s is not 0 or more", options.hac_lag_s));
+  }
+  if (!std::isfinite(options.handle_mass)) {
+    return bad_usage(fmt::format("a handle mass of {:g} kg is none", options.handle_mass));
+  }
   const PreparedTrial& first = trials.front();
   for (const PreparedTrial& trial : trials) {
     if (trial.axes != first.axes || trial.motion != first.motion) {
@@ -255,9 +262,11 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
 
   result.model = model_of(fit->coefficients, r.centre, options.handle_mass);
   result.parameters = parameter_names(first.axes);
-  const auto lags = static_cast<Index>(std::llround(options.hac_lag_s / r.sample_time));
-  result.hac_lag_s = static_cast<double>(lags) * r.sample_time;
   for (const RowRange& range : ranges) result.samples += range.size();
+  // A reach beyond the data is all of it.
+  const auto lags = static_cast<Index>(
+      std::llround(std::min(options.hac_lag_s / r.sample_time, static_cast<double>(result.samples))));
+  result.hac_lag_s = static_cast<double>(lags) * r.sample_time;
   const Matrix residual = r.Y - r.Z * fit->coefficients;
   const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(result.samples));
   const Matrix V = widening * widening * numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags);

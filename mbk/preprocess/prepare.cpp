@@ -114,6 +114,41 @@ Result<void> check_clock(const Recording& recording, const Inspection& inspectio
   return {};
 }
 
+/// The windows are read off the reference, so that it must be there throughout.
+Result<void> check_reference(const Recording& recording, const Matrix& reference, const WindowLimits& limits, Hertz rate,
+                             int axes) {
+  for (Index axis = 0; axis < reference.cols(); ++axis) {
+    for (Index i = 0; i < reference.rows(); ++i) {
+      const double at = static_cast<double>(i) / rate.value;
+      const bool outside = (limits.from_s && at < *limits.from_s) || (limits.to_s && at >= *limits.to_s);
+      if (outside || std::isfinite(reference(i, axis))) continue;
+      return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
+                                  names("reference", axes)[static_cast<std::size_t>(axis)], i + 1, recording.time[i]),
+                      "choose a window without it with --from and --to, or use --protocol free");
+    }
+  }
+  return {};
+}
+
+/// Settings that no filter can have are refused before anything is sized by them.
+Result<void> check_choices(const Options& options) {
+  constexpr int kLongestWindow = 1000000;
+  if (options.axes < 0 || options.axes > 2) return bad_usage(fmt::format("{} axes: 1 or 2 are possible", options.axes));
+  if (options.smoothing_window && (*options.smoothing_window < 1 || *options.smoothing_window > kLongestWindow)) {
+    return bad_usage(
+        fmt::format("a Savitzky–Golay window of {} samples is not in 1…{}", *options.smoothing_window, kLongestWindow));
+  }
+  if (options.smoothing_order && (*options.smoothing_order < 0 || *options.smoothing_order > kLongestWindow)) {
+    return bad_usage(
+        fmt::format("a Savitzky–Golay order of {} is not in 0…{}", *options.smoothing_order, kLongestWindow));
+  }
+  if (options.cutoff && !(options.cutoff->value > 0.0 && std::isfinite(options.cutoff->value))) {
+    return bad_usage(fmt::format("a cutoff of {:g} Hz is not above 0", options.cutoff->value));
+  }
+  if (options.padding.samples < 0) return bad_usage(fmt::format("a padding of {} samples", options.padding.samples));
+  return {};
+}
+
 Result<void> check_finite(const Recording& recording, const Signals& signals, const WindowPlan& plan, int axes) {
   const std::array<std::pair<const char*, const Matrix*>, 3> quantities = {
       {{"position", &signals.position}, {"force", &signals.force}, {"acceleration", &signals.acceleration}}};
@@ -242,12 +277,30 @@ Result<Motion> motion_of(const Recording& recording, int axes) {
   return rotates ? Motion::rotation : (shifts ? Motion::translation : Motion::unknown);
 }
 
+bool unbroken(const Inspection& inspection) {
+  return inspection.gaps.empty() && inspection.backward_times == 0 && inspection.duplicated_times == 0;
+}
+
 /// From the mean interval where the record has no break, since the median interval carries the rounding of the time
 /// stamps; from the median one otherwise.
 Hertz mean_rate(const Recording& recording, const Inspection& inspection) {
   const double mean = inspection.duration / static_cast<double>(recording.samples() - 1);
-  const bool unbroken = inspection.gaps.empty() && inspection.backward_times == 0 && inspection.duplicated_times == 0;
-  return unbroken && mean > 0.0 ? Hertz(1.0 / mean) : Hertz(inspection.rate_hz);
+  return unbroken(inspection) && mean > 0.0 ? Hertz(1.0 / mean) : Hertz(inspection.rate_hz);
+}
+
+/// Behind a break in time, sample i is no longer at i/rate: the limits, turned into those that an unbroken clock would
+/// have.
+WindowLimits over_breaks(const WindowLimits& limits, const Recording& recording, Hertz rate) {
+  const auto moved = [&](const std::optional<double>& seconds) -> std::optional<double> {
+    if (!seconds || !(*seconds >= 0.0)) return seconds;
+    const double half_interval = 0.5 / rate.value;
+    for (Index i = 0; i < recording.samples(); ++i) {
+      if (recording.time[i] - recording.time[0] > *seconds - half_interval) return static_cast<double>(i) / rate.value;
+    }
+    const double behind = *seconds - (recording.time[recording.samples() - 1] - recording.time[0]);
+    return static_cast<double>(recording.samples() - 1) / rate.value + behind;
+  };
+  return {moved(limits.from_s), moved(limits.split_s), moved(limits.to_s)};
 }
 
 int axes_of(const Recording& recording, int wanted) {
@@ -258,12 +311,15 @@ int axes_of(const Recording& recording, int wanted) {
 }  // namespace
 
 Result<PreparedTrial> prepare(const Recording& recording, const Inspection& inspection, const Options& options) {
+  if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
   const bool published = options.mode == Mode::reference;
   const Index samples = recording.samples();
   if (samples < 2 || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
   const Hertz rate = mean_rate(recording, inspection);
+  const WindowLimits window =
+      unbroken(inspection) ? options.window : over_breaks(options.window, recording, rate);
 
   PreparedTrial trial;
   trial.axes = axes_of(recording, options.axes);
@@ -295,11 +351,16 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
                     "name it with --channels, or use --protocol free");
   }
 
+  if (how.protocol != Protocol::free) {
+    auto ok = check_reference(recording, signals->reference, window, rate, trial.axes);
+    if (!ok) return tl::unexpected(ok.error());
+  }
+
   FilterPlan filters = reference_filters(options);
   apply_choices(options, filters);
-  auto plan = published ? reference_windows(how.protocol, signals->reference, samples, rate, options.window,
+  auto plan = published ? reference_windows(how.protocol, signals->reference, samples, rate, window,
                                             filters.smoothing.half_window())
-                        : improved_windows(how.protocol, signals->reference, samples, rate, options.window);
+                        : improved_windows(how.protocol, signals->reference, samples, rate, window);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = check_clock(recording, inspection, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_finite(recording, *signals, *plan, trial.axes); !ok) return tl::unexpected(ok.error());
@@ -355,6 +416,10 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   how.from_s = trial.time[trial.stretches.front().begin];
   how.to_s = trial.time[trial.stretches.back().end - 1];
   how.split_s = plan->split_s;
+  if (how.split_s && !unbroken(inspection)) {
+    const auto split = static_cast<Index>(std::llround(*how.split_s * rate.value));
+    how.split_s = recording.time[std::min(split, samples - 1)] - recording.time[0];
+  }
   how.perturbations = static_cast<int>(how.protocol == Protocol::underdamped ? trial.stretches.size() : 1);
   how.smoothing_order = filters.smoothing.order;
   how.smoothing_window = filters.smoothing.window;

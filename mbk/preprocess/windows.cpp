@@ -29,24 +29,33 @@ struct SampleLimits {
   std::optional<Index> split;
 };
 
+tl::unexpected<Error> split_outside(double split_s, Index from, Index to, Hertz rate) {
+  return bad_data(fmt::format("--split {:g} s is not between {:g} s and {:g} s", split_s,
+                              static_cast<double>(from) / rate.value, static_cast<double>(to) / rate.value),
+                  "it divides the data to identify from the data held back");
+}
+
 Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to, Index samples, Hertz rate) {
+  const auto in_seconds = [&](Index sample) { return static_cast<double>(sample) / rate.value; };
+  const double from_s = limits.from_s.value_or(in_seconds(from)), to_s = limits.to_s.value_or(in_seconds(to));
+  const double duration = in_seconds(samples), tolerance = 1.5 / rate.value;
+  // Written so that NaN is outside; what is inside has a sample number.
+  const bool inside = from_s >= 0.0 && from_s < duration && to_s > from_s && to_s <= duration + tolerance;
   const auto sample = [&](double seconds) { return static_cast<Index>(std::llround(seconds * rate.value)); };
-  SampleLimits result{limits.from_s ? sample(*limits.from_s) : from, limits.to_s ? sample(*limits.to_s) : to, {}};
-  const double duration = static_cast<double>(samples) / rate.value;
-  if (result.from < 0 || result.from >= samples || result.to > samples + 1 || result.from >= result.to) {
-    return bad_data(fmt::format("the window from {:g} s to {:g} s does not lie in this recording of {:g} s",
-                                static_cast<double>(result.from) / rate.value,
-                                static_cast<double>(result.to) / rate.value, duration),
+  SampleLimits result{inside ? sample(from_s) : 0, inside ? std::min(sample(to_s), samples) : 0, {}};
+  if (result.from >= result.to) {
+    return bad_data(fmt::format("the window from {:g} s to {:g} s does not lie in this recording of {:g} s", from_s,
+                                to_s, duration),
                     "choose --from and --to inside it");
   }
-  result.to = std::min(result.to, samples);
   if (limits.split_s) {
-    result.split = sample(*limits.split_s);
+    const double split_s = *limits.split_s;
+    if (!(split_s > 0.0 && split_s <= duration + tolerance)) {
+      return split_outside(split_s, result.from, result.to, rate);
+    }
+    result.split = sample(split_s);
     if (*result.split <= result.from || *result.split > result.to) {
-      return bad_data(
-          fmt::format("--split {:g} s is not between {:g} s and {:g} s", *limits.split_s,
-                      static_cast<double>(result.from) / rate.value, static_cast<double>(result.to) / rate.value),
-          "it divides the data to identify from the data held back");
+      return split_outside(split_s, result.from, result.to, rate);
     }
   }
   return result;
@@ -107,14 +116,14 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
 
   const bool pulses = protocol == Protocol::underdamped;
   const bool sines = protocol == Protocol::sinusoidal;
-  auto range = in_samples(limits, sines ? kSinusoidalBegin : (pulses ? kUnderdampedBegin : 0),
-                          sines ? std::min(kSinusoidalEnd, samples) : samples, samples, sample_rate);
-  if (!range) {
-    return bad_data(
-        fmt::format("the published {} window begins at {:g} s, and this recording lasts {:g} s", text(protocol),
-                    seconds(sines ? kSinusoidalBegin : kUnderdampedBegin, sample_rate), seconds(samples, sample_rate)),
-        "use --mode default, or name a window with --from and --to");
+  const Index begin = sines ? kSinusoidalBegin : (pulses ? kUnderdampedBegin : 0);
+  if (!limits.from_s && samples <= begin) {
+    return bad_data(fmt::format("the published {} window begins at {:g} s, and this recording lasts {:g} s",
+                                text(protocol), seconds(begin, sample_rate), seconds(samples, sample_rate)),
+                    "use --mode default, or name a window with --from and --to");
   }
+  auto range = in_samples(limits, begin, sines ? std::min(kSinusoidalEnd, samples) : samples, samples, sample_rate);
+  if (!range) return tl::unexpected(range.error());
   WindowPlan plan;
   plan.trim = 1;
   const Index first = range->from + half_window + plan.trim;
@@ -138,7 +147,7 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
   const Index split =
       range->split.value_or(sines && !limits.from_s ? first + kIdentificationSamples : first + (last - first) * 4 / 5);
   plan.cuts = {divided(range->from, range->to, split)};
-  plan.split_s = seconds(split, sample_rate);
+  if (split < last) plan.split_s = seconds(split, sample_rate);
   plan.rule = fmt::format("{:g} s to {:g} s{}", seconds(range->from, sample_rate), seconds(range->to, sample_rate),
                           sines && !limits.from_s ? " (published window)" : "");
   return plan;
@@ -190,6 +199,9 @@ Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, 
     plan.rule = fmt::format("{:g} s to {:g} s", seconds(begin, sample_rate), seconds(end, sample_rate));
   }
   const Index split = range->split.value_or(begin + (end - begin) * 4 / 5);
+  if (limits.split_s && (split <= begin || split > end)) {
+    return split_outside(*limits.split_s, begin, end, sample_rate);
+  }
   plan.cuts = {divided(begin, end, split)};
   plan.split_s = seconds(split, sample_rate);
   return plan;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -41,6 +42,11 @@ Json model_json(const impedance::Model& model) {
 
 Json interval(const Interval& value, double scale = 1.0) {
   return Json::array({number(scale * value.first), number(scale * value.second)});
+}
+
+/// Names of files and notes may hold any byte; what is no UTF-8 is replaced, so that the text is always JSON.
+std::string written(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json header(const char* schema) {
@@ -169,6 +175,8 @@ Json result_json(const Measured& measured) {
 
 // Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 /// Thrown within this file only.
 struct Malformed {
   std::string message;
@@ -176,7 +184,8 @@ struct Malformed {
 
 double number_from(const Json& json) {
   if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
-  if (!json.is_number()) throw Malformed{fmt::format("a number was expected, and '{}' stands there", json.dump())};
+  if (!json.is_number())
+    throw Malformed{fmt::format("a number was expected, and a value of type '{}' stands there", json.type_name())};
   return json.get<double>();
 }
 
@@ -209,6 +218,43 @@ impedance::Model model_from(const Json& json, const char* name, Index n) {
                                 : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN())};
 }
 
+Vector list_from(const Json& object, const char* name, Index size) {
+  return matrix_from(object, name, size, 1);
+}
+
+Fit fit_from(const Json& json, Index n) {
+  Fit fit;
+  fit.vaf = list_from(json, "VAF", n);
+  fit.rmse = list_from(json, "RMSE", n);
+  fit.vaf_in_sample = json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n)
+                                                     : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  fit.held_back = json.value("validated_on", "held-back") == "held-back";
+  return fit;
+}
+
+std::vector<Warning> warnings_from(const Json& json) {
+  if (!json.is_array()) throw Malformed{"'warnings' is not a list"};
+  std::vector<Warning> warnings;
+  for (const Json& one : json) {
+    const std::string code = one.value("code", "");
+    const auto found = std::find_if(kWarningCodes.begin(), kWarningCodes.end(),
+                                    [&](WarningCode candidate) { return text(candidate) == code; });
+    if (found == kWarningCodes.end()) throw Malformed{fmt::format("there is no warning '{}'", code)};
+    warnings.push_back({*found, one.value("message", ""), one.value("try", "")});
+  }
+  return warnings;
+}
+
+Motion motion_from(const Json& json) {
+  const auto units = json.find("units");
+  if (units == json.end()) return Motion::unknown;
+  const std::string inertia = units->value("M", "");
+  for (const Motion motion : {Motion::translation, Motion::rotation}) {
+    if (inertia == units_of(motion).inertia) return motion;
+  }
+  return Motion::unknown;
+}
+
 Identification identification_from(const Json& json) {
   if (!json.is_object() || json.value("schema", "") != kResultSchema) {
     throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
@@ -227,21 +273,29 @@ Identification identification_from(const Json& json) {
   }
   if (const auto covariance = json.find("covariance"); covariance != json.end() && covariance->is_object()) {
     id.covariance = matrix_from(*covariance, "matrix", count, count);
+    id.parameters = covariance->value("parameters", std::vector<std::string>{});
   }
   id.method = json.value("method", "ls");
   id.usable = json.value("usable", true);
   if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
     for (const Json& input : *inputs) {
       id.sources.push_back({input.value("file", ""), input.value("format", ""), input.value("sha256", "")});
+      id.durations.push_back(input.contains("duration_s") ? number_from(input["duration_s"]) : kUnknown);
+      id.rates.push_back(input.contains("rate_hz") ? number_from(input["rate_hz"]) : kUnknown);
     }
   }
+  id.motion = motion_from(json);
+  const Vector unknown = Vector::Constant(n, kUnknown);
+  id.fit = json.contains("fit") ? fit_from(json["fit"], n) : Fit{unknown, unknown, unknown, false};
+  if (json.contains("warnings")) id.warnings = warnings_from(json["warnings"]);
+  if (const auto notes = json.find("notes"); notes != json.end()) id.notes = notes->get<std::vector<std::string>>();
   return id;
 }
 
 }  // namespace
 
 std::string to_json(const Measured& measured) {
-  return result_json(measured).dump(2) + "\n";
+  return written(result_json(measured));
 }
 
 std::string to_json(const std::vector<Measured>& results, const std::optional<Summary>& summary) {
@@ -253,14 +307,14 @@ std::string to_json(const std::vector<Measured>& results, const std::optional<Su
                        {"model", model_json(summary->mean)},
                        {"between_trial_standard_error", model_json(summary->between_trial_standard_error)}};
   }
-  return json.dump(2) + "\n";
+  return written(json);
 }
 
 std::string to_json(const Findings& findings) {
   Json json = header("mbk.ellipse/1");
   json["ellipses"] = ellipses_json(findings);
   json["antisymmetry"] = antisymmetry_json(findings);
-  return json.dump(2) + "\n";
+  return written(json);
 }
 
 std::string to_json(const Recording& recording, const Inspection& inspection) {
@@ -296,7 +350,7 @@ std::string to_json(const Recording& recording, const Inspection& inspection) {
   json["metadata"] = Json::object();
   for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
   json["notes"] = recording.notes;
-  return json.dump(2) + "\n";
+  return written(json);
 }
 
 std::string to_json(const ValidationTable& table) {
@@ -315,7 +369,7 @@ std::string to_json(const ValidationTable& table) {
                             {"met", row.met()}});
   }
   json["met"] = table.met();
-  return json.dump(2) + "\n";
+  return written(json);
 }
 
 Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
@@ -324,7 +378,9 @@ Result<std::vector<Identification>> identifications_from_json(std::string_view t
     const Json json = Json::parse(text);
     std::vector<Identification> all;
     if (json.is_object() && json.value("schema", "") == kResultsSchema) {
-      for (const Json& one : json.at("results")) all.push_back(identification_from(one));
+      const Json& results = json.at("results");
+      if (!results.is_array() || results.empty()) throw Malformed{"'results' is not a list of results"};
+      for (const Json& one : results) all.push_back(identification_from(one));
     } else {
       all.push_back(identification_from(json));
     }

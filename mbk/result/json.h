@@ -37,8 +37,9 @@ struct Measured {
 [[nodiscard]] std::string to_json(const ValidationTable& table);
 
 /// Reads back what `to_json` wrote, schema mbk.result/1 or mbk.results/1: model, covariance (from the standard errors
-/// where a file holds no covariance; NaN where it holds neither), fit, warnings and inputs.
-/// @fails not JSON (line and column); another schema; a matrix of the wrong shape (its path is named).
+/// where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and inputs; not the
+/// preparation, so that what is read cannot be written again.
+/// @fails not JSON (the byte is named); another schema; no result; a matrix of the wrong shape (its name is said).
 [[nodiscard]] Result<std::vector<Identification>> identifications_from_json(std::string_view text);
 
 }  // namespace mbk::result

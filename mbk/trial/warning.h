@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,23 @@ enum class WarningCode {
   too_little_data,
   decimation_changes_model,
 };
+
+/// All of them, to find a code by its text.
+inline constexpr std::array kWarningCodes = {WarningCode::inertia_not_positive,
+                                             WarningCode::damping_not_positive,
+                                             WarningCode::stiffness_not_positive,
+                                             WarningCode::band_too_narrow,
+                                             WarningCode::motion_on_one_line,
+                                             WarningCode::motion_too_small,
+                                             WarningCode::poorly_conditioned,
+                                             WarningCode::held_back_fit_poor,
+                                             WarningCode::fit_poor,
+                                             WarningCode::no_held_back_data,
+                                             WarningCode::clock_jitter,
+                                             WarningCode::resampled,
+                                             WarningCode::clipping,
+                                             WarningCode::too_little_data,
+                                             WarningCode::decimation_changes_model};
 
 /// "inertia-not-positive", …
 [[nodiscard]] std::string_view text(WarningCode code);
