@@ -47,7 +47,7 @@ Action add_ellipse(CLI::App& app) {
       "  mbk measure log.mat --json --out result.json && mbk ellipse result.json\n\n"
       "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x; symmetric parts only.");
   command->add_option("RESULT.json", arguments->file, "a file that 'mbk measure --json' wrote")->required();
-  command->add_flag("--json", arguments->json, "for machines: one object per result, one line each");
+  command->add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1, one object per result");
   command->add_option("--out", arguments->output.file, "write to this file instead of standard output")
       ->type_name("FILE");
   command->add_flag("--overwrite", arguments->output.overwrite, "replace that file where it is there");

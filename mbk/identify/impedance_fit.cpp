@@ -260,17 +260,25 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   const auto fit = all && !r.validation.empty() ? fit_rows(ranges, 1) : check;
   if (!fit) return tl::unexpected(fit.error());
 
-  result.model = model_of(fit->coefficients, r.centre, options.handle_mass);
   result.parameters = parameter_names(first.axes);
   for (const RowRange& range : ranges) result.samples += range.size();
   // A reach beyond the data is all of it.
   const auto lags = static_cast<Index>(
       std::llround(std::min(options.hac_lag_s / r.sample_time, static_cast<double>(result.samples))));
   result.hac_lag_s = static_cast<double>(lags) * r.sample_time;
-  const Matrix residual = r.Y - r.Z * fit->coefficients;
-  const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(result.samples));
-  const Matrix V = widening * widening * numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags);
-  result.covariance = model_covariance(*fit, V, result.model, r.centre);
+  if (fit->rank == r.Z.cols()) {
+    result.model = model_of(fit->coefficients, r.centre, options.handle_mass);
+    const Matrix residual = r.Y - r.Z * fit->coefficients;
+    const double widening =
+        numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(result.samples));
+    const Matrix V = widening * widening * numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags);
+    result.covariance = model_covariance(*fit, V, result.model, r.centre);
+  } else {  // the coefficients of smallest norm explain the force, but they are not the limb's
+    const auto count = static_cast<Index>(result.parameters.size());
+    const double undefined = std::numeric_limits<double>::quiet_NaN();
+    result.model = impedance::unstacked(Vector::Constant(count, undefined), n);
+    result.covariance.setConstant(count, count, undefined);
+  }
   result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
 
   for (const PreparedTrial& trial : trials) {

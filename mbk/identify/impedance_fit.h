@@ -32,6 +32,7 @@ struct Options {
 /// Do not trust it where the limb pushes back on its own account: position and force are then measured in a closed
 /// loop, and least squares is drawn towards minus the robot's impedance; noise in the position draws the inertia
 /// towards zero. The warnings name what can be seen of this.
+/// Where the regressors cannot be told apart (rank) there is no model: every number of it is NaN, and it is not usable.
 /// @fails trials differ in axes, units or rate; nothing to identify from; fewer samples than parameters; a value is not
 /// finite; the lag is negative or not finite; the handle's mass is not finite.
 [[nodiscard]] Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials,

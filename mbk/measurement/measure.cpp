@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "mbk/analyse/ellipses.h"
 #include "mbk/preprocess/resample.h"
 #include "mbk/recording/inspection.h"
@@ -20,6 +22,21 @@ void warn_of_clipping(const Inspection& inspection, PreparedTrial& trial) {
   }
 }
 
+/// Straight lines across a gap are an invention, and are said to be one.
+void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& trial) {
+  std::string message =
+      fmt::format("the samples were put on an even clock of {:g} Hz by straight lines between them", rate.value);
+  if (!recorded.gaps.empty()) {
+    const Gap& longest = *std::ranges::max_element(recorded.gaps, {}, &Gap::length);
+    message += fmt::format(", and {} gap{} bridged by a line that nobody measured, the longest of {:.3g} s at {:.3f} s",
+                           recorded.gaps.size(), recorded.gaps.size() == 1 ? " was" : "s were", longest.length,
+                           longest.time);
+  }
+  trial.warnings.push_back({WarningCode::resampled, std::move(message),
+                            recorded.gaps.empty() ? "record with a steady clock"
+                                                  : "choose a window without long gaps with --from and --to"});
+}
+
 Result<PreparedTrial> prepare_one(const Recording& recording, const Options& options) {
   if (!options.resample) {
     const Inspection inspection = recording::inspect(recording);
@@ -27,16 +44,13 @@ Result<PreparedTrial> prepare_one(const Recording& recording, const Options& opt
     if (trial) warn_of_clipping(inspection, *trial);
     return trial;
   }
+  const Inspection recorded = recording::inspect(recording);
   const auto even = preprocess::resample(recording, *options.resample);
   if (!even) return tl::unexpected(even.error());
   auto trial = preprocess::prepare(*even, recording::inspect(*even), options.preprocess);
   if (trial) {
-    warn_of_clipping(recording::inspect(recording), *trial);
-    trial->warnings.push_back({WarningCode::resampled,
-                               fmt::format("the samples were put on an even clock of {:g} Hz by straight lines between "
-                                           "them",
-                                           options.resample->value),
-                               "record with a steady clock"});
+    warn_of_clipping(recorded, *trial);
+    warn_of_resampling(recorded, *options.resample, *trial);
   }
   return trial;
 }
@@ -58,7 +72,7 @@ Result<result::Measured> measure(const std::vector<Recording>& recordings, const
     return tl::unexpected(one_file ? identification.error().in(recordings[0].sources[0].path) : identification.error());
   }
   result::Measured measured{std::move(*identification), std::nullopt};
-  if (measured.identification.axes == 2) {
+  if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());
     measured.findings = std::move(*findings);

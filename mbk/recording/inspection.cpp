@@ -45,9 +45,8 @@ void inspect_time(const Vector& time, Inspection& facts) {
     }
   }
   facts.interval_median = median(intervals);
-  facts.rate_hz = 1.0 / facts.interval_median;
   if (intervals.empty()) {
-    facts.interval_min = facts.interval_max = facts.interval_standard_deviation = kNaN;
+    facts.rate_hz = facts.interval_min = facts.interval_max = facts.interval_standard_deviation = kNaN;
     return;
   }
   const Eigen::Map<const Vector> d(intervals.data(), static_cast<Index>(intervals.size()));
@@ -59,6 +58,9 @@ void inspect_time(const Vector& time, Inspection& facts) {
     const double interval = time[i] - time[i - 1];
     if (interval > kGap * facts.interval_median) facts.gaps.push_back({i - 1, time[i - 1], interval});
   }
+  // The mean does not carry the rounding of single time stamps.
+  const bool unbroken = facts.gaps.empty() && static_cast<Index>(intervals.size()) + 1 == time.size();
+  facts.rate_hz = 1.0 / (unbroken ? d.mean() : facts.interval_median);
 }
 
 bool can_clip(std::string_view name) {

@@ -237,10 +237,9 @@ std::vector<Warning> warnings_from(const Json& json) {
   std::vector<Warning> warnings;
   for (const Json& one : json) {
     const std::string code = one.value("code", "");
-    const auto found = std::find_if(kWarningCodes.begin(), kWarningCodes.end(),
-                                    [&](WarningCode candidate) { return text(candidate) == code; });
-    if (found == kWarningCodes.end()) throw Malformed{fmt::format("there is no warning '{}'", code)};
-    warnings.push_back({*found, one.value("message", ""), one.value("try", "")});
+    const auto known = warning_code(code);
+    if (!known) throw Malformed{fmt::format("there is no warning '{}'", code)};
+    warnings.push_back({*known, one.value("message", ""), one.value("try", "")});
   }
   return warnings;
 }

@@ -36,7 +36,7 @@ struct ChannelFacts {
 struct Inspection {
   Index samples = 0;
   double duration = 0.0;  ///< last time − first time [s]
-  double rate_hz = 0.0;   ///< 1 / median interval; NaN where there are fewer than two samples
+  double rate_hz = 0.0;   ///< 1 / mean interval where time runs on without a gap, else 1 / median; NaN: < 2 samples
 
   double interval_min = 0.0;  ///< [s]; the four are NaN where no interval is positive
   double interval_median = 0.0;

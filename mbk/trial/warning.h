@@ -1,13 +1,16 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace mbk {
 
-/// Why an answer needs care. The text form (INTERFACE) is stable: scripts may test for it.
+/// Why an answer needs care.
 enum class WarningCode {
+  force_sign_reversed,
   inertia_not_positive,
   damping_not_positive,
   stiffness_not_positive,
@@ -25,25 +28,41 @@ enum class WarningCode {
   decimation_changes_model,
 };
 
-/// All of them, to find a code by its text.
-inline constexpr std::array kWarningCodes = {WarningCode::inertia_not_positive,
-                                             WarningCode::damping_not_positive,
-                                             WarningCode::stiffness_not_positive,
-                                             WarningCode::band_too_narrow,
-                                             WarningCode::motion_on_one_line,
-                                             WarningCode::motion_too_small,
-                                             WarningCode::poorly_conditioned,
-                                             WarningCode::held_back_fit_poor,
-                                             WarningCode::fit_poor,
-                                             WarningCode::no_held_back_data,
-                                             WarningCode::clock_jitter,
-                                             WarningCode::resampled,
-                                             WarningCode::clipping,
-                                             WarningCode::too_little_data,
-                                             WarningCode::decimation_changes_model};
+/// Every code with its text, which is stable: scripts may test for it.
+inline constexpr auto kWarningTexts = std::to_array<std::pair<WarningCode, std::string_view>>({
+    {WarningCode::force_sign_reversed, "force-sign-reversed"},
+    {WarningCode::inertia_not_positive, "inertia-not-positive"},
+    {WarningCode::damping_not_positive, "damping-not-positive"},
+    {WarningCode::stiffness_not_positive, "stiffness-not-positive"},
+    {WarningCode::band_too_narrow, "band-too-narrow"},
+    {WarningCode::motion_on_one_line, "motion-on-one-line"},
+    {WarningCode::motion_too_small, "motion-too-small"},
+    {WarningCode::poorly_conditioned, "poorly-conditioned"},
+    {WarningCode::held_back_fit_poor, "held-back-fit-poor"},
+    {WarningCode::fit_poor, "fit-poor"},
+    {WarningCode::no_held_back_data, "no-held-back-data"},
+    {WarningCode::clock_jitter, "clock-jitter"},
+    {WarningCode::resampled, "resampled"},
+    {WarningCode::clipping, "clipping"},
+    {WarningCode::too_little_data, "too-little-data"},
+    {WarningCode::decimation_changes_model, "decimation-changes-model"},
+});
 
 /// "inertia-not-positive", …
-[[nodiscard]] std::string_view text(WarningCode code);
+[[nodiscard]] constexpr std::string_view text(WarningCode code) {
+  for (const auto& [known, words] : kWarningTexts) {
+    if (known == code) return words;
+  }
+  return "unknown";
+}
+
+/// The code of that text, where there is one.
+[[nodiscard]] constexpr std::optional<WarningCode> warning_code(std::string_view words) {
+  for (const auto& [known, its_words] : kWarningTexts) {
+    if (its_words == words) return known;
+  }
+  return std::nullopt;
+}
 
 /// One thing that the user must know, what it means in words, and what to try.
 struct Warning {
