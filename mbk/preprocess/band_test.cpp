@@ -18,9 +18,9 @@ std::vector<Cut> whole(const Matrix& motion) {
 }
 
 Vector multisine(Index samples, const std::vector<int>& harmonics) {
-  const auto sines = perturbation::Multisine::with_random_phases(
-                         10.0, harmonics, std::vector<double>(harmonics.size(), 0.003), 5)
-                         .value();
+  const auto sines =
+      perturbation::Multisine::with_random_phases(10.0, harmonics, std::vector<double>(harmonics.size(), 0.003), 5)
+          .value();
   Vector x(samples);
   for (Index i = 0; i < samples; ++i) x[i] = 0.3 + sines.at(static_cast<double>(i) / kRate.value).value;
   return x;

@@ -115,8 +115,8 @@ Result<void> check_clock(const Recording& recording, const Inspection& inspectio
 }
 
 /// The windows are read off the reference, so that it must be there throughout.
-Result<void> check_reference(const Recording& recording, const Matrix& reference, const WindowLimits& limits, Hertz rate,
-                             int axes) {
+Result<void> check_reference(const Recording& recording, const Matrix& reference, const WindowLimits& limits,
+                             Hertz rate, int axes) {
   for (Index axis = 0; axis < reference.cols(); ++axis) {
     for (Index i = 0; i < reference.rows(); ++i) {
       const double at = static_cast<double>(i) / rate.value;
@@ -318,8 +318,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
   const Hertz rate = mean_rate(recording, inspection);
-  const WindowLimits window =
-      unbroken(inspection) ? options.window : over_breaks(options.window, recording, rate);
+  const WindowLimits window = unbroken(inspection) ? options.window : over_breaks(options.window, recording, rate);
 
   PreparedTrial trial;
   trial.axes = axes_of(recording, options.axes);

@@ -176,8 +176,8 @@ TEST_P(BothModes, ALinearRelationOfForceAndMotionSurvivesTheFilters) {
   // Forces are below 400 N; the low-pass is a recursion of hundreds of samples, each adding a rounding.
   const double kRounding = 400.0 * 1000.0 * std::numeric_limits<double>::epsilon();
   for (Index i = 0; i < trial.time.size(); ++i) {
-    const Vector expected = -(model.M * trial.acceleration.row(i).transpose() +
-                              model.K * (trial.position.row(i).transpose() - model.x0));
+    const Vector expected =
+        -(model.M * trial.acceleration.row(i).transpose() + model.K * (trial.position.row(i).transpose() - model.x0));
     ASSERT_NEAR((trial.force_hand_on_robot.row(i).transpose() - expected).norm(), 0.0, kRounding) << "row " << i;
   }
 }
@@ -262,9 +262,8 @@ TEST_P(BothModes, PaddingAndExtensionAreUsed) {
 
 TEST_P(BothModes, TheWindowIsRecordedInSeconds) {
   const PreparedTrial trial =
-      prepared(noise(20000), {.mode = GetParam(),
-                              .smoothing_window = 101,
-                              .window = {.from_s = 2.0, .split_s = 10.0, .to_s = 18.0}})
+      prepared(noise(20000),
+               {.mode = GetParam(), .smoothing_window = 101, .window = {.from_s = 2.0, .split_s = 10.0, .to_s = 18.0}})
           .value();
   const double lost = GetParam() == Mode::reference ? 0.051 : 0.050;
   EXPECT_NEAR(trial.preparation.from_s, 2.0 + lost, 1e-12);

@@ -76,8 +76,8 @@ TEST(Resample, RefusesTimeThatIsNotANumber) {
 }
 
 TEST(Resample, RefusesARateThatIsNone) {
-  for (const double rate : {0.0, -5.0, 2e6, std::numeric_limits<double>::quiet_NaN(),
-                            std::numeric_limits<double>::infinity()}) {
+  for (const double rate :
+       {0.0, -5.0, 2e6, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const auto even = resample(line(100), Hertz(rate));
     ASSERT_FALSE(even) << rate;
     EXPECT_EQ(even.error().kind, ErrorKind::usage);

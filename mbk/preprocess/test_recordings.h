@@ -42,7 +42,8 @@ inline Inspection facts_of(const Recording& recording) {
     if (interval < 0.0) ++facts.backward_times;
   }
   std::sort(intervals.begin(), intervals.end());
-  facts.interval_median = intervals.empty() ? std::numeric_limits<double>::quiet_NaN() : intervals[intervals.size() / 2];
+  facts.interval_median =
+      intervals.empty() ? std::numeric_limits<double>::quiet_NaN() : intervals[intervals.size() / 2];
   facts.rate_hz = 1.0 / facts.interval_median;
   for (Index i = 1; i < t.size(); ++i) {
     if (t[i] - t[i - 1] > 1.5 * facts.interval_median) facts.gaps.push_back({i - 1, t[i - 1], t[i] - t[i - 1]});

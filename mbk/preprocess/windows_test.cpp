@@ -74,8 +74,7 @@ TEST(DetectProtocol, OneMovingColumnIsEnough) {
 // Reference mode: the sample numbers of the published procedure.
 
 TEST(ReferenceWindows, SinusoidalIsSamples11999To61999) {
-  const WindowPlan plan =
-      reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {}, kHalf).value();
+  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {}, kHalf).value();
   ASSERT_EQ(plan.cuts.size(), 1u);
   EXPECT_EQ(plan.cuts[0].begin, 11999);
   EXPECT_EQ(plan.cuts[0].end, 62000);
@@ -83,8 +82,7 @@ TEST(ReferenceWindows, SinusoidalIsSamples11999To61999) {
 }
 
 TEST(ReferenceWindows, SinusoidalIdentifiesOnTheFirst40000Centres) {
-  const WindowPlan plan =
-      reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {}, kHalf).value();
+  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {}, kHalf).value();
   ASSERT_EQ(plan.cuts[0].keep.size(), 2u);
   const Index first = 11999 + kHalf + 1;
   EXPECT_EQ(plan.cuts[0].keep[0].end, first + 40000);
@@ -152,8 +150,7 @@ TEST(ReferenceWindows, SaysNothingOfASplitThatARecordingDoesNotReach) {
 }
 
 TEST(ReferenceWindows, ABadSplitIsNotBlamedOnTheLengthOfTheRecording) {
-  const auto plan =
-      reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {.split_s = 70.0}, kHalf);
+  const auto plan = reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {.split_s = 70.0}, kHalf);
   ASSERT_FALSE(plan);
   EXPECT_THAT(plan.error().message, HasSubstr("--split 70 s"));
 }
@@ -238,9 +235,9 @@ TEST(ImprovedWindows, FreeTakesEverything) {
 }
 
 TEST(ImprovedWindows, LimitsAreSecondsFromTheFirstSample) {
-  const WindowPlan plan = improved_windows(Protocol::free, Matrix(), 10000, Hertz(500.0),
-                                           {.from_s = 2.0, .split_s = 9.0, .to_s = 11.0})
-                              .value();
+  const WindowPlan plan =
+      improved_windows(Protocol::free, Matrix(), 10000, Hertz(500.0), {.from_s = 2.0, .split_s = 9.0, .to_s = 11.0})
+          .value();
   EXPECT_EQ(plan.cuts[0].begin, 1000);
   EXPECT_EQ(plan.cuts[0].end, 5500);
   EXPECT_EQ(plan.cuts[0].keep[1].begin, 4500);
@@ -269,8 +266,8 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"ToBehindTheEnd", WindowLimits{.to_s = 30.0}},
                     std::pair{"NegativeFrom", WindowLimits{.from_s = -1.0}},
                     std::pair{"NegativeTo", WindowLimits{.to_s = -1.0}},
-                    std::pair{"FromNaN", WindowLimits{.from_s = kNaN}},
-                    std::pair{"ToNaN", WindowLimits{.to_s = kNaN}}, std::pair{"SplitNaN", WindowLimits{.split_s = kNaN}},
+                    std::pair{"FromNaN", WindowLimits{.from_s = kNaN}}, std::pair{"ToNaN", WindowLimits{.to_s = kNaN}},
+                    std::pair{"SplitNaN", WindowLimits{.split_s = kNaN}},
                     std::pair{"Infinite", WindowLimits{.to_s = std::numeric_limits<double>::infinity()}},
                     std::pair{"Huge", WindowLimits{.from_s = 1e300}},
                     std::pair{"SplitBeforeFrom", WindowLimits{.from_s = 5.0, .split_s = 4.0}},

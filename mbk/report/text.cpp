@@ -50,8 +50,11 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string per_axis(const Vector& values, std::string_view unit, int decimals) {
-  if (values.size() == 1) return fmt::format("{:.{}f} {}", values[0], decimals, unit);
-  return fmt::format("x {:.{}f}, y {:.{}f} {}", values[0], decimals, values[1], decimals, unit);
+  const auto number = [&](double value) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "undefined";
+  };
+  if (values.size() == 1) return fmt::format("{} {}", number(values[0]), unit);
+  return fmt::format("x {}, y {} {}", number(values[0]), number(values[1]), unit);
 }
 
 std::string inputs_line(const Identification& id) {

@@ -134,8 +134,8 @@ class RealAnkle : public testing::TestWithParam<Ankle> {
   void SetUp() override {
     const auto folder = data_folder();
     if (!folder) GTEST_SKIP() << "MBK_DATA_DIR is not set";
-    const recording::ReadOptions columns{
-        .channels = recording::parse_channel_map("t=1,x=2:rad,F=3:N.m").value(), .axes = 1};
+    const recording::ReadOptions columns{.channels = recording::parse_channel_map("t=1,x=2:rad,F=3:N.m").value(),
+                                         .axes = 1};
     const auto read = recording::read(*folder / "ankle" / (std::string(GetParam().name) + ".csv"), columns);
     ASSERT_TRUE(read) << read.error().line();
     recording_ = *read;
@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(All, RealAnkle,
 
 TEST_P(RealAnkle, HasItsKnownFitStiffnessAndInertia) {
   const Identification id = measured({recording_}, with(31, 25.0));
-  EXPECT_NEAR(id.fit.vaf[0], GetParam().vaf, 2.0);                            // points, as the figures are known
+  EXPECT_NEAR(id.fit.vaf[0], GetParam().vaf, 2.0);                                   // points, as the figures are known
   EXPECT_NEAR(id.model.K(0, 0), GetParam().stiffness, 0.05 * GetParam().stiffness);  // "about"
   EXPECT_GE(id.model.M(0, 0), 0.010);
   EXPECT_LE(id.model.M(0, 0), 0.024);

@@ -79,12 +79,11 @@ TEST_P(ReferenceMode, AgreesWithTheTwin) {
   const auto got = measurement::measure({recording}, options_of_mbk());
   ASSERT_TRUE(got) << got.error().line();
   const Identification& id = got->identification;
-  const std::pair<const char*, double> differences[] = {
-      {"M", difference(id.model.M, matrix2(wanted->M))},
-      {"B", difference(id.model.B, matrix2(wanted->B))},
-      {"K", difference(id.model.K, matrix2(wanted->K))},
-      {"x0", difference(id.model.x0, vector2(wanted->x0))},
-      {"VAF", difference(id.fit.vaf, vector2(wanted->VAF))}};
+  const std::pair<const char*, double> differences[] = {{"M", difference(id.model.M, matrix2(wanted->M))},
+                                                        {"B", difference(id.model.B, matrix2(wanted->B))},
+                                                        {"K", difference(id.model.K, matrix2(wanted->K))},
+                                                        {"x0", difference(id.model.x0, vector2(wanted->x0))},
+                                                        {"VAF", difference(id.fit.vaf, vector2(wanted->VAF))}};
   for (const auto& [what, value] : differences) {
     EXPECT_LE(value, kPromised) << what;
     RecordProperty(what, std::to_string(-std::log10(value + 1e-300)));  // digits that agree
