@@ -43,10 +43,10 @@ class Checker {
            "perturb at several frequencies and in both directions");
     }
     if (axes() == 2 && excitation.motion_ratio < kSmallestMotionRatio) {
-      warn(WarningCode::motion_on_one_line,
-           fmt::format("the hand moved along one line: across it only {:.1f} % as far",
-                       100.0 * excitation.motion_ratio),
-           "perturb both axes independently, or measure the one axis with --axes 1");
+      warn(
+          WarningCode::motion_on_one_line,
+          fmt::format("the hand moved along one line: across it only {:.1f} % as far", 100.0 * excitation.motion_ratio),
+          "perturb both axes independently, or measure the one axis with --axes 1");
     }
     if (excitation.duration < kShortestDuration) {
       warn(WarningCode::too_little_data,
@@ -93,9 +93,8 @@ class Checker {
     const auto passed = [](const Preparation& how) {
       return how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
     };
-    const Preparation& how = *std::ranges::min_element(
-        id_.preparations,
-        [&](const Preparation& a, const Preparation& b) {
+    const Preparation& how =
+        *std::ranges::min_element(id_.preparations, [&](const Preparation& a, const Preparation& b) {
           return passed(a) * b.band_high.value < passed(b) * a.band_high.value;
         });
     const double top = passed(how);
@@ -121,11 +120,12 @@ class Checker {
       warn(WarningCode::no_held_back_data, "no data were held back, so the fit is judged on the data that made it",
            "record more, or set --split");
     } else if ((fit.vaf_in_sample - fit.vaf).maxCoeff() > kVafDrop) {
-      warn(WarningCode::held_back_fit_poor,
-           fmt::format("the model explains {:.1f} % of the force that made it, and only {:.1f} % of the force held back",
-                       fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
-           "the limb changed during the recording, or there is too little data: look at the parts with --from and "
-           "--to");
+      warn(
+          WarningCode::held_back_fit_poor,
+          fmt::format("the model explains {:.1f} % of the force that made it, and only {:.1f} % of the force held back",
+                      fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
+          "the limb changed during the recording, or there is too little data: look at the parts with --from and "
+          "--to");
     }
     if (!fit.vaf.array().isFinite().all()) {
       warn(WarningCode::fit_poor, fmt::format("the {} never changes, so that nothing of it can be explained", what),

@@ -28,9 +28,9 @@ void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& t
       fmt::format("the samples were put on an even clock of {:g} Hz by straight lines between them", rate.value);
   if (!recorded.gaps.empty()) {
     const Gap& longest = *std::ranges::max_element(recorded.gaps, {}, &Gap::length);
-    message += fmt::format(", and {} gap{} bridged by a line that nobody measured, the longest of {:.3g} s at {:.3f} s",
-                           recorded.gaps.size(), recorded.gaps.size() == 1 ? " was" : "s were", longest.length,
-                           longest.time);
+    message +=
+        fmt::format(", and {} gap{} bridged by a line that nobody measured, the longest of {:.3g} s at {:.3f} s",
+                    recorded.gaps.size(), recorded.gaps.size() == 1 ? " was" : "s were", longest.length, longest.time);
   }
   trial.warnings.push_back({WarningCode::resampled, std::move(message),
                             recorded.gaps.empty() ? "record with a steady clock"

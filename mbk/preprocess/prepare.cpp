@@ -10,6 +10,7 @@
 #include "mbk/dsp/butterworth.h"
 #include "mbk/dsp/savitzky_golay.h"
 #include "mbk/preprocess/band.h"
+#include "mbk/preprocess/clock.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -79,15 +80,13 @@ Result<Signals> select_signals(const Recording& recording, int axes, bool accele
 }
 
 /// Time inside the cuts must be even enough to be called even.
-Result<void> check_clock(const Recording& recording, const Inspection& inspection, const WindowPlan& plan,
-                         std::vector<Warning>& warnings) {
-  const double median = inspection.interval_median;
+Result<void> check_clock(const Clock& clock, double median, const WindowPlan& plan, std::vector<Warning>& warnings) {
   double sum = 0.0, largest = 0.0;
   Index count = 0;
   for (const Cut& cut : plan.cuts) {
     for (Index i = cut.begin + 1; i < cut.end; ++i, ++count) {
-      const double interval = recording.time[i] - recording.time[i - 1];
-      const auto at = [&] { return fmt::format("at sample {} ({:.6f} s)", i + 1, recording.time[i]); };
+      const double interval = clock.seconds(i) - clock.seconds(i - 1);
+      const auto at = [&] { return fmt::format("at sample {} ({:.6f} s)", i + 1, clock.seconds(i)); };
       if (!(interval > 0.0)) {
         return bad_data(
             interval == 0.0 ? fmt::format("time repeats {}", at()) : fmt::format("time runs backwards {}", at()),
@@ -115,15 +114,14 @@ Result<void> check_clock(const Recording& recording, const Inspection& inspectio
 }
 
 /// The windows are read off the reference, so that it must be there throughout.
-Result<void> check_reference(const Recording& recording, const Matrix& reference, const WindowLimits& limits,
-                             Hertz rate, int axes) {
+Result<void> check_reference(const Clock& clock, const Matrix& reference, const WindowLimits& limits, int axes) {
   for (Index axis = 0; axis < reference.cols(); ++axis) {
     for (Index i = 0; i < reference.rows(); ++i) {
-      const double at = static_cast<double>(i) / rate.value;
+      const double at = clock.seconds(i);
       const bool outside = (limits.from_s && at < *limits.from_s) || (limits.to_s && at >= *limits.to_s);
       if (outside || std::isfinite(reference(i, axis))) continue;
       return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
-                                  names("reference", axes)[static_cast<std::size_t>(axis)], i + 1, recording.time[i]),
+                                  names("reference", axes)[static_cast<std::size_t>(axis)], i + 1, at),
                       "choose a window without it with --from and --to, or use --protocol free");
     }
   }
@@ -149,7 +147,7 @@ Result<void> check_choices(const Options& options) {
   return {};
 }
 
-Result<void> check_finite(const Recording& recording, const Signals& signals, const WindowPlan& plan, int axes) {
+Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan, int axes) {
   const std::array<std::pair<const char*, const Matrix*>, 3> quantities = {
       {{"position", &signals.position}, {"force", &signals.force}, {"acceleration", &signals.acceleration}}};
   for (const auto& [what, columns] : quantities) {
@@ -160,7 +158,7 @@ Result<void> check_finite(const Recording& recording, const Signals& signals, co
         const Index sample = cut.begin + bad;
         return bad_data(
             fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
-                        names(what, axes)[static_cast<std::size_t>(axis)], sample + 1, recording.time[sample]),
+                        names(what, axes)[static_cast<std::size_t>(axis)], sample + 1, clock.seconds(sample)),
             "choose a window without it with --from and --to, or mend the recording");
       }
     }
@@ -200,10 +198,10 @@ struct FilterPlan {
 
 FilterPlan reference_filters(const Options& options) {
   const bool chapter5 = options.procedure == Procedure::chapter5;
-  FilterPlan plan{{6, chapter5 ? 151 : 101},
-                  Hertz(chapter5 ? 4.5 : 5.0),
-                  fmt::format("{} of the published procedure", text(options.procedure))};
-  return plan;
+  const bool changed = options.smoothing_order || options.smoothing_window || options.acceleration;
+  return {{6, chapter5 ? 151 : 101},
+          Hertz(chapter5 ? 4.5 : 5.0),
+          fmt::format("{} of the published procedure{}", text(options.procedure), changed ? ", changed as asked" : "")};
 }
 
 FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut) {
@@ -277,32 +275,6 @@ Result<Motion> motion_of(const Recording& recording, int axes) {
   return rotates ? Motion::rotation : (shifts ? Motion::translation : Motion::unknown);
 }
 
-bool unbroken(const Inspection& inspection) {
-  return inspection.gaps.empty() && inspection.backward_times == 0 && inspection.duplicated_times == 0;
-}
-
-/// From the mean interval where the record has no break, since the median interval carries the rounding of the time
-/// stamps; from the median one otherwise.
-Hertz mean_rate(const Recording& recording, const Inspection& inspection) {
-  const double mean = inspection.duration / static_cast<double>(recording.samples() - 1);
-  return unbroken(inspection) && mean > 0.0 ? Hertz(1.0 / mean) : Hertz(inspection.rate_hz);
-}
-
-/// Behind a break in time, sample i is no longer at i/rate: the limits, turned into those that an unbroken clock would
-/// have.
-WindowLimits over_breaks(const WindowLimits& limits, const Recording& recording, Hertz rate) {
-  const auto moved = [&](const std::optional<double>& seconds) -> std::optional<double> {
-    if (!seconds || !(*seconds >= 0.0)) return seconds;
-    const double half_interval = 0.5 / rate.value;
-    for (Index i = 0; i < recording.samples(); ++i) {
-      if (recording.time[i] - recording.time[0] > *seconds - half_interval) return static_cast<double>(i) / rate.value;
-    }
-    const double behind = *seconds - (recording.time[recording.samples() - 1] - recording.time[0]);
-    return static_cast<double>(recording.samples() - 1) / rate.value + behind;
-  };
-  return {moved(limits.from_s), moved(limits.split_s), moved(limits.to_s)};
-}
-
 int axes_of(const Recording& recording, int wanted) {
   if (wanted != 0) return wanted;
   return recording.find("position") != nullptr || recording.find("reaction") != nullptr ? 1 : 2;
@@ -317,8 +289,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (samples < 2 || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
-  const Hertz rate = mean_rate(recording, inspection);
-  const WindowLimits window = unbroken(inspection) ? options.window : over_breaks(options.window, recording, rate);
+  const Hertz rate(inspection.rate_hz);
+  const Clock clock(recording.time, rate);
 
   PreparedTrial trial;
   trial.axes = axes_of(recording, options.axes);
@@ -351,18 +323,19 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   }
 
   if (how.protocol != Protocol::free) {
-    auto ok = check_reference(recording, signals->reference, window, rate, trial.axes);
+    auto ok = check_reference(clock, signals->reference, options.window, trial.axes);
     if (!ok) return tl::unexpected(ok.error());
   }
 
   FilterPlan filters = reference_filters(options);
   apply_choices(options, filters);
-  auto plan = published ? reference_windows(how.protocol, signals->reference, samples, rate, window,
+  auto plan = published ? reference_windows(how.protocol, signals->reference, clock, options.window,
                                             filters.smoothing.half_window())
-                        : improved_windows(how.protocol, signals->reference, samples, rate, window);
+                        : improved_windows(how.protocol, signals->reference, clock, options.window);
   if (!plan) return tl::unexpected(plan.error());
-  if (auto ok = check_clock(recording, inspection, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_finite(recording, *signals, *plan, trial.axes); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_clock(clock, inspection.interval_median, *plan, trial.warnings); !ok)
+    return tl::unexpected(ok.error());
+  if (auto ok = check_finite(clock, *signals, *plan, trial.axes); !ok) return tl::unexpected(ok.error());
 
   warn_of_small_motion(*signals, *plan, trial.warnings);
 
@@ -415,10 +388,6 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   how.from_s = trial.time[trial.stretches.front().begin];
   how.to_s = trial.time[trial.stretches.back().end - 1];
   how.split_s = plan->split_s;
-  if (how.split_s && !unbroken(inspection)) {
-    const auto split = static_cast<Index>(std::llround(*how.split_s * rate.value));
-    how.split_s = recording.time[std::min(split, samples - 1)] - recording.time[0];
-  }
   how.perturbations = static_cast<int>(how.protocol == Protocol::underdamped ? trial.stretches.size() : 1);
   how.smoothing_order = filters.smoothing.order;
   how.smoothing_window = filters.smoothing.window;

@@ -23,39 +23,52 @@ std::vector<Stretch> displacements(const Matrix& reference, Index rest, Index fi
   return runs;
 }
 
+/// A sample at which the reference rests: it has there the value that it keeps for the longest time. Between pulses it
+/// returns to that, whereas the first sample of a window may lie inside a pulse.
+Index longest_rest(const Matrix& reference, Index from, Index to) {
+  Index rest = from, longest = 0;
+  for (Index begin = from; begin < to;) {
+    Index end = begin + 1;
+    while (end < to && !differs(reference, end, begin)) ++end;
+    if (end - begin > longest) {
+      longest = end - begin;
+      rest = begin;
+    }
+    begin = end;
+  }
+  return rest;
+}
+
 /// Limits in samples, checked against the recording.
 struct SampleLimits {
   Index from, to;
   std::optional<Index> split;
 };
 
-tl::unexpected<Error> split_outside(double split_s, Index from, Index to, Hertz rate) {
-  return bad_data(fmt::format("--split {:g} s is not between {:g} s and {:g} s", split_s,
-                              static_cast<double>(from) / rate.value, static_cast<double>(to) / rate.value),
-                  "it divides the data to identify from the data held back");
+tl::unexpected<Error> split_outside(double split_s, Index from, Index to, const Clock& clock) {
+  return bad_data(
+      fmt::format("--split {:g} s is not between {:g} s and {:g} s", split_s, clock.seconds(from), clock.seconds(to)),
+      "it divides the data to identify from the data held back");
 }
 
-Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to, Index samples, Hertz rate) {
-  const auto in_seconds = [&](Index sample) { return static_cast<double>(sample) / rate.value; };
-  const double from_s = limits.from_s.value_or(in_seconds(from)), to_s = limits.to_s.value_or(in_seconds(to));
-  const double duration = in_seconds(samples), tolerance = 1.5 / rate.value;
-  // Written so that NaN is outside; what is inside has a sample number.
+Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to, const Clock& clock) {
+  const double from_s = limits.from_s.value_or(clock.seconds(from)), to_s = limits.to_s.value_or(clock.seconds(to));
+  const double duration = clock.duration(), tolerance = 1.5 / clock.rate().value;
+  // Written so that NaN is outside.
   const bool inside = from_s >= 0.0 && from_s < duration && to_s > from_s && to_s <= duration + tolerance;
-  const auto sample = [&](double seconds) { return static_cast<Index>(std::llround(seconds * rate.value)); };
-  SampleLimits result{inside ? sample(from_s) : 0, inside ? std::min(sample(to_s), samples) : 0, {}};
-  if (result.from >= result.to) {
+  SampleLimits result{from, to, {}};
+  if (inside && limits.from_s) result.from = clock.sample(from_s);
+  if (inside && limits.to_s) result.to = std::min(clock.sample(to_s), clock.samples());
+  if (!inside || result.from >= result.to) {
     return bad_data(fmt::format("the window from {:g} s to {:g} s does not lie in this recording of {:g} s", from_s,
                                 to_s, duration),
                     "choose --from and --to inside it");
   }
   if (limits.split_s) {
-    const double split_s = *limits.split_s;
-    if (!(split_s > 0.0 && split_s <= duration + tolerance)) {
-      return split_outside(split_s, result.from, result.to, rate);
-    }
-    result.split = sample(split_s);
+    const bool between = *limits.split_s > 0.0 && *limits.split_s <= duration + tolerance;
+    result.split = between ? clock.sample(*limits.split_s) : result.from;
     if (*result.split <= result.from || *result.split > result.to) {
-      return split_outside(split_s, result.from, result.to, rate);
+      return split_outside(*limits.split_s, result.from, result.to, clock);
     }
   }
   return result;
@@ -67,10 +80,6 @@ Cut divided(Index begin, Index end, Index split) {
   cut.keep.push_back({begin, std::min(split, end), Purpose::identification});
   if (split < end) cut.keep.push_back({split, end, Purpose::validation});
   return cut;
-}
-
-double seconds(Index sample, Hertz rate) {
-  return static_cast<double>(sample) / rate.value;
 }
 
 /// Where a lasting perturbation begins and ends.
@@ -108,21 +117,28 @@ ProtocolFinding detect_protocol(const Matrix& reference) {
   return {Protocol::sinusoidal, "the reference varies continuously"};
 }
 
-Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, Index samples, Hertz sample_rate,
+Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
                                      const WindowLimits& limits, Index half_window) {
   constexpr Index kSinusoidalBegin = 11999, kSinusoidalEnd = 62000, kUnderdampedBegin = 15999;
   constexpr Index kIdentificationSamples = 40000;
   constexpr std::size_t kIdentificationPulses = 8;
+  constexpr double kPublishedRate = 1000.0;  // Hz
 
+  const Index samples = clock.samples();
+  if (std::abs(clock.rate().value - kPublishedRate) > 1e-3 * kPublishedRate) {
+    return bad_data(fmt::format("the published procedure counts samples at {:g} Hz, and this recording has {:g} Hz",
+                                kPublishedRate, clock.rate().value),
+                    "use --mode default");
+  }
   const bool pulses = protocol == Protocol::underdamped;
   const bool sines = protocol == Protocol::sinusoidal;
   const Index begin = sines ? kSinusoidalBegin : (pulses ? kUnderdampedBegin : 0);
   if (!limits.from_s && samples <= begin) {
     return bad_data(fmt::format("the published {} window begins at {:g} s, and this recording lasts {:g} s",
-                                text(protocol), seconds(begin, sample_rate), seconds(samples, sample_rate)),
+                                text(protocol), clock.seconds(begin), clock.seconds(samples)),
                     "use --mode default, or name a window with --from and --to");
   }
-  auto range = in_samples(limits, begin, sines ? std::min(kSinusoidalEnd, samples) : samples, samples, sample_rate);
+  auto range = in_samples(limits, begin, sines ? std::min(kSinusoidalEnd, samples) : samples, clock);
   if (!range) return tl::unexpected(range.error());
   WindowPlan plan;
   plan.trim = 1;
@@ -140,40 +156,26 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
     plan.rule = fmt::format(
         "filtered from {:g} s on, then the {} displacements of the reference cut out; the first "
         "{} identify (published procedure)",
-        seconds(range->from, sample_rate), cut.keep.size(), kIdentificationPulses);
+        clock.seconds(range->from), cut.keep.size(), kIdentificationPulses);
     plan.cuts = {std::move(cut)};
     return plan;
   }
   const Index split =
       range->split.value_or(sines && !limits.from_s ? first + kIdentificationSamples : first + (last - first) * 4 / 5);
   plan.cuts = {divided(range->from, range->to, split)};
-  if (split < last) plan.split_s = seconds(split, sample_rate);
-  plan.rule = fmt::format("{:g} s to {:g} s{}", seconds(range->from, sample_rate), seconds(range->to, sample_rate),
+  if (split < last) plan.split_s = clock.seconds(split);
+  plan.rule = fmt::format("{:g} s to {:g} s{}", clock.seconds(range->from), clock.seconds(range->to),
                           sines && !limits.from_s ? " (published window)" : "");
   return plan;
 }
 
-Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, Index samples, Hertz sample_rate,
+Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
                                     const WindowLimits& limits) {
-  auto range = in_samples(limits, 0, samples, samples, sample_rate);
+  auto range = in_samples(limits, 0, clock.samples(), clock);
   if (!range) return tl::unexpected(range.error());
   WindowPlan plan;
   if (protocol == Protocol::underdamped) {
-    // What the reference returns to between pulses is its value for the longest time; the first sample of the window
-    // may lie inside a pulse.
-    const Index rest = [&] {
-      Index best = range->from, longest = 0;
-      for (Index begin = range->from; begin < range->to;) {
-        Index end = begin + 1;
-        while (end < range->to && !differs(reference, end, begin)) ++end;
-        if (end - begin > longest) {
-          longest = end - begin;
-          best = begin;
-        }
-        begin = end;
-      }
-      return best;
-    }();
+    const Index rest = longest_rest(reference, range->from, range->to);
     const std::vector<Stretch> runs = displacements(reference, rest, range->from, range->to);
     if (runs.empty()) {
       return bad_data("the reference is not displaced anywhere in the window", "choose --from and --to, or --protocol");
@@ -193,17 +195,17 @@ Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, 
     const auto [first, last] = lasting_range(reference, begin, end);
     if (!limits.from_s) begin = first;
     if (!limits.to_s) end = last;
-    plan.rule = fmt::format("{:g} s to {:g} s, where the reference keeps to its lasting range",
-                            seconds(begin, sample_rate), seconds(end, sample_rate));
+    plan.rule = fmt::format("{:g} s to {:g} s, where the reference keeps to its lasting range", clock.seconds(begin),
+                            clock.seconds(end));
   } else {
-    plan.rule = fmt::format("{:g} s to {:g} s", seconds(begin, sample_rate), seconds(end, sample_rate));
+    plan.rule = fmt::format("{:g} s to {:g} s", clock.seconds(begin), clock.seconds(end));
   }
   const Index split = range->split.value_or(begin + (end - begin) * 4 / 5);
   if (limits.split_s && (split <= begin || split > end)) {
-    return split_outside(*limits.split_s, begin, end, sample_rate);
+    return split_outside(*limits.split_s, begin, end, clock);
   }
   plan.cuts = {divided(begin, end, split)};
-  plan.split_s = seconds(split, sample_rate);
+  plan.split_s = clock.seconds(split);
   return plan;
 }
 

@@ -6,7 +6,7 @@
 
 #include "mbk/core/linear_algebra.h"
 #include "mbk/core/result.h"
-#include "mbk/core/units.h"
+#include "mbk/preprocess/clock.h"
 #include "mbk/trial/prepared_trial.h"
 #include "mbk/trial/protocol.h"
 
@@ -43,19 +43,20 @@ struct ProtocolFinding {
 /// @param reference N×n, or empty
 [[nodiscard]] ProtocolFinding detect_protocol(const Matrix& reference);
 
-/// The published windows (Dyck 2013, appendix C): sinusoidal [11999, 62000) with 40,000
-/// samples to identify; underdamped from 15999, the stretches in which the reference is displaced, up to the ninth
-/// onset to identify; the whole log is filtered before anything is cut out. Limits, where given, replace them.
-/// @fails the recording ends before the window begins.
-[[nodiscard]] Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, Index samples,
-                                                   Hertz sample_rate, const WindowLimits& limits, Index half_window);
+/// The published windows (Dyck 2013, appendix C): sinusoidal [11999, 62000) with 40,000 samples to identify;
+/// underdamped from 15999, the stretches in which the reference is displaced, up to the ninth onset to identify; the
+/// whole log is filtered before anything is cut out. Limits, where given, replace them.
+/// @fails the recording is not at 1 kHz, where these numbers of samples mean something else; it ends before the window
+/// begins; limits as for improved_windows.
+[[nodiscard]] Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+                                                   const WindowLimits& limits, Index half_window);
 
 /// mbk's own windows: what lies outside is cut away before any filter sees it.
 /// sinusoidal: from the instant at which the reference stays within the range that it keeps in its second half, to its
 /// last change; underdamped: each displacement of the reference is a piece of its own, the first half of them to
 /// identify; free: everything. Sinusoidal and free identify on the first 80 %.
 /// @fails limits out of order or outside the recording; no displacement of the reference inside the limits.
-[[nodiscard]] Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, Index samples,
-                                                  Hertz sample_rate, const WindowLimits& limits);
+[[nodiscard]] Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+                                                  const WindowLimits& limits);
 
 }  // namespace mbk::preprocess

@@ -18,6 +18,11 @@ constexpr Hertz kRate{1000.0};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Index kHalf = 50;  // of the published smoothing window, W = 101
 
+/// An even clock.
+Clock clock(Index samples, Hertz rate = kRate) {
+  return {Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / rate.value, rate};
+}
+
 /// A sine of 0.5 Hz and amplitude 1, held for `hold` samples at a time.
 Matrix sine(Index samples, Index hold = 1) {
   Matrix reference(samples, 1);
@@ -74,7 +79,7 @@ TEST(DetectProtocol, OneMovingColumnIsEnough) {
 // Reference mode: the sample numbers of the published procedure.
 
 TEST(ReferenceWindows, SinusoidalIsSamples11999To61999) {
-  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {}, kHalf).value();
+  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(62100), clock(62100), {}, kHalf).value();
   ASSERT_EQ(plan.cuts.size(), 1u);
   EXPECT_EQ(plan.cuts[0].begin, 11999);
   EXPECT_EQ(plan.cuts[0].end, 62000);
@@ -82,7 +87,7 @@ TEST(ReferenceWindows, SinusoidalIsSamples11999To61999) {
 }
 
 TEST(ReferenceWindows, SinusoidalIdentifiesOnTheFirst40000Centres) {
-  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {}, kHalf).value();
+  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(62100), clock(62100), {}, kHalf).value();
   ASSERT_EQ(plan.cuts[0].keep.size(), 2u);
   const Index first = 11999 + kHalf + 1;
   EXPECT_EQ(plan.cuts[0].keep[0].end, first + 40000);
@@ -95,7 +100,7 @@ TEST(ReferenceWindows, SinusoidalIdentifiesOnTheFirst40000Centres) {
 TEST(ReferenceWindows, UnderdampedFiltersFromSample15999ToTheEndAsOnePiece) {
   const Index n = 70000;
   const WindowPlan plan =
-      reference_windows(Protocol::underdamped, pulses(n, train(17000, 16)), n, kRate, {}, kHalf).value();
+      reference_windows(Protocol::underdamped, pulses(n, train(17000, 16)), clock(n), {}, kHalf).value();
   ASSERT_EQ(plan.cuts.size(), 1u);
   EXPECT_EQ(plan.cuts[0].begin, 15999);
   EXPECT_EQ(plan.cuts[0].end, n);
@@ -104,7 +109,7 @@ TEST(ReferenceWindows, UnderdampedFiltersFromSample15999ToTheEndAsOnePiece) {
 TEST(ReferenceWindows, UnderdampedKeepsTheDisplacedRunsAndValidatesFromTheNinthOnset) {
   const Index n = 70000;
   const auto runs = train(17000, 16);
-  const WindowPlan plan = reference_windows(Protocol::underdamped, pulses(n, runs), n, kRate, {}, kHalf).value();
+  const WindowPlan plan = reference_windows(Protocol::underdamped, pulses(n, runs), clock(n), {}, kHalf).value();
   ASSERT_EQ(plan.cuts[0].keep.size(), 16u);
   for (std::size_t k = 0; k < 16; ++k) {
     const Stretch& keep = plan.cuts[0].keep[k];
@@ -118,7 +123,7 @@ TEST(ReferenceWindows, ARunUnderWayAtTheFirstCentreIsNoOnset) {
   const Index n = 70000, first_centre = 15999 + kHalf + 1;
   std::vector<std::pair<Index, Index>> runs = train(19000, 15);
   runs.insert(runs.begin(), {first_centre - 20, first_centre + 800});  // begins after s₀ and before the first centre
-  const WindowPlan plan = reference_windows(Protocol::underdamped, pulses(n, runs), n, kRate, {}, kHalf).value();
+  const WindowPlan plan = reference_windows(Protocol::underdamped, pulses(n, runs), clock(n), {}, kHalf).value();
   ASSERT_EQ(plan.cuts[0].keep.size(), 16u);
   EXPECT_EQ(plan.cuts[0].keep[0].begin, first_centre);
   EXPECT_EQ(plan.cuts[0].keep[8].purpose, Purpose::identification);  // the eighth onset
@@ -129,13 +134,13 @@ TEST(ReferenceWindows, ARunThatBeginsRightAfterTheFirstCentreIsAnOnset) {
   const Index n = 70000, first_centre = 15999 + kHalf + 1;
   std::vector<std::pair<Index, Index>> runs = train(19000, 15);
   runs.insert(runs.begin(), {first_centre + 1, first_centre + 800});
-  const WindowPlan plan = reference_windows(Protocol::underdamped, pulses(n, runs), n, kRate, {}, kHalf).value();
+  const WindowPlan plan = reference_windows(Protocol::underdamped, pulses(n, runs), clock(n), {}, kHalf).value();
   EXPECT_EQ(plan.cuts[0].keep[7].purpose, Purpose::identification);
   EXPECT_EQ(plan.cuts[0].keep[8].purpose, Purpose::validation);
 }
 
 TEST(ReferenceWindows, RefusesARecordingThatEndsBeforeTheWindow) {
-  const auto plan = reference_windows(Protocol::sinusoidal, sine(9000), 9000, kRate, {}, kHalf);
+  const auto plan = reference_windows(Protocol::sinusoidal, sine(9000), clock(9000), {}, kHalf);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().kind, ErrorKind::data);
   EXPECT_THAT(plan.error().line(), HasSubstr("lasts 9 s"));
@@ -143,20 +148,20 @@ TEST(ReferenceWindows, RefusesARecordingThatEndsBeforeTheWindow) {
 }
 
 TEST(ReferenceWindows, SaysNothingOfASplitThatARecordingDoesNotReach) {
-  const auto plan = reference_windows(Protocol::sinusoidal, sine(40000), 40000, kRate, {}, kHalf);
+  const auto plan = reference_windows(Protocol::sinusoidal, sine(40000), clock(40000), {}, kHalf);
   ASSERT_TRUE(plan);
   ASSERT_EQ(plan->cuts[0].keep.size(), 1u);  // all of it identifies
   EXPECT_FALSE(plan->split_s.has_value());
 }
 
 TEST(ReferenceWindows, ABadSplitIsNotBlamedOnTheLengthOfTheRecording) {
-  const auto plan = reference_windows(Protocol::sinusoidal, sine(62100), 62100, kRate, {.split_s = 70.0}, kHalf);
+  const auto plan = reference_windows(Protocol::sinusoidal, sine(62100), clock(62100), {.split_s = 70.0}, kHalf);
   ASSERT_FALSE(plan);
   EXPECT_THAT(plan.error().message, HasSubstr("--split 70 s"));
 }
 
 TEST(ReferenceWindows, GivenLimitsReplaceThePublishedOnes) {
-  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(30000), 30000, kRate,
+  const WindowPlan plan = reference_windows(Protocol::sinusoidal, sine(30000), clock(30000),
                                             {.from_s = 5.0, .split_s = 15.0, .to_s = 20.0}, kHalf)
                               .value();
   EXPECT_EQ(plan.cuts[0].begin, 5000);
@@ -171,7 +176,7 @@ TEST(ImprovedWindows, LeavesTheMovingInOut) {
   Matrix reference = sine(40000);
   // The hand is brought in from 5 (five times the lasting range) over 4 s.
   for (Index i = 0; i < 4000; ++i) reference(i, 0) = 5.0 * (1.0 - static_cast<double>(i) / 4000.0);
-  const WindowPlan plan = improved_windows(Protocol::sinusoidal, reference, 40000, kRate, {}).value();
+  const WindowPlan plan = improved_windows(Protocol::sinusoidal, reference, clock(40000), {}).value();
   // A quarter of the range (2) beyond the range [−1, 1] is allowed: 5 (1 − i/4000) ≤ 1.5 from sample 2800 on.
   EXPECT_NEAR(static_cast<double>(plan.cuts[0].begin), 2800.0, 1.0);
   EXPECT_EQ(plan.cuts[0].end, 40000);
@@ -180,13 +185,13 @@ TEST(ImprovedWindows, LeavesTheMovingInOut) {
 TEST(ImprovedWindows, LeavesTheStillEndsOut) {
   Matrix reference = Matrix::Zero(30000, 1);
   reference.middleRows(5000, 20000) = sine(20000);
-  const WindowPlan plan = improved_windows(Protocol::sinusoidal, reference, 30000, kRate, {}).value();
+  const WindowPlan plan = improved_windows(Protocol::sinusoidal, reference, clock(30000), {}).value();
   EXPECT_NEAR(static_cast<double>(plan.cuts[0].begin), 5000.0, 1.0);
   EXPECT_NEAR(static_cast<double>(plan.cuts[0].end), 25000.0, 1.0);
 }
 
 TEST(ImprovedWindows, SinusoidalIdentifiesOnTheFirstFourFifths) {
-  const WindowPlan plan = improved_windows(Protocol::sinusoidal, sine(20000), 20000, kRate, {}).value();
+  const WindowPlan plan = improved_windows(Protocol::sinusoidal, sine(20000), clock(20000), {}).value();
   ASSERT_EQ(plan.cuts[0].keep.size(), 2u);
   EXPECT_EQ(plan.cuts[0].keep[0].end, 16000);
   EXPECT_EQ(plan.cuts[0].keep[1].purpose, Purpose::validation);
@@ -195,7 +200,7 @@ TEST(ImprovedWindows, SinusoidalIdentifiesOnTheFirstFourFifths) {
 
 TEST(ImprovedWindows, EachPulseIsACutOfItsOwnAndTheFirstHalfIdentifies) {
   const auto runs = train(2000, 5);
-  const WindowPlan plan = improved_windows(Protocol::underdamped, pulses(20000, runs), 20000, kRate, {}).value();
+  const WindowPlan plan = improved_windows(Protocol::underdamped, pulses(20000, runs), clock(20000), {}).value();
   ASSERT_EQ(plan.cuts.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_EQ(plan.cuts[k].begin, runs[k].first);
@@ -207,7 +212,7 @@ TEST(ImprovedWindows, EachPulseIsACutOfItsOwnAndTheFirstHalfIdentifies) {
 
 TEST(ImprovedWindows, RestIsWhereTheReferenceStaysLongestEvenIfTheWindowBeginsInAPulse) {
   const WindowPlan plan =
-      improved_windows(Protocol::underdamped, pulses(20000, {{0, 1000}, {9000, 10000}}), 20000, kRate, {}).value();
+      improved_windows(Protocol::underdamped, pulses(20000, {{0, 1000}, {9000, 10000}}), clock(20000), {}).value();
   ASSERT_EQ(plan.cuts.size(), 2u);
   EXPECT_EQ(plan.cuts[0].end, 1000);
   EXPECT_EQ(plan.cuts[1].begin, 9000);
@@ -215,43 +220,43 @@ TEST(ImprovedWindows, RestIsWhereTheReferenceStaysLongestEvenIfTheWindowBeginsIn
 
 TEST(ImprovedWindows, ASplitInSecondsDividesThePulses) {
   const WindowPlan plan =
-      improved_windows(Protocol::underdamped, pulses(20000, train(2000, 5)), 20000, kRate, {.split_s = 6.0}).value();
+      improved_windows(Protocol::underdamped, pulses(20000, train(2000, 5)), clock(20000), {.split_s = 6.0}).value();
   EXPECT_EQ(plan.cuts[1].keep[0].purpose, Purpose::identification);  // begins at 5 s
   EXPECT_EQ(plan.cuts[2].keep[0].purpose, Purpose::validation);      // at 8 s
 }
 
 TEST(ImprovedWindows, RefusesAWindowWithoutADisplacement) {
-  const auto plan = improved_windows(Protocol::underdamped, pulses(20000, {{15000, 16000}}), 20000, kRate,
+  const auto plan = improved_windows(Protocol::underdamped, pulses(20000, {{15000, 16000}}), clock(20000),
                                      {.from_s = 0.0, .to_s = 10.0});
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().message, "the reference is not displaced anywhere in the window");
 }
 
 TEST(ImprovedWindows, FreeTakesEverything) {
-  const WindowPlan plan = improved_windows(Protocol::free, Matrix(), 10000, kRate, {}).value();
+  const WindowPlan plan = improved_windows(Protocol::free, Matrix(), clock(10000), {}).value();
   EXPECT_EQ(plan.cuts[0].begin, 0);
   EXPECT_EQ(plan.cuts[0].end, 10000);
   EXPECT_EQ(plan.cuts[0].keep[0].end, 8000);
 }
 
 TEST(ImprovedWindows, LimitsAreSecondsFromTheFirstSample) {
-  const WindowPlan plan =
-      improved_windows(Protocol::free, Matrix(), 10000, Hertz(500.0), {.from_s = 2.0, .split_s = 9.0, .to_s = 11.0})
-          .value();
+  const WindowPlan plan = improved_windows(Protocol::free, Matrix(), clock(10000, Hertz(500.0)),
+                                           {.from_s = 2.0, .split_s = 9.0, .to_s = 11.0})
+                              .value();
   EXPECT_EQ(plan.cuts[0].begin, 1000);
   EXPECT_EQ(plan.cuts[0].end, 5500);
   EXPECT_EQ(plan.cuts[0].keep[1].begin, 4500);
 }
 
 TEST(ImprovedWindows, ToMayNameTheEndOfTheRecording) {
-  EXPECT_EQ(improved_windows(Protocol::free, Matrix(), 10000, kRate, {.to_s = 10.0})->cuts[0].end, 10000);
+  EXPECT_EQ(improved_windows(Protocol::free, Matrix(), clock(10000), {.to_s = 10.0})->cuts[0].end, 10000);
 }
 
 TEST(ImprovedWindows, ASplitOutsideTheLastingRangeIsRefused) {
   Matrix reference = Matrix::Zero(30000, 1);
   reference.middleRows(5000, 20000) = sine(20000);
   for (const double split : {3.0, 28.0}) {
-    const auto plan = improved_windows(Protocol::sinusoidal, reference, 30000, kRate, {.split_s = split});
+    const auto plan = improved_windows(Protocol::sinusoidal, reference, clock(30000), {.split_s = split});
     ASSERT_FALSE(plan) << split;
     EXPECT_THAT(plan.error().message, HasSubstr("--split"));
   }
@@ -278,8 +283,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(BadLimits, AreRefusedInBothModes) {
   const WindowLimits& limits = GetParam().second;
-  const auto improved = improved_windows(Protocol::free, Matrix(), 10000, kRate, limits);
-  const auto published = reference_windows(Protocol::free, Matrix(), 10000, kRate, limits, kHalf);
+  const auto improved = improved_windows(Protocol::free, Matrix(), clock(10000), limits);
+  const auto published = reference_windows(Protocol::free, Matrix(), clock(10000), limits, kHalf);
   ASSERT_FALSE(improved);
   ASSERT_FALSE(published);
   EXPECT_THAT(improved.error().message, HasSubstr(limits.split_s ? "--split" : "10 s"));
@@ -288,7 +293,7 @@ TEST_P(BadLimits, AreRefusedInBothModes) {
 
 TEST_P(BadLimits, AreNamedAsTheUserGaveThem) {
   const WindowLimits& limits = GetParam().second;
-  const auto plan = improved_windows(Protocol::free, Matrix(), 10000, kRate, limits);
+  const auto plan = improved_windows(Protocol::free, Matrix(), clock(10000), limits);
   ASSERT_FALSE(plan);
   EXPECT_THAT(plan.error().message, testing::Not(HasSubstr("e+15")));  // a time that nobody gave
 }

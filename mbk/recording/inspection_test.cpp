@@ -25,9 +25,11 @@ Recording with_channel(const std::string& name, Vector values) {
   return recording;
 }
 
-TEST(Inspect, ReportsTheRateFromTheMedianInterval) {
+TEST(Inspect, ReportsTheRateFromTheMeanIntervalUnlessTimeIsBroken) {
   const Inspection facts = inspect(with_time({0.0, 0.001, 0.002, 0.003, 0.0045}));
-  EXPECT_NEAR(facts.rate_hz, 1000.0, 1e-6);
+  EXPECT_NEAR(facts.rate_hz, 4.0 / 0.0045, 1e-6);
+  EXPECT_NEAR(inspect(with_time({0.0, 0.001, 0.002, 0.003, 0.1})).rate_hz, 1000.0, 1e-6);
+  EXPECT_NEAR(inspect(with_time({0.0, 0.001, 0.002, 0.0, 0.001})).rate_hz, 1000.0, 1e-6);
   EXPECT_DOUBLE_EQ(facts.duration, 0.0045);
   EXPECT_NEAR(facts.interval_min, 0.001, 1e-12);
   EXPECT_NEAR(facts.interval_max, 0.0015, 1e-12);

@@ -25,7 +25,7 @@ Vector flat(const impedance::Model& model) {
 
 struct Case {
   const char* name;
-  laboratory::Protocol protocol;
+  mbk::Protocol protocol;
   int axes;
 };
 
@@ -48,10 +48,10 @@ class DefaultMode : public testing::TestWithParam<Case> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, DefaultMode,
-                         testing::Values(Case{"Sinusoidal", laboratory::Protocol::sinusoidal, 2},
-                                         Case{"Underdamped", laboratory::Protocol::underdamped, 2},
-                                         Case{"SinusoidalOneAxis", laboratory::Protocol::sinusoidal, 1},
-                                         Case{"UnderdampedOneAxis", laboratory::Protocol::underdamped, 1}),
+                         testing::Values(Case{"Sinusoidal", mbk::Protocol::sinusoidal, 2},
+                                         Case{"Underdamped", mbk::Protocol::underdamped, 2},
+                                         Case{"SinusoidalOneAxis", mbk::Protocol::sinusoidal, 1},
+                                         Case{"UnderdampedOneAxis", mbk::Protocol::underdamped, 1}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(DefaultMode, RecoversTheTruthOfANoisyLogWithinItsOwnErrors) {
@@ -73,7 +73,7 @@ TEST_P(DefaultMode, RecoversTheTruthOfALogWithoutNoise) {
   const Identification id = measured({generated(options)});
   // Smoothing fits polynomials of degree 6, whose derivatives fall short by 1e-4 at the top of the band; a pulse has
   // more above it.
-  const double kSmoothing = GetParam().protocol == laboratory::Protocol::sinusoidal ? 1e-3 : 1e-2;
+  const double kSmoothing = GetParam().protocol == mbk::Protocol::sinusoidal ? 1e-3 : 1e-2;
   EXPECT_LE(difference(id.model.M, options.limb.M), kSmoothing);
   EXPECT_LE(difference(id.model.B, options.limb.B), kSmoothing);
   EXPECT_LE(difference(id.model.K, options.limb.K), kSmoothing);

@@ -23,7 +23,7 @@ reference::Log as_log(const Recording& r) {
 }
 
 /// Noise and quantisation as on the robot, and an arm that is not symmetric.
-laboratory::PrescribedMotionOptions noisy(laboratory::Protocol protocol, std::uint64_t seed) {
+laboratory::PrescribedMotionOptions noisy(mbk::Protocol protocol, std::uint64_t seed) {
   laboratory::PrescribedMotionOptions options;
   options.protocol = protocol;
   options.seed = seed;
@@ -34,7 +34,7 @@ laboratory::PrescribedMotionOptions noisy(laboratory::Protocol protocol, std::ui
 
 struct Case {
   const char* name;
-  laboratory::Protocol protocol;
+  mbk::Protocol protocol;
   Procedure procedure;
   std::optional<double> handle_mass;
   bool all_samples;
@@ -57,19 +57,19 @@ class ReferenceMode : public testing::TestWithParam<Case> {
   static reference::Settings settings_of_twin() {
     return {.procedure = GetParam().procedure == Procedure::chapter3 ? reference::Procedure::chapter3
                                                                      : reference::Procedure::chapter5,
-            .protocol = GetParam().protocol == laboratory::Protocol::sinusoidal ? reference::Protocol::sinusoidal
-                                                                                : reference::Protocol::underdamped,
+            .protocol = GetParam().protocol == mbk::Protocol::sinusoidal ? reference::Protocol::sinusoidal
+                                                                         : reference::Protocol::underdamped,
             .handle_mass = GetParam().handle_mass,
             .all_samples = GetParam().all_samples};
   }
 };
 INSTANTIATE_TEST_SUITE_P(
     Logs, ReferenceMode,
-    testing::Values(Case{"Chapter3Sinusoidal", laboratory::Protocol::sinusoidal, Procedure::chapter3, {}, false},
-                    Case{"Chapter3Underdamped", laboratory::Protocol::underdamped, Procedure::chapter3, {}, false},
-                    Case{"Chapter3AllPulses", laboratory::Protocol::underdamped, Procedure::chapter3, {}, true},
-                    Case{"Chapter5Sinusoidal", laboratory::Protocol::sinusoidal, Procedure::chapter5, 0.194, false},
-                    Case{"Chapter5Underdamped", laboratory::Protocol::underdamped, Procedure::chapter5, 0.194, false}),
+    testing::Values(Case{"Chapter3Sinusoidal", mbk::Protocol::sinusoidal, Procedure::chapter3, {}, false},
+                    Case{"Chapter3Underdamped", mbk::Protocol::underdamped, Procedure::chapter3, {}, false},
+                    Case{"Chapter3AllPulses", mbk::Protocol::underdamped, Procedure::chapter3, {}, true},
+                    Case{"Chapter5Sinusoidal", mbk::Protocol::sinusoidal, Procedure::chapter5, 0.194, false},
+                    Case{"Chapter5Underdamped", mbk::Protocol::underdamped, Procedure::chapter5, 0.194, false}),
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(ReferenceMode, AgreesWithTheTwin) {
@@ -92,7 +92,7 @@ TEST_P(ReferenceMode, AgreesWithTheTwin) {
 }
 
 TEST(ReferenceModeOfChapter5, TakesTheHandleOffTheDiagonalOnly) {
-  const Recording recording = generated(noisy(laboratory::Protocol::sinusoidal, 3));
+  const Recording recording = generated(noisy(mbk::Protocol::sinusoidal, 3));
   measurement::Options options;
   options.preprocess.mode = Mode::reference;
   options.preprocess.procedure = Procedure::chapter5;

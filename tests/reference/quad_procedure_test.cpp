@@ -67,10 +67,10 @@ void expect_truth(const Answer& answer, const impedance::Model& truth, double to
   EXPECT_LE(difference(answer.x0, std::array{truth.x0[0], truth.x0[1]}), tolerance);
 }
 
-class Golden : public testing::TestWithParam<std::pair<const char*, Protocol>> {};
+class Golden : public testing::TestWithParam<std::pair<std::string, Protocol>> {};
 INSTANTIATE_TEST_SUITE_P(Logs, Golden,
-                         testing::Values(std::pair{"sinusoidal", Protocol::sinusoidal},
-                                         std::pair{"underdamped", Protocol::underdamped}),
+                         testing::Values(std::pair{std::string("sinusoidal"), Protocol::sinusoidal},
+                                         std::pair{std::string("underdamped"), Protocol::underdamped}),
                          [](const auto& log) { return std::string(log.param.first); });
 
 TEST_P(Golden, AgreesToTheLastDigitsOfADouble) {
