@@ -64,8 +64,8 @@ class Checker {
     if (inertia.largest < 0.0 && stiffness.largest < 0.0 && (!damped || damping.largest < 0.0)) {
       warn(WarningCode::force_sign_reversed,
            "inertia, damping and stiffness are all negative: the force has the other sign",
-           "F is what the limb exerts on the machine: put a minus before its columns, as in --channels "
-           "x=2,y=3,Fx=-10,Fy=-11");
+           "F is what the limb exerts on the machine: put a minus before its columns in a map of all channels, as in "
+           "--channels x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13");
       id_.usable = false;
       return;
     }
