@@ -34,6 +34,11 @@ Json rows(const Matrix& matrix) {
   return array;
 }
 
+/// Names of files and channels may hold bytes that are not UTF-8, which JSON cannot say: they become U+FFFD.
+std::string dumped(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json model_json(const impedance::Model& model) {
   return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
 }
@@ -165,12 +170,26 @@ Json result_json(const Measured& measured) {
   return json;
 }
 
+/// One document whatever their number: the only object itself, or all of them as `results` of another schema.
+std::string one_or_list(const char* schema_of_list, const std::vector<Json>& objects) {
+  if (objects.size() == 1) return dumped(objects.front());
+  Json json = header(schema_of_list);
+  json["results"] = objects;
+  return dumped(json);
+}
+
 // Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
 
 /// Thrown within this file only.
 struct Malformed {
   std::string message;
 };
+
+bool has_schema(const Json& json, const char* schema) {
+  if (!json.is_object()) return false;
+  const auto found = json.find("schema");
+  return found != json.end() && found->is_string() && *found == schema;
+}
 
 double number_from(const Json& json) {
   if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
@@ -215,7 +234,7 @@ Vector row_major(const impedance::Model& model) {
 }
 
 Identification identification_from(const Json& json) {
-  if (!json.is_object() || json.value("schema", "") != kResultSchema) {
+  if (!has_schema(json, kResultSchema)) {
     throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
   }
   Identification id;
@@ -246,7 +265,7 @@ Identification identification_from(const Json& json) {
 }  // namespace
 
 std::string to_json(const Measured& measured) {
-  return result_json(measured).dump(2) + "\n";
+  return dumped(result_json(measured));
 }
 
 std::string to_json(const std::vector<Measured>& results, const std::optional<Summary>& summary) {
@@ -258,17 +277,24 @@ std::string to_json(const std::vector<Measured>& results, const std::optional<Su
                        {"model", model_json(summary->mean)},
                        {"between_trial_standard_error", model_json(summary->between_trial_standard_error)}};
   }
-  return json.dump(2) + "\n";
+  return dumped(json);
 }
 
-std::string to_json(const Findings& findings) {
-  Json json = header("mbk.ellipse/1");
-  json["ellipses"] = ellipses_json(findings);
-  json["antisymmetry"] = antisymmetry_json(findings);
-  return json.dump(2) + "\n";
+std::string to_json(const std::vector<Identification>& identifications, const std::vector<Findings>& findings) {
+  std::vector<Json> objects;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    Json json = header("mbk.ellipse/1");
+    json["inputs"] = inputs_json(identifications[i].sources);
+    json["ellipses"] = ellipses_json(findings[i]);
+    json["antisymmetry"] = antisymmetry_json(findings[i]);
+    objects.push_back(std::move(json));
+  }
+  return one_or_list("mbk.ellipses/1", objects);
 }
 
-std::string to_json(const Recording& recording, const Inspection& inspection) {
+namespace {
+
+Json info_json(const Recording& recording, const Inspection& inspection) {
   Json json = header("mbk.info/1");
   json["inputs"] = inputs_json(recording.sources);
   json["samples"] = inspection.samples;
@@ -301,7 +327,15 @@ std::string to_json(const Recording& recording, const Inspection& inspection) {
   json["metadata"] = Json::object();
   for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
   json["notes"] = recording.notes;
-  return json.dump(2) + "\n";
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections) {
+  std::vector<Json> objects;
+  for (std::size_t i = 0; i < inspections.size(); ++i) objects.push_back(info_json(recordings[i], inspections[i]));
+  return one_or_list("mbk.infos/1", objects);
 }
 
 std::string to_json(const ValidationTable& table) {
@@ -320,7 +354,7 @@ std::string to_json(const ValidationTable& table) {
                             {"met", row.met()}});
   }
   json["met"] = table.met();
-  return json.dump(2) + "\n";
+  return dumped(json);
 }
 
 Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
@@ -328,8 +362,12 @@ Result<std::vector<Identification>> identifications_from_json(std::string_view t
   try {
     const Json json = Json::parse(text);
     std::vector<Identification> all;
-    if (json.is_object() && json.value("schema", "") == kResultsSchema) {
-      for (const Json& one : json.at("results")) all.push_back(identification_from(one));
+    if (has_schema(json, kResultsSchema)) {
+      const auto results = json.find("results");
+      if (results == json.end() || !results->is_array() || results->empty()) {
+        throw Malformed{"'results' holds no result"};
+      }
+      for (const Json& one : *results) all.push_back(identification_from(one));
     } else {
       all.push_back(identification_from(json));
     }
