@@ -18,21 +18,22 @@ struct Arguments {
 };
 
 int run(const Arguments& arguments) {
+  if (auto ok = arguments.output.check({arguments.file}); !ok) return report_error(ok.error());
   const auto text = read_text(arguments.file);
   if (!text) return report_error(text.error());
   auto identifications = result::identifications_from_json(*text);
   if (!identifications) return report_error(identifications.error().in(arguments.file.string()));
+  std::vector<Findings> all;
   std::string shown;
   for (const Identification& identification : *identifications) {
     const auto findings = analyse::analyse_ellipses(identification);
     if (!findings) return report_error(findings.error().in(arguments.file.string()));
-    if (arguments.json) {
-      shown += result::to_json(*findings);
-    } else {
-      for (const SourceFile& source : identification.sources) shown += source.path + "\n";
-      shown += report::ellipses_text(*findings);
-    }
+    all.push_back(*findings);
+    if (!shown.empty()) shown += "\n";
+    for (const SourceFile& source : identification.sources) shown += source.path + "\n";
+    shown += report::ellipses_text(*findings);
   }
+  if (arguments.json) shown = result::to_json(*identifications, all);
   if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -44,13 +45,12 @@ Action add_ellipse(CLI::App& app) {
   CLI::App* command = app.add_subcommand("ellipse", "impedance ellipses of a stored result, with 95 % intervals");
   command->footer(
       "Example:\n"
-      "  mbk measure log.mat --json --out result.json && mbk ellipse result.json\n\n"
+      "  mbk ellipse result.json\n"
+      "      what 'mbk measure log.mat --json --out result.json' wrote\n\n"
       "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x; symmetric parts only.");
   command->add_option("RESULT.json", arguments->file, "a file that 'mbk measure --json' wrote")->required();
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1, one object per result");
-  command->add_option("--out", arguments->output.file, "write to this file instead of standard output")
-      ->type_name("FILE");
-  command->add_flag("--overwrite", arguments->output.overwrite, "replace that file where it is there");
+  command->add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1");
+  arguments->output.add_options(*command);
   return [arguments] { return run(*arguments); };
 }
 

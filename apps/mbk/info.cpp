@@ -10,13 +10,18 @@ namespace mbk::app {
 namespace {
 
 int run(const MeasureArguments& arguments) {
+  if (auto ok = arguments.output.check(arguments.files); !ok) return report_error(ok.error());
   const auto recordings = read_recordings(arguments);
   if (!recordings) return report_error(recordings.error());
+  std::vector<Inspection> inspections;
+  for (const Recording& recording : *recordings) inspections.push_back(recording::inspect(recording));
   std::string text;
-  for (const Recording& recording : *recordings) {
-    const Inspection inspection = recording::inspect(recording);
-    if (!arguments.json && !text.empty()) text += "\n";
-    text += arguments.json ? result::to_json(recording, inspection) : report::info_text(recording, inspection);
+  if (arguments.json) {
+    text = result::to_json(*recordings, inspections);
+  } else {
+    for (std::size_t i = 0; i < inspections.size(); ++i) {
+      text += (i > 0 ? "\n" : "") + report::info_text((*recordings)[i], inspections[i]);
+    }
   }
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return kFine;
@@ -34,7 +39,7 @@ Action add_info(CLI::App& app) {
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
       "Nothing is repaired: gaps, repeated or backward time and values that are no numbers are reported.");
   add_reading_options(*command, *arguments);
-  add_output_options(*command, *arguments);
+  add_output_options(*command, *arguments, "mbk.info/1");
   return [arguments] { return run(*arguments); };
 }
 

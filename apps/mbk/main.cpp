@@ -2,27 +2,53 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
+#include <memory>
+#include <new>
 #include <vector>
 
 #include "apps/mbk/commands.h"
 #include "mbk/core/version.h"
+#include "mbk/report/text.h"
+
+namespace {
+
+/// Descriptions of options, broken into lines that a terminal shows whole.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kNameColumns); }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return mbk::report::wrapped(CLI::Formatter::make_option_desc(option), mbk::report::kLineColumns - kNameColumns);
+  }
+
+ private:
+  static constexpr std::size_t kNameColumns = 30;
+};
+
+/// "mbk: what is wrong; which help to read".
+std::string one_line(const CLI::App* app, const CLI::Error& error) {
+  const auto chosen = app->get_subcommands();
+  if (!chosen.empty()) return fmt::format("mbk: {}; see 'mbk {} --help'\n", error.what(), chosen.front()->get_name());
+  const std::vector<std::string> words = app->remaining();
+  if (words.empty()) return "mbk: no command; see 'mbk --help'\n";
+  return fmt::format("mbk: '{}' is no command; see 'mbk --help'\n", words.front());
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M, damping B,\n"
-      "stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force and position while the "
-      "robot\n"
-      "perturbs it. F is the force that the hand exerts on the robot.\n\n"
+      "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
+      "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"
+      "and position while the robot perturbs it. F is the force that the hand exerts on the robot.\n\n"
       "  mbk measure log.mat                 the main job: recording → M, B, K, x0, ellipses, warnings\n"
       "  mbk info log.mat                    what is in a recording, and what is wrong with it\n"
-      "  mbk measure --help                  every command explains itself"};
+      "  mbk measure --help                  every command explains itself\n"};
   app.name("mbk");
   app.set_version_flag("--version", fmt::format("mbk {}", mbk::version()));
   app.require_subcommand(1);
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("mbk: {}; see 'mbk --help', or 'mbk COMMAND --help'\n", error.what());
-  });
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.failure_message(one_line);
 
   const std::vector<std::pair<const char*, mbk::app::Action>> commands = {
       {"measure", mbk::app::add_measure(app)},   {"identify", mbk::app::add_identify(app)},

@@ -60,6 +60,7 @@ std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordi
 int run(const MeasureArguments& arguments, bool with_findings) {
   const auto options = measurement_options(arguments);
   if (!options) return report_error(options.error());
+  if (auto ok = arguments.output.check(arguments.files); !ok) return report_error(ok.error());
   const auto recordings = read_recordings(arguments);
   if (!recordings) return report_error(recordings.error());
 
@@ -107,14 +108,14 @@ Action add(CLI::App& app, const char* name, const char* summary, const char* foo
   command->footer(footer);
   add_reading_options(*command, *arguments);
   add_measuring_options(*command, *arguments);
-  add_output_options(*command, *arguments);
+  add_output_options(*command, *arguments, "mbk.result/1");
   return [arguments, with_findings] { return run(*arguments, with_findings); };
 }
 
 }  // namespace
 
 Action add_measure(CLI::App& app) {
-  return add(app, "measure", "recording → inertia M, damping B, stiffness K, equilibrium x0, ellipses, warnings",
+  return add(app, "measure", "recording → M, B, K, x0 with intervals, ellipses, warnings",
              "Examples:\n"
              "  mbk measure log.mat\n"
              "      a 19-row log of a planar robot; protocol, window and filters are chosen and printed\n"

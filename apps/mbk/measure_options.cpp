@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "apps/mbk/option_checks.h"
 #include "mbk/recording/channel_map.h"
 
 namespace mbk::app {
@@ -20,19 +21,20 @@ CLI::Option* add_choice(CLI::App& command, const char* name, std::string& target
         for (const std::string& choice : choices) {
           if (choice == given) return "";
         }
-        return fmt::format("'{}' is none of {}", given, joined);
+        return fmt::format("{} is none of {}", quoted(given), joined);
       });
 }
 
-/// The numeric validators of the parser print 300 digits; these say the limit.
-CLI::Validator positive() {
-  return {[](const std::string& given) -> std::string {
-            double value = 0.0;
-            const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), value);
-            const bool good = error == std::errc() && end == given.data() + given.size() && value > 0.0 && value < 1e12;
-            return good ? "" : fmt::format("'{}' is not a positive number", given);
-          },
-          ""};
+/// Limits of time must be in order; whether they lie in the recording is seen when it is read.
+Result<void> check_order(const MeasureArguments& a) {
+  const auto before = [](const char* first, std::optional<double> begin, const char* second,
+                         std::optional<double> end) -> Result<void> {
+    if (!begin || !end || *begin < *end) return {};
+    return bad_usage(fmt::format("{} {:g} s is not before {} {:g} s", first, *begin, second, *end));
+  };
+  if (auto ok = before("--from", a.from_s, "--to", a.to_s); !ok) return ok;
+  if (auto ok = before("--from", a.from_s, "--split", a.split_s); !ok) return ok;
+  return before("--split", a.split_s, "--to", a.to_s);
 }
 
 }  // namespace
@@ -44,15 +46,19 @@ void add_reading_options(CLI::App& command, MeasureArguments& arguments) {
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
                   "(or rows of a wide matrix, or names in the file); x=2:mm converts, Fx=-10 flips. Channels: time, "
                   "x, y, Fx, Fy, xr, yr, q1, q2, tau1, tau2, ax, ay; one axis: time, x, F, xr, a")
-      ->type_name("MAP");
+      ->type_name("MAP")
+      ->check(not_empty());
   command.add_option("--variable", arguments.variable, "which variable of a MAT file, where several could be meant")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->check(not_empty());
   command.add_option("--rate", arguments.rate_hz, "sample rate, where the file holds no time")
       ->type_name("HZ")
       ->check(positive());
   command.add_option("--axes", arguments.axes, "1 or 2; otherwise by the channels that are there")
       ->type_name("N")
-      ->check([](const std::string& n) { return n == "1" || n == "2" ? "" : "must be 1 or 2"; });
+      ->check([](const std::string& n) {
+        return n == "1" || n == "2" ? "" : fmt::format("{} is neither 1 nor 2", quoted(n));
+      });
   command.add_flag("--parts", arguments.parts, "the FILEs are numbered parts of one record: join them");
 }
 
@@ -62,33 +68,45 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
              "reference: the published procedure, sample for sample")
       ->group(group);
   add_choice(command, "--procedure", a.procedure, {"chapter3", "chapter5"},
-             "in reference mode: W 101, 5 Hz, ẍ from the position | W 151, 4.5 Hz, ẍ from the accelerometer")
+             "in reference mode: W 101, 5 Hz, ẍ from the position (this one unless said) | W 151, 4.5 Hz, ẍ from "
+             "the accelerometer")
       ->group(group);
   add_choice(command, "--protocol", a.protocol, {"auto", "sinusoidal", "underdamped", "free"},
              "how the limb was perturbed; auto looks at the reference and says what it saw")
       ->group(group);
   command.add_option("--from", a.from_s, "first second that counts, from the start of the recording")
       ->type_name("S")
+      ->check(not_negative())
       ->group(group);
   command.add_option("--split", a.split_s, "data before it identify, data after it are held back")
       ->type_name("S")
+      ->check(positive())
       ->group(group);
-  command.add_option("--to", a.to_s, "last second that counts")->type_name("S")->group(group);
+  command.add_option("--to", a.to_s, "last second that counts")->type_name("S")->check(positive())->group(group);
   command.add_flag("--pool", a.pool, "one fit over all FILEs; otherwise one result each and a summary")->group(group);
 
   const char* const filters = "Filters";
-  command.add_option("--sg-window", a.sg_window, "Savitzky–Golay window W, odd")->type_name("W")->group(filters);
-  command.add_option("--sg-order", a.sg_order, "Savitzky–Golay order N (6)")->type_name("N")->group(filters);
+  command.add_option("--sg-window", a.sg_window, "Savitzky–Golay window W in samples, odd")
+      ->type_name("W")
+      ->check(odd_number(3, 1'000'001))
+      ->group(filters);
+  command.add_option("--sg-order", a.sg_order, "Savitzky–Golay order N (6)")
+      ->type_name("N")
+      ->check(whole_number(1, 1000))
+      ->group(filters);
   command.add_option("--cutoff", a.cutoff, "zero-phase Butterworth low-pass; otherwise by the excited band")
       ->type_name("HZ|none")
-      ->check([](const std::string& given) -> std::string { return given == "none" ? "" : positive()(given); })
+      ->check([](const std::string& given) -> std::string {
+        const bool good = given == "none" || positive()(given).empty();
+        return good ? "" : fmt::format("{} is neither a positive number nor 'none'", quoted(given));
+      })
       ->group(filters);
   add_choice(command, "--extension", a.extension, {"odd", "even", "constant"},
              "how signals are continued at their ends for the zero-phase filter (odd)")
       ->group(filters);
   command.add_option("--padding", a.padding, "by how many samples (15)")
       ->type_name("N")
-      ->check([](const std::string& given) -> std::string { return given == "0" ? "" : positive()(given); })
+      ->check(whole_number(0, 1'000'000))
       ->group(filters);
   add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")->group(filters);
   command
@@ -107,7 +125,7 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
       ->group(model);
   command.add_option("--handle-mass", a.handle_mass, "mass between sensor and hand, taken off the inertia (0)")
       ->type_name("KG")
-      ->check([](const std::string& given) -> std::string { return given == "0" ? "" : positive()(given); })
+      ->check(not_negative())
       ->group(model);
   command.add_option("--hac-lag", a.hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
       ->type_name("S")
@@ -116,14 +134,13 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
   command.add_flag("--decimate-check", a.decimate_check, "fit again at 100 Hz and say what changes")->group(model);
   command.add_option("--threads", a.threads, "files measured at a time (as many as there are cores)")
       ->type_name("N")
+      ->check(whole_number(1, 1024))
       ->group(model);
 }
 
-void add_output_options(CLI::App& command, MeasureArguments& arguments) {
-  command.add_flag("--json", arguments.json, "for machines: schema mbk.result/1, SI units, every digit");
-  command.add_option("--out", arguments.output.file, "write to this file instead of standard output")
-      ->type_name("FILE");
-  command.add_flag("--overwrite", arguments.output.overwrite, "replace that file where it is there");
+void add_output_options(CLI::App& command, MeasureArguments& arguments, const std::string& schema) {
+  command.add_flag("--json", arguments.json, fmt::format("for machines: schema {}, SI units, every digit", schema));
+  arguments.output.add_options(command);
   command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
 }
 
@@ -141,6 +158,11 @@ Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {
 }
 
 Result<measurement::Options> measurement_options(const MeasureArguments& a) {
+  if (auto ok = check_order(a); !ok) return tl::unexpected(ok.error());
+  if (!a.procedure.empty() && a.mode != "reference") {
+    return bad_usage(fmt::format("--procedure {} belongs to --mode reference", a.procedure),
+                     "add that, or leave --procedure out");
+  }
   measurement::Options options;
   preprocess::Options& p = options.preprocess;
   p.mode = a.mode == "reference" ? Mode::reference : Mode::improved;

@@ -19,7 +19,7 @@ struct MeasureArguments {
   std::string channels, variable;
   std::optional<double> rate_hz, resample_hz;
   int axes = 0;
-  std::string mode = "default", procedure = "chapter3", protocol = "auto", method = "ls";
+  std::string mode = "default", procedure, protocol = "auto", method = "ls";
   std::optional<int> sg_window, sg_order;
   std::string cutoff, acceleration, parameters_from, structure = "full", extension = "odd";
   long padding = 15;
@@ -39,7 +39,7 @@ void add_reading_options(CLI::App& command, MeasureArguments& arguments);
 void add_measuring_options(CLI::App& command, MeasureArguments& arguments);
 
 /// Adds --json, --out, --overwrite, --quiet.
-void add_output_options(CLI::App& command, MeasureArguments& arguments);
+void add_output_options(CLI::App& command, MeasureArguments& arguments, const std::string& schema);
 
 [[nodiscard]] Result<recording::ReadOptions> read_options(const MeasureArguments& arguments);
 [[nodiscard]] Result<measurement::Options> measurement_options(const MeasureArguments& arguments);

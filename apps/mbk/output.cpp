@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "apps/mbk/option_checks.h"
 #include "mbk/recording/write_file.h"
 
 namespace mbk::app {
@@ -25,6 +26,26 @@ int report_error(const Error& error) {
   return kBadData;
 }
 
+void Output::add_options(CLI::App& command) {
+  CLI::Option* const out = command.add_option("--out", file, "write to this file instead of standard output")
+                               ->type_name("FILE")
+                               ->check(not_empty());
+  command.add_flag("--overwrite", overwrite, "replace that file where it is there")->needs(out);
+}
+
+Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) const {
+  std::error_code error;
+  if (!file || !std::filesystem::exists(*file, error)) return {};
+  for (const std::filesystem::path& input : inputs) {
+    if (std::filesystem::equivalent(*file, input, error)) {
+      return fail(ErrorKind::usage, "is what is read, and would be lost", "choose another name for --out",
+                  file->string());
+    }
+  }
+  if (overwrite) return {};
+  return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file->string());
+}
+
 Result<void> Output::write(const std::string& text) const {
   if (file) return recording::write_file(*file, overwrite, text);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
@@ -40,11 +61,12 @@ Result<std::string> read_text(const std::filesystem::path& file) {
     return bad_data(std::filesystem::exists(file, error) ? "not a file" : "no such file", "check the name",
                     file.string());
   }
-  if (std::filesystem::file_size(file, error) > kLargest) return bad_data("larger than 256 MB", "", file.string());
+  if (std::filesystem::file_size(file, error) > kLargest)
+    return bad_data("larger than 256 MB", "a result is far smaller: check the name", file.string());
   std::ifstream stream(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.good() && !stream.eof()) return bad_data("cannot be read", "check its permissions", file.string());
-  if (text.empty()) return bad_data("the file is empty", "", file.string());
+  if (text.empty()) return bad_data("the file is empty", "nothing was written, or the copy failed", file.string());
   return text;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mbk/core/result.h"
 
@@ -18,6 +20,13 @@ int report_error(const Error& error);
 struct Output {
   std::optional<std::filesystem::path> file;
   bool overwrite = false;
+
+  /// Adds --out and --overwrite.
+  void add_options(CLI::App& command);
+
+  /// What can be said before the work begins.
+  /// @fails  usage: the file is there and may not be overwritten, or is one of `inputs`.
+  [[nodiscard]] Result<void> check(const std::vector<std::filesystem::path>& inputs) const;
 
   [[nodiscard]] Result<void> write(const std::string& text) const;
 };

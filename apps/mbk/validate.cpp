@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
@@ -40,7 +42,8 @@ int run(const Arguments& arguments) {
   options.progress = progress(arguments);
   const auto table = validation::coverage(options);
   if (!table) return report_error(table.error());
-  fmt::print("{}", arguments.json ? result::to_json(*table) : report::validation_text(*table));
+  const std::string text = arguments.json ? result::to_json(*table) : report::validation_text(*table);
+  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
   return table->met() ? kFine : kFallsShort;
 }
 
@@ -58,9 +61,15 @@ Action add_validate(CLI::App& app) {
   command->add_option("STUDY", arguments->study, "coverage")->check([](const std::string& study) {
     return study == "coverage" ? std::string() : fmt::format("'{}' is no study; there is: coverage", study);
   });
-  command->add_option("--runs", arguments->runs, "how many simulated trials (400)")->type_name("N");
-  command->add_option("--seed", arguments->seed, "the same seed gives the same table (1)")->type_name("N");
-  command->add_option("--threads", arguments->threads, "runs at a time (as many as there are cores)")->type_name("N");
+  command->add_option("--runs", arguments->runs, "how many simulated trials (400)")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000));
+  command->add_option("--seed", arguments->seed, "the same seed gives the same table (1)")
+      ->type_name("N")
+      ->check(whole_number(0, std::numeric_limits<long>::max()));
+  command->add_option("--threads", arguments->threads, "runs at a time (as many as there are cores)")
+      ->type_name("N")
+      ->check(whole_number(1, 1024));
   command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/1");
   command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
   return [arguments] { return run(*arguments); };

@@ -48,7 +48,7 @@ AntisymmetryFinding antisymmetry_finding(const Matrix& Z, const Eigen::Matrix4d&
 }  // namespace
 
 Result<Findings> analyse_ellipses(const Identification& identification) {
-  if (identification.axes != 2) return bad_data("one axis has no ellipse");
+  if (identification.axes != 2) return bad_data("one axis has no ellipse", "ellipses need a result with two axes");
   const auto block = [&](Index part) {
     return Eigen::Matrix4d(identification.covariance.block<4, 4>(4 * part, 4 * part));
   };

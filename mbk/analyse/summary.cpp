@@ -12,7 +12,8 @@ Result<Summary> summarise(const std::vector<Identification>& identifications) {
   if (identifications.size() < 2) return bad_data(fmt::format("{} trials have no spread", identifications.size()));
   for (const Identification& one : identifications) {
     if (one.axes != identifications.front().axes || one.motion != identifications.front().motion) {
-      return bad_data("trials of different axes or units have no common mean");
+      return bad_data("its axes or units are not those of the first file, so there is no common mean",
+                      "measure it by itself", one.sources.empty() ? "" : one.sources.front().path);
     }
   }
   Summary summary;

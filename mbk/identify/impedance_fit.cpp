@@ -224,7 +224,8 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   const PreparedTrial& first = trials.front();
   for (const PreparedTrial& trial : trials) {
     if (trial.axes != first.axes || trial.motion != first.motion) {
-      return bad_data("trials of different axes or units cannot be pooled");
+      return bad_data("its axes or units are not those of the first file, so they cannot be pooled",
+                      "measure it by itself", trial.sources.empty() ? "" : trial.sources.front().path);
     }
     if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
       return bad_data(fmt::format("trials of {:g} Hz and {:g} Hz cannot be pooled", 1.0 / first.sample_time,
@@ -262,9 +263,12 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
 
   result.parameters = parameter_names(first.axes);
   for (const RowRange& range : ranges) result.samples += range.size();
-  // A reach beyond the data is all of it.
-  const auto lags = static_cast<Index>(
-      std::llround(std::min(options.hac_lag_s / r.sample_time, static_cast<double>(result.samples))));
+  const double data_s = static_cast<double>(result.samples) * r.sample_time;
+  if (options.hac_lag_s > std::max(data_s, Options{}.hac_lag_s)) {
+    return bad_usage(fmt::format("--hac-lag {:g} s reaches beyond the {:.3g} s of data", options.hac_lag_s, data_s),
+                     "choose a shorter one; the residual's correlation seldom lasts for a second");
+  }
+  const auto lags = static_cast<Index>(std::llround(options.hac_lag_s / r.sample_time));
   result.hac_lag_s = static_cast<double>(lags) * r.sample_time;
   if (fit->rank == r.Z.cols()) {
     result.model = model_of(fit->coefficients, r.centre, options.handle_mass);

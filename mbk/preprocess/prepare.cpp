@@ -53,14 +53,16 @@ Matrix gather(const Recording& recording, std::string_view what, int axes) {
 Result<Matrix> require(const Recording& recording, std::string_view what, int axes) {
   Matrix columns = gather(recording, what, axes);
   if (columns.size() > 0) return columns;
-  std::string missing, present;
+  std::string missing, present, first;
   for (int axis = 0; axis < axes; ++axis) {
     const char* name = names(what, axes)[static_cast<std::size_t>(axis)];
-    if (recording.find(name) == nullptr) missing += fmt::format("{}'{}'", missing.empty() ? "" : " and ", name);
+    if (recording.find(name) != nullptr) continue;
+    missing += fmt::format("{}'{}'", missing.empty() ? "" : " and ", name);
+    if (first.empty()) first = name;
   }
   for (const Channel& channel : recording.channels) present += (present.empty() ? "" : ", ") + channel.name;
   return bad_data(fmt::format("channel {} is missing (there are: {})", missing, present.empty() ? "none" : present),
-                  fmt::format("say where it is: --channels {}=COLUMN", names(what, axes)[0]));
+                  fmt::format("say where it is: --channels {}=COLUMN", first));
 }
 
 Result<Signals> select_signals(const Recording& recording, int axes, bool acceleration_from_sensor) {
@@ -189,6 +191,31 @@ void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::v
   }
 }
 
+/// A force that never changes is a sensor that did not measure; a position that never changes shows no motion.
+Result<void> check_alive(const Signals& signals, const WindowPlan& plan, int axes) {
+  const auto constant = [&](const Matrix& columns, Index axis) {
+    const double value = columns(plan.cuts.front().begin, axis);
+    return std::ranges::all_of(plan.cuts, [&](const Cut& cut) {
+      return (columns.col(axis).segment(cut.begin, cut.end - cut.begin).array() == value).all();
+    });
+  };
+  const auto refusal = [&](const char* what, const Matrix& columns, Index axis, const char* remedy) {
+    return bad_data(
+        fmt::format("channel '{}' is {:g} throughout the window", names(what, axes)[static_cast<std::size_t>(axis)],
+                    columns(plan.cuts.front().begin, axis)),
+        remedy);
+  };
+  Index resting = 0;
+  for (Index axis = 0; axis < axes; ++axis) {
+    if (constant(signals.force, axis)) {
+      return refusal("force", signals.force, axis, "check that the sensor was on, or name its channel with --channels");
+    }
+    resting += constant(signals.position, axis) ? 1 : 0;
+  }
+  if (resting < axes) return {};
+  return refusal("position", signals.position, 0, "choose a window in which the limb moves, with --from and --to");
+}
+
 /// Filter settings and the words that say where they come from.
 struct FilterPlan {
   dsp::SavitzkyGolay smoothing;
@@ -242,7 +269,7 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
     return bad_data(fmt::format("a window of {} samples is too short for a Savitzky–Golay window of {}{}", length,
                                 filters.smoothing.window,
                                 filters.cutoff ? fmt::format(" and a padding of {}", padding.samples) : ""),
-                    "record longer, or choose a smaller --sg-window");
+                    "record longer, or choose a smaller --sg-window or --padding");
   }
   const auto smooth = [&](const Matrix& columns, int derivative) {
     return dsp::savitzky_golay(filters.smoothing, derivative, columns.middleRows(cut.begin, length), rate);
@@ -286,7 +313,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
   const bool published = options.mode == Mode::reference;
   const Index samples = recording.samples();
-  if (samples < 2 || !(inspection.rate_hz > 0.0)) {
+  constexpr Index kFewest = 20;  // about three for each parameter of one axis
+  if (samples < kFewest || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
   const Hertz rate(inspection.rate_hz);
@@ -338,6 +366,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (auto ok = check_finite(clock, *signals, *plan, trial.axes); !ok) return tl::unexpected(ok.error());
 
   warn_of_small_motion(*signals, *plan, trial.warnings);
+
+  if (auto ok = check_alive(*signals, *plan, trial.axes); !ok) return tl::unexpected(ok.error());
 
   const bool by_reference = how.protocol == Protocol::sinusoidal;
   const auto band = excited_band(by_reference ? signals->reference : signals->position, plan->cuts, rate);

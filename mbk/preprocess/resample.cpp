@@ -20,7 +20,11 @@ Result<Recording> resample(const Recording& recording, Hertz rate) {
   }
   const double first = recording.time[0];
   const double span = (recording.time[n - 1] - first) * rate.value;
-  if (!(span < 1e9)) return bad_data(fmt::format("resampling at {:g} Hz would make {:.3g} samples", rate.value, span));
+  constexpr double kMost = 100.0;  // times as many samples: more is a slip in the unit of time or rate
+  if (!(span <= kMost * static_cast<double>(n))) {
+    return bad_usage(fmt::format("--resample {:g} Hz would make {:.3g} samples of {}", rate.value, span, n),
+                     "give the rate in Hz, near that of the recording");
+  }
   const auto count = static_cast<Index>(std::floor(span * (1.0 + 1e-12))) + 1;
 
   Recording even = recording;

@@ -90,6 +90,11 @@ class Assembler {
     if (options_.axes < 0 || options_.axes > 2) {
       return bad_usage(fmt::format("{} axes are not possible", options_.axes), "pass --axes 1 or --axes 2");
     }
+    if (contents_.table && !options_.variable.empty()) {
+      return bad_usage(
+          fmt::format("--variable {} means a variable of a MAT file, and this is a table", options_.variable),
+          "name its columns with --channels");
+    }
     if (auto ok = options_.channels.empty() ? recognise() : follow_map(); !ok) return tl::unexpected(ok.error());
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
     extract();

@@ -10,13 +10,9 @@
 
 namespace mbk::recording {
 
-/// The text up to its first NUL, with control characters replaced: what a file says goes into messages of one line.
-[[nodiscard]] inline std::string printable(std::string text) {
-  text.resize(std::min(text.find('\0'), text.size()));
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
-  return text;
-}
+/// The text up to its first NUL as UTF-8 of one line: control characters are replaced, and what is not UTF-8 is taken
+/// as Latin-1, which recorders write.
+[[nodiscard]] std::string printable(std::string text);
 
 /// Bytes of a file with their byte order. Offsets are the caller's to check with `holds`.
 struct ByteView {

@@ -39,7 +39,7 @@ Result<Contents> decode(const std::filesystem::path& file, std::span<const std::
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
   if (text.starts_with(kHdf5Signature)) return bad_data("HDF5 files are not read yet", std::string(kFormats));
   if (is_text(text)) return decode_csv(bytes);
-  if (bytes.size() >= 512 && bytes[1] == std::byte{0x50}) {
+  if (bytes.size() >= 512 && bytes[0] < std::byte{0x20} && bytes[1] == std::byte{0x50}) {
     return bad_data("C3D files are not read yet", std::string(kFormats));
   }
   return bad_data("the content is of no known format", std::string(kFormats));

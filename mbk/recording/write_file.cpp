@@ -42,6 +42,9 @@ Result<void> write_file(const fs::path& file, bool overwrite, const std::functio
   if (!overwrite && fs::exists(fs::symlink_status(file, code))) {
     return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
   }
+  if (const auto status = fs::status(file, code); fs::exists(status) && !fs::is_regular_file(status)) {
+    return fail(ErrorKind::usage, "is no file that could be replaced", "choose another name", file.string());
+  }
   fs::path folder = file.parent_path();
   if (folder.empty()) folder = ".";
   const Temporary temporary{folder / fmt::format(".{}.{}.part", file.filename().string(), ::getpid())};

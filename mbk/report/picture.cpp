@@ -87,6 +87,7 @@ std::size_t columns(std::string_view text) {
 }
 
 std::string draw_ellipses(const std::vector<EllipsePanel>& panels) {
+  if (std::ranges::none_of(panels, [](const EllipsePanel& panel) { return exists(panel.ellipse); })) return "";
   constexpr std::size_t kWidth = kColumns + 3;
   std::vector<std::string> lines(kRows + 1);
   for (const EllipsePanel& panel : panels) {

@@ -26,10 +26,25 @@ std::string with_interval(double value, double half_width) {
 
 std::string range(const Interval& interval, int decimals, double scale = 1.0) {
   if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return "";
+  constexpr double kLargest = 1e7;
+  if (scale * std::max(std::abs(interval.first), std::abs(interval.second)) >= kLargest) {
+    return fmt::format("[{:.3g}, {:.3g}]", scale * interval.first, scale * interval.second);
+  }
   return fmt::format("[{:.{}f}, {:.{}f}]", scale * interval.first, decimals, scale * interval.second, decimals);
 }
 
-/// Left-aligned columns; the width of each is that of its longest cell.
+/// `first`, then the text, in lines of the terminal's width; they stand under each other.
+std::string paragraph(std::string_view first, std::string_view text) {
+  const std::size_t indent = columns(first);
+  std::string lines(first);
+  for (const char c : wrapped(text, kLineColumns - indent)) {
+    lines += c;
+    if (c == '\n') lines.append(indent, ' ');
+  }
+  return lines + "\n";
+}
+
+/// Left-aligned columns; the width of each is that of its longest cell. A last cell that is too long is broken.
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
@@ -39,9 +54,16 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::string text;
   for (const auto& row : rows) {
     std::string line = "  ";
-    for (std::size_t k = 0; k < row.size(); ++k) {
+    for (std::size_t k = 0; k + 1 < row.size(); ++k) {
       line += row[k];
-      if (k + 1 < row.size()) line.append(widths[k] - columns(row[k]) + 3, ' ');
+      line.append(widths[k] - columns(row[k]) + 2, ' ');
+    }
+    constexpr std::size_t kNarrowest = 40;
+    if (!row.empty() && columns(line) + kNarrowest < kLineColumns) {
+      line = paragraph(line, row.back());
+      line.pop_back();
+    } else if (!row.empty()) {
+      line += row.back();
     }
     while (!line.empty() && line.back() == ' ') line.pop_back();
     text += line + "\n";
@@ -123,12 +145,14 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
     row.push_back(std::array{units.inertia, units.damping, units.stiffness}[k]);
     rows.push_back(std::move(row));
   }
-  std::vector<std::string> equilibrium = {"equilibrium x0"};
+  std::vector<std::string> equilibrium = {n == 1 ? "equilibrium x0" : "equilibrium"};
   for (Index j = 0; j < n; ++j) {
-    equilibrium.push_back(n == 1 ? with_interval(model.x0[j], factor * spread.x0[j])
-                                 : with_interval(1e3 * model.x0[j], 1e3 * factor * spread.x0[j]));
+    equilibrium.push_back(n == 1
+                              ? with_interval(model.x0[j], factor * spread.x0[j])
+                              : (j == 0 ? "x " : "y ") + with_interval(1e3 * model.x0[j], 1e3 * factor * spread.x0[j]));
   }
-  equilibrium.push_back(n == 1 ? units.position : "mm (x, y)");
+  if (n == 2) equilibrium.insert(equilibrium.end(), {"", ""});
+  equilibrium.push_back(n == 1 ? units.position : "mm");
   rows.push_back(std::move(equilibrium));
   return table(rows);
 }
@@ -136,12 +160,33 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
 std::string warnings_text(const std::vector<Warning>& warnings) {
   std::string text;
   for (const Warning& warning : warnings) {
-    text += fmt::format("  ! {}: {}\n    try: {}\n", mbk::text(warning.code), warning.message, warning.remedy);
+    text += paragraph("  ! ", fmt::format("{}: {}", mbk::text(warning.code), warning.message));
+    text += paragraph("    try: ", warning.remedy);
   }
   return text;
 }
 
 }  // namespace
+
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string lines;
+  std::size_t used = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (used > 0 && used + 1 + columns(word) > width) {
+      lines += '\n';
+      used = 0;
+    } else if (used > 0) {
+      lines += ' ';
+      ++used;
+    }
+    lines += word;
+    used += columns(word);
+  }
+  return lines;
+}
 
 std::string ellipses_text(const Findings& findings) {
   std::vector<std::vector<std::string>> rows = {
@@ -164,13 +209,13 @@ std::string ellipses_text(const Findings& findings) {
     row.insert(row.end(), {fmt::format("{:.1f}°", degrees * e.orientation), range(finding.orientation95, 1, degrees)});
     if (k != 1) {
       const AntisymmetryFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
-      row.push_back(std::isfinite(a.zmean_percent)
-                        ? fmt::format("z_mean {:.1f} % {}", a.zmean_percent, range(a.zmean95, 1))
-                        : fmt::format("{:.3g} {}", a.value, range(a.value95, 2)));
+      row.push_back(std::isfinite(a.zmean_percent) ? fmt::format("{:.1f} % {}", a.zmean_percent, range(a.zmean95, 1))
+                                                   : fmt::format("{:.3g} {}", a.value, range(a.value95, 2)));
     }
     rows.push_back(std::move(row));
   }
-  return table(rows) + "  (area in the square of the matrix's unit; brackets are 95 % intervals)\n\n" +
+  return table(rows) +
+         "  (area in the square of the matrix's unit; antisymmetry is z_mean; brackets are 95 % intervals)\n\n" +
          draw_ellipses(panels);
 }
 
@@ -205,11 +250,15 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
   }
   std::vector<std::vector<std::string>> rows;
   rows.push_back({"samples", fmt::format("{}, {:.3f} s", inspection.samples, inspection.duration)});
-  rows.push_back({"rate", fmt::format("{:.6g} Hz{}", inspection.rate_hz,
-                                      recording.time_from_rate ? " (as given; the file holds no time)" : "")});
-  rows.push_back({"clock", fmt::format("intervals {:.4g} to {:.4g} ms, standard deviation {:.2g} ms",
-                                       1e3 * inspection.interval_min, 1e3 * inspection.interval_max,
-                                       1e3 * inspection.interval_standard_deviation)});
+  if (std::isfinite(inspection.rate_hz)) {
+    rows.push_back({"rate", fmt::format("{:.6g} Hz{}", inspection.rate_hz,
+                                        recording.time_from_rate ? " (as given; the file holds no time)" : "")});
+    rows.push_back({"clock", fmt::format("intervals {:.4g} to {:.4g} ms, standard deviation {:.2g} ms",
+                                         1e3 * inspection.interval_min, 1e3 * inspection.interval_max,
+                                         1e3 * inspection.interval_standard_deviation)});
+  } else {
+    rows.push_back({"rate", "undefined: time never runs on"});
+  }
   text += table(rows) + "\n";
   rows = {{"channel", "unit", "from", "to", ""}};
   for (const ChannelFacts& facts : inspection.channels) {
@@ -249,9 +298,10 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
   if (inspection.interval_standard_deviation > 0.01 * inspection.interval_median && inspection.gaps.empty()) {
     problems.push_back("the clock jitters by more than 1 % of its interval");
   }
+  if (!std::isfinite(inspection.rate_hz)) problems.emplace_back("no rate can be told from the time");
   text += problems.empty() ? "\n  no gap, no jitter to speak of, time runs on\n" : "\n";
-  for (const std::string& problem : problems) text += "  ! " + problem + "\n";
-  for (const std::string& note : recording.notes) text += "  note: " + note + "\n";
+  for (const std::string& problem : problems) text += paragraph("  ! ", problem);
+  for (const std::string& note : recording.notes) text += paragraph("  note: ", note);
   if (!recording.metadata.empty()) {
     rows.clear();
     for (const auto& [key, value] : recording.metadata) rows.push_back({key, value});
@@ -266,9 +316,8 @@ std::string validation_text(const ValidationTable& validation) {
     rows.push_back({row.what, fmt::format("{:.2f}", row.value), range(row.interval99, 2), range(row.wanted, 0),
                     row.met() ? "ok" : "FALLS SHORT"});
   }
-  return fmt::format("{}: {}\n{} runs, seed {}\n", validation.study, validation.question, validation.runs,
-                     validation.seed) +
-         table(rows);
+  return paragraph(validation.study + ": ", validation.question) +
+         fmt::format("{} runs, seed {}\n", validation.runs, validation.seed) + table(rows);
 }
 
 }  // namespace mbk::report

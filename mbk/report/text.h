@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "mbk/trial/findings.h"
 #include "mbk/trial/identification.h"
@@ -11,6 +13,12 @@
 #include "mbk/trial/validation_table.h"
 
 namespace mbk::report {
+
+/// What a terminal shows without breaking lines; wider are only single words and tables of numbers.
+inline constexpr std::size_t kLineColumns = 100;
+
+/// The words of `text` on lines of at most `width` columns, as far as words are short enough.
+[[nodiscard]] std::string wrapped(std::string_view text, std::size_t width);
 
 /// A result for the terminal: what was measured and how, the model with 95 % intervals and units, the fit, the
 /// ellipses with a picture where there are findings, and every warning with what to try.

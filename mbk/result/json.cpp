@@ -36,17 +36,17 @@ Json rows(const Matrix& matrix) {
   return array;
 }
 
+/// Names of files and channels may hold bytes that are not UTF-8, which JSON cannot say: they become U+FFFD.
+std::string dumped(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json model_json(const impedance::Model& model) {
   return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
 }
 
 Json interval(const Interval& value, double scale = 1.0) {
   return Json::array({number(scale * value.first), number(scale * value.second)});
-}
-
-/// Names of files and notes may hold any byte; what is no UTF-8 is replaced, so that the text is always JSON.
-std::string written(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json header(const char* schema) {
@@ -173,6 +173,14 @@ Json result_json(const Measured& measured) {
   return json;
 }
 
+/// One document whatever their number: the only object itself, or all of them as `results` of another schema.
+std::string one_or_list(const char* schema_of_list, const std::vector<Json>& objects) {
+  if (objects.size() == 1) return dumped(objects.front());
+  Json json = header(schema_of_list);
+  json["results"] = objects;
+  return dumped(json);
+}
+
 // Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -181,6 +189,12 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 struct Malformed {
   std::string message;
 };
+
+bool has_schema(const Json& json, const char* schema) {
+  if (!json.is_object()) return false;
+  const auto found = json.find("schema");
+  return found != json.end() && found->is_string() && *found == schema;
+}
 
 double number_from(const Json& json) {
   if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
@@ -255,7 +269,7 @@ Motion motion_from(const Json& json) {
 }
 
 Identification identification_from(const Json& json) {
-  if (!json.is_object() || json.value("schema", "") != kResultSchema) {
+  if (!has_schema(json, kResultSchema)) {
     throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
   }
   Identification id;
@@ -294,7 +308,7 @@ Identification identification_from(const Json& json) {
 }  // namespace
 
 std::string to_json(const Measured& measured) {
-  return written(result_json(measured));
+  return dumped(result_json(measured));
 }
 
 std::string to_json(const std::vector<Measured>& results, const std::optional<Summary>& summary) {
@@ -306,17 +320,24 @@ std::string to_json(const std::vector<Measured>& results, const std::optional<Su
                        {"model", model_json(summary->mean)},
                        {"between_trial_standard_error", model_json(summary->between_trial_standard_error)}};
   }
-  return written(json);
+  return dumped(json);
 }
 
-std::string to_json(const Findings& findings) {
-  Json json = header("mbk.ellipse/1");
-  json["ellipses"] = ellipses_json(findings);
-  json["antisymmetry"] = antisymmetry_json(findings);
-  return written(json);
+std::string to_json(const std::vector<Identification>& identifications, const std::vector<Findings>& findings) {
+  std::vector<Json> objects;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    Json json = header("mbk.ellipse/1");
+    json["inputs"] = inputs_json(identifications[i].sources);
+    json["ellipses"] = ellipses_json(findings[i]);
+    json["antisymmetry"] = antisymmetry_json(findings[i]);
+    objects.push_back(std::move(json));
+  }
+  return one_or_list("mbk.ellipses/1", objects);
 }
 
-std::string to_json(const Recording& recording, const Inspection& inspection) {
+namespace {
+
+Json info_json(const Recording& recording, const Inspection& inspection) {
   Json json = header("mbk.info/1");
   json["inputs"] = inputs_json(recording.sources);
   json["samples"] = inspection.samples;
@@ -349,7 +370,15 @@ std::string to_json(const Recording& recording, const Inspection& inspection) {
   json["metadata"] = Json::object();
   for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
   json["notes"] = recording.notes;
-  return written(json);
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections) {
+  std::vector<Json> objects;
+  for (std::size_t i = 0; i < inspections.size(); ++i) objects.push_back(info_json(recordings[i], inspections[i]));
+  return one_or_list("mbk.infos/1", objects);
 }
 
 std::string to_json(const ValidationTable& table) {
@@ -368,7 +397,7 @@ std::string to_json(const ValidationTable& table) {
                             {"met", row.met()}});
   }
   json["met"] = table.met();
-  return written(json);
+  return dumped(json);
 }
 
 Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
@@ -376,10 +405,12 @@ Result<std::vector<Identification>> identifications_from_json(std::string_view t
   try {
     const Json json = Json::parse(text);
     std::vector<Identification> all;
-    if (json.is_object() && json.value("schema", "") == kResultsSchema) {
-      const Json& results = json.at("results");
-      if (!results.is_array() || results.empty()) throw Malformed{"'results' is not a list of results"};
-      for (const Json& one : results) all.push_back(identification_from(one));
+    if (has_schema(json, kResultsSchema)) {
+      const auto results = json.find("results");
+      if (results == json.end() || !results->is_array() || results->empty()) {
+        throw Malformed{"'results' holds no result"};
+      }
+      for (const Json& one : *results) all.push_back(identification_from(one));
     } else {
       all.push_back(identification_from(json));
     }

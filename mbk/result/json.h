@@ -27,11 +27,12 @@ struct Measured {
 /// Schema "mbk.results/1": several results and, where there is one, their summary.
 [[nodiscard]] std::string to_json(const std::vector<Measured>& results, const std::optional<Summary>& summary);
 
-/// Schema "mbk.ellipse/1": the ellipses and antisymmetry of one result.
-[[nodiscard]] std::string to_json(const Findings& findings);
+/// Schema "mbk.ellipse/1": the ellipses and antisymmetry of a result; "mbk.ellipses/1" with `results` for several.
+[[nodiscard]] std::string to_json(const std::vector<Identification>& identifications,
+                                  const std::vector<Findings>& findings);
 
-/// Schema "mbk.info/1": what is in a recording.
-[[nodiscard]] std::string to_json(const Recording& recording, const Inspection& inspection);
+/// Schema "mbk.info/1": what is in a recording; "mbk.infos/1" with `results` for several.
+[[nodiscard]] std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections);
 
 /// Schema "mbk.validation/1": a study against known truth.
 [[nodiscard]] std::string to_json(const ValidationTable& table);

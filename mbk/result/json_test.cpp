@@ -167,7 +167,7 @@ TEST(ToJson, BytesThatAreNoTextDoNotStopIt) {
   EXPECT_THAT(text, HasSubstr("ller.csv"));
   Recording recording;
   recording.metadata["name"] = "\x80";
-  EXPECT_TRUE(Json::accept(to_json(recording, Inspection{})));
+  EXPECT_TRUE(Json::accept(to_json(std::vector{recording}, std::vector{Inspection{}})));
 }
 
 TEST(ToJson, SeveralResultsComeBackInTheirOrder) {

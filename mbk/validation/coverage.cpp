@@ -60,7 +60,7 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
   {
     const unsigned wanted = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::jthread> workers;
-    for (unsigned k = 1; k < wanted; ++k) workers.emplace_back(work);
+    for (unsigned k = 1; k < std::min(wanted, static_cast<unsigned>(options.runs)); ++k) workers.emplace_back(work);
     work();
   }
   if (error) return tl::unexpected(*error);

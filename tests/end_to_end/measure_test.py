@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""mbk measure on recordings whose truth is known: the JSON contract, the intervals, several files, repeatability."""
+
+import itertools
+import math
+import statistics
+
+from command import NOT_USABLE, Case, copy, flat, main, make_log, run
+
+NORMAL95 = 1.96
+SLACK = 1.8  # a dozen intervals of 95 % at once hold the truth all together only when each is this much wider
+PROTOCOLS = ("sinusoidal", "underdamped")
+
+
+def results_of(*arguments):
+    return run("measure", "--json", *arguments).json
+
+
+class Json(Case):
+    """Every field of the interface, with its shape."""
+
+    def assert_shape(self, value, *shape):
+        if not shape:
+            self.assertIsInstance(value, (int, float), value)
+            return
+        self.assertEqual(len(value), shape[0], value)
+        for item in value:
+            self.assert_shape(item, *shape[1:])
+
+    def assert_result(self, result, log, axes, protocol, mode):
+        self.assertEqual(result["schema"], "mbk.result/1")
+        self.assertRegex(result["software"], r"\Ambk \d+\.\d+\.\d+")
+        (source,) = result["inputs"]
+        self.assertEqual(source["file"], str(log.path))
+        self.assertRegex(source["sha256"], r"\A[0-9a-f]{64}\Z")
+        self.assertGreater(source["duration_s"], 60.0)
+        self.assertAlmostEqual(source["rate_hz"], 1000.0, places=5)
+        self.assertEqual((result["mode"], result["protocol"], result["method"]), (mode, protocol, "ls"))
+        for part in ("model", "standard_error"):
+            for matrix in "MBK":
+                self.assert_shape(result[part][matrix], axes, axes)
+            self.assert_shape(result[part]["x0"], axes)
+        self.assertTrue(all(se > 0.0 for part in "MBK" for se in flat(result["standard_error"][part])))
+        self.assert_shape(result["fit"]["VAF"], axes)
+        self.assert_shape(result["fit"]["RMSE"], axes)
+        self.assertEqual(result["fit"]["validated_on"], "held-back")
+        self.assertIsInstance(result["alternatives"], list)
+        self.assertIn("disagreement", result)
+        self.assertEqual(result["warnings"], [])
+        self.assertIs(result["usable"], True)
+        self.assertEqual("ellipses" in result, axes == 2)
+        self.assertEqual("antisymmetry" in result, axes == 2)
+
+    def assert_findings(self, result):
+        self.assertEqual(set(result["ellipses"]), {"inertia", "damping", "stiffness"})
+        for ellipse in result["ellipses"].values():
+            for name in ("area", "shape", "orientation_deg"):
+                low, high = ellipse["interval95"][name]
+                self.assertLess(low, ellipse[name])
+                self.assertLess(ellipse[name], high)
+            self.assertGreaterEqual(ellipse["shape"], 1.0)
+            self.assertTrue(0.0 <= ellipse["orientation_deg"] < 180.0)
+        self.assertEqual(set(result["antisymmetry"]), {"inertia", "stiffness"})
+        for finding in result["antisymmetry"].values():
+            self.assert_shape(finding["value"])
+            self.assert_shape(finding["zmean_percent"])
+            self.assert_shape(finding["interval95"], 2)
+
+    def assert_truth(self, result, log):
+        model, error = result["model"], result["standard_error"]
+        for name, truth in log.truth.items():
+            for got, se, true in zip(flat(model[name]), flat(error[name]), flat(truth)):
+                self.assertLessEqual(abs(got - true), SLACK * NORMAL95 * se + 5e-5, f"{name}: {got} ± {se}, {true}")
+
+    def test_two_axes_of_both_protocols_in_both_modes(self):
+        for protocol, mode in itertools.product(PROTOCOLS, ("default", "reference")):
+            with self.subTest(protocol=protocol, mode=mode):
+                log = make_log(protocol)
+                result = self.fine("measure", "--json", "--mode", mode, log.path).json
+                self.assert_result(result, log, 2, protocol, mode)
+                self.assert_findings(result)
+                if mode == "default":
+                    self.assert_truth(result, log)
+                else:  # its filters run over the edges of the pulses, so a little of the truth is lost
+                    self.assert_relative(result["model"]["M"], log.truth["M"], 0.02)
+                    self.assert_relative(result["model"]["K"], log.truth["K"], 0.02)
+
+    def test_one_axis_of_both_protocols(self):
+        for protocol in PROTOCOLS:
+            with self.subTest(protocol=protocol):
+                log = make_log(protocol, "--one-axis")
+                result = self.fine("measure", "--json", log.path).json
+                self.assert_result(result, log, 1, protocol, "default")
+                self.assert_truth(result, log)
+
+    def test_what_a_person_adds_widens_the_intervals_and_they_still_hold_the_truth(self):
+        quiet, moving = make_log("sinusoidal"), make_log("sinusoidal", "--coloured-force-noise", "0.3")
+        result = results_of(moving.path)
+        self.assert_truth(result, moving)
+        self.assertGreater(result["standard_error"]["K"][0][0],
+                           3.0 * results_of(quiet.path)["standard_error"]["K"][0][0])
+
+    def test_a_model_that_must_not_be_used_says_so_and_ends_with_4(self):
+        ran = self.mbk("measure", "--json", "--handle-mass", "5", make_log().path, code=NOT_USABLE)
+        self.assertEqual(ran.err, "")
+        self.assertIs(ran.json["usable"], False)
+        (warning,) = [w for w in ran.json["warnings"] if w["code"] == "inertia-not-positive"]
+        self.assertIn("kg", warning["message"])
+        self.assertTrue(warning["try"])
+        ran = self.mbk("measure", "--handle-mass", "5", make_log().path, code=NOT_USABLE)
+        self.assertIn("NOT USABLE", ran.out)
+        self.assertIn("! inertia-not-positive: ", ran.out)
+
+
+class Text(Case):
+    def test_it_names_the_file_the_choices_and_the_unit_of_every_row(self):
+        log = make_log()
+        text = self.fine("measure", log.path).out
+        for line in (rf"{log.path}   62\.1 s at 1000 Hz", r"  protocol +sinusoidal \(the reference varies continuous",
+                     r"  inertia M .*±.* kg", r"  damping B .*±.* N·s/m", r"  stiffness K .*±.* N/m",
+                     r"  equilibrium +x .*± .* y .*± .* mm", r"  fit on held-back data +VAF .* % +RMSE .* N"):
+            self.assertRegex(text, rf"(?m)^{line}")
+
+    def test_lines_fit_a_terminal_of_100_columns(self):
+        for options in ([], ["--mode", "reference"], ["--handle-mass", "5"], ["--decimate-check"]):
+            for protocol in PROTOCOLS:
+                log = copy(make_log(protocol).path, self.folder / "log.mat")
+                self.assert_lines_fit(run("measure", log.name, *options, folder=self.folder).out)
+
+    def test_numbers_with_units_stand_in_one_column(self):
+        lines = self.fine("measure", make_log().path).out.splitlines()
+        rows = [line for line in lines if "±" in line and line.startswith("  ") and not line.startswith("  (")]
+        self.assertEqual(len(rows), 4)
+        starts = {row.rindex(unit) for row, unit in zip(rows, ("kg", "N·s/m", "N/m", "mm"))}
+        self.assertEqual(len(starts), 1, "\n".join(rows))
+
+    def test_no_line_ends_in_blanks(self):
+        for log in (make_log(), make_log("underdamped"), make_log("sinusoidal", "--one-axis")):
+            for line in run("measure", "--handle-mass", "5", log.path).out.splitlines():
+                self.assertEqual(line, line.rstrip())
+
+
+class SeveralFiles(Case):
+    def logs(self):
+        return [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2, 3)]
+
+    def test_each_has_its_result_and_the_summary_their_mean_and_standard_error(self):
+        both = self.fine("measure", "--json", *self.logs()).json
+        self.assertEqual(both["schema"], "mbk.results/1")
+        self.assertEqual(both["results"], [results_of(log) for log in self.logs()])
+        summary = both["summary"]
+        self.assertEqual(summary["trials"], 3)
+        for name in ("M", "B", "K", "x0"):
+            trials = list(zip(*(flat(result["model"][name]) for result in both["results"])))
+            self.assert_relative(summary["model"][name], [statistics.fmean(values) for values in trials], 1e-13)
+            self.assert_relative(summary["between_trial_standard_error"][name],
+                                 [statistics.stdev(values) / math.sqrt(3) for values in trials], 1e-9)
+
+    def test_the_text_ends_with_the_mean(self):
+        text = self.fine("measure", "--quiet", *self.logs()).out
+        self.assertIn("\nmean of 3 trials\n", text)
+        self.assertIn("± is the standard error between trials", text)
+
+    def test_pool_makes_one_fit_over_all(self):
+        pooled = self.fine("measure", "--json", "--pool", *self.logs()).json
+        self.assertEqual(pooled["schema"], "mbk.result/1")
+        self.assertEqual([source["file"] for source in pooled["inputs"]], [str(log) for log in self.logs()])
+        one = results_of(self.logs()[0])
+        self.assertEqual(pooled["estimation"]["samples"], 3 * one["estimation"]["samples"])
+        self.assertLess(pooled["standard_error"]["K"][0][0], one["standard_error"]["K"][0][0])
+        self.assertIn("3 trials pooled", self.fine("measure", "--pool", *self.logs()).out)
+
+    def test_one_and_two_axes_have_no_common_mean(self):
+        other = make_log("sinusoidal", "--one-axis").path
+        ran = self.refused(3, "measure", make_log().path, other, says=[str(other), "axes"])
+        self.assertRegex(ran.err, r"; \w")
+        self.refused(3, "measure", "--pool", make_log().path, other, says=[str(other), "axes"])
+
+
+class Repeatability(Case):
+    def test_the_same_input_gives_the_same_bytes(self):
+        log = make_log("underdamped").path
+        for options in ([], ["--json"]):
+            self.assertEqual(run("measure", log, *options).bytes, run("measure", log, *options).bytes)
+
+    def test_the_number_of_threads_changes_nothing(self):
+        logs = [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2, 3)]
+        for options in ([], ["--json"], ["--json", "--pool"]):
+            outputs = {run("measure", *logs, *options, "--threads", n).bytes for n in (1, 2, 5)}
+            self.assertEqual(len(outputs), 1)
+
+    def test_the_name_of_the_file_does_not_matter(self):
+        odd = copy(make_log().path, self.folder / "Versuch 3 (späß), neu.csv")
+        renamed, plain = self.fine("measure", "--json", odd).json, results_of(make_log().path)
+        self.assertEqual(renamed["inputs"][0].pop("file"), str(odd))
+        plain["inputs"][0].pop("file")
+        self.assertEqual(renamed, plain)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,371 @@
+#!/usr/bin/env python3
+"""Every option of mbk measure: it changes what is said, or is refused in one line; --out loses and leaves nothing."""
+
+import os
+import re
+import stat
+import unittest
+
+from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
+                     write_csv)
+
+COMMANDS = ("measure", "identify", "ellipse", "info", "validate")
+NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
+NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
+    "--rate": ("0", "-1", "-1e300"),
+    "--resample": ("0", "-1", "1e300"),
+    "--cutoff": ("0", "-1", "1e300", "500", "600"),
+    "--from": ("-1", "1e300"),
+    "--split": ("0", "-1", "1e300"),
+    "--to": ("0", "-1", "1e300"),
+    "--handle-mass": ("-1", "1e300"),
+    "--hac-lag": ("0", "-1", "1e300", "100000"),
+    "--sg-window": ("0", "-5", "1", "100", "3.5", "1e2", "99999999999999999999"),
+    "--sg-order": ("0", "-1", "2.5", "1e1", "99999999999999999999"),
+    "--padding": ("-1", "1.5", "1e3", "99999999999999999999"),
+    "--threads": ("0", "-1", "1.5", "1e1", "99999999999999999999"),
+    "--axes": ("0", "-1", "3", "1.0"),
+}
+WORDS = {"--mode": "default|reference", "--procedure": "chapter3|chapter5",
+         "--protocol": "auto|sinusoidal|underdamped|free", "--method": "ls", "--extension": "odd|even|constant",
+         "--acceleration": "sensor|derivative", "--structure": "full|symmetric|mass-spring",
+         "--parameters-from": "identification|all"}
+
+
+class Values(Case):
+    """Values that cannot be meant are refused in one line that names option and value."""
+
+    def test_numbers(self):
+        log = make_log().path
+        for option, wrong in NUMBERS.items():
+            for value in (*NO_NUMBERS, *wrong):
+                with self.subTest(option=option, value=value):
+                    name = option if float_of(value) not in (500.0, 600.0) else option[2:]
+                    given = [f"{option}={value}"] if value else [option, value]
+                    ran = self.refused(WRONG_USAGE, "measure", log, *given, says=name)
+                    if len(value) < 10 and float_of(value) is None:
+                        self.assertIn(f"'{value}'", ran.err)
+                    elif len(value) < 10:
+                        self.assertIn(value, ran.err)
+
+    def test_a_long_value_is_cut(self):
+        self.refused(WRONG_USAGE, "measure", make_log().path, "--cutoff", "9" * 400, says="--cutoff")
+
+    def test_words(self):
+        for option, words in WORDS.items():
+            for value in ("bogus", "", words.split("|")[0].upper()):
+                with self.subTest(option=option, value=value):
+                    self.refused(WRONG_USAGE, "measure", make_log().path, option, value,
+                                 says=[option, f"'{value}'", words])
+
+    def test_channel_maps(self):
+        for value in ("", "x", "x=", "=2", "x=2,x=3", "x=2,,y=3", "speed=2", "xx=2"):
+            with self.subTest(value):
+                self.refused(WRONG_USAGE, "measure", make_log().path, "--channels", value)
+
+    def test_limits_of_time_in_the_wrong_order(self):
+        log = make_log().path
+        self.refused(WRONG_USAGE, "measure", log, "--from", "50", "--to", "20", says=["--from 50", "--to 20"])
+        self.refused(WRONG_USAGE, "measure", log, "--from", "50", "--split", "20", says=["--from 50", "--split 20"])
+        self.refused(WRONG_USAGE, "measure", log, "--split", "50", "--to", "20", says=["--split 50", "--to 20"])
+
+    def test_limits_of_time_outside_the_recording(self):
+        for options in (("--from", "63"), ("--to", "63"), ("--split", "63"), ("--from", "62.05", "--to", "62.06")):
+            with self.subTest(options=options):
+                self.bad_data(make_log().path, *options)
+
+    def test_a_procedure_without_the_reference_mode(self):
+        self.refused(WRONG_USAGE, "measure", make_log().path, "--procedure", "chapter5", says="--mode reference")
+
+    def test_a_resampling_rate_in_the_wrong_unit(self):
+        self.refused(WRONG_USAGE, "measure", make_log().path, "--resample", "1000000", says="--resample 1e+06")
+
+    def test_a_rate_that_contradicts_the_time(self):
+        self.refused(WRONG_USAGE, "measure", make_log().path, "--rate", "500", says=["500", "1000 Hz"])
+
+    def test_a_variable_of_a_table(self):
+        path = write_csv(self.folder / "log.csv", table_of(make_log(), 1000))
+        self.refused(WRONG_USAGE, "measure", path, "--variable", "logs", says="--variable logs")
+
+    def test_padding_that_no_window_can_bear(self):
+        self.bad_data(make_log().path, "--padding", "100000", says=["100000", "--padding"])
+
+    def test_validate(self):
+        for option in ("--runs", "--threads", "--seed"):
+            for value in (*NO_NUMBERS, "-1", "1.5", "99999999999999999999"):
+                with self.subTest(option=option, value=value):
+                    self.refused(WRONG_USAGE, "validate", f"{option}={value}", says=option)
+        self.refused(WRONG_USAGE, "validate", "--runs", "0", says="--runs")
+        self.refused(WRONG_USAGE, "validate", "springs", "--runs", "1", says=["'springs'", "coverage"])
+
+
+def float_of(text):
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if abs(value) < 1e300 and text.strip() == text else None
+
+
+class Commands(Case):
+    def test_unknown_options_are_named(self):
+        for command in COMMANDS:
+            file = [] if command == "validate" else [make_log().path]
+            self.refused(WRONG_USAGE, command, *file, "--cutof=5", says=["--cutof", f"mbk {command} --help"])
+
+    def test_unknown_commands_are_named(self):
+        self.refused(WRONG_USAGE, "mesure", make_log().path, says=["'mesure'", "mbk --help"])
+        self.refused(WRONG_USAGE, make_log().path, says=str(make_log().path))
+
+    def test_nothing_at_all(self):
+        self.refused(WRONG_USAGE, says="mbk --help")
+        self.refused(WRONG_USAGE, "measure", says=["FILE", "mbk measure --help"])
+        self.refused(WRONG_USAGE, "ellipse", says=["RESULT.json", "mbk ellipse --help"])
+
+    def test_overwrite_without_out(self):
+        self.refused(WRONG_USAGE, "measure", make_log().path, "--overwrite", says="--out")
+
+
+class Effects(Case):
+    """What each option changes in the result."""
+
+    def measured(self, *options, log=None, code=FINE):
+        return self.mbk("measure", "--json", log or make_log().path, *options, code=code).json
+
+    def preparation(self, *options, **more):
+        return self.measured(*options, **more)["preparation"][0]
+
+    def test_each_option_of_the_help_is_known_to_these_tests(self):
+        options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
+        elsewhere = {"--help", "--channels", "--variable", "--parts", "--json", "--out", "--overwrite", "--quiet",
+                     "--pool", "--decimate-check"}
+        self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
+
+    def test_mode_and_procedure(self):
+        self.assertEqual(self.measured("--mode", "reference")["mode"], "reference")
+        three = self.preparation("--mode", "reference", "--procedure", "chapter3")
+        five = self.preparation("--mode", "reference", "--procedure", "chapter5")
+        self.assertEqual((three["savitzky_golay"]["window"], three["cutoff_hz"]), (101, 5.0))
+        self.assertEqual((five["savitzky_golay"]["window"], five["cutoff_hz"]), (151, 4.5))
+        self.assertEqual(three, self.preparation("--mode", "reference"))
+
+    def test_protocol(self):
+        self.assertEqual(self.measured("--protocol", "auto"), self.measured())
+        free = self.measured("--protocol", "free")
+        self.assertEqual((free["protocol"], free["preparation"][0]["protocol_rule"]), ("free", "given"))
+
+    def test_window(self):
+        how = self.preparation("--from", "10", "--split", "30", "--to", "50")
+        self.assertTrue(10.0 <= how["from_s"] < 10.2)
+        self.assertTrue(49.8 < how["to_s"] <= 50.0)
+        self.assertEqual(how["split_s"], 30.0)
+
+    def test_filters(self):
+        how = self.preparation("--sg-window", "31", "--sg-order", "4", "--cutoff", "8")
+        self.assertEqual(how["savitzky_golay"], {"order": 4, "window": 31})
+        self.assertEqual((how["cutoff_hz"], how["cutoff_rule"]), (8.0, "given"))
+        self.assertIsNone(self.preparation("--cutoff", "none")["cutoff_hz"])
+        self.assertIn("no low-pass", run("measure", make_log().path, "--cutoff", "none").out)
+
+    def test_extension_padding_acceleration_and_lag_move_the_result(self):
+        usual = self.measured()
+        for options in (("--extension", "even"), ("--extension", "constant"), ("--padding", "500"),
+                        ("--acceleration", "sensor"), ("--structure", "symmetric"), ("--parameters-from", "all")):
+            with self.subTest(options=options):
+                self.assertNotEqual(self.measured(*options)["model"], usual["model"])
+        for options in (("--extension", "odd"), ("--padding", "15"), ("--acceleration", "derivative"),
+                        ("--structure", "full"), ("--parameters-from", "identification"), ("--hac-lag", "1"),
+                        ("--method", "ls"), ("--handle-mass", "0"), ("--rate", "1e3"), ("--axes", "2"),
+                        ("--variable", "logs")):
+            with self.subTest(options=options):
+                self.assertEqual(self.measured(*options), usual)
+        longer = self.measured("--hac-lag", "3")
+        self.assertEqual(longer["model"], usual["model"])
+        self.assertNotEqual(longer["standard_error"], usual["standard_error"])
+
+    def test_structures(self):
+        symmetric = self.measured("--structure", "symmetric")["model"]
+        self.assertEqual(symmetric["K"][0][1], symmetric["K"][1][0])
+        self.assertEqual(symmetric["M"][0][1], symmetric["M"][1][0])
+        rig = self.mbk("identify", "--json", "--structure", "mass-spring", make_log().path).json["model"]
+        self.assertEqual(rig["B"], [[0, 0], [0, 0]])
+        self.assertEqual(rig["M"], [[rig["M"][0][0], 0], [0, rig["M"][0][0]]])
+
+    def test_the_handle_is_taken_off_the_inertia(self):
+        usual, less = self.measured()["model"], self.measured("--handle-mass", "0.4")["model"]
+        self.assertAlmostEqual(usual["M"][0][0] - less["M"][0][0], 0.4, places=12)
+        self.assertAlmostEqual(usual["M"][1][1] - less["M"][1][1], 0.4, places=12)
+        self.assertEqual((usual["M"][0][1], usual["K"]), (less["M"][0][1], less["K"]))
+        self.assertIn("0.4 kg", run("measure", make_log().path, "--handle-mass", "0.4").out)
+
+    def test_decimate_check(self):
+        check = self.measured("--decimate-check")["decimate_check"]
+        self.assertEqual(check["rate_hz"], 100.0)
+        self.assertLess(check["largest_relative_change"], 0.05)
+        self.assertIn("at 100 Hz", run("measure", make_log().path, "--decimate-check").out)
+
+    def test_resample(self):
+        result = self.measured("--resample", "500")
+        self.assertAlmostEqual(result["inputs"][0]["rate_hz"], 500.0, places=9)
+        self.assertEqual([warning["code"] for warning in result["warnings"]], ["resampled"])
+
+    def test_rate_stands_in_for_time(self):
+        path = write_csv(self.folder / "log.csv", table_of(make_log())[1:], ("x", "y", "Fx", "Fy", "xr", "yr"))
+        self.bad_data(path, says="--rate")
+        self.assert_relative(self.measured("--rate", "1000", log=path)["model"]["K"], self.measured()["model"]["K"],
+                             1e-9)
+
+    def test_channels_flip_and_convert(self):
+        usual = self.measured()["model"]
+        flipped = self.measured("--channels", "x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13", code=4)["model"]
+        self.assert_relative([[-k for k in row] for row in flipped["K"]], usual["K"], 1e-12)
+        in_mm = self.measured("--channels", "x=2:mm,y=3:mm,Fx=10,Fy=11,xr=12,yr=13")["model"]
+        self.assert_relative([[k / 1e3 for k in row] for row in in_mm["K"]], usual["K"], 1e-9)
+
+    def test_axes(self):
+        one = self.measured("--axes", "1", "--channels", "x=3,F=11,xr=13")
+        self.assertEqual(one["axes"], 1)
+
+    def test_quiet_says_nothing_of_progress(self):
+        logs = [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2)]
+        self.assertEqual(self.fine("measure", "--quiet", *logs).err, "")
+
+
+class Out(Case):
+    def test_it_writes_what_would_be_printed(self):
+        path = self.folder / "result.json"
+        ran = self.fine("measure", "--json", make_log().path, "--out", path)
+        self.assertEqual(ran.out, "")
+        self.assertEqual(path.read_bytes(), run("measure", "--json", make_log().path).bytes)
+        self.assertEqual(self.names(), ["result.json"])
+        self.assertEqual(stat.S_IMODE(path.stat().st_mode) & ~0o666, 0)
+
+    def test_it_keeps_a_file_that_is_there(self):
+        path = self.file("result.json", "precious")
+        for command in ("measure", "identify", "info"):
+            self.refused(WRONG_USAGE, command, make_log().path, "--out", path, says=[str(path), "--overwrite"])
+        self.assertEqual((path.read_text(), self.names()), ("precious", ["result.json"]))
+
+    def test_overwrite_replaces_it(self):
+        path = self.file("result.json", "precious")
+        self.fine("measure", "--json", make_log().path, "--out", path, "--overwrite")
+        self.assertIn("mbk.result/1", path.read_text())
+        self.assertEqual(self.names(), ["result.json"])
+
+    def test_it_never_replaces_what_is_read(self):
+        log = copy(make_log().path, self.folder / "log.mat")
+        before = log.read_bytes()
+        os.link(log, self.folder / "same.mat")
+        for name in ("log.mat", "./log.mat", "same.mat"):
+            self.refused(WRONG_USAGE, "measure", "log.mat", "--out", name, "--overwrite", folder=self.folder, says=name)
+            self.refused(WRONG_USAGE, "info", "log.mat", "--out", name, "--overwrite", folder=self.folder, says=name)
+        self.assertEqual(log.read_bytes(), before)
+
+    def test_it_never_replaces_a_folder_or_a_device(self):
+        (self.folder / "results").mkdir()
+        for path in (self.folder / "results", "/dev/null"):
+            self.refused(WRONG_USAGE, "measure", make_log().path, "--out", path, "--overwrite", says=str(path))
+        self.assertTrue(stat.S_ISCHR(os.stat("/dev/null").st_mode))
+        self.assertEqual(self.names(), ["results"])
+
+    def test_an_empty_name(self):
+        self.refused(WRONG_USAGE, "measure", make_log().path, "--out", "", says="--out")
+
+    def test_a_folder_that_is_not_there(self):
+        path = self.folder / "gone" / "result.json"
+        self.refused(BAD_DATA, "measure", make_log().path, "--out", path, says=[str(path), "folder"])
+        self.assertEqual(self.names(), [])
+
+    def test_a_file_in_place_of_the_folder(self):
+        path = self.file("results", "text") / "result.json"
+        self.refused(BAD_DATA, "measure", make_log().path, "--out", path, says=str(path))
+        self.assertEqual(self.names(), ["results"])
+
+    @unittest.skipIf(is_root(), "root may write everywhere")
+    def test_a_folder_that_may_not_be_written(self):
+        self.folder.chmod(0o500)
+        self.addCleanup(self.folder.chmod, 0o700)
+        path = self.folder / "result.json"
+        self.refused(BAD_DATA, "measure", make_log().path, "--out", path, says=[str(path), "permissions"])
+        self.assertEqual(self.names(), [])
+
+    def test_a_measurement_that_fails_leaves_nothing(self):
+        bad = self.file("bad.csv", "time,x,y,Fx,Fy\n0,1,2,3,a\n1,2,3,4,5\n")
+        for arguments in ([bad], [make_log().path, bad], [make_log().path, "--from", "100"]):
+            self.refused(BAD_DATA, "measure", *arguments, "--out", self.folder / "result.json")
+        kept = self.file("kept.json", "precious")
+        self.refused(BAD_DATA, "measure", bad, "--out", kept, "--overwrite")
+        self.assertEqual((self.names(), kept.read_text()), (["bad.csv", "kept.json"], "precious"))
+
+    def test_a_full_disk_is_said(self):
+        with open("/dev/full", "wb") as full:
+            for arguments in (["measure", make_log().path], ["info", make_log().path],
+                              ["validate", "--runs", "1", "--quiet"]):
+                ran = self.mbk(*arguments, code=BAD_DATA, stdout=full)
+                self.assertRegex(ran.err, r"\Ambk: [^\n]*standard output[^\n]*\n\Z")
+
+
+class Help(Case):
+    def test_every_command_has_one_with_an_example_within_100_columns(self):
+        self.assert_lines_fit(self.fine("--help").out)
+        for command in COMMANDS:
+            with self.subTest(command):
+                text = self.fine(command, "--help").out
+                self.assert_lines_fit(text)
+                self.assertRegex(text, rf"Examples?:\n  mbk {command}")
+
+    def test_options_with_a_value_name_it_or_its_unit(self):
+        text = run("measure", "--help").out
+        for line in ("--rate HZ", "--resample HZ", "--cutoff HZ|none", "--from S", "--split S", "--to S", "--hac-lag S",
+                     "--handle-mass KG", "--sg-window W", "--sg-order N", "--padding N", "--threads N", "--axes N",
+                     "--channels MAP", "--variable NAME", "--out FILE",
+                     *(f"{option} {words}" for option, words in WORDS.items())):
+            self.assertRegex(text, rf"(?m)^  {re.escape(line)}(?: |$)")
+
+    def test_the_exit_codes_are_explained(self):
+        self.assertIn("0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable",
+                      run("measure", "--help").out)
+
+    def test_info_names_its_own_schema(self):
+        self.assertIn("mbk.info/1", run("info", "--help").out)
+
+    def test_version(self):
+        self.assertRegex(self.fine("--version").out, r"\Ambk \d+\.\d+\.\d+\n\Z")
+
+    def test_help_goes_to_standard_output(self):
+        self.assertIn("mbk measure log.mat", self.fine("--help").out)
+
+
+class Validate(Case):
+    def test_coverage(self):
+        ran = self.fine("validate", "coverage", "--runs", "4", "--json", "--quiet")
+        table = ran.json
+        self.assertEqual((table["schema"], table["study"], table["runs"], table["seed"]),
+                         ("mbk.validation/1", "coverage", 4, 1))
+        self.assertEqual([row["what"] for row in table["rows"]],
+                         ["m_xx", "m_xy", "m_yx", "m_yy", "b_xx", "b_xy", "b_yx", "b_yy", "k_xx", "k_xy", "k_yx",
+                          "k_yy", "x0", "y0"])
+        self.assertIs(table["met"], all(row["met"] for row in table["rows"]))
+        for row in table["rows"]:
+            low, high = row["interval99"]
+            self.assertTrue(0.0 <= low <= row["value"] <= high <= 100.0, row)
+
+    def test_the_seed_decides_and_the_threads_do_not(self):
+        def coverage(*options):
+            return run("validate", "--runs", "3", "--json", "--quiet", *options).bytes
+
+        self.assertEqual(coverage("--threads", "1"), coverage("--threads", "2"))
+        self.assertEqual(coverage("--seed", "5"), coverage("--seed", "5"))
+        self.assertIn(b'"seed": 5', coverage("--seed", "5"))
+
+    def test_more_threads_than_runs(self):
+        self.fine("validate", "--runs", "1", "--threads", "1024", "--quiet")
+
+    def test_the_text_is_a_table_of_rows(self):
+        text = self.fine("validate", "--runs", "2", "--quiet").out
+        self.assert_lines_fit(text)
+        self.assertEqual(text.count("[92, 98]"), 14)
+
+
+if __name__ == "__main__":
+    main()
