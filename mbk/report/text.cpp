@@ -19,7 +19,7 @@ namespace {
 std::string with_interval(double value, double half_width) {
   if (!std::isfinite(value)) return "undefined";
   if (!std::isfinite(half_width)) return fmt::format("{:.4g}", value);
-  if (half_width == 0.0) return fmt::format("{:.6g}", value);
+  if (!(half_width > 0.0)) return fmt::format("{:.6g}", value);
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width))), 0, 9);
   return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, half_width, decimals);
 }

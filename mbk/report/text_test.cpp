@@ -102,6 +102,13 @@ TEST(ResultText, WhatIsUndefinedIsCalledSo) {
   EXPECT_THAT(text, Not(HasSubstr("nan")));
 }
 
+TEST(ResultText, AnErrorThatIsNoneIsNotShown) {
+  Identification id = identification();
+  id.standard_error.B(0, 0) = 0.0;
+  id.standard_error.B(0, 1) = -0.1;  // as a file could claim
+  EXPECT_THAT(line_with(result_text(id, std::nullopt), "damping B"), testing::ContainsRegex("-6.5 +-6.5 +-6.50 ±"));
+}
+
 TEST(ResultText, AFitThatIsUndefinedIsCalledSo) {
   Identification id = identification();
   id.fit.vaf[1] = kNaN;
@@ -129,7 +136,7 @@ TEST(ResultText, HasNoTrailingBlanks) {
   id.decimation.emplace();
   for (const std::string& text :
        {result_text(id, findings()), result_text(identification(1), std::nullopt), ellipses_text(findings()),
-        summary_text({2, Motion::translation, id.model, id.model})}) {
+        summary_text({2, Motion::translation, id.model, id.standard_error})}) {
     for (const std::string& line : lines_of(text)) EXPECT_FALSE(line.ends_with(' ')) << '"' << line << '"';
   }
 }
