@@ -310,8 +310,9 @@ TEST(IdentifyImpedance, RefusesAHandleMassThatIsNone) {
   }
 }
 
-TEST(IdentifyImpedance, AReachBeyondTheDataIsTakenAsAllOfIt) {
-  const Identification id = identified({trial(arm(), {.samples = 2000, .noise = 0.1})}, {.hac_lag_s = 100.0});
+TEST(IdentifyImpedance, RefusesAReachBeyondTheDataUnlessItIsTheDefault) {
+  EXPECT_FALSE(identify_impedance({trial(arm(), {.samples = 2000, .noise = 0.1})}, {.hac_lag_s = 100.0}));
+  const Identification id = identified({trial(arm(), {.samples = 500, .noise = 0.1})});
   EXPECT_TRUE(flat(id.standard_error).allFinite());
 }
 

@@ -108,10 +108,9 @@ TEST(Picture, TheScaleIsARoundNumberAtOrAboveTheLargestEigenvalue) {
 
 TEST(Picture, AnIndefiniteMatrixHasNone) {
   const std::string picture = draw_ellipses({{ellipse(3.0, -0.5, 0.0), "inertia", "kg"}});
-  EXPECT_THAT(picture, HasSubstr("inertia: no ellipse"));
-  EXPECT_TRUE(dots_of(picture).empty());
+  EXPECT_EQ(picture, "");
   const double nan = std::nan("");
-  EXPECT_THAT(draw_ellipses({{ellipse(nan, nan, nan), "inertia", "kg"}}), HasSubstr("no ellipse"));
+  EXPECT_EQ(draw_ellipses({{ellipse(nan, nan, nan), "inertia", "kg"}}), "");
 }
 
 TEST(Picture, PanelsStandSideBySideInColumnsOfTheSameWidth) {

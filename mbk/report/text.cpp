@@ -189,8 +189,7 @@ std::string wrapped(std::string_view text, std::size_t width) {
 }
 
 std::string ellipses_text(const Findings& findings) {
-  std::vector<std::vector<std::string>> rows = {
-      {"ellipse", "area", "", "shape", "", "orientation", "", "antisymmetry"}};
+  std::vector<std::vector<std::string>> rows = {{"ellipse", "area", "shape", "orientation", "antisymmetry"}};
   std::vector<EllipsePanel> panels;
   const double degrees = 180.0 / std::numbers::pi;
   const Units units = units_of(Motion::translation);
@@ -201,12 +200,13 @@ std::string ellipses_text(const Findings& findings) {
     std::vector<std::string> row = {kMatrixNames[k]};
     if (e.lambda_min > 0.0) {
       const int decimals = e.area < 100.0 ? 2 : 0;
-      row.insert(row.end(), {fmt::format("{:.{}f}", e.area, decimals), range(finding.area95, decimals),
-                             fmt::format("{:.2f}", e.shape), range(finding.shape95, 2)});
+      row.push_back(fmt::format("{:.{}f} {}", e.area, decimals, range(finding.area95, decimals)));
+      row.push_back(fmt::format("{:.2f} {}", e.shape, range(finding.shape95, 2)));
     } else {
-      row.insert(row.end(), {"none", fmt::format("(λ {:.3g}, {:.3g})", e.lambda_min, e.lambda_max), "", ""});
+      row.push_back(fmt::format("none (λ {:.3g}, {:.3g})", e.lambda_min, e.lambda_max));
+      row.emplace_back();
     }
-    row.insert(row.end(), {fmt::format("{:.1f}°", degrees * e.orientation), range(finding.orientation95, 1, degrees)});
+    row.push_back(fmt::format("{:.1f}° {}", degrees * e.orientation, range(finding.orientation95, 1, degrees)));
     if (k != 1) {
       const AntisymmetryFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
       row.push_back(std::isfinite(a.zmean_percent) ? fmt::format("{:.1f} % {}", a.zmean_percent, range(a.zmean95, 1))

@@ -69,8 +69,8 @@ TEST(ResultText, ShowsEveryMatrixWithItsUnit) {
   EXPECT_THAT(line_with(text, "inertia M"), testing::EndsWith("kg"));
   EXPECT_THAT(line_with(text, "damping B"), testing::EndsWith("N·s/m"));
   EXPECT_THAT(line_with(text, "stiffness K"), testing::EndsWith("N/m"));
-  EXPECT_THAT(line_with(text, "equilibrium x0"), testing::EndsWith("mm (x, y)"));
-  EXPECT_THAT(line_with(text, "equilibrium x0"), HasSubstr("304.0 ± 2.0"));
+  EXPECT_THAT(line_with(text, "equilibrium"), testing::EndsWith("mm"));
+  EXPECT_THAT(line_with(text, "equilibrium"), HasSubstr("x 304.0 ± 2.0"));
 }
 
 TEST(ResultText, UnitsFollowWhatMoves) {
@@ -121,7 +121,7 @@ TEST(ResultText, ColumnsBeginWhereTheirHeadingDoes) {
     if (lines[k].find("xx") == std::string::npos) continue;
     const std::size_t yy = columns(lines[k].substr(0, lines[k].find("yy")));
     for (std::size_t row = 1; row <= 3; ++row) {
-      const std::size_t begin = lines[k + row].rfind("   ", lines[k + row].rfind("±")) + 3;  // of the fourth value
+      const std::size_t begin = lines[k + row].rfind("  ", lines[k + row].rfind("±")) + 2;  // of the fourth value
       EXPECT_EQ(columns(lines[k + row].substr(0, begin)), yy) << lines[k + row];
     }
     return;
@@ -158,7 +158,7 @@ TEST(ResultText, WhatIsNotUsableSaysSo) {
 
 TEST(ResultText, TheFitSaysOnWhatItIsJudged) {
   Identification id = identification();
-  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on held-back data   VAF x 97.12, y 97.12 %"));
+  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on held-back data  VAF x 97.12, y 97.12 %"));
   id.fit.held_back = false;
   EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on the same data"));
 }
@@ -182,10 +182,10 @@ TEST(ResultText, SaysHowItWasMade) {
 TEST(EllipsesText, ShowsAreaShapeOrientationAndAntisymmetry) {
   const std::string text = ellipses_text(findings());
   const std::string stiffness = line_with(text, "stiffness");
-  EXPECT_THAT(stiffness, HasSubstr("6.28   [6.00, 6.60]"));
-  EXPECT_THAT(stiffness, HasSubstr("2.00    [1.90, 2.10]"));
+  EXPECT_THAT(stiffness, HasSubstr("6.28 [6.00, 6.60]"));
+  EXPECT_THAT(stiffness, HasSubstr("2.00 [1.90, 2.10]"));
   EXPECT_THAT(stiffness, HasSubstr("28.6°"));  // 0.5 rad
-  EXPECT_THAT(stiffness, HasSubstr("z_mean 11.5 % [7.0, 15.0]"));
+  EXPECT_THAT(stiffness, HasSubstr("11.5 % [7.0, 15.0]"));
 }
 
 TEST(EllipsesText, AnIndefiniteMatrixShowsItsEigenvaluesInstead) {

@@ -173,7 +173,7 @@ class Content(BadInput):
     def test_values_that_are_no_numbers(self):
         for value in (math.nan, math.inf):
             self.columns[3][7000] = value
-            self.bad_data(self.logs(), says=["'force_x'", "sample 7001", "7.001"])
+            self.bad_data(self.logs(), says=["'force_x'", "sample 7001", "7.000"])
         self.fine("measure", self.logs(), "--protocol", "free", "--to", "6.9")
 
     def test_too_few_samples(self):
@@ -203,7 +203,7 @@ class Content(BadInput):
             with self.subTest(says):
                 self.columns[0] = trouble
                 for mode in ("default", "reference"):
-                    window = ["--from", "1", "--to", "12", "--mode", mode]
+                    window = ["--from", "1", "--to", "9", "--mode", mode]
                     self.bad_data(self.logs(), *window, says=[says, "sample 8001", "--from"])
                 self.fine("measure", "--json", self.logs(), "--to", "7.9")
 

@@ -76,7 +76,7 @@ class Ellipse(Case):
                 ("number as schema", '{"schema": 3}', "mbk.result/1"),
                 ("no model", json.dumps(no_model), "'model'"),
                 ("wrong shape", json.dumps(wrong_shape), "'K'"),
-                ("wrong kind", json.dumps(wrong_kind), "4"),
+                ("wrong kind", json.dumps(wrong_kind), "string"),
                 ("no results", '{"schema": "mbk.results/1"}', "results"),
                 ("empty results", '{"schema": "mbk.results/1", "results": []}', "results"),
                 ("deep", "[" * 200_000, "byte")):

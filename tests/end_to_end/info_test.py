@@ -29,9 +29,9 @@ class Info(Case):
         self.assertEqual((facts["gaps"], facts["non_finite"]), ([], []))
         self.assertEqual((facts["duplicated_times"], facts["backward_times"]), (0, 0))
         units = {channel["name"]: channel["unit"] for channel in facts["channels"]}
-        self.assertEqual((units["hand_x"], units["force_y"], units["torque_1"]), ("m", "N", "N.m"))
-        constant = {channel["name"] for channel in facts["channels"] if channel["constant"]}
-        self.assertEqual(constant, {"joint_1", "joint_2", "torque_1", "torque_2"})
+        self.assertEqual((units["hand_x"], units["force_y"], units["acceleration_x"]), ("m", "N", "m/s2"))
+        self.assertNotIn("torque_1", units)  # a row that is NaN throughout was not recorded
+        self.assertIn("not recorded (NaN throughout): joint_1, joint_2, torque_1, torque_2", text)
         self.assertIn("1000 Hz", text)
         self.assertIn("no gap, no jitter to speak of, time runs on", text)
         self.assertIn("rows 4, 5, 8, 9, 16 and 17", " ".join(text.split()))
