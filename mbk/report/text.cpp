@@ -210,7 +210,7 @@ std::string ellipses_text(const Findings& findings) {
     if (k != 1) {
       const AntisymmetryFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
       row.push_back(std::isfinite(a.zmean_percent) ? fmt::format("{:.1f} % {}", a.zmean_percent, range(a.zmean95, 1))
-                                                   : fmt::format("{:.3g} {}", a.value, range(a.value95, 2)));
+                                                   : "undefined");
     }
     rows.push_back(std::move(row));
   }
