@@ -3,16 +3,29 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "mbk/recording/inspection.h"
+#include "mbk/recording/read.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
 
 namespace mbk::app {
 namespace {
 
+/// A file that is sound but speaks of no channel still shows what it holds; everything else is an error.
+int list_unrecognised(const MeasureArguments& arguments, const Error& error) {
+  if (error.kind != ErrorKind::data || arguments.files.size() != 1 || !arguments.channels.empty()) {
+    return report_error(error);
+  }
+  const auto contents = recording::list_contents(arguments.files.front());
+  if (!contents) return report_error(error);
+  const std::string text = arguments.json ? result::to_json(*contents, error) : report::contents_text(*contents, error);
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
 int run(const MeasureArguments& arguments) {
   if (auto ok = arguments.output.check(arguments.files); !ok) return report_error(ok.error());
   const auto recordings = read_recordings(arguments);
-  if (!recordings) return report_error(recordings.error());
+  if (!recordings) return list_unrecognised(arguments, recordings.error());
   std::vector<Inspection> inspections;
   for (const Recording& recording : *recordings) inspections.push_back(recording::inspect(recording));
   std::string text;
@@ -35,6 +48,7 @@ Action add_info(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  mbk info log.mat\n"
+      "      where no channel is recognised, the variables or columns of the file are listed\n"
       "  mbk info --parts log_1.mat log_2.mat\n"
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
       "Nothing is repaired: gaps, repeated or backward time and values that are no numbers are reported.");

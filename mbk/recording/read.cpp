@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <string_view>
 
@@ -45,27 +46,64 @@ Result<Contents> decode(const std::filesystem::path& file, std::span<const std::
   return bad_data("the content is of no known format", std::string(kFormats));
 }
 
-Result<Recording> read_one(const std::filesystem::path& file, const ReadOptions& options) {
+/// A file, decoded, and where it came from.
+struct Decoded {
+  Contents contents;
+  SourceFile source;
+};
+
+Result<Decoded> decode_file(const std::filesystem::path& file) {
   const auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
-  const auto contents = decode(file, bytes->bytes());
+  auto contents = decode(file, bytes->bytes());
   if (!contents) return tl::unexpected(contents.error());
-  auto recording = assemble(*contents, options);
-  if (recording) recording->sources = {{file.string(), contents->format, sha256(bytes->bytes())}};
+  SourceFile source{file.string(), contents->format, sha256(bytes->bytes())};
+  return Decoded{std::move(*contents), std::move(source)};
+}
+
+Result<Recording> assemble_file(Decoded decoded, const ReadOptions& options) {
+  auto recording = assemble(decoded.contents, options);
+  if (recording) recording->sources = {std::move(decoded.source)};
   return recording;
+}
+
+FileContents listed(Decoded decoded) {
+  FileContents listing{std::move(decoded.source), decoded.contents.table, {}, std::move(decoded.contents.notes)};
+  for (const Array& array : decoded.contents.arrays) {
+    StoredArray stored{array.name, array.values.rows(), array.values.cols(), std::nan(""), std::nan("")};
+    for (const double value : array.values.reshaped()) {
+      if (!std::isfinite(value)) continue;
+      stored.minimum = std::fmin(stored.minimum, value);
+      stored.maximum = std::fmax(stored.maximum, value);
+    }
+    listing.arrays.push_back(std::move(stored));
+  }
+  return listing;
+}
+
+/// Decodes the file and hands it on; every failure names the file.
+template <class Use>
+auto with_decoded(const std::filesystem::path& file, const Use& use) -> decltype(use(Decoded{})) {
+  try {
+    auto decoded = decode_file(file);
+    if (!decoded) return tl::unexpected(decoded.error().in(file.string()));
+    auto result = use(std::move(*decoded));
+    if (!result) return tl::unexpected(result.error().in(file.string()));
+    return result;
+  } catch (const std::bad_alloc&) {
+    return bad_data("there is not enough memory to read it", "close other programs or split the recording",
+                    file.string());
+  }
 }
 
 }  // namespace
 
 Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options) {
-  try {
-    auto recording = read_one(file, options);
-    if (!recording) return tl::unexpected(recording.error().in(file.string()));
-    return recording;
-  } catch (const std::bad_alloc&) {
-    return bad_data("there is not enough memory to read it", "close other programs or split the recording",
-                    file.string());
-  }
+  return with_decoded(file, [&](Decoded decoded) { return assemble_file(std::move(decoded), options); });
+}
+
+Result<FileContents> list_contents(const std::filesystem::path& file) {
+  return with_decoded(file, [](Decoded decoded) { return Result<FileContents>(listed(std::move(decoded))); });
 }
 
 }  // namespace mbk::recording

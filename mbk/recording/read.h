@@ -8,6 +8,7 @@
 #include "mbk/core/result.h"
 #include "mbk/core/units.h"
 #include "mbk/recording/channel_map.h"
+#include "mbk/trial/file_contents.h"
 #include "mbk/trial/recording.h"
 
 namespace mbk::recording {
@@ -34,6 +35,10 @@ struct ReadOptions {
 ///         usage: a rate that contradicts the time by more than 0.1 %; several matrices could be
 ///         meant; axes is not 0, 1 or 2.
 [[nodiscard]] Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options);
+
+/// What the file holds under its own names, whether or not any of it is recognised as a channel.
+/// @fails  data: the file cannot be read, is damaged or of another format.
+[[nodiscard]] Result<FileContents> list_contents(const std::filesystem::path& file);
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.

@@ -166,6 +166,10 @@ std::string warnings_text(const std::vector<Warning>& warnings) {
   return text;
 }
 
+std::string source_line(const SourceFile& source) {
+  return fmt::format("{}   {}   sha256 {}…\n", source.path, source.format, source.sha256.substr(0, 16));
+}
+
 }  // namespace
 
 std::string wrapped(std::string_view text, std::size_t width) {
@@ -246,7 +250,7 @@ std::string summary_text(const Summary& summary) {
 std::string info_text(const Recording& recording, const Inspection& inspection) {
   std::string text;
   for (const SourceFile& source : recording.sources) {
-    text += fmt::format("{}   {}   sha256 {}…\n", source.path, source.format, source.sha256.substr(0, 16));
+    text += source_line(source);
   }
   std::vector<std::vector<std::string>> rows;
   rows.push_back({"samples", fmt::format("{}, {:.3f} s", inspection.samples, inspection.duration)});
@@ -307,6 +311,22 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     for (const auto& [key, value] : recording.metadata) rows.push_back({key, value});
     text += "\n" + table(rows);
   }
+  return text;
+}
+
+std::string contents_text(const FileContents& contents, const Error& unrecognised) {
+  std::string text = source_line(contents.source);
+  std::vector<std::vector<std::string>> rows = {
+      {contents.table ? "column" : "", contents.table ? "name" : "variable", "size", "from", "to"}};
+  for (std::size_t k = 0; k < contents.arrays.size(); ++k) {
+    const StoredArray& array = contents.arrays[k];
+    const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "none"; };
+    rows.push_back({contents.table ? std::to_string(k + 1) : "", array.name,
+                    fmt::format("{}×{}", array.rows, array.columns), number(array.minimum), number(array.maximum)});
+  }
+  text += table(rows) + "\n" + paragraph("  ! ", unrecognised.message.substr(0, unrecognised.message.find(';')));
+  if (!unrecognised.remedy.empty()) text += paragraph("    try: ", unrecognised.remedy);
+  for (const std::string& note : contents.notes) text += paragraph("  note: ", note);
   return text;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "mbk/core/result.h"
+#include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/inspection.h"
@@ -32,6 +34,9 @@ inline constexpr std::size_t kLineColumns = 100;
 
 /// What is in a recording, and what is wrong with it.
 [[nodiscard]] std::string info_text(const Recording& recording, const Inspection& inspection);
+
+/// What a file holds where nothing in it is recognised as a recording, why, and what to do.
+[[nodiscard]] std::string contents_text(const FileContents& contents, const Error& unrecognised);
 
 /// A study against known truth, row by row, with what is wanted.
 [[nodiscard]] std::string validation_text(const ValidationTable& table);

@@ -381,6 +381,23 @@ std::string to_json(const std::vector<Recording>& recordings, const std::vector<
   return one_or_list("mbk.infos/1", objects);
 }
 
+std::string to_json(const FileContents& contents, const Error& unrecognised) {
+  Json json = header("mbk.contents/1");
+  json["inputs"] = inputs_json({contents.source});
+  json["kind"] = contents.table ? "table" : "variables";
+  json["arrays"] = Json::array();
+  for (const StoredArray& array : contents.arrays) {
+    json["arrays"].push_back({{"name", array.name},
+                              {"rows", array.rows},
+                              {"columns", array.columns},
+                              {"minimum", number(array.minimum)},
+                              {"maximum", number(array.maximum)}});
+  }
+  json["notes"] = contents.notes;
+  json["unrecognised"] = {{"message", unrecognised.message}, {"try", unrecognised.remedy}};
+  return dumped(json);
+}
+
 std::string to_json(const ValidationTable& table) {
   Json json = header("mbk.validation/1");
   json["study"] = table.study;

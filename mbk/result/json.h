@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/core/result.h"
+#include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/inspection.h"
@@ -33,6 +34,9 @@ struct Measured {
 
 /// Schema "mbk.info/1": what is in a recording; "mbk.infos/1" with `results` for several.
 [[nodiscard]] std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections);
+
+/// Schema "mbk.contents/1": what a file holds where nothing in it is recognised as a recording, and why.
+[[nodiscard]] std::string to_json(const FileContents& contents, const Error& unrecognised);
 
 /// Schema "mbk.validation/1": a study against known truth.
 [[nodiscard]] std::string to_json(const ValidationTable& table);

@@ -133,6 +133,18 @@ class Info(Case):
         low, high = min(self.recording()[4]), max(self.recording()[4])
         self.assertEqual(ranges["force_y"], ("N", 1e3 * low, 1e3 * high))
 
+    def test_a_file_without_channels_shows_its_columns_and_what_to_do(self):
+        path = write_csv(self.folder / "log.csv", self.recording(100), ("time", "u", "v", "w", "z"))
+        listing = self.fine("info", "--json", path).json
+        self.assertEqual((listing["schema"], listing["kind"]), ("mbk.contents/1", "table"))
+        self.assertEqual([array["name"] for array in listing["arrays"]], ["time", "u", "v", "w", "z"])
+        self.assertEqual({array["rows"] for array in listing["arrays"]}, {100})
+        self.assertEqual(listing["arrays"][1]["maximum"], max(self.recording(100)[1]))
+        self.assertIn("--channels", listing["unrecognised"]["try"])
+        text = self.fine("info", path).out
+        self.assertIn("no channel but time is recognised", text)
+        self.assertIn("--channels", text)
+
 
 if __name__ == "__main__":
     main()

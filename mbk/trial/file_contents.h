@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mbk/core/linear_algebra.h"
+#include "mbk/trial/recording.h"
+
+namespace mbk {
+
+/// Numbers of a file under the name that they have there: a column of a table, a variable, a field of a structure.
+struct StoredArray {
+  std::string name;  ///< "" for a column without a heading
+  Index rows = 0, columns = 0;
+  double minimum = 0, maximum = 0;  ///< of the finite values; NaN where there is none
+};
+
+/// What a file holds, before anything is said about channels.
+struct FileContents {
+  SourceFile source;
+  bool table = false;  ///< the arrays are columns, counted from 1
+  std::vector<StoredArray> arrays;
+  std::vector<std::string> notes;  ///< what was left aside, and why
+};
+
+}  // namespace mbk
