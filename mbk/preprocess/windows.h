@@ -7,6 +7,7 @@
 #include "mbk/core/linear_algebra.h"
 #include "mbk/core/result.h"
 #include "mbk/preprocess/clock.h"
+#include "mbk/preprocess/options.h"
 #include "mbk/trial/prepared_trial.h"
 #include "mbk/trial/protocol.h"
 
@@ -17,11 +18,6 @@ namespace mbk::preprocess {
 struct Cut {
   Index begin = 0, end = 0;
   std::vector<Stretch> keep;
-};
-
-/// Which samples the user asks for, in seconds from the recording's first sample.
-struct WindowLimits {
-  std::optional<double> from_s, split_s, to_s;
 };
 
 /// What counts, and why.

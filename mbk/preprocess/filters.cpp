@@ -1,0 +1,87 @@
+#include "mbk/preprocess/filters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "mbk/dsp/butterworth.h"
+
+namespace mbk::preprocess {
+namespace {
+
+constexpr int kButterworthOrder = 5;
+/// Forward and backward, the filter passes 0.6 of its cutoff with a gain of 0.994.
+constexpr double kCutoffOverBand = 1.0 / 0.6;
+/// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
+constexpr double kSmoothingOverCutoff = 4.6;
+
+}  // namespace
+
+FilterPlan reference_filters(const Options& options) {
+  const bool chapter5 = options.procedure == Procedure::chapter5;
+  const bool changed = options.smoothing_order || options.smoothing_window || options.acceleration;
+  return {{6, chapter5 ? 151 : 101},
+          Hertz(chapter5 ? 4.5 : 5.0),
+          fmt::format("{} of the published procedure{}", text(options.procedure), changed ? ", changed as asked" : "")};
+}
+
+FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut) {
+  FilterPlan plan;
+  const double wanted = options.cutoff.value_or(Hertz(band.high.value * kCutoffOverBand)).value;
+  const double cutoff = std::min(wanted, 0.4 * rate.value);
+  plan.cutoff = Hertz(cutoff);
+  plan.rule = fmt::format("{:.3g} Hz, the top of the excited band, over 0.6", band.high.value);
+  if (cutoff < wanted) plan.rule += ", limited to 0.4 of the sample rate";
+  const int order = options.smoothing_order.value_or(6);
+  plan.smoothing.order = order;
+  plan.smoothing.window =
+      dsp::savitzky_golay_window(order, Hertz(std::min(kSmoothingOverCutoff * cutoff, 0.4 * rate.value)), rate);
+  // A short pulse must keep most of its samples.
+  const Index longest = std::max<Index>(shortest_cut / 4, order + 3) | 1;
+  plan.smoothing.window = static_cast<int>(std::min<Index>(plan.smoothing.window, longest));
+  return plan;
+}
+
+void apply_choices(const Options& options, FilterPlan& plan) {
+  if (options.smoothing_order) plan.smoothing.order = *options.smoothing_order;
+  if (options.smoothing_window) plan.smoothing.window = *options.smoothing_window;
+  if (options.cutoff) {
+    plan.cutoff = options.cutoff;
+    plan.rule = "given";
+  }
+  if (options.no_lowpass) {
+    plan.cutoff.reset();
+    plan.rule = "none, as asked";
+  }
+}
+
+Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim, Hertz rate,
+                          const dsp::Padding& padding) {
+  const Index n = signals.position.cols(), length = cut.end - cut.begin;
+  if (length < filters.smoothing.window + 2 * trim + (filters.cutoff ? padding.samples + 1 : 0)) {
+    return bad_data(fmt::format("a window of {} samples is too short for a Savitzky–Golay window of {}{}", length,
+                                filters.smoothing.window,
+                                filters.cutoff ? fmt::format(" and a padding of {}", padding.samples) : ""),
+                    "record longer, or choose a smaller --sg-window or --padding");
+  }
+  const auto smooth = [&](const Matrix& columns, int derivative) {
+    return dsp::savitzky_golay(filters.smoothing, derivative, columns.middleRows(cut.begin, length), rate);
+  };
+  const bool sensor = signals.acceleration.size() > 0;
+  Matrix all(length - filters.smoothing.window + 1 - 2 * trim, 4 * n);
+  const std::array<Result<Matrix>, 4> parts = {smooth(signals.position, 0), smooth(signals.position, 1),
+                                               sensor ? smooth(signals.acceleration, 0) : smooth(signals.position, 2),
+                                               smooth(signals.force_hand_on_robot, 0)};
+  for (Index k = 0; k < 4; ++k) {
+    const Result<Matrix>& part = parts[static_cast<std::size_t>(k)];
+    if (!part) return tl::unexpected(part.error());
+    all.middleCols(k * n, n) = part->middleRows(trim, all.rows());
+  }
+  if (!filters.cutoff) return all;
+  auto lowpass = dsp::butterworth_lowpass(kButterworthOrder, *filters.cutoff, rate);
+  if (!lowpass) return tl::unexpected(lowpass.error());
+  return dsp::filter_zero_phase(*lowpass, all, padding);
+}
+
+}  // namespace mbk::preprocess

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mbk/core/linear_algebra.h"
+#include "mbk/core/result.h"
+#include "mbk/core/units.h"
+#include "mbk/dsp/savitzky_golay.h"
+#include "mbk/dsp/zero_phase.h"
+#include "mbk/preprocess/band.h"
+#include "mbk/preprocess/options.h"
+#include "mbk/preprocess/signals.h"
+#include "mbk/preprocess/windows.h"
+
+namespace mbk::preprocess {
+
+/// Filter settings and the words that say where they come from.
+struct FilterPlan {
+  dsp::SavitzkyGolay smoothing;
+  std::optional<Hertz> cutoff;  ///< of the zero-phase Butterworth filter of order five; none: it is not applied
+  std::string rule;
+};
+
+/// Those of the published procedure: (6, 101) and 5 Hz, or in chapter 5 (6, 151) and 4.5 Hz.
+[[nodiscard]] FilterPlan reference_filters(const Options& options);
+
+/// mbk's own: the cutoff lies where the filter passes the top of the excited band with a gain of 0.994, and the
+/// smoothing window is as long as it can be without reaching down to that.
+/// @param shortest_cut [samples]; the window takes at most a quarter of it
+[[nodiscard]] FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut);
+
+/// What the user chose goes before either.
+void apply_choices(const Options& options, FilterPlan& plan);
+
+/// One cut through both filters: [x ẋ ẍ F], each n columns; row i belongs to sample cut.begin + half window + trim + i.
+/// @fails the cut is shorter than the filters need; the settings are none that a filter can have.
+[[nodiscard]] Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,
+                                        Hertz rate, const dsp::Padding& padding);
+
+}  // namespace mbk::preprocess
