@@ -32,6 +32,7 @@ Ellipse ellipse(const Matrix& Z) {
   e.shape = e.lambda_min > 0.0 ? e.lambda_max / e.lambda_min : nan;
   e.orientation = 0.5 * std::atan2(2.0 * zs, Z(0, 0) - Z(1, 1));
   if (e.orientation < 0.0) e.orientation += std::numbers::pi;
+  if (e.orientation >= std::numbers::pi) e.orientation = 0.0;  // a tiny negative angle rounds to π
   return e;
 }
 

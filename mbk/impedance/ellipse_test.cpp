@@ -33,6 +33,10 @@ TEST(Ellipse, HasAnOrientationWhereTheFormulaOfTheSourceHasNone) {
   EXPECT_DOUBLE_EQ(kDegrees * ellipse(symmetric(1.0, 3.0, 0.0)).orientation, 90.0);
 }
 
+TEST(Ellipse, KeepsItsOrientationBelowPi) {
+  EXPECT_EQ(ellipse(symmetric(3.0, 1.0, -1e-20)).orientation, 0.0);
+}
+
 TEST(Ellipse, AgreesWithTheEigenvectors) {
   std::mt19937 random(1);
   for (int i = 0; i < 200; ++i) {

@@ -153,10 +153,9 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
           range->split ? cut.keep[k].begin >= *range->split : k >= kIdentificationPulses + (under_way ? 1 : 0);
       cut.keep[k].purpose = later ? Purpose::validation : Purpose::identification;
     }
-    plan.rule = fmt::format(
-        "filtered from {:g} s on, then the {} displacements of the reference cut out; the first "
-        "{} identify (published procedure)",
-        clock.seconds(range->from), cut.keep.size(), kIdentificationPulses);
+    plan.rule = fmt::format("filtered from {:g} s on, then the {} displacements of the reference cut out{}",
+                            clock.seconds(range->from), cut.keep.size(),
+                            range->split ? "" : fmt::format("; the first {} identify", kIdentificationPulses));
     plan.cuts = {std::move(cut)};
     return plan;
   }
@@ -164,8 +163,9 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
       range->split.value_or(sines && !limits.from_s ? first + kIdentificationSamples : first + (last - first) * 4 / 5);
   plan.cuts = {divided(range->from, range->to, split)};
   if (split < last) plan.split_s = clock.seconds(split);
+  const bool published_end = sines && !limits.from_s && range->to == kSinusoidalEnd;
   plan.rule = fmt::format("{:g} s to {:g} s{}", clock.seconds(range->from), clock.seconds(range->to),
-                          sines && !limits.from_s ? " (published window)" : "");
+                          published_end ? " (published window)" : "");
   return plan;
 }
 

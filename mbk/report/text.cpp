@@ -89,6 +89,7 @@ std::string inputs_line(const Identification& id) {
 }
 
 std::string how_made(const Identification& id) {
+  if (id.preparations.empty()) return "";  // a result that was read back
   const Preparation& how = id.preparations.front();
   std::vector<std::vector<std::string>> rows;
   constexpr std::size_t kNotes = 4;

@@ -117,7 +117,6 @@ Json antisymmetry_json(const Findings& findings) {
 
 Json result_json(const Measured& measured) {
   const Identification& id = measured.identification;
-  const Preparation& how = id.preparations.front();
   Json json = header(kResultSchema);
   json["inputs"] = inputs_json(id.sources);
   for (std::size_t i = 0; i < id.sources.size(); ++i) {
@@ -125,8 +124,10 @@ Json result_json(const Measured& measured) {
     json["inputs"][i]["rate_hz"] = id.rates[i];
   }
   if (!id.notes.empty()) json["notes"] = id.notes;
-  json["mode"] = text(how.mode);
-  json["protocol"] = text(how.protocol);
+  if (!id.preparations.empty()) {  // a result that was read back says nothing of how it was made
+    json["mode"] = text(id.preparations.front().mode);
+    json["protocol"] = text(id.preparations.front().protocol);
+  }
   json["method"] = id.method;
   json["axes"] = id.axes;
   json["structure"] = text(id.structure);

@@ -43,7 +43,7 @@ struct Measured {
 
 /// Reads back what `to_json` wrote, schema mbk.result/1 or mbk.results/1: model, covariance (from the standard errors
 /// where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and inputs; not the
-/// preparation, so that what is read cannot be written again.
+/// preparation: written again, it says nothing of mode and protocol.
 /// @fails not JSON (the byte is named); another schema; no result; a matrix of the wrong shape (its name is said).
 [[nodiscard]] Result<std::vector<Identification>> identifications_from_json(std::string_view text);
 

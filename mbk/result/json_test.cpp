@@ -201,6 +201,15 @@ TEST(FromJson, WithoutACovarianceTakesTheStandardErrors) {
   EXPECT_TRUE(std::isnan(read_back(json.dump()).covariance(0, 0)));
 }
 
+TEST(FromJson, WhatWasReadCanBeWrittenAgain) {
+  for (const int axes : {1, 2}) {
+    const Identification id = read_back(to_json(measured(axes)));
+    const Json again = Json::parse(to_json(Measured{id, std::nullopt}));
+    EXPECT_FALSE(again.contains("mode"));
+    EXPECT_EQ(again["model"], Json::parse(to_json(measured(axes)))["model"]);
+  }
+}
+
 TEST(FromJson, AModelAloneIsEnough) {
   const Identification back = read_back(R"({"schema": "mbk.result/1", "model": {"M": [[1]], "B": [[2]], "K": [[3]]}})");
   EXPECT_EQ(back.axes, 1);
