@@ -18,7 +18,6 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing_support::arm;
-using testing_support::Making;
 using testing_support::trial;
 
 Identification identified(const PreparedTrial& prepared, const Options& options = {}) {
