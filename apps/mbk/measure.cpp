@@ -44,7 +44,7 @@ std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordi
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < recordings.size(); i = next++) {
-      results[i] = measurement::measure({recordings[i]}, options);
+      results[i] = measurement::measure({&recordings[i], 1}, options);
       progress.finished(recordings[i].sources.empty() ? "" : recordings[i].sources.front().path);
     }
   };

@@ -60,7 +60,7 @@ Regression stack(const std::vector<PreparedTrial>& trials) {
     Index last_end = -1;
     for (const Stretch& stretch : trial.stretches) {
       const Index size = stretch.size();
-      const bool broken = stretch.begin != last_end || stretch.begin == 0 ||
+      const bool broken = stretch.begin != last_end ||
                           trial.time[stretch.begin] - trial.time[stretch.begin - 1] > 1.5 * trial.sample_time;
       if (row > 0 && broken) ++row;  // an empty row keeps the ranges apart; it belongs to none
       last_end = stretch.end;

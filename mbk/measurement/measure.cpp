@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "mbk/analyse/ellipses.h"
 #include "mbk/preprocess/resample.h"
@@ -38,26 +39,23 @@ void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& t
 }
 
 Result<PreparedTrial> prepare_one(const Recording& recording, const Options& options) {
-  if (!options.resample) {
-    const Inspection inspection = recording::inspect(recording);
-    auto trial = preprocess::prepare(recording, inspection, options.preprocess);
-    if (trial) warn_of_clipping(inspection, *trial);
-    return trial;
-  }
   const Inspection recorded = recording::inspect(recording);
-  const auto even = preprocess::resample(recording, *options.resample);
-  if (!even) return tl::unexpected(even.error());
-  auto trial = preprocess::prepare(*even, recording::inspect(*even), options.preprocess);
-  if (trial) {
-    warn_of_clipping(recorded, *trial);
-    warn_of_resampling(recorded, *options.resample, *trial);
-  }
+  const auto prepare = [&]() -> Result<PreparedTrial> {
+    if (!options.resample) return preprocess::prepare(recording, recorded, options.preprocess);
+    const auto even = preprocess::resample(recording, *options.resample);
+    if (!even) return tl::unexpected(even.error());
+    return preprocess::prepare(*even, recording::inspect(*even), options.preprocess);
+  };
+  auto trial = prepare();
+  if (!trial) return trial;
+  warn_of_clipping(recorded, *trial);
+  if (options.resample) warn_of_resampling(recorded, *options.resample, *trial);
   return trial;
 }
 
 }  // namespace
 
-Result<result::Measured> measure(const std::vector<Recording>& recordings, const Options& options) {
+Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options) {
   std::vector<PreparedTrial> trials;
   for (const Recording& recording : recordings) {
     auto trial = prepare_one(recording, options);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <vector>
+#include <span>
 
 #include "mbk/core/result.h"
 #include "mbk/core/units.h"
@@ -21,6 +21,6 @@ struct Options {
 
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
 /// @fails as its steps; where a recording has a source, the message names its file.
-[[nodiscard]] Result<result::Measured> measure(const std::vector<Recording>& recordings, const Options& options);
+[[nodiscard]] Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options);
 
 }  // namespace mbk::measurement

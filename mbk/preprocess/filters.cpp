@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "mbk/dsp/butterworth.h"
 
@@ -16,14 +17,30 @@ constexpr double kCutoffOverBand = 1.0 / 0.6;
 /// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
 constexpr double kSmoothingOverCutoff = 4.6;
 
+FilterPlan with_choices(FilterPlan plan, const Options& options) {
+  if (options.smoothing_order) plan.smoothing.order = *options.smoothing_order;
+  if (options.smoothing_window) plan.smoothing.window = *options.smoothing_window;
+  if (options.cutoff) {
+    plan.cutoff = options.cutoff;
+    plan.rule = "given";
+  }
+  if (options.no_lowpass) {
+    plan.cutoff.reset();
+    plan.rule = "none, as asked";
+  }
+  return plan;
+}
+
 }  // namespace
 
 FilterPlan reference_filters(const Options& options) {
   const bool chapter5 = options.procedure == Procedure::chapter5;
   const bool changed = options.smoothing_order || options.smoothing_window || options.acceleration;
-  return {{6, chapter5 ? 151 : 101},
-          Hertz(chapter5 ? 4.5 : 5.0),
-          fmt::format("{} of the published procedure{}", text(options.procedure), changed ? ", changed as asked" : "")};
+  return with_choices(
+      {{6, chapter5 ? 151 : 101},
+       Hertz(chapter5 ? 4.5 : 5.0),
+       fmt::format("{} of the published procedure{}", text(options.procedure), changed ? ", changed as asked" : "")},
+      options);
 }
 
 FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut) {
@@ -40,20 +57,7 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   // A short pulse must keep most of its samples.
   const Index longest = std::max<Index>(shortest_cut / 4, order + 3) | 1;
   plan.smoothing.window = static_cast<int>(std::min<Index>(plan.smoothing.window, longest));
-  return plan;
-}
-
-void apply_choices(const Options& options, FilterPlan& plan) {
-  if (options.smoothing_order) plan.smoothing.order = *options.smoothing_order;
-  if (options.smoothing_window) plan.smoothing.window = *options.smoothing_window;
-  if (options.cutoff) {
-    plan.cutoff = options.cutoff;
-    plan.rule = "given";
-  }
-  if (options.no_lowpass) {
-    plan.cutoff.reset();
-    plan.rule = "none, as asked";
-  }
+  return with_choices(std::move(plan), options);
 }
 
 Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim, Hertz rate,

@@ -15,7 +15,7 @@
 
 namespace mbk::preprocess {
 
-/// Filter settings and the words that say where they come from.
+/// Filter settings and the words that say where they come from. What the user chose goes before either plan.
 struct FilterPlan {
   dsp::SavitzkyGolay smoothing;
   std::optional<Hertz> cutoff;  ///< of the zero-phase Butterworth filter of order five; none: it is not applied
@@ -29,9 +29,6 @@ struct FilterPlan {
 /// smoothing window is as long as it can be without reaching down to that.
 /// @param shortest_cut [samples]; the window takes at most a quarter of it
 [[nodiscard]] FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut);
-
-/// What the user chose goes before either.
-void apply_choices(const Options& options, FilterPlan& plan);
 
 /// One cut through both filters: [x ẋ ẍ F], each n columns; row i belongs to sample cut.begin + half window + trim + i.
 /// @fails the cut is shorter than the filters need; the settings are none that a filter can have.

@@ -57,7 +57,6 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   }
 
   FilterPlan filters = reference_filters(options);
-  apply_choices(options, filters);
   auto plan = published ? reference_windows(how.protocol, signals->reference, clock, options.window,
                                             filters.smoothing.half_window())
                         : improved_windows(how.protocol, signals->reference, clock, options.window);
@@ -76,7 +75,6 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     Index shortest = samples;
     for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
     filters = improved_filters(options, *band, rate, shortest);
-    apply_choices(options, filters);
   }
 
   Index total = 0;

@@ -174,6 +174,42 @@ Json result_json(const Measured& measured) {
   return json;
 }
 
+Json info_json(const Recording& recording, const Inspection& inspection) {
+  Json json = header("mbk.info/1");
+  json["inputs"] = inputs_json(recording.sources);
+  json["samples"] = inspection.samples;
+  json["duration_s"] = number(inspection.duration);
+  json["rate_hz"] = number(inspection.rate_hz);
+  json["interval_s"] = {{"minimum", number(inspection.interval_min)},
+                        {"median", number(inspection.interval_median)},
+                        {"maximum", number(inspection.interval_max)},
+                        {"standard_deviation", number(inspection.interval_standard_deviation)}};
+  json["gaps"] = Json::array();
+  for (const Gap& gap : inspection.gaps) {
+    json["gaps"].push_back(
+        {{"after_sample", gap.sample + 1}, {"time_s", number(gap.time)}, {"length_s", number(gap.length)}});
+  }
+  json["duplicated_times"] = inspection.duplicated_times;
+  json["backward_times"] = inspection.backward_times;
+  json["non_finite"] = Json::array();
+  for (const NonFinite& bad : inspection.non_finite) {
+    json["non_finite"].push_back({{"channel", bad.channel}, {"count", bad.count}, {"first_sample", bad.first + 1}});
+  }
+  json["channels"] = Json::array();
+  for (const ChannelFacts& facts : inspection.channels) {
+    json["channels"].push_back({{"name", facts.name},
+                                {"unit", facts.unit},
+                                {"minimum", number(facts.min)},
+                                {"maximum", number(facts.max)},
+                                {"constant", facts.constant},
+                                {"clipped", facts.clipped}});
+  }
+  json["metadata"] = Json::object();
+  for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
+  json["notes"] = recording.notes;
+  return json;
+}
+
 /// One document whatever their number: the only object itself, or all of them as `results` of another schema.
 std::string one_or_list(const char* schema_of_list, const std::vector<Json>& objects) {
   if (objects.size() == 1) return dumped(objects.front());
@@ -198,7 +234,7 @@ bool has_schema(const Json& json, const char* schema) {
 }
 
 double number_from(const Json& json) {
-  if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (json.is_null()) return kUnknown;
   if (!json.is_number())
     throw Malformed{fmt::format("a number was expected, and a value of type '{}' stands there", json.type_name())};
   return json.get<double>();
@@ -229,8 +265,7 @@ impedance::Model model_from(const Json& json, const char* name, Index n) {
   const auto found = json.find(name);
   if (found == json.end() || !found->is_object()) throw Malformed{fmt::format("'{}' is missing", name)};
   return {matrix_from(*found, "M", n, n), matrix_from(*found, "B", n, n), matrix_from(*found, "K", n, n),
-          found->contains("x0") ? Vector(matrix_from(*found, "x0", n, 1))
-                                : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN())};
+          found->contains("x0") ? Vector(matrix_from(*found, "x0", n, 1)) : Vector::Constant(n, kUnknown)};
 }
 
 Vector list_from(const Json& object, const char* name, Index size) {
@@ -241,8 +276,8 @@ Fit fit_from(const Json& json, Index n) {
   Fit fit;
   fit.vaf = list_from(json, "VAF", n);
   fit.rmse = list_from(json, "RMSE", n);
-  fit.vaf_in_sample = json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n)
-                                                     : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  fit.vaf_in_sample =
+      json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n) : Vector::Constant(n, kUnknown);
   fit.held_back = json.value("validated_on", "held-back") == "held-back";
   return fit;
 }
@@ -280,7 +315,7 @@ Identification identification_from(const Json& json) {
   id.axes = one_axis ? 1 : 2;
   const Index n = id.axes, count = 3 * n * n + n;
   id.model = model_from(json, "model", n);
-  id.covariance = Matrix::Constant(count, count, std::numeric_limits<double>::quiet_NaN());
+  id.covariance = Matrix::Constant(count, count, kUnknown);
   if (json.contains("standard_error")) {
     id.standard_error = model_from(json, "standard_error", n);
     id.covariance = impedance::stacked(id.standard_error).cwiseAbs2().asDiagonal();
@@ -335,46 +370,6 @@ std::string to_json(const std::vector<Identification>& identifications, const st
   }
   return one_or_list("mbk.ellipses/1", objects);
 }
-
-namespace {
-
-Json info_json(const Recording& recording, const Inspection& inspection) {
-  Json json = header("mbk.info/1");
-  json["inputs"] = inputs_json(recording.sources);
-  json["samples"] = inspection.samples;
-  json["duration_s"] = number(inspection.duration);
-  json["rate_hz"] = number(inspection.rate_hz);
-  json["interval_s"] = {{"minimum", number(inspection.interval_min)},
-                        {"median", number(inspection.interval_median)},
-                        {"maximum", number(inspection.interval_max)},
-                        {"standard_deviation", number(inspection.interval_standard_deviation)}};
-  json["gaps"] = Json::array();
-  for (const Gap& gap : inspection.gaps) {
-    json["gaps"].push_back(
-        {{"after_sample", gap.sample + 1}, {"time_s", number(gap.time)}, {"length_s", number(gap.length)}});
-  }
-  json["duplicated_times"] = inspection.duplicated_times;
-  json["backward_times"] = inspection.backward_times;
-  json["non_finite"] = Json::array();
-  for (const NonFinite& bad : inspection.non_finite) {
-    json["non_finite"].push_back({{"channel", bad.channel}, {"count", bad.count}, {"first_sample", bad.first + 1}});
-  }
-  json["channels"] = Json::array();
-  for (const ChannelFacts& facts : inspection.channels) {
-    json["channels"].push_back({{"name", facts.name},
-                                {"unit", facts.unit},
-                                {"minimum", number(facts.min)},
-                                {"maximum", number(facts.max)},
-                                {"constant", facts.constant},
-                                {"clipped", facts.clipped}});
-  }
-  json["metadata"] = Json::object();
-  for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
-  json["notes"] = recording.notes;
-  return json;
-}
-
-}  // namespace
 
 std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections) {
   std::vector<Json> objects;

@@ -26,7 +26,7 @@ Result<Eigen::Array<bool, Eigen::Dynamic, 1>> held(const CoverageOptions& option
   lab.sensors.coloured_force_noise = options.remnant_force;
   const auto recording = laboratory::record_prescribed_motion(lab, Hertz(1000.0));
   if (!recording) return tl::unexpected(recording.error());
-  const auto measured = measurement::measure({*recording}, {});
+  const auto measured = measurement::measure({&*recording, 1}, {});
   if (!measured) return tl::unexpected(measured.error());
   const Identification& id = measured->identification;
   const Vector error = impedance::stacked(id.model) - impedance::stacked(lab.limb);

@@ -76,7 +76,7 @@ TEST_P(ReferenceMode, AgreesWithTheTwin) {
   const Recording recording = generated(noisy(GetParam().protocol, 7));
   const auto wanted = reference::identify(as_log(recording), settings_of_twin());
   ASSERT_TRUE(wanted) << wanted.error().line();
-  const auto got = measurement::measure({recording}, options_of_mbk());
+  const auto got = measurement::measure({&recording, 1}, options_of_mbk());
   ASSERT_TRUE(got) << got.error().line();
   const Identification& id = got->identification;
   const std::pair<const char*, double> differences[] = {{"M", difference(id.model.M, matrix2(wanted->M))},
@@ -96,9 +96,9 @@ TEST(ReferenceModeOfChapter5, TakesTheHandleOffTheDiagonalOnly) {
   measurement::Options options;
   options.preprocess.mode = Mode::reference;
   options.preprocess.procedure = Procedure::chapter5;
-  const Matrix with = measurement::measure({recording}, options)->identification.model.M;
+  const Matrix with = measurement::measure({&recording, 1}, options)->identification.model.M;
   options.identify.handle_mass = 0.194;
-  const Matrix without = measurement::measure({recording}, options)->identification.model.M;
+  const Matrix without = measurement::measure({&recording, 1}, options)->identification.model.M;
   EXPECT_LE((with - without - 0.194 * Matrix::Identity(2, 2)).cwiseAbs().maxCoeff(), 1e-15);
 }
 
@@ -115,7 +115,7 @@ TEST_P(Golden, ReferenceModeAgreesWithItsExpectedNumbers) {
   ASSERT_TRUE(recording) << recording.error().line();
   measurement::Options options;
   options.preprocess.mode = Mode::reference;
-  const auto got = measurement::measure({*recording}, options);
+  const auto got = measurement::measure({&*recording, 1}, options);
   ASSERT_TRUE(got) << got.error().line();
   const Identification& id = got->identification;
   EXPECT_EQ(text(id.preparations[0].protocol), GetParam());
