@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mbk/perturbation/random.h"
+#include "mbk/numeric/random.h"
 
 namespace mbk::laboratory {
 namespace {
@@ -16,7 +16,7 @@ using perturbation::Jet;
 using perturbation::MinimumJerk;
 using perturbation::Multisine;
 using perturbation::PulseSchedule;
-using perturbation::Random;
+using numeric::Random;
 
 // Streams of the seed; pulses use stream 0, the sines of axis i stream kSines + i, and so on.
 constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;

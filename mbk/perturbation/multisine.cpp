@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "mbk/perturbation/random.h"
+#include "mbk/numeric/random.h"
 
 namespace mbk::perturbation {
 
@@ -31,7 +31,7 @@ Result<Multisine> Multisine::with_random_phases(double period, const std::vector
   if (harmonics.size() != amplitudes.size()) {
     return bad_usage(fmt::format("{} harmonics, but {} amplitudes", harmonics.size(), amplitudes.size()));
   }
-  Random random(seed, stream);
+  numeric::Random random(seed, stream);
   std::vector<Line> lines;
   for (std::size_t i = 0; i < harmonics.size(); ++i) {
     lines.push_back({harmonics[i], amplitudes[i], 2.0 * std::numbers::pi * random.uniform()});

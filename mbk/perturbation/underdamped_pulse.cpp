@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mbk/perturbation/random.h"
+#include "mbk/numeric/random.h"
 
 namespace mbk::perturbation {
 namespace {
@@ -79,7 +79,7 @@ Result<PulseSchedule> PulseSchedule::create(const Options& options) {
   PulseSchedule schedule(options, *shape);
   std::vector<int> order;
   for (int i = 0; i < options.directions * options.repetitions; ++i) order.push_back(i % options.directions);
-  Random random(options.seed);
+  numeric::Random random(options.seed);
   for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random.below(i + 1)]);
 
   double end = options.quiet;

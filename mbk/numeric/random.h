@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-namespace mbk::perturbation {
+namespace mbk::numeric {
 
 /// Random numbers that are the same on every platform. The C++ standard fixes every bit of std::mt19937_64 and
 /// std::seed_seq, but not of its distributions, so these are written out here. Streams of one seed are independent:
@@ -46,4 +46,4 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-}  // namespace mbk::perturbation
+}  // namespace mbk::numeric

@@ -1,10 +1,10 @@
-#include "mbk/perturbation/random.h"
+#include "mbk/numeric/random.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace mbk::perturbation {
+namespace mbk::numeric {
 namespace {
 
 TEST(Random, StreamsOfOneSeedDiffer) {
@@ -37,4 +37,4 @@ TEST(Random, NormalHasTheMomentsOfTheStandardNormal) {
 }
 
 }  // namespace
-}  // namespace mbk::perturbation
+}  // namespace mbk::numeric
