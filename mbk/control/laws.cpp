@@ -1,0 +1,83 @@
+#include "mbk/control/laws.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace mbk::control {
+namespace {
+
+Result<void> check_gain(const char* name, double gain, const char* unit) {
+  if (gain >= 0.0 && std::isfinite(gain)) return {};
+  return bad_usage(fmt::format("{} {:g} {} is below zero or not finite", name, gain, unit));
+}
+
+}  // namespace
+
+Result<VelocityEstimate> VelocityEstimate::create(double sample_time, Hertz cutoff) {
+  if (!(sample_time > 0.0)) return bad_usage(fmt::format("sample time {:g} s is not above zero", sample_time));
+  if (!(cutoff.value > 0.0)) return bad_usage(fmt::format("velocity cutoff {:g} Hz is not above zero", cutoff.value));
+  return VelocityEstimate(sample_time, std::exp(-RadPerSec(cutoff).value * sample_time));
+}
+
+Vector2d VelocityEstimate::step(const Vector2d& angles) noexcept {
+  if (started_) velocity_ = memory_ * velocity_ + (1.0 - memory_) / sample_time_ * (angles - last_);
+  started_ = true;
+  last_ = angles;
+  return velocity_;
+}
+
+Result<JointPositionControl> JointPositionControl::create(const Gains& gains, double sample_time) {
+  for (int joint = 0; joint < 2; ++joint) {
+    if (auto ok = check_gain("proportional gain", gains.proportional[joint], "N·m/rad"); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    if (auto ok = check_gain("derivative gain", gains.derivative[joint], "N·m·s/rad"); !ok) {
+      return tl::unexpected(ok.error());
+    }
+  }
+  const auto velocity = VelocityEstimate::create(sample_time, gains.velocity_cutoff);
+  if (!velocity) return tl::unexpected(velocity.error());
+  return JointPositionControl(gains, *velocity);
+}
+
+Vector2d JointPositionControl::step(const Vector2d& measured, const Vector2d& reference,
+                                    const Vector2d& reference_rate) noexcept {
+  const Vector2d velocity = velocity_.step(measured);
+  return gains_.proportional.cwiseProduct(reference - measured) +
+         gains_.derivative.cwiseProduct(reference_rate - velocity);
+}
+
+Vector2d ForceControl::step(const Vector2d& measured, const Vector2d& force_on_hand) const noexcept {
+  return robot::jacobian(geometry_, measured).transpose() * force_on_hand;
+}
+
+LineConstraint::LineConstraint(const Options& options, const robot::Geometry& geometry, VelocityEstimate velocity)
+    : options_(options), geometry_(geometry), velocity_(velocity) {
+  const Vector2d along(std::cos(options.angle), std::sin(options.angle));
+  across_ = Matrix2d::Identity() - along * along.transpose();
+}
+
+Result<LineConstraint> LineConstraint::create(const Options& options, const robot::Geometry& geometry,
+                                              double sample_time) {
+  if (auto ok = check_gain("stiffness across the line", options.stiffness, "N/m"); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  if (auto ok = check_gain("damping across the line", options.damping, "N·s/m"); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  const auto velocity = VelocityEstimate::create(sample_time, options.velocity_cutoff);
+  if (!velocity) return tl::unexpected(velocity.error());
+  return LineConstraint(options, geometry, *velocity);
+}
+
+Vector2d LineConstraint::step(const Vector2d& measured, const Vector2d& force_on_hand) noexcept {
+  const Matrix2d J = robot::jacobian(geometry_, measured);
+  const Vector2d velocity = J * velocity_.step(measured);
+  const Vector2d away = robot::hand_position(geometry_, measured) - options_.through;
+  const Vector2d holding = across_ * (options_.stiffness * away + options_.damping * velocity);
+  return J.transpose() * (force_on_hand - across_ * force_on_hand - holding);
+}
+
+}  // namespace mbk::control
