@@ -1,14 +1,11 @@
-#include <fmt/format.h>
-
-#include <atomic>
-#include <chrono>
 #include <memory>
-#include <mutex>
-#include <thread>
+#include <tuple>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
+#include "apps/mbk/progress.h"
 #include "mbk/analyse/summary.h"
+#include "mbk/numeric/parallel.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
 
@@ -17,42 +14,22 @@ namespace {
 
 using result::Measured;
 
-/// Says "3 of 8: log_3.mat" on stderr once the work has taken a second.
-class Progress {
- public:
-  Progress(std::size_t total, bool quiet) : total_(total), quiet_(quiet) {}
-
-  void finished(const std::string& name) {
-    const std::lock_guard lock(mutex_);
-    ++done_;
-    if (quiet_ || total_ < 2 || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(1)) return;
-    fmt::print(stderr, "{} of {}: {}\n", done_, total_, name);
-  }
-
- private:
-  std::mutex mutex_;
-  std::size_t total_, done_ = 0;
-  bool quiet_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 /// One result per recording, several at a time; the order is that of the recordings.
 std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordings,
                                            const measurement::Options& options, const MeasureArguments& arguments) {
   std::vector<Result<Measured>> results(recordings.size(), bad_data("not measured"));
-  Progress progress(recordings.size(), arguments.quiet);
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < recordings.size(); i = next++) {
-      results[i] = measurement::measure({&recordings[i], 1}, options);
-      progress.finished(recordings[i].sources.empty() ? "" : recordings[i].sources.front().path);
-    }
-  };
-  const std::size_t wanted = arguments.threads > 0 ? arguments.threads : std::thread::hardware_concurrency();
-  std::vector<std::jthread> workers;
-  for (std::size_t k = 1; k < std::min(wanted, recordings.size()); ++k) workers.emplace_back(work);
-  work();
-  workers.clear();
+  Progress progress(static_cast<int>(recordings.size()), arguments.quiet);
+  std::ignore = numeric::parallel_for(
+      static_cast<int>(recordings.size()), arguments.threads,
+      [&](int i) -> Result<void> {
+        const auto k = static_cast<std::size_t>(i);
+        results[k] = measurement::measure({&recordings[k], 1}, options);
+        return {};
+      },
+      [&](int i) {
+        const Recording& recording = recordings[static_cast<std::size_t>(i)];
+        progress.finished(recording.sources.empty() ? "" : recording.sources.front().path);
+      });  // a failure is kept with its recording
   return results;
 }
 

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <limits>
 #include <memory>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/progress.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
 #include "mbk/validation/coverage.h"
@@ -24,22 +24,13 @@ struct Arguments {
   bool json = false, quiet = false;
 };
 
-/// Says how far the runs are, once a second.
-auto progress(const Arguments& arguments) {
-  using Clock = std::chrono::steady_clock;
-  return [&arguments, last = Clock::now()](int done) mutable {
-    if (arguments.quiet || Clock::now() - last < std::chrono::seconds(1)) return;
-    last = Clock::now();
-    fmt::print(stderr, "{}: {} of {} runs\n", arguments.study, done, arguments.runs);
-  };
-}
-
 int run(const Arguments& arguments) {
   validation::CoverageOptions options;
   options.runs = arguments.runs;
   options.seed = arguments.seed;
   options.threads = arguments.threads;
-  options.progress = progress(arguments);
+  Progress progress(arguments.runs, arguments.quiet, arguments.study + ": ");
+  options.progress = [&](int) { progress.finished(); };
   const auto table = validation::coverage(options);
   if (!table) return report_error(table.error());
   const std::string text = arguments.json ? result::to_json(*table) : report::validation_text(*table);

@@ -62,6 +62,9 @@ class ClosedLoop {
   /// Angles at the encoders [rad]: what a controller may know before it decides.
   [[nodiscard]] Vector2d motor_angle() const { return state_.segment<2>(kMotorAngle); }
 
+  /// Where the loop stands [s].
+  [[nodiscard]] double time() const { return time_; }
+
   /// Begins a tick of length T [s]: the load decides, the torque takes effect; the state an instant later.
   const TrueState& hold(const Vector2d& motor_torque, double sample_time);
 

@@ -2,18 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <mutex>
-#include <optional>
-#include <thread>
 #include <vector>
 
 #include "mbk/identify/impedance_fit.h"
 #include "mbk/impedance/model.h"
 #include "mbk/laboratory/prescribed_motion.h"
 #include "mbk/measurement/measure.h"
+#include "mbk/numeric/parallel.h"
 #include "mbk/numeric/statistics.h"
 
 namespace mbk::validation {
@@ -39,31 +35,20 @@ Result<Eigen::Array<bool, Eigen::Dynamic, 1>> held(const CoverageOptions& option
 Result<ValidationTable> coverage(const CoverageOptions& options) {
   if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 400");
   const std::vector<std::string> names = identify::parameter_names(2);
-  std::vector<int> hits(names.size(), 0);
-  std::optional<Error> error;
+  std::vector<Eigen::Array<bool, Eigen::Dynamic, 1>> inside(static_cast<std::size_t>(options.runs));
   int done = 0;
-  std::mutex mutex;
-  std::atomic<int> next = 0;
-  const auto work = [&] {
-    for (int run = next++; run < options.runs; run = next++) {
-      const auto inside = held(options, run);
-      const std::lock_guard lock(mutex);
-      if (!inside) {
-        error = inside.error();
-        next = options.runs;
-        return;
-      }
-      for (std::size_t k = 0; k < hits.size(); ++k) hits[k] += (*inside)[static_cast<Index>(k)] ? 1 : 0;
-      if (options.progress) options.progress(++done);
-    }
-  };
-  {
-    const unsigned wanted = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::jthread> workers;
-    for (unsigned k = 1; k < std::min(wanted, static_cast<unsigned>(options.runs)); ++k) workers.emplace_back(work);
-    work();
-  }
-  if (error) return tl::unexpected(*error);
+  const auto ran = numeric::parallel_for(
+      options.runs, options.threads,
+      [&](int run) -> Result<void> {
+        auto one = held(options, run);
+        if (!one) return tl::unexpected(one.error());
+        inside[static_cast<std::size_t>(run)] = std::move(*one);
+        return {};
+      },
+      [&](int) {
+        if (options.progress) options.progress(++done);
+      });
+  if (!ran) return tl::unexpected(ran.error());
 
   ValidationTable table;
   table.study = "coverage";
@@ -74,8 +59,10 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
   table.runs = options.runs;
   table.seed = options.seed;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const auto [low, high] = numeric::binomial_interval(hits[k], options.runs, 0.99);
-    table.rows.push_back({names[k], 100.0 * hits[k] / options.runs, {100.0 * low, 100.0 * high}, {92.0, 98.0}});
+    int hits = 0;
+    for (const auto& run : inside) hits += run[static_cast<Index>(k)] ? 1 : 0;
+    const auto [low, high] = numeric::binomial_interval(hits, options.runs, 0.99);
+    table.rows.push_back({names[k], 100.0 * hits / options.runs, {100.0 * low, 100.0 * high}, {92.0, 98.0}});
   }
   return table;
 }
