@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+namespace mbk::config {
+
+/// What a number may be, in the unit of its key.
+struct Range {
+  enum class Kind { any, above, at_least, between, within };
+  Kind kind = Kind::any;
+  double low = 0.0;
+  double high = 0.0;
+
+  [[nodiscard]] bool holds(double value) const;
+  /// "is not above 0": the words that follow a value which it does not hold.
+  [[nodiscard]] std::string violation() const;
+};
+
+[[nodiscard]] constexpr Range any() {
+  return {};
+}
+/// value > low
+[[nodiscard]] constexpr Range above(double low) {
+  return {Range::Kind::above, low};
+}
+/// value ≥ low
+[[nodiscard]] constexpr Range at_least(double low) {
+  return {Range::Kind::at_least, low};
+}
+/// low ≤ value ≤ high
+[[nodiscard]] constexpr Range between(double low, double high) {
+  return {Range::Kind::between, low, high};
+}
+/// low < value < high
+[[nodiscard]] constexpr Range within(double low, double high) {
+  return {Range::Kind::within, low, high};
+}
+
+}  // namespace mbk::config
