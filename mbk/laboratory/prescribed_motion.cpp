@@ -12,11 +12,11 @@
 namespace mbk::laboratory {
 namespace {
 
+using numeric::Random;
 using perturbation::Jet;
 using perturbation::MinimumJerk;
 using perturbation::Multisine;
 using perturbation::PulseSchedule;
-using numeric::Random;
 
 // Streams of the seed; pulses use stream 0, the sines of axis i stream kSines + i, and so on.
 constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;
