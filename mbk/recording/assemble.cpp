@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "mbk/recording/annotations.h"
 #include "mbk/recording/channel_table.h"
 #include "mbk/recording/inspection.h"
 
@@ -87,6 +88,8 @@ class Assembler {
 
   Result<Recording> run() {
     recording_.notes = contents_.notes;
+    recording_.metadata = contents_.metadata;
+    recording_.events = contents_.events;
     if (options_.axes < 0 || options_.axes > 2) {
       return bad_usage(fmt::format("{} axes are not possible", options_.axes), "pass --axes 1 or --axes 2");
     }
@@ -97,6 +100,7 @@ class Assembler {
     }
     if (auto ok = options_.channels.empty() ? recognise() : follow_map(); !ok) return tl::unexpected(ok.error());
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+    follow_metadata();
     extract();
     if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
     return std::move(recording_);
@@ -355,6 +359,22 @@ class Assembler {
     }
     if (first.line.size() == 0) return bad_data("the recording has no samples", "nothing was recorded");
     return {};
+  }
+
+  /// Units that the metadata say, where nothing nearer says another.
+  void follow_metadata() {
+    for (Signal& signal : signals_) {
+      const auto said = recording_.metadata.find(unit_key(signal.kind->name));
+      if (said == recording_.metadata.end() || signal.unit != nullptr) continue;
+      const Unit* unit = find_unit(said->second);
+      if (unit == nullptr || !signal.kind->accepts(*unit)) {
+        recording_.notes.push_back(fmt::format("metadata '{}' is '{}', which {} cannot be in; left aside", said->first,
+                                               said->second, signal.kind->name));
+        continue;
+      }
+      signal.unit = unit;
+      recording_.metadata.erase(said);
+    }
   }
 
   void extract() {

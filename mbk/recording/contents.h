@@ -1,9 +1,11 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "mbk/core/linear_algebra.h"
+#include "mbk/trial/recording.h"
 
 namespace mbk::recording {
 
@@ -13,12 +15,22 @@ struct Array {
   Matrix values;
 };
 
+/// Text of a file, in UTF-8 without control characters: the rows of a char array, or the entries of a cell array of
+/// them.
+struct Text {
+  std::string name;  ///< MAT variable or "struct.field"
+  std::vector<std::string> lines;
+};
+
 /// What a reader found in a file, before anything is said about channels.
 struct Contents {
   std::string format;  ///< "CSV", "MAT v4", "MAT v5", "MAT v7", "MAT v7.3"
   bool table = false;  ///< CSV: the arrays are columns, and a number in the channel map counts them
   std::vector<Array> arrays;
-  std::vector<std::string> notes;  ///< one sentence each: what was left aside and why
+  std::vector<Text> texts;
+  std::map<std::string, std::string> metadata;  ///< what `take_annotations` found
+  std::vector<Event> events;                    ///< the same
+  std::vector<std::string> notes;               ///< one sentence each: what was left aside and why
 };
 
 }  // namespace mbk::recording

@@ -9,6 +9,7 @@
 
 #include "mbk/recording/byte_view.h"
 #include "mbk/recording/file_bytes.h"
+#include "mbk/recording/utf16.h"
 
 namespace mbk::recording {
 namespace {
@@ -201,10 +202,25 @@ class Decoder {
     if (kind == H5I_GROUP) return group(object, name, depth + 1);
     if (kind != H5I_DATASET) return aside(name, "not a matrix");
     if (H5Aexists(object, "MATLAB_empty") > 0) return {};
-    if (type == "char") return aside(name, "text");
+    if (type == "char") return text(object, name);
     if (type == "cell") return aside(name, "a cell array");
     if (type.empty() || is_numeric_class(type)) return dataset(object, name);
     return aside(name, fmt::format("of class '{}'", type));
+  }
+
+  /// Text is stored as the numbers of its UTF-16 code units. It is read where it is one line.
+  Result<void> text(hid_t object, const std::string& name) {
+    const std::size_t before = contents.arrays.size();
+    if (auto done = dataset(object, name); !done) return done;
+    if (contents.arrays.size() == before) return {};
+    const Matrix units = std::move(contents.arrays.back().values);
+    contents.arrays.pop_back();
+    const bool are_units = (units.array() >= 0.0 && units.array() <= 65535.0).all();
+    if (units.rows() != 1 || !are_units) return aside(name, "text in a way that is not read");
+    std::u16string line;
+    for (const double unit : units.reshaped()) line += static_cast<char16_t>(unit);
+    contents.texts.push_back({name, {printable(utf8_from_utf16(line))}});
+    return {};
   }
 
   Result<void> dataset(hid_t dataset, const std::string& name) {

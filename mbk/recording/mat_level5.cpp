@@ -8,17 +8,19 @@
 
 #include "mbk/recording/byte_view.h"
 #include "mbk/recording/inflate.h"
+#include "mbk/recording/utf16.h"
 
 namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kHeaderSize = 128;
-constexpr int kDeepest = 16;               ///< structures within structures
-constexpr std::size_t kMostElements = 64;  ///< of a structure array that is still read
+constexpr int kDeepest = 16;                 ///< structures within structures
+constexpr std::size_t kMostElements = 64;    ///< of a structure array that is still read
+constexpr std::size_t kMostLines = 100'000;  ///< of text in one variable
 
 // Types of data elements.
 constexpr std::uint32_t kInt8 = 1, kUint8 = 2, kInt16 = 3, kUint16 = 4, kInt32 = 5, kUint32 = 6, kSingle = 7,
-                        kDouble = 9, kInt64 = 12, kUint64 = 13, kMatrix = 14, kCompressed = 15, kUtf8 = 16;
+                        kDouble = 9, kInt64 = 12, kUint64 = 13, kMatrix = 14, kCompressed = 15, kUtf8 = 16, kUtf16 = 17;
 // Classes of arrays.
 constexpr std::uint32_t kCellClass = 1, kStructClass = 2, kObjectClass = 3, kCharClass = 4, kSparseClass = 5,
                         kDoubleClass = 6, kUint64Class = 15, kFunctionClass = 16, kOpaqueClass = 17;
@@ -162,6 +164,14 @@ class Decoder {
     if (body.size() == 0) return {};  // an empty field
     if (depth > kDeepest) return damaged("structures are nested too deeply");
     Elements elements{body};
+    const auto header = read_header(elements, outer);
+    if (!header) return tl::unexpected(header.error());
+    if (depth == 0) name_ = header->name;
+    if (header->name.empty()) return {};  // where MATLAB keeps the insides of its objects
+    return data(*header, elements, depth);
+  }
+
+  static Result<Header> read_header(Elements& elements, const std::string& outer) {
     const auto flags = elements.next("its array flags");
     if (!flags) return tl::unexpected(flags.error());
     if (flags->type != kUint32 || flags->data.size() != 8) return damaged("its array flags are broken");
@@ -185,9 +195,7 @@ class Decoder {
     if (!name) return tl::unexpected(name.error());
     if (size_of(name->type) != 1 && name->type != kUtf8) return damaged("its name is broken");
     header.name = outer.empty() ? printable(name->data.text()) : outer;
-    if (depth == 0) name_ = header.name;
-    if (header.name.empty()) return {};  // where MATLAB keeps the insides of its objects
-    return data(header, elements, depth);
+    return header;
   }
 
   Result<void> data(const Header& header, Elements& elements, int depth) {
@@ -206,9 +214,12 @@ class Decoder {
         return object(header, printable(type->data.text()));
       }
       case kCellClass:
-        return aside(header, "a cell array");
-      case kCharClass:
-        return aside(header, "text");
+        return cells(header, elements);
+      case kCharClass: {
+        auto lines = lines_of_text(header, elements);
+        if (!lines) return tl::unexpected(lines.error());
+        return text(header, std::move(*lines), "text in a way that is not read");
+      }
       case kSparseClass:
         return aside(header, "a sparse matrix");
       case kFunctionClass:
@@ -228,6 +239,71 @@ class Decoder {
 
   Result<void> object(const Header& header, std::string_view type) {
     return aside(header, fmt::format("an object of MATLAB class '{}', which only MATLAB can read", type));
+  }
+
+  Result<void> text(const Header& header, std::optional<std::vector<std::string>> lines, std::string_view otherwise) {
+    if (!lines) return aside(header, otherwise);
+    contents.texts.push_back({header.name, std::move(*lines)});
+    return {};
+  }
+
+  /// The rows of a char array, without the blanks that make them equally long; nothing where they are not read.
+  static Result<std::optional<std::vector<std::string>>> lines_of_text(const Header& header, Elements& elements) {
+    using Lines = std::optional<std::vector<std::string>>;
+    const auto units = elements.next("its text");
+    if (!units) return tl::unexpected(units.error());
+    const bool wide = units->type == kUint16 || units->type == kUtf16;
+    const std::size_t each = wide ? 2 : 1;
+    const std::size_t stored = units->data.size() / each;
+    const auto count = header.count();
+    if (!wide && units->type != kInt8 && units->type != kUint8 && units->type != kUtf8) return Lines();
+    if (header.dimensions.size() != 2 || header.dimensions[0] > kMostLines) return Lines();
+    // In UTF-8 a character may have several bytes, and only a single row says where it ends.
+    const bool fits = units->data.size() % each == 0 && count == stored;
+    if (!fits && !(units->type == kUtf8 && header.dimensions[0] == 1 && count < stored)) {
+      return damaged(fmt::format("dimensions {} do not match {} stored bytes of text",
+                                 fmt::join(header.dimensions, "×"), units->data.size()));
+    }
+    if (stored == 0) return Lines({std::string()});
+    const auto rows = static_cast<std::size_t>(header.dimensions[0]);
+    std::vector<std::string> lines;
+    for (std::size_t row = 0; row < rows; ++row) {
+      std::u16string line16;
+      std::string line8;
+      for (std::size_t i = row; i < stored; i += rows) {
+        if (wide) {
+          line16 += units->data.at<char16_t>(2 * i);
+        } else {
+          line8 += units->data.at<char>(i);
+        }
+      }
+      std::string line = printable(wide ? utf8_from_utf16(line16) : std::move(line8));
+      if (rows > 1) line.resize(line.find_last_not_of(' ') + 1);
+      lines.push_back(std::move(line));
+    }
+    return Lines(std::move(lines));
+  }
+
+  /// A cell array is read where each cell is one line of text.
+  Result<void> cells(const Header& header, Elements& elements) {
+    constexpr std::string_view kAside = "a cell array";
+    const auto count = header.count();
+    if (!count || *count > kMostLines) return aside(header, kAside);
+    std::vector<std::string> lines;
+    for (std::uint64_t k = 0; k < *count; ++k) {
+      const auto cell = elements.next("a cell");
+      if (!cell) return tl::unexpected(cell.error());
+      if (cell->type != kMatrix || cell->data.size() == 0) return aside(header, kAside);
+      Elements inner{cell->data};
+      const auto inner_header = read_header(inner, header.name);
+      if (!inner_header) return tl::unexpected(inner_header.error());
+      if (inner_header->array_class != kCharClass) return aside(header, kAside);
+      auto line = lines_of_text(*inner_header, inner);
+      if (!line) return tl::unexpected(line.error());
+      if (!*line || (*line)->size() != 1) return aside(header, kAside);
+      lines.push_back(std::move((*line)->front()));
+    }
+    return text(header, lines.empty() ? std::nullopt : std::optional(std::move(lines)), kAside);
   }
 
   Result<void> numbers(const Header& header, Elements& elements) {

@@ -88,7 +88,7 @@ TEST(DecodeMatLevel5, LeavesAsideWhatIsNotARealMatrixAndSaysSo) {
   const std::string opaque =
       element5(14, element5(6, raw(std::uint32_t{17}) + raw(std::uint32_t{0})) + element5(1, "nlid") +
                        element5(1, "MCOS") + element5(1, "nldat") + double5("", kValues));
-  const auto contents = decode(header5() + opaque + matrix5("text", {1, 2}, element5(4, "a\0b\0"), 4) +
+  const auto contents = decode(header5() + opaque + matrix5("text", {1, 1}, element5(18, raw(U'a')), 4) +
                                matrix5("cells", {1, 1}, double5("", kValues), 1) + matrix5("sparse", {9, 9}, "", 5) +
                                matrix5("z", {1, 1}, element5(9, raw(1.0)) + element5(9, raw(1.0)), 0x0806) +
                                matrix5("cube", {1, 1, 1}, element5(9, raw(1.0))));
@@ -97,9 +97,54 @@ TEST(DecodeMatLevel5, LeavesAsideWhatIsNotARealMatrixAndSaysSo) {
   EXPECT_THAT(
       contents->notes,
       ElementsAre("variable 'nlid' is an object of MATLAB class 'nldat', which only MATLAB can read; left aside",
-                  "variable 'text' is text; left aside", "variable 'cells' is a cell array; left aside",
-                  "variable 'sparse' is a sparse matrix; left aside", "variable 'z' is complex; left aside",
+                  "variable 'text' is text in a way that is not read; left aside",
+                  "variable 'cells' is a cell array; left aside", "variable 'sparse' is a sparse matrix; left aside",
+                  "variable 'z' is complex; left aside",
                   "variable 'cube' is an array of more than two dimensions; left aside"));
+}
+
+std::string utf16(std::u16string_view text) {
+  std::string bytes;
+  for (const char16_t unit : text) bytes += raw(unit);
+  return bytes;
+}
+
+std::vector<std::string> lines_of(const std::string& variable) {
+  const auto contents = decode(header5() + variable);
+  EXPECT_TRUE(contents) << contents.error().line();
+  if (!contents || contents->texts.size() != 1) return {"not one text"};
+  EXPECT_TRUE(contents->notes.empty());
+  return contents->texts[0].lines;
+}
+
+TEST(DecodeMatLevel5, ReadsTextInEachEncoding) {
+  EXPECT_THAT(lines_of(matrix5("t", {1, 4}, element5(4, utf16(u"é😀a")), 4)), ElementsAre("é😀a"));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(17, utf16(u"né")), 4)), ElementsAre("né"));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(16, "né"), 4)), ElementsAre("né"));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(1, "n\xe9"), 4)), ElementsAre("né"));
+  EXPECT_THAT(lines_of(matrix5("t", {0, 0}, element5(4, ""), 4)), ElementsAre(""));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(4, utf16({u"\xD800\x1B", 2})), 4)), ElementsAre("\uFFFD?"));
+  const auto big = decode(header5(true) + matrix5("t", {1, 2}, element5(4, std::string("\0a\0b", 4), true), 4, true));
+  ASSERT_TRUE(big) << big.error().line();
+  EXPECT_THAT(big->texts.at(0).lines, ElementsAre("ab"));
+}
+
+TEST(DecodeMatLevel5, ReadsCharMatricesByRowAndCellsOfText) {
+  EXPECT_THAT(lines_of(matrix5("t", {2, 3}, element5(4, utf16(u"adb c ")), 4)), ElementsAre("abc", "d"));
+  const std::string cells = matrix5("", {1, 2}, element5(4, utf16(u"on")), 4) + matrix5("", {0, 0}, element5(4, ""), 4);
+  EXPECT_THAT(lines_of(matrix5("t", {2, 1}, cells, 1)), ElementsAre("on", ""));
+}
+
+TEST(DecodeMatLevel5, RefusesTextThatDoesNotMatchItsDimensions) {
+  EXPECT_THAT(error_of(header5() + matrix5("t", {1, 3}, element5(4, utf16(u"ab")), 4)),
+              HasSubstr("variable 't': dimensions 1×3 do not match 4 stored bytes of text"));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {1, 1}, element5(4, "abc"), 4)), HasSubstr("do not match"));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {2, 1}, element5(16, "abc"), 4)), HasSubstr("do not match"));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {3, 1}, matrix5("", {1, 1}, element5(1, "a"), 4), 1)),
+              HasSubstr("a cell is missing"));
+  const auto many = decode(header5() + matrix5("t", {2147483647, 0}, element5(1, ""), 4));
+  ASSERT_TRUE(many);
+  EXPECT_THAT(many->notes, ElementsAre(HasSubstr("text in a way that is not read")));
 }
 
 TEST(DecodeMatLevel5, RefusesDimensionsThatDoNotMatchTheData) {

@@ -97,6 +97,13 @@ void append(Vector& values, const Vector& more) {
 void append(Recording& joined, Recording&& part) {
   append(joined.time, part.time);
   for (Channel& channel : joined.channels) append(channel.values, part.find(channel.name)->values);
+  joined.events.insert(joined.events.end(), part.events.begin(), part.events.end());
+  for (const auto& [key, value] : part.metadata) {
+    const auto [entry, added] = joined.metadata.try_emplace(key, value);
+    if (added || entry->second == value) continue;
+    joined.notes.push_back(
+        fmt::format("metadata '{}' differ between the parts: '{}' was kept, not '{}'", key, entry->second, value));
+  }
   joined.sources.insert(joined.sources.end(), part.sources.begin(), part.sources.end());
   for (std::string& note : part.notes) {
     if (std::ranges::find(joined.notes, note) == joined.notes.end()) joined.notes.push_back(std::move(note));
@@ -121,6 +128,7 @@ Result<Recording> read_parts(std::vector<std::filesystem::path> files, const Rea
       const auto offset = static_cast<double>(joined->samples());
       const auto last = static_cast<double>(part->samples() - 1);
       part->time = Vector::LinSpaced(part->samples(), offset, offset + last) / options.rate->value;
+      for (Event& event : part->events) event.time += offset / options.rate->value;
     }
     if (auto ok = check_time_runs_on(*joined, *part); !ok) return tl::unexpected(ok.error().in(name));
     append(*joined, std::move(*part));

@@ -7,6 +7,7 @@
 #include <new>
 #include <string_view>
 
+#include "mbk/recording/annotations.h"
 #include "mbk/recording/assemble.h"
 #include "mbk/recording/csv.h"
 #include "mbk/recording/file_bytes.h"
@@ -57,6 +58,7 @@ Result<Decoded> decode_file(const std::filesystem::path& file) {
   if (!bytes) return tl::unexpected(bytes.error());
   auto contents = decode(file, bytes->bytes());
   if (!contents) return tl::unexpected(contents.error());
+  take_annotations(*contents);
   SourceFile source{file.string(), contents->format, sha256(bytes->bytes())};
   return Decoded{std::move(*contents), std::move(source)};
 }
@@ -77,6 +79,11 @@ FileContents listed(Decoded decoded) {
       stored.maximum = std::fmax(stored.maximum, value);
     }
     listing.arrays.push_back(std::move(stored));
+  }
+  if (!decoded.contents.metadata.empty()) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : decoded.contents.metadata) keys.push_back(key);
+    listing.notes.push_back(fmt::format("it holds metadata: {}", fmt::join(keys, ", ")));
   }
   return listing;
 }
