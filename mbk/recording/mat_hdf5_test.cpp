@@ -42,6 +42,26 @@ TEST(DecodeMatHdf5, ReadsPlainAndCompressedMatrices) {
   }
 }
 
+TEST(DecodeMatHdf5, ReadsMetadata) {
+  const test::Folder folder;
+  write_hdf5(folder / "log.mat", test::logs(30), MAT_COMPRESSION_NONE);
+  mat_t* mat = Mat_Open((folder / "log.mat").c_str(), MAT_ACC_RDWR);
+  ASSERT_NE(mat, nullptr);
+  std::size_t one[2] = {1, 1};
+  std::size_t length[2] = {1, 6};
+  const char* fields[] = {"name"};
+  matvar_t* metadata = Mat_VarCreateStruct("metadata", 2, one, fields, 1);
+  char16_t name[] = u"Ánna é";
+  Mat_VarSetStructFieldByName(metadata, "name", 0,
+                              Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UINT16, 2, length, name, 0));
+  EXPECT_EQ(Mat_VarWrite(mat, metadata, MAT_COMPRESSION_NONE), 0);
+  Mat_VarFree(metadata);
+  Mat_Close(mat);
+  const auto recording = read(folder / "log.mat", {});
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->metadata, (std::map<std::string, std::string>{{"name", "Ánna é"}}));
+}
+
 TEST(DecodeMatHdf5, RefusesAFileCutAnywhere) {
   const test::Folder folder;
   for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {

@@ -199,7 +199,12 @@ TEST(DecodeMatLevel5, SurvivesFlippedBytes) {
   const std::string plain =
       header5() + double5("logs", kValues) +
       struct5("s", {{"a", double5("", kValues)}, {"b", struct5("", {{"c", double5("", kValues)}})}}) +
-      matrix5("cells", {1, 1}, double5("", kValues), 1);
+      matrix5("cells", {1, 1}, double5("", kValues), 1) +
+      struct5("events", {{"name", matrix5("", {2, 1},
+                                          matrix5("", {1, 2}, element5(4, utf16(u"on")), 4) +
+                                              matrix5("", {2, 2}, element5(16, "o fé"), 4),
+                                          1)},
+                         {"text", matrix5("", {2, 3}, element5(17, utf16(u"adb c ")), 4)}});
   const std::string packed = header5() + compressed5(double5("logs", test::logs(20)));
   std::mt19937 random(20130601);
   for (int i = 0; i < 20000; ++i) {
@@ -209,6 +214,7 @@ TEST(DecodeMatLevel5, SurvivesFlippedBytes) {
     const auto contents = decode(file);
     if (contents) {
       for (const Array& array : contents->arrays) ASSERT_LE(array.values.size(), 19 * 20) << "byte " << at;
+      for (const Text& text : contents->texts) ASSERT_LE(text.lines.size(), 100'000u) << "byte " << at;
     }
   }
 }

@@ -102,7 +102,7 @@ void append(Recording& joined, Recording&& part) {
     const auto [entry, added] = joined.metadata.try_emplace(key, value);
     if (added || entry->second == value) continue;
     joined.notes.push_back(
-        fmt::format("metadata '{}' differ between the parts: '{}' was kept, not '{}'", key, entry->second, value));
+        fmt::format("metadata '{}' differs between the parts: '{}' was kept, not '{}'", key, entry->second, value));
   }
   joined.sources.insert(joined.sources.end(), part.sources.begin(), part.sources.end());
   for (std::string& note : part.notes) {

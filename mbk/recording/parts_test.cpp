@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "mbk/recording/inspection.h"
+#include "mbk/recording/mat_writer.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/test_files.h"
 
@@ -52,6 +54,23 @@ TEST_F(ReadParts, CountsTimeOnWhereTheRateGivesIt) {
       read_parts({folder_.write("a1.csv", "x\n1\n2\n"), folder_.write("a2.csv", "x\n3\n4\n")}, options);
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->time, (Vector(4) << 0, 0.01, 0.02, 0.03).finished());
+}
+
+TEST_F(ReadParts, JoinsMetadataAndEventsAndSaysWhereTheyDiffer) {
+  for (int part = 1; part <= 2; ++part) {
+    Recording recording;
+    recording.time = Vector::LinSpaced(10, part, part + 0.9);
+    recording.channels = {{"hand_x", "m", "base", Vector::Zero(10)}};
+    recording.metadata = {{"participant", "7"}, {"part", std::to_string(part)}};
+    recording.events = {{part + 0.5, "onset", 1.0 * part}};
+    ASSERT_TRUE(write_mat(recording, folder_ / fmt::format("log_{}.mat", part), false));
+  }
+  const auto recording = read_parts({folder_ / "log_1.mat", folder_ / "log_2.mat"}, {});
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->metadata, (std::map<std::string, std::string>{{"participant", "7"}, {"part", "1"}}));
+  EXPECT_THAT(recording->notes, testing::Contains("metadata 'part' differs between the parts: '1' was kept, not '2'"));
+  ASSERT_EQ(recording->events.size(), 2u);
+  EXPECT_EQ(recording->events[1].time, 2.5);
 }
 
 TEST_F(ReadParts, NamesAMissingPart) {

@@ -8,6 +8,7 @@ import zlib
 KINDS = {1: "b", 2: "B", 3: "h", 4: "H", 5: "i", 6: "I", 7: "f", 9: "d", 12: "q", 13: "Q"}  # of data elements
 CLASSES = {"d": (6, 9), "f": (7, 7), "h": (10, 3), "i": (12, 5)}  # array.typecode: class of the matrix, data element
 MATRIX, COMPRESSED, INT32, UINT32, INT8 = 14, 15, 5, 6, 1
+STRUCTURE = 2  # class of an array
 
 
 def elements(data):
@@ -24,7 +25,7 @@ def elements(data):
 
 
 def read(path):
-    """{name: list of rows} of every matrix in the file."""
+    """{name: list of rows} of every matrix of numbers in the file."""
     assert sys.byteorder == "little"
     variables = {}
     for kind, data in elements(path.read_bytes()[128:]):
@@ -33,6 +34,8 @@ def read(path):
         if kind != MATRIX:
             continue
         parts = list(elements(data))
+        if parts[0][1][0] == STRUCTURE:
+            continue
         rows, columns = struct.unpack("<2i", parts[1][1])
         values = array.array(KINDS[parts[3][0]], parts[3][1])
         variables[parts[2][1].decode()] = [[float(v) for v in values[k:rows * columns:rows]] for k in range(rows)]
