@@ -23,9 +23,13 @@ Eigen::Vector2d unit_vector(int k, int n) {
 }
 
 Result<void> check(const PulseSchedule::Options& o) {
-  if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} m is not above 0", o.amplitude));
+  if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} is not above 0", o.amplitude));
   if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
   if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
+  if (o.repetitions > PulseSchedule::kMostPulses / o.directions) {
+    return bad_usage(fmt::format("{} directions, {} times each, are more than {} pulses", o.directions, o.repetitions,
+                                 PulseSchedule::kMostPulses));
+  }
   if (!(o.shortest_duration > 0.0 && o.shortest_duration <= o.longest_duration && std::isfinite(o.longest_duration))) {
     return bad_usage(
         fmt::format("pulse durations from {} s to {} s are no range above 0", o.shortest_duration, o.longest_duration));
@@ -44,31 +48,15 @@ Result<void> check(const PulseSchedule::Options& o) {
 }  // namespace
 
 Result<UnderdampedPulse> UnderdampedPulse::create(double amplitude, double damping_ratio, RadPerSec natural_frequency) {
-  if (!(damping_ratio > 0.0 && damping_ratio < 1.0)) {
-    return bad_usage(fmt::format("damping ratio {} is not between 0 and 1", damping_ratio));
-  }
-  if (!(natural_frequency.value > 0.0 && std::isfinite(natural_frequency.value))) {
-    return bad_usage(fmt::format("natural frequency {} rad/s is not above 0", natural_frequency.value));
-  }
   if (!std::isfinite(amplitude)) return bad_usage(fmt::format("pulse amplitude {} is not finite", amplitude));
-  return UnderdampedPulse(amplitude, damping_ratio, natural_frequency.value);
+  const auto filter = UnderdampedFilter::create(damping_ratio, natural_frequency);
+  if (!filter) return tl::unexpected(filter.error());
+  return UnderdampedPulse(amplitude, *filter);
 }
-
-UnderdampedPulse::UnderdampedPulse(double amplitude, double damping_ratio, double natural_frequency)
-    : amplitude_(amplitude),
-      natural_frequency_(natural_frequency),
-      decay_(damping_ratio * natural_frequency),
-      damped_(natural_frequency * std::sqrt(1.0 - damping_ratio * damping_ratio)),
-      skew_(decay_ / damped_) {}
 
 Jet<double> UnderdampedPulse::at(double t) const {
   if (t < 0.0) return {0.0, 0.0, 0.0};
-  const double envelope = amplitude_ * std::exp(-decay_ * t);
-  const double cosine = std::cos(damped_ * t);
-  const double sine = std::sin(damped_ * t);
-  const double wn2 = natural_frequency_ * natural_frequency_;
-  return {amplitude_ - envelope * (cosine + skew_ * sine), envelope * wn2 / damped_ * sine,
-          envelope * wn2 * (cosine - skew_ * sine)};
+  return filter_.response(0.0, 0.0, amplitude_, t);
 }
 
 Result<PulseSchedule> PulseSchedule::create(const Options& options) {

@@ -8,12 +8,12 @@
 #include "mbk/core/units.h"
 #include "mbk/perturbation/jet.h"
 #include "mbk/perturbation/minimum_jerk.h"
+#include "mbk/perturbation/underdamped_filter.h"
 
 namespace mbk::perturbation {
 
-inline constexpr double kPublishedDampingRatio = 0.1;         ///< ζ     (Dyck 2013, below eq. 3.5)
-inline constexpr RadPerSec kPublishedNaturalFrequency{15.0};  ///< ωₙ [s⁻¹]
-inline constexpr double kPublishedPulseAmplitude = 0.005;     ///< steady displacement [m]
+inline constexpr double kPublishedPulseAmplitude = 0.005;  ///< steady displacement [m] (Dyck 2013, §3.4)
+inline constexpr double kPublishedPulseForce = 2.0;        ///< steady force [N] (Dyck 2013, §4.1)
 
 /// Response of G(s) = ωₙ² / (s² + 2ζωₙ s + ωₙ²) to a step of height A at t = 0, from rest (Dyck 2013, eq. 3.5):
 ///   r(t) = A [1 − e^{−ζωₙt} (cos ω_d t + ζ/√(1−ζ²) sin ω_d t)],   ω_d = ωₙ √(1−ζ²)
@@ -27,27 +27,29 @@ class UnderdampedPulse {
   /// r, ṙ, r̈ at t [s] after the step.
   [[nodiscard]] Jet<double> at(double t) const;
 
+  [[nodiscard]] const UnderdampedFilter& filter() const { return filter_; }
+
  private:
-  UnderdampedPulse(double amplitude, double damping_ratio, double natural_frequency);
+  UnderdampedPulse(double amplitude, const UnderdampedFilter& filter) : amplitude_(amplitude), filter_(filter) {}
 
   double amplitude_;
-  double natural_frequency_;
-  double decay_;   // ζωₙ
-  double damped_;  // ω_d
-  double skew_;    // ζ/√(1−ζ²)
+  UnderdampedFilter filter_;
 };
 
 /// A train of underdamped pulses in directions spaced evenly around a circle, each repeated, in random order and with
-/// random durations and pauses (Dyck 2013, §3.4). After a pulse the hand returns to the start on a minimum-jerk path
-/// that takes over position, velocity and acceleration, and rests there until the next one.
+/// random durations and pauses (Dyck 2013, §3.4 and §4.1). After a pulse the signal returns to zero on a minimum-jerk
+/// path that takes over value, velocity and acceleration, and rests there until the next one. It displaces the hand, or
+/// is a force on it: whatever the amplitude is in.
 class PulseSchedule {
  public:
+  static constexpr int kMostPulses = 10000;
+
   struct Options {
-    double amplitude = kPublishedPulseAmplitude;               ///< A [m], steady displacement; > 0
+    double amplitude = kPublishedPulseAmplitude;               ///< A [m or N], steady value; > 0
     double damping_ratio = kPublishedDampingRatio;             ///< ζ
     RadPerSec natural_frequency = kPublishedNaturalFrequency;  ///< ωₙ
     int directions = 8;              ///< evenly around the circle, the first along +x; 2 gives ±x
-    int repetitions = 2;             ///< pulses in each direction
+    int repetitions = 2;             ///< pulses in each direction; at most kMostPulses in all
     double shortest_duration = 1.5;  ///< of a pulse, onset to offset [s]
     double longest_duration = 2.0;   ///< [s]
     double shortest_pause = 2.0;     ///< from the end of `quiet`, or from the previous offset, to the onset [s]
@@ -61,21 +63,25 @@ class PulseSchedule {
     double onset = 0.0;                        ///< [s]
     double offset = 0.0;                       ///< [s]; the way back begins
     int direction = 0;                         ///< 0 … directions − 1
-    double angle = 0.0;                        ///< of the displacement from +x [rad]
-    Eigen::Vector2d direction_B = {1.0, 0.0};  ///< unit vector of the displacement, base frame
+    double angle = 0.0;                        ///< of the pulse from +x [rad]
+    Eigen::Vector2d direction_B = {1.0, 0.0};  ///< unit vector of the pulse, base frame
   };
 
   /// @fails  a limit named at Options is not kept; a time is not finite or negative.
   [[nodiscard]] static Result<PulseSchedule> create(const Options& options);
 
-  /// Displacement of the hand from the start, and its two derivatives, at t [s]; [m], base frame. Exactly zero
-  /// between the end of a way back and the next onset.
+  /// Displacement or force and its two derivatives, at t [s]; [m or N], base frame. Exactly zero between the end of a
+  /// way back and the next onset.
   [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
 
-  /// The step behind the pulse: A·direction from onset up to offset, else exactly zero [m], base frame.
+  /// The step behind the pulse: A·direction from onset up to offset, else exactly zero [m or N], base frame.
   [[nodiscard]] Eigen::Vector2d reference(double t) const;
 
   [[nodiscard]] const std::vector<Pulse>& pulses() const { return pulses_; }
+  [[nodiscard]] const Options& options() const { return options_; }
+
+  /// −3 dB of G: up to there an onset excites; the spectrum of its velocity is A G(j2πf).
+  [[nodiscard]] Hertz bandwidth() const { return shape_.filter().bandwidth(); }
 
  private:
   PulseSchedule(const Options& options, const UnderdampedPulse& shape) : options_(options), shape_(shape) {}
