@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include "mbk/numeric/random.h"
+#include "mbk/perturbation/largest_value.h"
 
 namespace mbk::perturbation {
 
@@ -51,6 +53,28 @@ Jet<double> Multisine::at(double t) const {
     sum.second -= omega * omega * sine;
   }
   return sum;
+}
+
+double Multisine::root_mean_square() const {
+  double power = 0.0;
+  for (const Line& line : lines_) power += 0.5 * line.amplitude * line.amplitude;
+  return std::sqrt(power);
+}
+
+double Multisine::peak() const {
+  const int samples = 64 * std::ranges::max(lines_, {}, &Line::harmonic).harmonic;
+  const auto magnitude = [&](double t) { return std::abs(at(t).value); };
+  std::vector<double> times, values;
+  for (int k = 0; k <= samples; ++k) {
+    times.push_back(period_ * k / samples);
+    values.push_back(magnitude(times.back()));
+  }
+  return largest_value(times, values, magnitude).value;
+}
+
+double Multisine::crest_factor() const {
+  const double rms = root_mean_square();
+  return rms > 0.0 ? peak() / rms : 0.0;
 }
 
 Multisine Multisine::scaled(double factor) const {

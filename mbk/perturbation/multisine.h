@@ -32,6 +32,16 @@ class Multisine {
   /// r, ṙ, r̈ at t [s], any finite t.
   [[nodiscard]] Jet<double> at(double t) const;
 
+  /// √(Σ aᵢ²/2), over whole periods.
+  [[nodiscard]] double root_mean_square() const;
+
+  /// Largest |r| of the continuous signal: found on 64 samples to the period of the highest line, which miss at most
+  /// 0.12 % of it (Bernstein: |r̈| ≤ ω² max|r|), then refined.
+  [[nodiscard]] double peak() const;
+
+  /// Peak over root mean square; √2 for one line.   Zero where every amplitude is zero.
+  [[nodiscard]] double crest_factor() const;
+
   /// The same signal times a factor.
   [[nodiscard]] Multisine scaled(double factor) const;
 
