@@ -18,6 +18,10 @@ Result<Multisine> Multisine::create(double period, std::vector<Line> lines) {
   std::set<int> seen;
   for (const Line& line : lines) {
     if (line.harmonic < 1) return bad_usage(fmt::format("harmonic {} is not above 0", line.harmonic));
+    if (line.harmonic > kHighestHarmonic) {
+      return bad_usage(fmt::format("harmonic {} is above {}", line.harmonic, kHighestHarmonic),
+                       "take a shorter period");
+    }
     if (!seen.insert(line.harmonic).second) return bad_usage(fmt::format("harmonic {} stands twice", line.harmonic));
     if (!std::isfinite(line.amplitude) || !std::isfinite(line.phase)) {
       return bad_usage(fmt::format("amplitude {} or phase {} rad of harmonic {} is not finite", line.amplitude,

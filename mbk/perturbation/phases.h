@@ -25,7 +25,7 @@ struct LowCrestOptions {
 /// is the peak. The minimum is a local one; more starts may find a lower one. The same options give the same phases.
 /// With the default options ten flat lines 1…10 have the crest factor 1.388, and {1, 4, 7, 10, 13, 16, 20, 23, 26, 29}
 /// 1.700.
-/// @fails  starts < 1; every amplitude is zero.
+/// @fails  starts < 1; every amplitude is zero; a harmonic above 10 000, which would take too much memory.
 [[nodiscard]] Result<Multisine> with_low_crest_phases(const Multisine& signal, const LowCrestOptions& options = {});
 
 }  // namespace mbk::perturbation
