@@ -10,8 +10,6 @@
 namespace mbk::perturbation {
 namespace {
 
-constexpr int kParameters = 3;  // M, B and K
-
 Result<void> check(const OptimalPowerOptions& o) {
   if (o.limited != LimitedSignal::force) return {};
   if (!o.nominal) {

@@ -23,6 +23,12 @@ Jet<Eigen::Vector2d> along(const Jet<double>& r, const Eigen::Vector2d& directio
   return {r.value * direction_B, r.first * direction_B, r.second * direction_B};
 }
 
+/// Unit vector at an angle; what is rounding only is zero, so that π/2 leaves the x axis at rest.
+Eigen::Vector2d unit_vector(double angle) {
+  const auto component = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
+  return {component(std::cos(angle)), component(std::sin(angle))};
+}
+
 /// Lowest and highest frequency of the lines that have an amplitude.
 void widen(std::pair<Hertz, Hertz>& band, const Multisine& signal) {
   for (const Multisine::Line& line : signal.lines()) {
@@ -84,7 +90,7 @@ Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, dou
   auto sequence = RandomBinary::create(options, duration);
   if (!sequence) return tl::unexpected(sequence.error());
   return with_countable_cycles(
-      Schedule(Binary{*std::move(sequence), {std::cos(angle), std::sin(angle)}}, quantity, Space::hand, duration));
+      Schedule(Binary{*std::move(sequence), unit_vector(angle)}, quantity, Space::hand, duration));
 }
 
 Result<Schedule> Schedule::rest(double duration) {
