@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include "mbk/numeric/random.h"
+#include "mbk/perturbation/largest_value.h"
 
 namespace mbk::perturbation {
 
@@ -16,6 +18,10 @@ Result<Multisine> Multisine::create(double period, std::vector<Line> lines) {
   std::set<int> seen;
   for (const Line& line : lines) {
     if (line.harmonic < 1) return bad_usage(fmt::format("harmonic {} is not above 0", line.harmonic));
+    if (line.harmonic > kHighestHarmonic) {
+      return bad_usage(fmt::format("harmonic {} is above {}", line.harmonic, kHighestHarmonic),
+                       "take a shorter period");
+    }
     if (!seen.insert(line.harmonic).second) return bad_usage(fmt::format("harmonic {} stands twice", line.harmonic));
     if (!std::isfinite(line.amplitude) || !std::isfinite(line.phase)) {
       return bad_usage(fmt::format("amplitude {} or phase {} rad of harmonic {} is not finite", line.amplitude,
@@ -51,6 +57,28 @@ Jet<double> Multisine::at(double t) const {
     sum.second -= omega * omega * sine;
   }
   return sum;
+}
+
+double Multisine::root_mean_square() const {
+  double power = 0.0;
+  for (const Line& line : lines_) power += 0.5 * line.amplitude * line.amplitude;
+  return std::sqrt(power);
+}
+
+double Multisine::peak() const {
+  const int samples = 64 * std::ranges::max(lines_, {}, &Line::harmonic).harmonic;
+  const auto magnitude = [&](double t) { return std::abs(at(t).value); };
+  std::vector<double> times, values;
+  for (int k = 0; k <= samples; ++k) {
+    times.push_back(period_ * k / samples);
+    values.push_back(magnitude(times.back()));
+  }
+  return largest_value(times, values, magnitude).value;
+}
+
+double Multisine::crest_factor() const {
+  const double rms = root_mean_square();
+  return rms > 0.0 ? peak() / rms : 0.0;
 }
 
 Multisine Multisine::scaled(double factor) const {

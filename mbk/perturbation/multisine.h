@@ -13,14 +13,16 @@ namespace mbk::perturbation {
 /// in the unit of the amplitudes. Its derivatives are exact.
 class Multisine {
  public:
+  static constexpr int kHighestHarmonic = 100'000;
+
   struct Line {
-    int harmonic = 1;        ///< k > 0: the frequency is k/T
+    int harmonic = 1;        ///< 0 < k ≤ kHighestHarmonic: the frequency is k/T
     double amplitude = 0.0;  ///< a [u]
     double phase = 0.0;      ///< φ [rad]
   };
 
   /// @param period  T [s]
-  /// @fails  T ≤ 0; no lines; k < 1; a harmonic stands twice; a value is not finite.
+  /// @fails  T ≤ 0; no lines; k < 1 or above kHighestHarmonic; a harmonic stands twice; a value is not finite.
   [[nodiscard]] static Result<Multisine> create(double period, std::vector<Line> lines);
 
   /// Phases uniform on [0, 2π), drawn in the order of the harmonics from the given stream of the seed.
@@ -31,6 +33,16 @@ class Multisine {
 
   /// r, ṙ, r̈ at t [s], any finite t.
   [[nodiscard]] Jet<double> at(double t) const;
+
+  /// √(Σ aᵢ²/2), over whole periods.
+  [[nodiscard]] double root_mean_square() const;
+
+  /// Largest |r| of the continuous signal: found on 64 samples to the period of the highest line, which miss at most
+  /// 0.12 % of it (Bernstein: |r̈| ≤ ω² max|r|), then refined.
+  [[nodiscard]] double peak() const;
+
+  /// Peak over root mean square; √2 for one line.   Zero where every amplitude is zero.
+  [[nodiscard]] double crest_factor() const;
 
   /// The same signal times a factor.
   [[nodiscard]] Multisine scaled(double factor) const;

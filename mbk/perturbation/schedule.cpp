@@ -23,6 +23,12 @@ Jet<Eigen::Vector2d> along(const Jet<double>& r, const Eigen::Vector2d& directio
   return {r.value * direction_B, r.first * direction_B, r.second * direction_B};
 }
 
+/// Unit vector at an angle; what is rounding only is zero, so that π/2 leaves the x axis at rest.
+Eigen::Vector2d unit_vector(double angle) {
+  const auto component = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
+  return {component(std::cos(angle)), component(std::sin(angle))};
+}
+
 /// Lowest and highest frequency of the lines that have an amplitude.
 void widen(std::pair<Hertz, Hertz>& band, const Multisine& signal) {
   for (const Multisine::Line& line : signal.lines()) {
@@ -32,6 +38,12 @@ void widen(std::pair<Hertz, Hertz>& band, const Multisine& signal) {
     band.first = std::min(band.first, frequency);
     band.second = std::max(band.second, frequency);
   }
+}
+
+/// To three significant digits.   ratio > 0
+double rounded_down(double ratio) {
+  const double digit = std::pow(10.0, std::floor(std::log10(ratio)) - 2.0);
+  return digit * std::floor(ratio / digit);
 }
 
 template <class... Functions>
@@ -56,7 +68,8 @@ Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity
         fmt::format("moving-in time {} s is not above 0 and at most the duration {} s", moving_in, duration));
   }
   const MinimumJerk growth({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, moving_in);
-  return Schedule(Sines{std::move(first), std::move(second), growth, moving_in}, quantity, space, duration);
+  return with_countable_cycles(
+      Schedule(Sines{std::move(first), std::move(second), growth, moving_in}, quantity, space, duration));
 }
 
 Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantity quantity, double tail) {
@@ -67,7 +80,7 @@ Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantit
   }
   const double duration = schedule->pulses().back().offset + tail;
   if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
-  return Schedule(*std::move(schedule), quantity, Space::hand, duration);
+  return with_countable_cycles(Schedule(*std::move(schedule), quantity, Space::hand, duration));
 }
 
 Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, double angle, Quantity quantity,
@@ -76,7 +89,8 @@ Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, dou
   if (!std::isfinite(angle)) return bad_usage(fmt::format("angle {} rad is not finite", angle));
   auto sequence = RandomBinary::create(options, duration);
   if (!sequence) return tl::unexpected(sequence.error());
-  return Schedule(Binary{*std::move(sequence), {std::cos(angle), std::sin(angle)}}, quantity, Space::hand, duration);
+  return with_countable_cycles(
+      Schedule(Binary{*std::move(sequence), unit_vector(angle)}, quantity, Space::hand, duration));
 }
 
 Result<Schedule> Schedule::rest(double duration) {
@@ -132,6 +146,20 @@ std::pair<Hertz, Hertz> Schedule::band() const {
   return band;
 }
 
+/// What a pulse or binary sequence excites is G's own oscillation, whatever its switching leaves of the band.
+Hertz Schedule::fastest() const {
+  const auto* binary = std::get_if<Binary>(&shape_);
+  return binary ? binary->sequence.filter().bandwidth() : band().second;
+}
+
+Result<Schedule> Schedule::with_countable_cycles(Schedule schedule) {
+  const double cycles = schedule.fastest().value * schedule.duration();
+  if (cycles <= kMostCycles) return schedule;
+  return bad_usage(fmt::format("{:.4g} Hz over {:g} s are more than {:g} cycles", schedule.fastest().value,
+                               schedule.duration(), kMostCycles),
+                   "lower the highest frequency, or make several trials");
+}
+
 /// Times between which the signal is smooth, from 0 to the duration.
 std::vector<double> Schedule::breaks() const {
   std::vector<double> times = {0.0};
@@ -156,11 +184,7 @@ std::vector<double> Schedule::breaks() const {
 /// both sides.
 std::vector<double> Schedule::grid() const {
   const std::vector<double> times = breaks();
-  const double highest = [&] {
-    // What a binary sequence or pulse excites is G's own oscillation, whatever its switching leaves of the band.
-    if (const auto* binary = std::get_if<Binary>(&shape_)) return binary->sequence.filter().bandwidth().value;
-    return band().second.value;
-  }();
+  const double highest = fastest().value;
   std::vector<double> grid = {0.0};
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
     const double length = times[i + 1] - times[i];
@@ -235,10 +259,10 @@ Result<void> Schedule::check(const Limits& limits) const {
       return bad_usage(fmt::format("limit {} {} of the {} is not above 0", *demand.limit, demand.unit, demand.name));
     }
     if (demand.value <= *demand.limit) continue;
-    return bad_usage(fmt::format("{} {:.6g} {} at {:.3f} s is above the limit {:.6g} {}", demand.name, demand.value,
-                                 demand.unit, demand.time, *demand.limit, demand.unit),
-                     fmt::format("multiply the amplitude by {:.3f} or less",
-                                 std::floor(1000.0 * *demand.limit / demand.value) / 1000.0));
+    return bad_usage(
+        fmt::format("{} {:.6g} {} at {:.3f} s is above the limit {:.6g} {}", demand.name, demand.value, demand.unit,
+                    demand.time, *demand.limit, demand.unit),
+        fmt::format("multiply the amplitude by {:.3g} or less", rounded_down(*demand.limit / demand.value)));
   }
   if (limits.bandwidth) {
     if (!(limits.bandwidth->value > 0.0)) {
@@ -246,10 +270,9 @@ Result<void> Schedule::check(const Limits& limits) const {
     }
     if (found.highest_frequency > *limits.bandwidth) {
       const bool lines = std::holds_alternative<Sines>(shape_);
-      return bad_usage(
-          fmt::format("highest frequency {:.4g} Hz of the {}, there all the time, is above the limit {:.4g} Hz",
-                      found.highest_frequency.value, name, limits.bandwidth->value),
-          lines ? "leave out the lines above it" : "lower the natural frequency of the filter");
+      return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {}, throughout, is above the limit {:.4g} Hz",
+                                   found.highest_frequency.value, name, limits.bandwidth->value),
+                       lines ? "leave out the lines above it" : "lower the natural frequency of the filter");
     }
   }
   if (limits.reachable && quantity_ == Quantity::position) {

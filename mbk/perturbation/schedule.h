@@ -65,21 +65,25 @@ struct Limits {
 class Schedule {
  public:
   static constexpr double kLongest = 3600.0;  ///< [s]; longer trials are several schedules
+  static constexpr double kMostCycles = 1e5;  ///< of the highest frequency within the duration
 
   /// One multisine for each axis, r = g(t) [s₁(t), s₂(t)], with g from 0 to 1 by minimum jerk. The periods may differ.
   /// @param moving_in  time in which g grows [s]
-  /// @fails  moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest or not finite.
+  /// @fails  moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest or not finite; more than
+  /// kMostCycles of the highest line.
   [[nodiscard]] static Result<Schedule> multisine(Multisine first, Multisine second, Quantity quantity, Space space,
                                                   double duration, double moving_in);
 
   /// Underdamped pulses, Space::hand.
   /// @param tail  from the last offset to the end [s]; not below the time of the way back
-  /// @fails  as PulseSchedule::create; the tail is too short or not finite; the whole is longer than kLongest.
+  /// @fails  as PulseSchedule::create; the tail is too short or not finite; the whole is longer than kLongest; more
+  /// than kMostCycles of the filter's bandwidth.
   [[nodiscard]] static Result<Schedule> pulses(const PulseSchedule::Options& options, Quantity quantity, double tail);
 
   /// A filtered random binary sequence along one direction, Space::hand.
   /// @param angle  of the direction of +A from +x, base frame [rad]
-  /// @fails  as RandomBinary::create; the angle is not finite; duration above kLongest.
+  /// @fails  as RandomBinary::create; the angle is not finite; duration above kLongest; more than
+  /// kMostCycles of the filter's bandwidth.
   [[nodiscard]] static Result<Schedule> random_binary(const RandomBinaryOptions& options, double angle,
                                                       Quantity quantity, double duration);
 
@@ -124,7 +128,9 @@ class Schedule {
   Schedule(Shape shape, Quantity quantity, Space space, double duration)
       : shape_(std::move(shape)), quantity_(quantity), space_(space), duration_(duration) {}
 
+  [[nodiscard]] static Result<Schedule> with_countable_cycles(Schedule schedule);
   [[nodiscard]] std::pair<Hertz, Hertz> band() const;
+  [[nodiscard]] Hertz fastest() const;
   [[nodiscard]] std::vector<double> breaks() const;
   [[nodiscard]] std::vector<double> grid() const;
 

@@ -98,7 +98,8 @@ TEST(Schedule, ReferenceIsTheStepsBehindPulsesAndBinarySequence) {
   EXPECT_NEAR(steps.reference(onset.time + 0.1).norm(), 0.005, 1e-17);
   EXPECT_EQ(steps.reference(onset.time - 0.1).norm(), 0.0);
   EXPECT_NEAR(std::abs(binary().reference(3.3).y()), 2.0, 1e-15);
-  EXPECT_NEAR(binary().reference(3.3).x(), 0.0, 1e-15);
+  EXPECT_EQ(binary().reference(3.3).x(), 0.0);
+  EXPECT_EQ(binary().facts().crest_factor.x(), 0.0);
 }
 
 TEST(Schedule, NamesOnsetAndOffsetOfEveryPulseWithItsAngle) {
@@ -212,6 +213,12 @@ TEST(ScheduleCheck, KeepsToTheLimitAfterItsOwnRemedy) {
   EXPECT_TRUE(pulses(0.925 * 0.005).check(limits));
 }
 
+TEST(ScheduleCheck, NamesAFactorAlsoForAmplitudesFarTooLarge) {
+  Limits limits;
+  limits.peak = 1e-6;
+  EXPECT_EQ(pulses(5.0).check(limits).error().remedy, "multiply the amplitude by 1.15e-07 or less");
+}
+
 TEST(ScheduleCheck, AsksAlongThePathWhetherItCanBeReached) {
   Limits limits;
   limits.reachable = [](const Eigen::Vector2d& d) -> Result<void> {
@@ -236,6 +243,8 @@ TEST(Schedule, RefusesBadOptions) {
   EXPECT_FALSE(multisine(0.0, 1.0));
   EXPECT_FALSE(multisine(NAN, 1.0));
   EXPECT_FALSE(multisine(3601.0, 1.0));
+  EXPECT_FALSE(
+      Schedule::multisine(sine(1.0, 1), sine(1.0, 10'001), Quantity::position, Space::hand, 10.0, 1.0).has_value());
   EXPECT_FALSE(Schedule::pulses({}, Quantity::position, 0.5));
   EXPECT_FALSE(Schedule::pulses({}, Quantity::position, INFINITY));
   EXPECT_FALSE(Schedule::random_binary({}, NAN, Quantity::force, 10.0));
