@@ -24,7 +24,7 @@ Result<OneAxisLoop> OneAxisLoop::create(const Machine& machine, double position,
 OneAxisLoop::OneAxisLoop(const Machine& machine, double position, participant::OneAxisLoad& load, double start_time)
     : machine_(machine), load_(&load), time_(start_time), state_{position, 0.0} {}
 
-OneAxisLoop::Change OneAxisLoop::change(const participant::OneAxisState& state) const {
+OneAxisLoop::Change OneAxisLoop::change(const participant::JointState& state) const {
   const participant::OneAxisDynamics load = load_->dynamics(state);
   const double friction = machine_.friction.torque(state.velocity);
   const double acceleration = (motor_ - friction - load.bias) / (machine_.inertia + load.inertia);
@@ -49,7 +49,7 @@ const OneAxisTrueState& OneAxisLoop::hold(double motor, double sample_time) {
 void OneAxisLoop::advance() {
   const double step = sample_time_ / machine_.steps_per_tick;
   const auto after = [&](const Change& slope, double time) {
-    return participant::OneAxisState{state_.position + time * slope.velocity,
+    return participant::JointState{state_.position + time * slope.velocity,
                                      state_.velocity + time * slope.acceleration};
   };
   for (int k = 0; k < machine_.steps_per_tick; ++k) {

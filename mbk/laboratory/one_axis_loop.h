@@ -53,12 +53,12 @@ class OneAxisLoop {
     double velocity, acceleration, work_motor, absorbed, lost;
   };
   OneAxisLoop(const Machine& machine, double position, participant::OneAxisLoad& load, double start_time);
-  [[nodiscard]] Change change(const participant::OneAxisState& state) const;
+  [[nodiscard]] Change change(const participant::JointState& state) const;
 
   Machine machine_;
   participant::OneAxisLoad* load_;
   double time_, sample_time_ = 0.0, motor_ = 0.0;
-  participant::OneAxisState state_;
+  participant::JointState state_;
   OneAxisTrueState seen_;
 };
 

@@ -19,11 +19,11 @@ Result<LinearLimb> LinearLimb::create(const impedance::Model& model) {
 }
 
 LoadDynamics LinearLimb::dynamics(const HandState& hand) const {
-  return {M_, B_ * hand.velocity + K_ * (hand.position - x0_), 0.0};
+  return {M_, damping_scale_ * B_ * hand.velocity + stiffness_scale_ * K_ * (hand.position - x0_), 0.0};
 }
 
 impedance::Model LinearLimb::impedance(const Eigen::Vector2d& /*hand*/) const {
-  return {M_, B_, K_, x0_};
+  return {M_, damping_scale_ * B_, stiffness_scale_ * K_, x0_};
 }
 
 }  // namespace mbk::participant

@@ -12,8 +12,17 @@ class LinearLimb : public Load {
   /// @fails  usage: not two axes, not finite, M not symmetric positive semidefinite.
   [[nodiscard]] static Result<LinearLimb> create(const impedance::Model& model);
 
+  /// s_K and s_D ≥ 0 multiply K and B, both 1 for the limb as it was created: co-contraction. May change between ticks.
+  void scale(double stiffness, double damping) {
+    stiffness_scale_ = stiffness;
+    damping_scale_ = damping;
+  }
+
   [[nodiscard]] LoadDynamics dynamics(const HandState& hand) const override;
   [[nodiscard]] impedance::Model impedance(const Eigen::Vector2d& hand) const override;
+
+  /// Its K alone; does not allocate.
+  [[nodiscard]] Eigen::Matrix2d stiffness(const Eigen::Vector2d& /*hand*/) const { return stiffness_scale_ * K_; }
 
  private:
   LinearLimb(const Eigen::Matrix2d& M, const Eigen::Matrix2d& B, const Eigen::Matrix2d& K, const Eigen::Vector2d& x0)
@@ -21,6 +30,7 @@ class LinearLimb : public Load {
 
   Eigen::Matrix2d M_, B_, K_;
   Eigen::Vector2d x0_;
+  double stiffness_scale_ = 1.0, damping_scale_ = 1.0;
 };
 
 }  // namespace mbk::participant

@@ -4,29 +4,35 @@
 
 namespace mbk::participant {
 
-/// Where the handle of a one-axis machine is and how it moves.
-struct OneAxisState {
-  double position = 0.0;  ///< [rad or m]
-  double velocity = 0.0;  ///< [rad/s or m/s]
+/// Angle and angular velocity of a machine of one axis.
+struct JointState {
+  double position = 0.0;  ///< [rad]
+  double velocity = 0.0;  ///< [rad/s]
 };
 
-/// What a load takes from the machine in one state, j ẍ + h [N·m or N]; it exerts −(j ẍ + h) on the machine.
+/// What a load asks of the machine in one state: it takes the torque  I θ̈ + h  [N·m], so that
+///   reaction = −(I θ̈ + h)
+/// is what it exerts on the machine.
 struct OneAxisDynamics {
-  double inertia = 0.0;  ///< j ≥ 0 [kg·m² or kg]
-  double bias = 0.0;     ///< h: damping, stiffness, reflexes, minus will [N·m or N]
+  double inertia = 0.0;  ///< I ≥ 0 [kg·m²]
+  double bias = 0.0;     ///< h: damping, stiffness, reflexes, minus will [N·m]
 };
 
-/// `Load` for a machine of one axis: decides once a tick, is a pure function in between, never allocates.
+/// Something that hangs at a machine of one axis: a joint such as ankle or elbow. It decides (reflexes, noise) once a
+/// control tick and is a pure function of the joint's state in between. `tick` and `dynamics` do not allocate.
 class OneAxisLoad {
  public:
   virtual ~OneAxisLoad() = default;
 
-  /// The tick at t [s] begins; `reaction` [N·m or N] is what the load exerted on the machine at the tick before.
-  virtual void tick(double t, double sample_time, const OneAxisState& state, double reaction) = 0;
-  [[nodiscard]] virtual OneAxisDynamics dynamics(const OneAxisState& state) const = 0;
+  /// The tick at time t [s], of length `sample_time` [s], begins. `reaction` [N·m] is what the load exerted on the
+  /// machine at the tick before.
+  virtual void tick(double t, double sample_time, const JointState& joint, double reaction) = 0;
 
-  /// The intrinsic impedance, 1×1, without reflexes and noise: the truth.
-  [[nodiscard]] virtual impedance::Model impedance() const = 0;
+  /// I and h in a state, with what the last tick decided.
+  [[nodiscard]] virtual OneAxisDynamics dynamics(const JointState& joint) const = 0;
+
+  /// The intrinsic impedance for small motions about an angle, 1×1 matrices, without reflexes or noise.
+  [[nodiscard]] virtual impedance::Model impedance(double position) const = 0;
 
  protected:  // copied only as what they are
   OneAxisLoad() = default;

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mbk::participant {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+/// Where an arm of two links stands and how long it is. Its own axes: origin at the shoulder, x to the person's right,
+/// y forward, turned against the base frame. q₁ turns the upper arm from the arm's x axis, q₂ the forearm against the
+/// upper arm; 0 < q₂ < π keeps the elbow to the right of the line from shoulder to hand.
+struct ArmGeometry {
+  double upper_arm = 0.31;            ///< l₁ [m] > 0
+  double forearm = 0.34;              ///< l₂, elbow to the middle of the grip [m] > 0
+  Vector2d shoulder = {0.30, -0.57};  ///< base frame [m]
+  double rotation = 0.0;              ///< φ, of the arm's axes against the base frame [rad]
+};
+
+/// p = shoulder + R(φ) [l₁ cos q₁ + l₂ cos(q₁+q₂), l₁ sin q₁ + l₂ sin(q₁+q₂)], the hand in the base frame [m].
+[[nodiscard]] Vector2d hand_position(const ArmGeometry& geometry, const Vector2d& q);
+
+/// The elbow in the base frame [m].
+[[nodiscard]] Vector2d elbow_position(const ArmGeometry& geometry, const Vector2d& q);
+
+/// J = ∂p/∂q [m]; det J = l₁l₂ sin q₂.
+[[nodiscard]] Matrix2d jacobian(const ArmGeometry& geometry, const Vector2d& q);
+
+/// J̇ = dJ/dt [m/s].
+[[nodiscard]] Matrix2d jacobian_rate(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& q_rate);
+
+/// Σ_k F_k ∂²p_k/∂q² [N·m]: how a force [N] (base frame) turns with the joints. Symmetric.
+[[nodiscard]] Matrix2d force_curvature(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& force);
+
+/// The posture that has the hand at a place, elbow to the right:
+///   q₂ = acos((r² − l₁² − l₂²)/(2 l₁l₂)),  q₁ = atan2(y, x) − atan2(l₂ sin q₂, l₁ + l₂ cos q₂)
+/// with (x, y) the hand in the arm's axes, r its distance. A place out of reach gives the posture toward it whose
+/// elbow is `kSmallestElbowAngle` from straight or from folded, so that J always has an inverse.
+[[nodiscard]] Vector2d joint_angles(const ArmGeometry& geometry, const Vector2d& hand);
+
+inline constexpr double kSmallestElbowAngle = 0.05;  ///< [rad]
+
+}  // namespace mbk::participant
