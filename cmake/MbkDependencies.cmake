@@ -30,4 +30,7 @@ endif()
 if(MBK_BUILD_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)
+  # An engine of its own for tests/physics. Debian's mujocoConfig.cmake names a folder that its package does not have.
+  find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h REQUIRED)
+  find_library(MUJOCO_LIBRARY mujoco REQUIRED)
 endif()

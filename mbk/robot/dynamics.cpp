@@ -1,7 +1,10 @@
 #include "mbk/robot/dynamics.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 
 namespace mbk::robot {
 
@@ -39,6 +42,19 @@ Vector2d PlanarRobot::motor_torque(const Vector2d& theta, const Vector2d& theta_
                                    const Vector2d& theta_acceleration, const Vector2d& force_hand_on_robot) const {
   return inertia.matrix(theta) * theta_acceleration + inertia.coriolis(theta, theta_rate) * theta_rate +
          friction_torque(theta_rate) - jacobian(geometry, theta).transpose() * force_hand_on_robot;
+}
+
+Result<Matrix2d> PlanarRobot::inertia_at_hand(const Vector2d& theta) const {
+  constexpr double kSmallestCosine = 1e-6;
+  const double difference = theta[0] - theta[1];
+  if (!(std::abs(std::cos(difference)) >= kSmallestCosine)) {
+    return bad_usage(fmt::format("the links lie on one line (θ₁ − θ₂ = {:.4g}°), where no force can move the hand "
+                                 "along it",
+                                 difference * 180.0 / std::numbers::pi),
+                     "choose another place");
+  }
+  const Matrix2d inverse = jacobian(geometry, theta).inverse();
+  return Matrix2d(inverse.transpose() * inertia.matrix(theta) * inverse);
 }
 
 double PlanarRobot::kinetic_energy(const Vector2d& theta, const Vector2d& theta_rate) const {

@@ -43,6 +43,10 @@ struct PlanarRobot {
   [[nodiscard]] Vector2d motor_torque(const Vector2d& theta, const Vector2d& theta_rate,
                                       const Vector2d& theta_acceleration, const Vector2d& force_hand_on_robot) const;
 
+  /// J⁻ᵀ I J⁻¹ [kg], base frame: what the hand feels of the robot's mass at rest.
+  /// @fails  usage: |cos(θ₁ − θ₂)| < 10⁻⁶, the links lie on one line and J has no inverse.
+  [[nodiscard]] Result<Matrix2d> inertia_at_hand(const Vector2d& theta) const;
+
   /// ½ θ̇ᵀ I θ̇ [J].
   [[nodiscard]] double kinetic_energy(const Vector2d& theta, const Vector2d& theta_rate) const;
 };
