@@ -3,14 +3,15 @@
 #   mbk_module(identify DEPENDS core numeric trial [LIBRARIES PkgConfig::MATIO])
 #
 # DEPENDS lists every module whose headers this one includes; tests/layering.py reads the includes and fails
-# where one is missing here or runs upward. LIBRARIES are outside libraries that only the implementation uses;
-# PUBLIC_LIBRARIES are those that stand in its headers.
+# where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
+# libraries that only the implementation uses; PUBLIC_LIBRARIES are those that stand in its headers.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;LIBRARIES;PUBLIC_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES;LIBRARIES;PUBLIC_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  list(APPEND sources ${ARG_SOURCES})
 
   list(TRANSFORM ARG_DEPENDS PREPEND mbk:: OUTPUT_VARIABLE dependencies)
   if(sources)

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   const std::vector<std::pair<const char*, mbk::app::Action>> commands = {
       {"measure", mbk::app::add_measure(app)},   {"identify", mbk::app::add_identify(app)},
       {"ellipse", mbk::app::add_ellipse(app)},   {"info", mbk::app::add_info(app)},
-      {"validate", mbk::app::add_validate(app)},
+      {"simulate", mbk::app::add_simulate(app)}, {"validate", mbk::app::add_validate(app)},
   };
   try {
     app.parse(argc, argv);

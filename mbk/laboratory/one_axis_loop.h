@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mbk/core/result.h"
+#include "mbk/core/units.h"
 #include "mbk/participant/one_axis_load.h"
 #include "mbk/robot/friction.h"
 
@@ -32,7 +33,7 @@ class OneAxisLoop {
   struct Servo {
     double proportional = 800.0;  ///< K_p [N·m/rad or N/m] ≥ 0
     double derivative = 12.0;     ///< K_d ≥ 0
-    double velocity_cutoff_hz = 200.0;
+    Hertz velocity_cutoff{200.0};  ///< of the velocity estimate
   };
 
   /// At rest at `position`. `load` must outlive the loop.

@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
+#include "apps/mbk/progress.h"
+#include "mbk/laboratory/scenario.h"
+#include "mbk/numeric/parallel.h"
+#include "mbk/recording/mat_writer.h"
+
+namespace mbk::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string scenario;
+  std::vector<std::string> trials;
+  fs::path out;
+  std::optional<std::uint64_t> seed;
+  int seeds = 1;
+  unsigned threads = 0;
+  bool blind = false, overwrite = false, list = false, quiet = false;
+};
+
+/// One recording that is to be made.
+struct Job {
+  laboratory::Scenario scenario;
+  fs::path file;
+};
+
+/// The scenarios of a file, or of a ready one by its name.
+Result<std::vector<laboratory::Scenario>> scenarios_of(const Arguments& arguments) {
+  if (const auto* ready = laboratory::find_ready_scenario(arguments.scenario)) {
+    return laboratory::read_scenarios(ready->text, std::string(ready->name) + ".toml");
+  }
+  std::error_code error;
+  if (!fs::exists(arguments.scenario, error)) {
+    return bad_data(fmt::format("no such file, and no ready scenario of that name"),
+                    "'mbk simulate --list' names the ready ones", arguments.scenario);
+  }
+  const auto text = read_text(arguments.scenario);
+  if (!text) return tl::unexpected(text.error());
+  return laboratory::read_scenarios(*text, arguments.scenario);
+}
+
+/// out.mat → out_NAME_seedN.mat, where there are several trials or seeds.
+fs::path file_name(const Arguments& arguments, const std::string& trial, std::optional<std::uint64_t> seed) {
+  std::string stem = arguments.out.stem().string();
+  if (!trial.empty()) stem += "_" + trial;
+  if (seed) stem += fmt::format("_seed{}", *seed);
+  return arguments.out.parent_path() / (stem + arguments.out.extension().string());
+}
+
+Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
+  const auto scenarios = scenarios_of(arguments);
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  for (const std::string& wanted : arguments.trials) {
+    if (std::ranges::find(*scenarios, wanted, &laboratory::Scenario::trial_name) != scenarios->end()) continue;
+    std::string known;
+    for (const laboratory::Scenario& one : *scenarios) known += (known.empty() ? "" : ", ") + one.trial_name;
+    return bad_usage(fmt::format("there is no trial '{}' in {}", wanted, arguments.scenario),
+                     known.empty() ? "it has no [[trial]]" : "there are: " + known);
+  }
+  std::vector<Job> jobs;
+  for (const laboratory::Scenario& scenario : *scenarios) {
+    if (!arguments.trials.empty() && std::ranges::find(arguments.trials, scenario.trial_name) == arguments.trials.end()) {
+      continue;
+    }
+    for (int k = 0; k < arguments.seeds; ++k) {
+      Job job{scenario, {}};
+      job.scenario.seed = arguments.seed.value_or(scenario.seed) + static_cast<std::uint64_t>(k);
+      job.file = file_name(arguments, scenarios->size() > 1 ? scenario.trial_name : "",
+                           arguments.seeds > 1 ? std::optional(job.scenario.seed) : std::nullopt);
+      jobs.push_back(std::move(job));
+    }
+  }
+  return jobs;
+}
+
+Result<void> check_files(const std::vector<Job>& jobs, const Arguments& arguments) {
+  for (const Job& job : jobs) {
+    Output output;
+    output.file = job.file;
+    output.overwrite = arguments.overwrite;
+    if (auto ok = output.check({arguments.scenario}); !ok) return ok;
+  }
+  return {};
+}
+
+/// "relaxed.mat: 62.1 s at 1000 Hz, relaxed, sinusoidal …; E = 1.23 J absorbed".
+std::string summary_line(const Job& job, const laboratory::Performance& performance) {
+  const Recording& recording = performance.recording;
+  return fmt::format("{}: {:.1f} s at {:g} Hz, seed {}; {}; the limb absorbed {:+.3f} J\n", job.file.string(),
+                     recording.time[recording.samples() - 1], job.scenario.rate.value, job.scenario.seed,
+                     job.scenario.condition, performance.energy_absorbed);
+}
+
+int list() {
+  std::string text = "Ready scenarios (mbk simulate NAME --out REC.mat; --show NAME prints one):\n";
+  for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) {
+    const auto scenarios = laboratory::read_scenarios(one.text, std::string(one.name) + ".toml");
+    if (!scenarios) return report_error(scenarios.error());
+    const std::string trials = scenarios->size() > 1 ? fmt::format(" ({} trials)", scenarios->size()) : "";
+    text += fmt::format("  {:<26}{}{}\n", one.name, scenarios->front().condition, trials);
+  }
+  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+int show(const std::string& name) {
+  const auto* ready = laboratory::find_ready_scenario(name);
+  if (ready == nullptr) {
+    return report_error({ErrorKind::usage, fmt::format("there is no ready scenario '{}'", name),
+                         "'mbk simulate --list' names them", ""});
+  }
+  if (auto ok = Output().write(std::string(ready->text)); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+int run(const Arguments& arguments) {
+  const auto jobs = jobs_of(arguments);
+  if (!jobs) return report_error(jobs.error());
+  if (auto ok = check_files(*jobs, arguments); !ok) return report_error(ok.error());
+  const int count = static_cast<int>(jobs->size());
+  std::vector<std::string> lines(jobs->size());
+  Progress progress(count, arguments.quiet, "simulate: ");
+  const auto made = numeric::parallel_for(
+      count, arguments.threads,
+      [&](int i) -> Result<void> {
+        const Job& job = (*jobs)[static_cast<std::size_t>(i)];
+        laboratory::SimulateOptions options;
+        if (count == 1) options.progress = [&](double fraction) { progress.reached(fraction); };
+        auto performance = laboratory::simulate(job.scenario, options);
+        if (!performance) return tl::unexpected(performance.error());
+        lines[static_cast<std::size_t>(i)] = summary_line(job, *performance);
+        if (arguments.blind) performance->recording = laboratory::without_truth(std::move(performance->recording));
+        return recording::write_mat(performance->recording, job.file, arguments.overwrite);
+      },
+      [&](int i) { progress.finished((*jobs)[static_cast<std::size_t>(i)].file.string()); });
+  if (!made) return report_error(made.error());
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  if (!arguments.quiet) {
+    if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  }
+  return kFine;
+}
+
+}  // namespace
+
+Action add_simulate(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  auto shown = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "a robot with a participant or a spring rig: a recording with the truth in it");
+  command->footer(
+      "Examples:\n"
+      "  mbk simulate --list\n"
+      "      the ready scenarios, one for each experiment of the thesis\n"
+      "  mbk simulate relaxed_sinusoidal --out relaxed.mat\n"
+      "  mbk simulate --show relaxed_sinusoidal > mine.toml\n"
+      "      a commented file to begin your own with; every key carries its unit\n"
+      "  mbk simulate mine.toml --out mine.mat --seeds 20\n"
+      "      mine_seed1.mat … mine_seed20.mat, as many at a time as there are cores\n"
+      "  mbk simulate rig_table_5_1 --trial K5_M5 --out rig.mat\n\n"
+      "The recording holds the truth (truth_M, truth_B, truth_K, …) as metadata, which 'mbk info' shows and\n"
+      "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
+      "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
+  command->add_option("SCENARIO", arguments->scenario, "a TOML file, or the name of a ready scenario");
+  command->add_option("--out", arguments->out, "the recording to write (MAT v5); several trials or seeds get suffixes")
+      ->type_name("REC.mat")
+      ->check(not_empty());
+  command->add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
+      ->type_name("NAME");
+  command->add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the scenario's")
+      ->type_name("N")
+      ->check(whole_number(0, std::numeric_limits<long>::max()));
+  command->add_option("--seeds", arguments->seeds, "so many recordings, with seeds from there on (1)")
+      ->type_name("N")
+      ->check(whole_number(1, 100'000));
+  command->add_option("--threads", arguments->threads, "recordings at a time (as many as there are cores)")
+      ->type_name("N")
+      ->check(whole_number(1, 1024));
+  command->add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
+  command->add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
+  command->add_flag("--list", arguments->list, "the ready scenarios");
+  command->add_option("--show", *shown, "print a ready scenario")->type_name("NAME");
+  command->add_flag("--quiet", arguments->quiet, "no progress and no summary");
+  return [arguments, shown] {
+    if (arguments->list) return list();
+    if (!shown->empty()) return show(*shown);
+    if (arguments->scenario.empty()) {
+      return report_error({ErrorKind::usage, "no scenario", "name a TOML file, or one of 'mbk simulate --list'", ""});
+    }
+    if (arguments->out.empty()) {
+      return report_error({ErrorKind::usage, "no --out", "name the recording to write: --out recording.mat", ""});
+    }
+    if (arguments->out.extension() != ".mat") {
+      return report_error({ErrorKind::usage,
+                           fmt::format("'{}' is not a format that is written", arguments->out.extension().string()),
+                           "let --out end with .mat", ""});
+    }
+    return run(*arguments);
+  };
+}
+
+}  // namespace mbk::app

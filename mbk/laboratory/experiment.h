@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <variant>
+
+#include "mbk/control/laws.h"
+#include "mbk/core/result.h"
+#include "mbk/core/units.h"
+#include "mbk/laboratory/closed_loop.h"
+#include "mbk/laboratory/performance.h"
+#include "mbk/laboratory/sensors.h"
+#include "mbk/perturbation/schedule.h"
+
+namespace mbk::laboratory {
+
+/// The joints follow a reference; the schedule commands positions.
+struct PositionMode {
+  control::JointPositionControl::Gains gains;
+};
+
+/// The motors exert a force, open loop; the schedule commands forces.
+struct ForceMode {};
+
+/// Force along one line, held on it; the schedule commands forces. The line goes through home.
+struct LineMode {
+  control::LineConstraint::Options line;
+};
+
+/// One trial of the planar robot: everything but what hangs at its handle.
+struct Experiment {
+  ClosedLoop::Options robot;
+  Vector2d home = {0.3, -0.05};  ///< the test location: where the hand starts and the schedule is about [m], base frame
+  perturbation::Schedule schedule;
+  std::variant<PositionMode, ForceMode, LineMode> control;
+  SensorOptions sensors;
+  Hertz rate{1000.0};                            ///< of control and recording
+  std::uint64_t seed = 1;                        ///< of the sensors' noise
+  std::function<void(double fraction)> progress;  ///< called now and then with the share that is done
+  std::function<void(const TrueState&)> watch;    ///< called with the truth of each tick, for studies and plots
+};
+
+/// Runs the closed loop of robot, controller and load, and records what the sensors see. Tick i = 0, 1, … is at
+/// (i + 1)/rate unless the clock jitters. The recording has hand_x … acceleration_y, joint_1, joint_2, torque_1 and
+/// torque_2; reference is the hand's place [m] in position mode, else the commanded force [N]. The metadata hold the
+/// truth: truth_M, truth_B, truth_K, truth_x0 (the load's intrinsic impedance about home, without the handle, averaged over
+/// the trial, as JSON arrays with 17 digits), truth_energy_absorbed_J, and handle_mass_kg, seed, rate_hz. Nothing that measures reads it.
+/// @fails  usage: control and schedule speak of different quantities; the schedule leaves the workspace; as ClosedLoop,
+///         SensorSuite and the control laws. data: the hand leaves the workspace or the motion does not stay finite,
+///         with the time.
+[[nodiscard]] Result<Performance> perform(const Experiment& experiment, participant::Load& load);
+
+}  // namespace mbk::laboratory

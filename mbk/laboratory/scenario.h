@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "mbk/laboratory/experiment.h"
+#include "mbk/laboratory/one_axis_experiment.h"
+#include "mbk/laboratory/ready_scenarios.h"
+#include "mbk/participant/arm.h"
+#include "mbk/participant/one_axis_joint.h"
+#include "mbk/participant/tone_robot.h"
+#include "mbk/perturbation/optimal_power.h"
+#include "mbk/perturbation/random_binary.h"
+#include "mbk/perturbation/underdamped_pulse.h"
+
+namespace mbk::laboratory {
+
+/// Sums of sines, one for each axis or joint, with phases and power by a stated rule.
+struct MultisinePlan {
+  enum class Phases { random, schroeder, low_crest };
+  /// Lines and phases of each axis its own, lines in turn to one and the other, or the first or second of a pair of
+  /// experiments that differ in the second axis's sign (axis_pair.h).
+  enum class Axes { independent, interleaved, hadamard_first, hadamard_second };
+  perturbation::Quantity quantity = perturbation::Quantity::position;
+  perturbation::Space space = perturbation::Space::joint;
+  double peak = 0.034906585039886591;  ///< of each axis: ±2° by default [rad, m or N]
+  double period = 10.0;                ///< [s]
+  std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
+  Phases phases = Phases::random;
+  std::optional<perturbation::OptimalPowerOptions> optimal_power;  ///< absent: the same at every line
+  Axes axes = Axes::independent;
+  double duration = 62.1;   ///< [s]
+  double moving_in = 5.0;   ///< from rest [s]
+};
+
+/// Underdamped pulses in random order.
+struct PulsePlan {
+  perturbation::Quantity quantity = perturbation::Quantity::position;
+  perturbation::PulseSchedule::Options pulses;
+  double tail = 3.0;  ///< recorded after the last pulse [s]
+};
+
+/// A filtered random binary sequence along one line.
+struct RandomBinaryPlan {
+  perturbation::Quantity quantity = perturbation::Quantity::force;
+  perturbation::RandomBinaryOptions sequence;
+  double angle = 1.5707963267948966;  ///< of the line from +x [rad]
+  double duration = 62.1;             ///< [s]
+};
+
+/// Nothing is commanded.
+struct RestPlan {
+  double duration = 10.0;  ///< [s]
+};
+
+struct PerturbationPlan {
+  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan> kind = MultisinePlan{};
+  perturbation::Limits limits;  ///< what the schedule must keep
+};
+
+/// The schedule that a plan gives with a seed.
+/// @fails  usage: as perturbation's; a limit is broken.
+[[nodiscard]] Result<perturbation::Schedule> make_schedule(const PerturbationPlan& plan, std::uint64_t seed);
+
+/// A payload held by springs: a linear field, or an array of real springs on the disc of the handle.
+struct RigPlan {
+  double mass = 0.0;                                 ///< payload [kg]
+  Matrix2d damping = Matrix2d::Zero();               ///< dampers [N·s/m]
+  Matrix2d stiffness = Matrix2d::Zero();             ///< of the linear field [N/m]
+  Vector2d equilibrium = {0.3, -0.05};               ///< of the linear field [m]
+};
+
+/// Nothing at the handle.
+struct NoLoad {};
+
+/// A trial of the planar robot.
+struct PlanarTrial {
+  ClosedLoop::Options robot;
+  Vector2d home = {0.3, -0.05};
+  std::variant<PositionMode, ForceMode, LineMode> control;
+  std::variant<NoLoad, participant::ArmOptions, participant::ToneRobot::Options, RigPlan> load;
+  SensorOptions sensors;
+};
+
+/// A trial of a one-axis machine.
+struct OneAxisTrial {
+  OneAxisLoop::Machine machine;
+  OneAxisLoop::Servo servo;
+  participant::OneAxisJoint::Options joint;
+  OneAxisSensorOptions sensors;
+};
+
+/// Everything that one simulated recording is made of.
+struct Scenario {
+  std::string file_name;   ///< without its folder and ending
+  std::string trial_name;  ///< of the [[trial]]; empty where the file has none
+  std::string condition;  ///< in words
+  std::variant<PlanarTrial, OneAxisTrial> trial;
+  PerturbationPlan perturbation;
+  Hertz rate{1000.0};
+  std::uint64_t seed = 1;  ///< of phases, decisions and noise
+};
+
+/// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors.
+/// @param file  how messages call it
+/// @fails  data: with file, line, key, value and what is allowed.
+[[nodiscard]] Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file);
+
+struct SimulateOptions {
+  std::optional<std::uint64_t> seed;              ///< instead of the scenario's
+  std::function<void(double fraction)> progress;  ///< of this recording
+  std::function<void(const TrueState&)> watch;    ///< of a planar trial
+};
+
+/// Runs a scenario. The same scenario and seed give the same recording, to the bit.
+/// @fails  as `perform` and `perform_one_axis`.
+[[nodiscard]] Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options = {});
+
+/// The recording without what only a simulation can know: the truth, and the scenario's name and words.
+[[nodiscard]] Recording without_truth(Recording recording);
+
+}  // namespace mbk::laboratory

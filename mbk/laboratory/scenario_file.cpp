@@ -1,0 +1,409 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "mbk/config/document.h"
+#include "mbk/laboratory/scenario.h"
+
+namespace mbk::laboratory {
+namespace {
+
+using config::above;
+using config::at_least;
+using config::between;
+using config::Section;
+using perturbation::Quantity;
+using perturbation::Space;
+
+/// From the shoulder to the test location (Dyck 2013, §3.4.2) [m].
+constexpr double kShoulderDistance = 0.52;
+
+std::array<double, 2> pair_of(const Vector2d& value) {
+  return {value[0], value[1]};
+}
+
+ClosedLoop::Options read_robot(const Section& s) {
+  ClosedLoop::Options options;
+  robot::PlanarRobot& robot = options.robot;
+  robot.geometry.d1 = s.number("d1_mm", robot.geometry.d1, above(0));
+  robot.geometry.d2 = s.number("d2_mm", robot.geometry.d2, above(0));
+  const std::vector<double> alpha = s.numbers(
+      "alpha_kg_m2", {robot.inertia.alpha1, robot.inertia.alpha2, robot.inertia.alpha3}, config::any(), 3);
+  robot.inertia = {alpha[0], alpha[1], alpha[2]};
+  const auto both = [&](const char* key, double robot::JointFriction::*part, config::Range allowed) {
+    const auto value =
+        pair_of(s.vector2(key, Vector2d(robot.friction[0].*part, robot.friction[1].*part), allowed));
+    for (std::size_t joint = 0; joint < 2; ++joint) robot.friction[joint].*part = value[joint];
+  };
+  both("viscous_Nms_per_rad", &robot::JointFriction::viscous, at_least(0));
+  both("coulomb_Nm", &robot::JointFriction::coulomb, at_least(0));
+  both("breakaway_Nm", &robot::JointFriction::breakaway, at_least(0));
+  both("stribeck_velocity_rad_per_s", &robot::JointFriction::stribeck_velocity, above(0));
+  both("smoothing_rad_per_s", &robot::JointFriction::smoothing, above(0));
+  options.handle_mass = s.number("handle_mass_kg", options.handle_mass, at_least(0));
+  options.steps_per_tick = s.integer("steps_per_tick", options.steps_per_tick, 1, 100);
+  if (const Section c = s.section("capstan"); c.given()) {
+    robot::Capstan capstan;
+    capstan.stiffness = c.vector2("stiffness_Nm_per_rad", capstan.stiffness, above(0));
+    capstan.damping = c.vector2("damping_Nms_per_rad", capstan.damping, at_least(0));
+    capstan.motor_inertia = c.vector2("motor_inertia_kg_m2", capstan.motor_inertia, above(0));
+    options.capstan = capstan;
+  }
+  return options;
+}
+
+std::variant<PositionMode, ForceMode, LineMode> read_control(const Section& s) {
+  enum class Kind { position, force, line };
+  const auto kind =
+      s.required_choice<Kind>("kind", {{"position", Kind::position}, {"force", Kind::force}, {"line", Kind::line}});
+  if (kind == Kind::force) return ForceMode{};
+  if (kind == Kind::line) {
+    LineMode mode;
+    mode.line.angle = s.number("angle_deg", mode.line.angle);
+    mode.line.stiffness = s.number("stiffness_N_per_m", mode.line.stiffness, at_least(0));
+    mode.line.damping = s.number("damping_Ns_per_m", mode.line.damping, at_least(0));
+    mode.line.velocity_cutoff = Hertz(s.number("velocity_cutoff_hz", mode.line.velocity_cutoff.value, above(0)));
+    return mode;
+  }
+  PositionMode mode;
+  mode.gains.proportional = s.vector2("proportional_Nm_per_rad", mode.gains.proportional, at_least(0));
+  mode.gains.derivative = s.vector2("derivative_Nms_per_rad", mode.gains.derivative, at_least(0));
+  mode.gains.velocity_cutoff = Hertz(s.number("velocity_cutoff_hz", mode.gains.velocity_cutoff.value, above(0)));
+  return mode;
+}
+
+/// A size whose key's unit says what is commanded: peak_deg, peak_mm, peak_N.
+struct Size {
+  Quantity quantity = Quantity::position;
+  Space space = Space::hand;
+  double value = 0.0;
+};
+
+Size read_size(const Section& s, const std::string& word, const Size& fallback) {
+  const std::string deg = word + "_deg", mm = word + "_mm", newton = word + "_N", newton_metre = word + "_Nm";
+  Size size = fallback;
+  int given = 0;
+  const auto take = [&](const std::string& key, Quantity quantity, Space space) {
+    if (!s.has(key)) return;
+    size = {quantity, space, s.number(key, fallback.value, above(0))};
+    if (++given > 1) s.reject(key, "the size is given twice, in different units", "keep one of them");
+  };
+  take(deg, Quantity::position, Space::joint);
+  take(mm, Quantity::position, Space::hand);
+  take(newton, Quantity::force, Space::hand);
+  take(newton_metre, Quantity::force, Space::hand);
+  return size;
+}
+
+std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Section& s) {
+  using perturbation::LimitedSignal;
+  enum class Power { flat, d_optimal };
+  const auto power = s.choice("power", {{"flat", Power::flat}, {"d_optimal", Power::d_optimal}}, Power::flat);
+  perturbation::OptimalPowerOptions options;
+  options.limited = s.choice("power_limited_by",
+                             {{"position", LimitedSignal::position},
+                              {"velocity", LimitedSignal::velocity},
+                              {"force", LimitedSignal::force}},
+                             options.limited);
+  options.floor = s.number("power_floor_percent", options.floor, between(0, 100));
+  if (const Section nominal = s.section("nominal"); nominal.given()) {
+    options.nominal = {nominal.required_number("mass_kg"), nominal.required_number("damping_Ns_per_m"),
+                       nominal.required_number("stiffness_N_per_m")};
+  }
+  if (power == Power::flat) return std::nullopt;
+  return options;
+}
+
+MultisinePlan read_multisine(const Section& s) {
+  using Phases = MultisinePlan::Phases;
+  using Axes = MultisinePlan::Axes;
+  MultisinePlan plan;
+  const Size size = read_size(s, "peak", {plan.quantity, plan.space, plan.peak});
+  plan.quantity = size.quantity;
+  plan.space = size.space;
+  plan.peak = size.value;
+  plan.period = s.number("period_s", plan.period, above(0));
+  std::vector<double> harmonics(plan.harmonics.begin(), plan.harmonics.end());
+  harmonics = s.numbers("harmonics", harmonics, between(1, 1e6));
+  plan.harmonics.clear();
+  for (const double harmonic : harmonics) {
+    if (harmonic != std::round(harmonic)) s.reject("harmonics", fmt::format("{:g} is no whole number", harmonic));
+    plan.harmonics.push_back(static_cast<int>(harmonic));
+  }
+  plan.phases = s.choice(
+      "phases", {{"random", Phases::random}, {"schroeder", Phases::schroeder}, {"low_crest", Phases::low_crest}},
+      plan.phases);
+  plan.axes = s.choice("axes",
+                       {{"independent", Axes::independent},
+                        {"interleaved", Axes::interleaved},
+                        {"hadamard_first", Axes::hadamard_first},
+                        {"hadamard_second", Axes::hadamard_second}},
+                       plan.axes);
+  plan.optimal_power = read_optimal_power(s);
+  plan.duration = s.number("duration_s", plan.duration, above(0));
+  plan.moving_in = s.number("moving_in_s", plan.moving_in, at_least(0));
+  return plan;
+}
+
+PulsePlan read_pulses(const Section& s) {
+  PulsePlan plan;
+  perturbation::PulseSchedule::Options& p = plan.pulses;
+  const Size size = read_size(s, "amplitude", {plan.quantity, Space::hand, p.amplitude});
+  if (size.space == Space::joint) s.reject("amplitude_deg", "pulses are given at the hand", "use amplitude_mm");
+  plan.quantity = size.quantity;
+  p.amplitude = size.value;
+  p.damping_ratio = s.number("damping_ratio", p.damping_ratio, config::within(0, 1));
+  p.natural_frequency = RadPerSec(s.number("natural_frequency_rad_per_s", p.natural_frequency.value, above(0)));
+  p.directions = s.integer("directions", p.directions, 1, 360);
+  p.repetitions = s.integer("repetitions", p.repetitions, 1, 1000);
+  p.shortest_duration = s.number("shortest_duration_s", p.shortest_duration, above(0));
+  p.longest_duration = s.number("longest_duration_s", p.longest_duration, above(0));
+  p.shortest_pause = s.number("shortest_pause_s", p.shortest_pause, above(0));
+  p.longest_pause = s.number("longest_pause_s", p.longest_pause, above(0));
+  p.return_duration = s.number("return_s", p.return_duration, above(0));
+  p.quiet = s.number("quiet_s", p.quiet, at_least(0));
+  plan.tail = s.number("tail_s", plan.tail, at_least(0));
+  return plan;
+}
+
+RandomBinaryPlan read_random_binary(const Section& s) {
+  RandomBinaryPlan plan;
+  perturbation::RandomBinaryOptions& b = plan.sequence;
+  const Size size = read_size(s, "amplitude", {plan.quantity, Space::hand, b.amplitude});
+  plan.quantity = size.quantity;
+  b.amplitude = size.value;
+  b.switching_time = s.number("switching_time_s", b.switching_time, above(0));
+  b.zero_mean = s.flag("zero_mean", b.zero_mean);
+  b.damping_ratio = s.number("damping_ratio", b.damping_ratio, config::within(0, 1));
+  b.natural_frequency = RadPerSec(s.number("natural_frequency_rad_per_s", b.natural_frequency.value, above(0)));
+  plan.angle = s.number("angle_deg", plan.angle);
+  plan.duration = s.number("duration_s", plan.duration, above(0));
+  return plan;
+}
+
+PerturbationPlan read_perturbation(const Section& s) {
+  enum class Kind { none, multisine, pulses, random_binary };
+  PerturbationPlan plan;
+  switch (s.required_choice<Kind>("kind", {{"multisine", Kind::multisine},
+                                           {"pulses", Kind::pulses},
+                                           {"random_binary", Kind::random_binary},
+                                           {"none", Kind::none}})) {
+    case Kind::none:
+      plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
+      break;
+    case Kind::multisine:
+      plan.kind = read_multisine(s);
+      break;
+    case Kind::pulses:
+      plan.kind = read_pulses(s);
+      break;
+    case Kind::random_binary:
+      plan.kind = read_random_binary(s);
+      break;
+  }
+  const Section limits = s.section("limits");
+  for (const char* key : {"peak_mm", "peak_deg", "peak_N"}) {
+    if (auto value = limits.optional_number(key, above(0))) plan.limits.peak = value;
+  }
+  for (const char* key : {"speed_mm_per_s", "speed_deg_per_s", "speed_N_per_s"}) {
+    if (auto value = limits.optional_number(key, above(0))) plan.limits.speed = value;
+  }
+  if (auto value = limits.optional_number("bandwidth_hz", above(0))) plan.limits.bandwidth = Hertz(*value);
+  return plan;
+}
+
+participant::TwoLinkArm::Options read_two_links(const Section& s, const Vector2d& home) {
+  participant::TwoLinkArm::Options limb;
+  participant::ArmGeometry& geometry = limb.geometry;
+  geometry.upper_arm = s.number("upper_arm_mm", geometry.upper_arm, above(0));
+  geometry.forearm = s.number("forearm_mm", geometry.forearm, above(0));
+  geometry.shoulder = s.vector2("shoulder_mm", home - Vector2d(0.0, kShoulderDistance));
+  geometry.rotation = s.number("rotation_deg", geometry.rotation);
+  limb.equilibrium = s.vector2("equilibrium_mm", home);
+  if (s.has("number")) {
+    if (const auto person = participant::participant_limb(s.integer("number", 1, 1, 6))) limb.joints = person->joints;
+  }
+  participant::JointParameters& joints = limb.joints;
+  joints.inertia = s.matrix2("inertia_kg_m2", joints.inertia);
+  joints.elbow_angle = s.number("inertia_elbow_deg", joints.elbow_angle);
+  joints.damping = s.matrix2("damping_Nms_per_rad", joints.damping);
+  joints.stiffness = s.matrix2("stiffness_Nm_per_rad", joints.stiffness);
+  return limb;
+}
+
+impedance::Model read_linear_limb(const Section& s, const Vector2d& home) {
+  return {s.required_matrix2("mass_kg"), s.required_matrix2("damping_Ns_per_m"),
+          s.required_matrix2("stiffness_N_per_m"), s.vector2("equilibrium_mm", home)};
+}
+
+/// What a person adds to the limb; all of it is off where the file does not speak of it.
+participant::ArmOptions read_will(const Section& s, const Vector2d& home) {
+  participant::ArmOptions arm = participant::relaxed_arm_options();
+  const Section c = s.section("correction");
+  participant::IntermittentController::Options& will = arm.controller;
+  will.position = c.vector2("target_mm", home);
+  will.position_gain = c.number("position_gain", will.position_gain, at_least(0));
+  will.position_threshold = c.number("threshold_mm", will.position_threshold, at_least(0));
+  will.force = c.vector2("target_N", will.force);
+  will.force_gain = c.number("force_gain", will.force_gain, at_least(0));
+  will.force_threshold = c.number("threshold_N", will.force_threshold, at_least(0));
+  will.interval = c.number("interval_ms", will.interval, above(0));
+  will.delay = c.number("delay_ms", will.delay, at_least(0));
+  will.random_error = c.number("random_error_percent", will.random_error, at_least(0));
+  will.largest_increment = c.number("largest_increment_N", will.largest_increment, at_least(0));
+  will.ramp = c.number("ramp_ms", will.ramp, above(0));
+  will.leak = c.number("leak_s", will.leak, above(0));
+
+  const Section t = s.section("cocontraction");
+  participant::Cocontraction::Options& tension = arm.cocontraction;
+  tension.rest = t.number("rest", tension.rest, between(0, 1));
+  tension.slope = t.number("slope", tension.slope, at_least(0));
+  tension.speed = t.number("speed_mm_per_s", tension.speed, above(0));
+  tension.time_constant = t.number("time_constant_s", tension.time_constant, above(0));
+  tension.stiffness_gain = t.number("stiffness_gain", tension.stiffness_gain, at_least(0));
+  tension.damping_gain = t.number("damping_gain", tension.damping_gain, at_least(0));
+  tension.voluntary_damping = t.number("voluntary_damping", tension.voluntary_damping, between(0, 1));
+
+  const Section r = s.section("remnant");
+  arm.remnant.floor = r.number("floor_N", arm.remnant.floor, at_least(0));
+  arm.remnant.per_force = r.number("per_force", arm.remnant.per_force, at_least(0));
+  arm.remnant.cutoff = Hertz(r.number("cutoff_hz", arm.remnant.cutoff.value, above(0)));
+  return arm;
+}
+
+/// A matrix, or one number for the same in all directions.
+Matrix2d read_matrix_or_number(const Section& s, const char* key, const char* scalar_key) {
+  if (s.has(key)) return s.matrix2(key, Matrix2d::Zero());
+  return s.number(scalar_key, 0.0, at_least(0)) * Matrix2d::Identity();
+}
+
+RigPlan read_rig(const Section& s, const Vector2d& home) {
+  RigPlan rig;
+  rig.mass = s.number("mass_kg", rig.mass, at_least(0));
+  rig.damping = read_matrix_or_number(s, "damping_matrix_Ns_per_m", "damping_Ns_per_m");
+  rig.stiffness = s.required_matrix2("stiffness_N_per_m");
+  rig.equilibrium = s.vector2("equilibrium_mm", home);
+  return rig;
+}
+
+participant::ToneRobot::Options read_tone(const Section& s, const Vector2d& home) {
+  participant::ToneRobot::Options tone;
+  tone.inertia = s.number("mass_kg", tone.inertia, at_least(0));
+  tone.stiffness = s.matrix2("stiffness_N_per_m", tone.stiffness);
+  tone.damping = s.matrix2("damping_Ns_per_m", tone.damping);
+  tone.rest = s.vector2("rest_mm", home);
+  tone.rigidity = s.number("rigidity_N", tone.rigidity, at_least(0));
+  tone.rigidity_speed = s.number("rigidity_speed_mm_per_s", tone.rigidity_speed, above(0));
+  tone.catch_gain = s.number("catch_gain_Ns_per_m", tone.catch_gain, at_least(0));
+  tone.catch_speed = s.number("catch_speed_mm_per_s", tone.catch_speed, at_least(0));
+  tone.stretch_angle = s.number("stretch_angle_deg", tone.stretch_angle);
+  tone.release_force = s.number("release_force_N", tone.release_force, above(0));
+  tone.motor_lag = s.number("motor_lag_ms", tone.motor_lag, at_least(0));
+  tone.largest_force = s.number("largest_force_N", tone.largest_force, above(0));
+  return tone;
+}
+
+participant::OneAxisJoint::Options read_joint(const Section& s) {
+  participant::OneAxisJoint::Options joint;
+  enum class Kind { joint };
+  static_cast<void>(s.required_choice<Kind>("kind", {{"joint", Kind::joint}}));
+  joint.inertia = s.number("inertia_kg_m2", joint.inertia, above(0));
+  joint.viscosity = s.number("viscosity_Nms_per_rad", joint.viscosity, at_least(0));
+  joint.stiffness = s.number("stiffness_Nm_per_rad", joint.stiffness, at_least(0));
+  joint.rest = s.number("rest_deg", joint.rest);
+  const Section r = s.section("reflex");
+  joint.reflex.gain = r.number("gain_Nms_per_rad", joint.reflex.gain, at_least(0));
+  joint.reflex.delay = r.number("delay_ms", joint.reflex.delay, at_least(0));
+  joint.reflex.natural_frequency = RadPerSec(Hertz(r.number(
+      "natural_frequency_hz", Hertz(joint.reflex.natural_frequency).value, above(0))));
+  joint.reflex.damping_ratio = r.number("damping_ratio", joint.reflex.damping_ratio, above(0));
+  joint.reflex.stretched_by_positive_velocity =
+      r.flag("stretched_by_positive_velocity", joint.reflex.stretched_by_positive_velocity);
+  const Section noise = s.section("remnant");
+  joint.remnant.floor = noise.number("floor_Nm", joint.remnant.floor, at_least(0));
+  joint.remnant.cutoff = Hertz(noise.number("cutoff_hz", joint.remnant.cutoff.value, above(0)));
+  return joint;
+}
+
+OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
+  OneAxisTrial trial;
+  OneAxisLoop::Machine& machine = trial.machine;
+  machine.inertia = robot.number("inertia_kg_m2", machine.inertia, above(0));
+  machine.friction.viscous = robot.number("viscous_Nms_per_rad", machine.friction.viscous, at_least(0));
+  machine.friction.coulomb = robot.number("coulomb_Nm", machine.friction.coulomb, at_least(0));
+  machine.friction.smoothing = robot.number("smoothing_rad_per_s", machine.friction.smoothing, above(0));
+  machine.steps_per_tick = robot.integer("steps_per_tick", machine.steps_per_tick, 1, 100);
+  const Section control = root.section("control");
+  trial.servo.proportional = control.number("proportional_Nm_per_rad", trial.servo.proportional, at_least(0));
+  trial.servo.derivative = control.number("derivative_Nms_per_rad", trial.servo.derivative, at_least(0));
+  trial.servo.velocity_cutoff =
+      Hertz(control.number("velocity_cutoff_hz", trial.servo.velocity_cutoff.value, above(0)));
+  trial.joint = read_joint(root.section("participant"));
+  return trial;
+}
+
+PlanarTrial read_planar(const Section& root, const Section& robot) {
+  PlanarTrial trial;
+  trial.robot = read_robot(robot);
+  trial.home = robot.vector2("home_mm", trial.home);
+  trial.control = read_control(root.section("control"));
+  const Section person = root.section("participant"), rig = root.section("rig");
+  if (person.given() && rig.given()) {
+    rig.reject("mass_kg", "a participant and a rig cannot both hold the handle", "keep [participant] or [rig]");
+  }
+  if (rig.given()) trial.load = read_rig(rig, trial.home);
+  if (person.given()) {
+    enum class Kind { arm, linear, tone };
+    const auto kind =
+        person.required_choice<Kind>("kind", {{"arm", Kind::arm}, {"linear", Kind::linear}, {"tone", Kind::tone}});
+    if (kind == Kind::tone) {
+      trial.load = read_tone(person, trial.home);
+    } else {
+      participant::ArmOptions arm = read_will(person, trial.home);
+      if (kind == Kind::arm) arm.limb = read_two_links(person, trial.home);
+      if (kind == Kind::linear) arm.limb = read_linear_limb(person, trial.home);
+      trial.load = arm;
+    }
+  }
+  return trial;
+}
+
+Scenario read_scenario(const Section& root) {
+  Scenario scenario;
+  const Section recording = root.section("recording");
+  scenario.condition = recording.text("condition", "");
+  scenario.rate = Hertz(recording.number("rate_hz", scenario.rate.value, between(10, 100'000)));
+  scenario.seed = recording.integer<std::uint64_t>("seed", scenario.seed, 0, std::numeric_limits<std::int64_t>::max());
+  const Section robot = root.section("robot");
+  enum class Kind { planar, one_axis };
+  if (robot.choice("kind", {{"planar", Kind::planar}, {"one_axis", Kind::one_axis}}, Kind::planar) == Kind::planar) {
+    scenario.trial = read_planar(root, robot);
+  } else {
+    scenario.trial = read_one_axis(root, robot);
+  }
+  scenario.perturbation = read_perturbation(root.section("perturbation"));
+  return scenario;
+}
+
+}  // namespace
+
+Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file) {
+  const auto document = config::Document::parse(text, file.string());
+  if (!document) return tl::unexpected(document.error());
+  const auto trials = document->trials();
+  if (!trials) return tl::unexpected(trials.error());
+  std::vector<Scenario> scenarios;
+  for (const config::Trial& trial : *trials) {
+    Scenario scenario = read_scenario(trial.document.root());
+    if (auto ok = trial.document.finish(); !ok) return tl::unexpected(ok.error());
+    scenario.file_name = file.stem().string();
+    scenario.trial_name = trial.name;
+    scenarios.push_back(std::move(scenario));
+  }
+  if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());
+  return scenarios;
+}
+
+}  // namespace mbk::laboratory

@@ -1,0 +1,89 @@
+#include <memory>
+
+#include "mbk/laboratory/scenario.h"
+
+namespace mbk::laboratory {
+namespace {
+
+using participant::Load;
+
+/// Nothing at the handle.
+class EmptyHandle : public Load {
+ public:
+  [[nodiscard]] participant::LoadDynamics dynamics(const participant::HandState& /*hand*/) const override {
+    return {};
+  }
+  [[nodiscard]] impedance::Model impedance(const Vector2d& hand) const override {
+    return {Matrix2d::Zero(), Matrix2d::Zero(), Matrix2d::Zero(), hand};
+  }
+};
+
+template <class Kind>
+Result<std::unique_ptr<Load>> owned(Result<Kind> load, const char* section) {
+  if (!load) return tl::unexpected(load.error().in(section));
+  return std::make_unique<Kind>(std::move(*load));
+}
+
+struct MakeLoad {
+  double sample_time;
+  std::uint64_t seed;
+
+  Result<std::unique_ptr<Load>> operator()(const NoLoad& /*nothing*/) const { return std::make_unique<EmptyHandle>(); }
+
+  Result<std::unique_ptr<Load>> operator()(participant::ArmOptions arm) const {
+    arm.seed = seed;
+    return owned(participant::Arm::create(arm, sample_time), "participant");
+  }
+
+  Result<std::unique_ptr<Load>> operator()(const participant::ToneRobot::Options& tone) const {
+    return owned(participant::ToneRobot::create(tone), "participant");
+  }
+
+  Result<std::unique_ptr<Load>> operator()(const RigPlan& rig) const {
+    const impedance::Model field{rig.mass * Matrix2d::Identity(), rig.damping, rig.stiffness, rig.equilibrium};
+    return owned(participant::LinearLimb::create(field), "rig");
+  }
+};
+
+Result<Performance> run(const PlanarTrial& trial, const Scenario& scenario, const SimulateOptions& options,
+                        perturbation::Schedule schedule) {
+  auto load = std::visit(MakeLoad{1.0 / scenario.rate.value, scenario.seed}, trial.load);
+  if (!load) return tl::unexpected(load.error());
+  return perform(Experiment{trial.robot, trial.home, std::move(schedule), trial.control, trial.sensors, scenario.rate,
+                            scenario.seed, options.progress, options.watch},
+                 **load);
+}
+
+Result<Performance> run(const OneAxisTrial& trial, const Scenario& scenario, const SimulateOptions& options,
+                        perturbation::Schedule schedule) {
+  participant::OneAxisJoint::Options person = trial.joint;
+  person.seed = scenario.seed;
+  auto joint = participant::OneAxisJoint::create(person, 1.0 / scenario.rate.value);
+  if (!joint) return tl::unexpected(joint.error().in("participant"));
+  return perform(OneAxisExperiment{trial.machine, trial.servo, std::move(schedule), trial.sensors, scenario.rate,
+                                   scenario.seed, options.progress},
+                 *joint);
+}
+
+}  // namespace
+
+Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options) {
+  auto schedule = make_schedule(scenario.perturbation, scenario.seed);
+  if (!schedule) return tl::unexpected(schedule.error());
+  auto performance = std::visit(
+      [&](const auto& trial) { return run(trial, scenario, options, std::move(*schedule)); }, scenario.trial);
+  if (!performance) return performance;
+  auto& metadata = performance->recording.metadata;
+  metadata["truth_scenario"] = scenario.file_name;
+  if (!scenario.trial_name.empty()) metadata["truth_trial"] = scenario.trial_name;
+  if (!scenario.condition.empty()) metadata["truth_condition"] = scenario.condition;
+  metadata["truth_seed"] = std::to_string(scenario.seed);
+  return performance;
+}
+
+Recording without_truth(Recording recording) {
+  std::erase_if(recording.metadata, [](const auto& entry) { return entry.first.starts_with("truth_"); });
+  return recording;
+}
+
+}  // namespace mbk::laboratory

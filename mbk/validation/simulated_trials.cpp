@@ -1,0 +1,52 @@
+#include "mbk/validation/simulated_trials.h"
+
+#include <fmt/format.h>
+
+#include "mbk/numeric/parallel.h"
+
+namespace mbk::validation {
+namespace {
+
+double handle_mass(const laboratory::Scenario& scenario) {
+  const auto* planar = std::get_if<laboratory::PlanarTrial>(&scenario.trial);
+  return planar == nullptr ? 0.0 : planar->robot.handle_mass;
+}
+
+Result<SimulatedTrial> run(const TrialPlan& plan) {
+  const auto performance = laboratory::simulate(plan.scenario);
+  if (!performance) return tl::unexpected(performance.error());
+  SimulatedTrial trial{performance->energy_absorbed, performance->truth, {}};
+  if (!plan.measurement) return trial;
+  measurement::Options options = *plan.measurement;
+  options.identify.handle_mass = handle_mass(plan.scenario);
+  auto measured = measurement::measure({&performance->recording, 1}, options);
+  if (!measured) return tl::unexpected(measured.error());
+  trial.identification = std::move(measured->identification);
+  return trial;
+}
+
+}  // namespace
+
+Result<std::vector<laboratory::Scenario>> ready(std::string_view name) {
+  const auto* scenario = laboratory::find_ready_scenario(name);
+  if (scenario == nullptr) return bad_usage(fmt::format("there is no ready scenario '{}'", name));
+  return laboratory::read_scenarios(scenario->text, std::string(name) + ".toml");
+}
+
+Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, unsigned threads,
+                                               const std::function<void(int)>& done) {
+  std::vector<SimulatedTrial> trials(plans.size());
+  const auto ran = numeric::parallel_for(
+      static_cast<int>(plans.size()), threads,
+      [&](int i) -> Result<void> {
+        auto trial = run(plans[static_cast<std::size_t>(i)]);
+        if (!trial) return tl::unexpected(trial.error());
+        trials[static_cast<std::size_t>(i)] = std::move(*trial);
+        return {};
+      },
+      done);
+  if (!ran) return tl::unexpected(ran.error());
+  return trials;
+}
+
+}  // namespace mbk::validation

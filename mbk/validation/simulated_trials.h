@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "mbk/laboratory/scenario.h"
+#include "mbk/measurement/measure.h"
+
+namespace mbk::validation {
+
+/// The scenarios of a ready file (laboratory/ready_scenarios.h).
+/// @fails  there is none of that name.
+[[nodiscard]] Result<std::vector<laboratory::Scenario>> ready(std::string_view name);
+
+/// One simulated trial, measured.
+struct SimulatedTrial {
+  double energy_absorbed = 0.0;  ///< by the limb [J]
+  impedance::Model truth;        ///< intrinsic, mean over the trial
+  Identification identification;  ///< empty where the trial was not measured
+};
+
+/// What is to be simulated, and how it is measured; absent: it is not.
+struct TrialPlan {
+  laboratory::Scenario scenario;
+  std::optional<measurement::Options> measurement;
+};
+
+/// Every plan once, several at a time; the order is that of the plans, on any number of threads. The handle's mass is
+/// taken off as a user would. `done` is called after each, never two at a time.
+/// @fails  as simulate and measure; a model that is not usable is no failure.
+[[nodiscard]] Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, unsigned threads,
+                                                             const std::function<void(int)>& done = {});
+
+}  // namespace mbk::validation
