@@ -2,39 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <vector>
+#include "mbk/dsp/causal_filter.h"
 
 namespace mbk::dsp {
 namespace {
 
-/// Runs the cascade over `signal` in place, in transposed direct form II, from the steady state for a constant input
-/// equal to the first sample. `step` is +1 for forward and −1 for backward.
-void filter_from_steady_state(const SectionCascade& filter, Vector& signal, Index first, Index step) {
-  struct State {
-    double s1, s2;
-  };
-  std::vector<State> states;
-  states.reserve(filter.size());
-  double input = signal[first];
-  for (const SecondOrderSection& s : filter) {
-    const double output = s.gain_at_zero() * input;
-    const double s2 = s.b2 * input - s.a2 * output;
-    states.push_back({s.b1 * input - s.a1 * output + s2, s2});
-    input = output;
-  }
+/// Runs the cascade over `signal` in place, from the steady state for a constant input equal to the first sample.
+/// `step` is +1 for forward and −1 for backward.
+void filter_from_steady_state(CausalFilter& filter, Vector& signal, Index first, Index step) {
+  filter.settle(signal[first]);
   Index at = first;
-  for (Index i = 0; i < signal.size(); ++i, at += step) {
-    double value = signal[at];
-    for (std::size_t k = 0; k < filter.size(); ++k) {
-      const SecondOrderSection& s = filter[k];
-      State& state = states[k];
-      const double output = s.b0 * value + state.s1;
-      state.s1 = s.b1 * value - s.a1 * output + state.s2;
-      state.s2 = s.b2 * value - s.a2 * output;
-      value = output;
-    }
-    signal[at] = value;
-  }
+  for (Index i = 0; i < signal.size(); ++i, at += step) signal[at] = filter.step(signal[at]);
 }
 
 Vector extend(const Eigen::Ref<const Vector>& signal, const Padding& padding) {
@@ -72,10 +50,11 @@ Result<Matrix> filter_zero_phase(const SectionCascade& filter, const Matrix& sig
                     "take a longer window");
   }
   Matrix filtered(signals.rows(), signals.cols());
+  CausalFilter running(filter);
   for (Index column = 0; column < signals.cols(); ++column) {
     Vector work = extend(signals.col(column), padding);
-    filter_from_steady_state(filter, work, 0, +1);
-    filter_from_steady_state(filter, work, work.size() - 1, -1);
+    filter_from_steady_state(running, work, 0, +1);
+    filter_from_steady_state(running, work, work.size() - 1, -1);
     filtered.col(column) = work.segment(padding.samples, signals.rows());
   }
   return filtered;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mbk/laboratory/noise.h"
 #include "mbk/numeric/random.h"
 
 namespace mbk::laboratory {
@@ -44,7 +45,7 @@ Result<void> check(const PrescribedMotionOptions& o) {
   return {};
 }
 
-Result<void> check(const Sensors& s) {
+Result<void> check(const PrescribedMotionSensors& s) {
   const std::pair<const char*, double> parts[] = {{"position quantum", s.position_quantum},
                                                   {"force noise", s.force_noise},
                                                   {"coloured force noise", s.coloured_force_noise},
@@ -78,28 +79,6 @@ Result<std::vector<Multisine>> sines_in_circle(const PrescribedMotionOptions& o)
   }
   for (Multisine& axis : axes) axis = axis.scaled(o.radius / std::sqrt(largest));
   return axes;
-}
-
-void add_white(Vector& signal, double deviation, Random random) {
-  if (deviation == 0.0) return;
-  for (double& value : signal) value += deviation * random.normal();
-}
-
-/// First-order low-passed noise, stationary from the first sample: n[k+1] = a n[k] + √(1−a²) σ w, a = e^{−2πf_cT}.
-void add_coloured(Vector& signal, double deviation, Hertz bandwidth, double sample_time, Random random) {
-  if (deviation == 0.0) return;
-  const double a = std::exp(-RadPerSec(bandwidth).value * sample_time);
-  const double fresh = deviation * std::sqrt(1.0 - a * a);
-  double noise = deviation * random.normal();
-  for (double& value : signal) {
-    value += noise;
-    noise = a * noise + fresh * random.normal();
-  }
-}
-
-void quantise(Vector& signal, double quantum) {
-  if (quantum == 0.0) return;
-  for (double& value : signal) value = quantum * std::round(value / quantum);
 }
 
 std::string as_text(const Vector& row) {
@@ -223,7 +202,7 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
     force.row(i) = -(limb.M * x.second + limb.B * x.first + limb.K * (x.value - limb.x0)).transpose();
   }
 
-  const Sensors& sensors = options.sensors;
+  const PrescribedMotionSensors& sensors = options.sensors;
   const char* suffix[] = {"_x", "_y"};
   const auto add = [&](const char* name, const char* one_axis_name, const char* unit, const Matrix& signals,
                        const auto& sense) {
@@ -234,15 +213,19 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
           {axes == 1 ? one_axis_name : std::string(name) + suffix[i], unit, "base", std::move(signal)});
     }
   };
-  add("hand", "position", "m", position, [&](Vector& s, std::uint32_t) { quantise(s, sensors.position_quantum); });
+  add("hand", "position", "m", position, [&](Vector& s, std::uint32_t) {
+    for (double& value : s) value = quantised(value, sensors.position_quantum);
+  });
   add("force", "reaction", "N", force, [&](Vector& s, std::uint32_t axis) {
-    add_white(s, sensors.force_noise, Random(options.seed, kWhiteForce + axis));
-    add_coloured(s, sensors.coloured_force_noise, sensors.coloured_force_bandwidth, 1.0 / rate.value,
-                 Random(options.seed, kColouredForce + axis));
+    WhiteNoise white(sensors.force_noise, Random(options.seed, kWhiteForce + axis));
+    ColouredNoise coloured(sensors.coloured_force_noise, sensors.coloured_force_bandwidth, 1.0 / rate.value,
+                           Random(options.seed, kColouredForce + axis));
+    for (double& value : s) value = value + white.next() + coloured.next();
   });
   add("reference", "reference", "m", reference, [](Vector&, std::uint32_t) {});
   add("acceleration", "acceleration", "m/s2", acceleration, [&](Vector& s, std::uint32_t axis) {
-    add_white(s, sensors.acceleration_noise, Random(options.seed, kAcceleration + axis));
+    WhiteNoise white(sensors.acceleration_noise, Random(options.seed, kAcceleration + axis));
+    for (double& value : s) value += white.next();
   });
   recording.events = motion->events();
   recording.metadata = metadata(options);

@@ -24,7 +24,7 @@ namespace mbk::laboratory {
 [[nodiscard]] impedance::Model relaxed_arm_one_axis();
 
 /// What the sensors add to the truth. Zero switches a part off.
-struct Sensors {
+struct PrescribedMotionSensors {
   double position_quantum = 2e-6;       ///< positions are rounded to multiples of it [m]
   double force_noise = 0.02;            ///< white, standard deviation [N]
   double coloured_force_noise = 0.0;    ///< low-passed to first order, standard deviation [N]
@@ -38,7 +38,7 @@ struct PrescribedMotionOptions {
   Protocol protocol = Protocol::sinusoidal;
   impedance::Model limb = relaxed_arm();      ///< the truth; one or two axes, which is what is recorded
   Vector home = Eigen::Vector2d(0.28, 0.02);  ///< where the hand starts, base frame [m]; one entry per axis
-  Sensors sensors;
+  PrescribedMotionSensors sensors;
   std::uint64_t seed = 1;  ///< of phases, pulses and noise
 
   double period = 10.0;                                                ///< of the sinusoidal protocol's sines [s]

@@ -24,7 +24,7 @@ PrescribedMotionOptions options(Protocol protocol, std::uint64_t seed = 1, int a
   return o;
 }
 
-Sensors perfect() {
+PrescribedMotionSensors perfect() {
   return {.position_quantum = 0.0, .force_noise = 0.0, .coloured_force_noise = 0.0, .acceleration_noise = 0.0};
 }
 

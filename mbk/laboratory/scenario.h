@@ -11,6 +11,7 @@
 
 #include "mbk/laboratory/experiment.h"
 #include "mbk/laboratory/one_axis_experiment.h"
+#include "mbk/laboratory/one_axis_sensors.h"
 #include "mbk/laboratory/ready_scenarios.h"
 #include "mbk/participant/arm.h"
 #include "mbk/participant/one_axis_joint.h"

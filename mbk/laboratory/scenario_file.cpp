@@ -307,8 +307,9 @@ participant::ToneRobot::Options read_tone(const Section& s, const Vector2d& home
 
 participant::OneAxisJoint::Options read_joint(const Section& s) {
   participant::OneAxisJoint::Options joint;
-  enum class Kind { joint };
-  static_cast<void>(s.required_choice<Kind>("kind", {{"joint", Kind::joint}}));
+  if (s.required_text("kind") != "joint") {
+    s.reject("kind", "a one-axis machine holds a joint", "write kind = \"joint\", or take a planar robot");
+  }
   joint.inertia = s.number("inertia_kg_m2", joint.inertia, above(0));
   joint.viscosity = s.number("viscosity_Nms_per_rad", joint.viscosity, at_least(0));
   joint.stiffness = s.number("stiffness_Nm_per_rad", joint.stiffness, at_least(0));
@@ -327,6 +328,103 @@ participant::OneAxisJoint::Options read_joint(const Section& s) {
   return joint;
 }
 
+LoadCellOptions read_load_cell(const Section& s) {
+  LoadCellOptions cell;
+  cell.white_noise = s.number("white_noise_N", cell.white_noise, at_least(0));
+  cell.coloured_noise = s.number("coloured_noise_N", cell.coloured_noise, at_least(0));
+  cell.coloured_bandwidth = Hertz(s.number("coloured_bandwidth_hz", cell.coloured_bandwidth.value, above(0)));
+  cell.gain = s.matrix2("gain", cell.gain);
+  cell.offset = s.vector2("offset_N", cell.offset);
+  cell.drift_walk = s.number("drift_walk_N_per_sqrt_s", cell.drift_walk, at_least(0));
+  cell.drift_rate = s.vector2("drift_rate_N_per_s", cell.drift_rate);
+  return cell;
+}
+
+StrainGaugeOptions read_strain_gauge(const Section& s) {
+  StrainGaugeOptions gauge;
+  gauge.slope = s.vector2("slope_N_per_V", gauge.slope);
+  gauge.offset = s.vector2("offset_N", gauge.offset);
+  gauge.calibration_arm = s.number("calibration_arm_mm", gauge.calibration_arm, above(0));
+  gauge.arm = s.number("arm_mm", gauge.arm, above(0));
+  gauge.crosstalk = s.vector2("crosstalk_percent", gauge.crosstalk, between(-100, 100));
+  gauge.bridge_noise = s.number("bridge_noise_V_per_sqrt_hz", gauge.bridge_noise, at_least(0));
+  gauge.cutoff = Hertz(s.number("cutoff_hz", gauge.cutoff.value, at_least(0)));
+  gauge.filter_order = s.integer("filter_order", gauge.filter_order, 1, 20);
+  gauge.converter_bits = s.integer("converter_bits", gauge.converter_bits, 0, 24);
+  gauge.converter_range = s.number("converter_range_V", gauge.converter_range, above(0));
+  gauge.assumed_arm = s.number("assumed_arm_mm", gauge.assumed_arm, above(0));
+  gauge.assumed_offset = s.vector2("assumed_offset_N", gauge.assumed_offset);
+  return gauge;
+}
+
+AccelerometerOptions read_accelerometer(const Section& s) {
+  AccelerometerOptions meter;
+  meter.noise = s.number("noise_m_per_s2", meter.noise, at_least(0));
+  meter.bias = s.vector2("bias_m_per_s2", meter.bias);
+  meter.gain_error = s.vector2("gain_error_percent", meter.gain_error, above(-100));
+  meter.misalignment = s.number("misalignment_deg", meter.misalignment);
+  meter.bandwidth = Hertz(s.number("bandwidth_hz", meter.bandwidth.value, at_least(0)));
+  return meter;
+}
+
+SensorOptions read_sensors(const Section& s) {
+  enum class Force { load_cell, strain_gauge, perfect };
+  enum class Acceleration { accelerometer, perfect };
+  SensorOptions sensors;
+  sensors.encoder_resolution = s.number("encoder_resolution_rad", sensors.encoder_resolution, at_least(0));
+
+  const Section force = s.section("force");
+  switch (force.choice(
+      "kind",
+      {{"load_cell", Force::load_cell}, {"strain_gauge", Force::strain_gauge}, {"perfect", Force::perfect}},
+      Force::load_cell)) {
+    case Force::load_cell:
+      sensors.force = read_load_cell(force);
+      break;
+    case Force::strain_gauge:
+      sensors.force = read_strain_gauge(force);
+      break;
+    case Force::perfect:
+      sensors.force = PerfectSensor{};
+      break;
+  }
+  const Section acceleration = s.section("acceleration");
+  if (acceleration.choice("kind",
+                          {{"accelerometer", Acceleration::accelerometer}, {"perfect", Acceleration::perfect}},
+                          Acceleration::accelerometer) == Acceleration::perfect) {
+    sensors.acceleration = PerfectSensor{};
+  } else {
+    sensors.acceleration = read_accelerometer(acceleration);
+  }
+  if (const Section motor = s.section("motor_current"); motor.given()) {
+    MotorCurrentOptions current;
+    current.torque_constant = motor.vector2("torque_constant_Nm_per_A", current.torque_constant, above(0));
+    current.torque_constant_error =
+        motor.vector2("torque_constant_error_percent", current.torque_constant_error, above(-100));
+    current.noise = motor.number("noise_A", current.noise, at_least(0));
+    sensors.torque = current;
+  }
+  using Timestamps = ClockOptions::Timestamps;
+  const Section clock = s.section("clock");
+  sensors.clock.jitter = clock.number("jitter_us", sensors.clock.jitter, at_least(0));
+  sensors.clock.timestamps = clock.choice(
+      "timestamps", {{"actual", Timestamps::actual}, {"nominal", Timestamps::nominal}}, sensors.clock.timestamps);
+  return sensors;
+}
+
+OneAxisSensorOptions read_one_axis_sensors(const Section& s) {
+  OneAxisSensorOptions sensors;
+  sensors.position_resolution = s.number("position_resolution_rad", sensors.position_resolution, at_least(0));
+  sensors.reaction_noise = s.number("reaction_noise_Nm", sensors.reaction_noise, at_least(0));
+  sensors.coloured_noise = s.number("coloured_noise_Nm", sensors.coloured_noise, at_least(0));
+  sensors.coloured_bandwidth =
+      Hertz(s.number("coloured_bandwidth_hz", sensors.coloured_bandwidth.value, above(0)));
+  sensors.drift_walk = s.number("drift_walk_Nm_per_sqrt_s", sensors.drift_walk, at_least(0));
+  sensors.drift_rate = s.number("drift_rate_Nm_per_s", sensors.drift_rate);
+  sensors.acceleration_noise = s.number("acceleration_noise_rad_per_s2", sensors.acceleration_noise, at_least(0));
+  return sensors;
+}
+
 OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   OneAxisTrial trial;
   OneAxisLoop::Machine& machine = trial.machine;
@@ -341,6 +439,7 @@ OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   trial.servo.velocity_cutoff =
       Hertz(control.number("velocity_cutoff_hz", trial.servo.velocity_cutoff.value, above(0)));
   trial.joint = read_joint(root.section("participant"));
+  trial.sensors = read_one_axis_sensors(root.section("sensors"));
   return trial;
 }
 
@@ -349,6 +448,7 @@ PlanarTrial read_planar(const Section& root, const Section& robot) {
   trial.robot = read_robot(robot);
   trial.home = robot.vector2("home_mm", trial.home);
   trial.control = read_control(root.section("control"));
+  trial.sensors = read_sensors(root.section("sensors"));
   const Section person = root.section("participant"), rig = root.section("rig");
   if (person.given() && rig.given()) {
     rig.reject("mass_kg", "a participant and a rig cannot both hold the handle", "keep [participant] or [rig]");
