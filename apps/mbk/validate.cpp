@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "mbk/recording/write_file.h"
+#include "mbk/report/chart.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
 #include "mbk/validation/coverage.h"
@@ -21,7 +25,8 @@ struct Arguments {
   int runs = 400;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  bool json = false, quiet = false;
+  std::optional<std::filesystem::path> charts;
+  bool json = false, quiet = false, overwrite = false;
 };
 
 /// Says how far the runs are, once a second.
@@ -34,6 +39,21 @@ auto progress(const Arguments& arguments) {
   };
 }
 
+/// "FOLDER/coverage-1.svg", "FOLDER/coverage-2.svg", …
+Result<void> write_charts(const ValidationTable& table, const std::filesystem::path& folder, bool overwrite) {
+  if (table.charts.empty()) {
+    return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "leave --charts away");
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return fail(ErrorKind::usage, error.message(), "name a folder that can be made", folder.string());
+  for (std::size_t k = 0; k < table.charts.size(); ++k) {
+    const auto file = folder / fmt::format("{}-{}.svg", table.study, k + 1);
+    if (auto ok = recording::write_file(file, overwrite, report::chart_svg(table.charts[k])); !ok) return ok;
+  }
+  return {};
+}
+
 int run(const Arguments& arguments) {
   validation::CoverageOptions options;
   options.runs = arguments.runs;
@@ -44,6 +64,9 @@ int run(const Arguments& arguments) {
   if (!table) return report_error(table.error());
   const std::string text = arguments.json ? result::to_json(*table) : report::validation_text(*table);
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (arguments.charts) {
+    if (auto ok = write_charts(*table, *arguments.charts, arguments.overwrite); !ok) return report_error(ok.error());
+  }
   return table->met() ? kFine : kFallsShort;
 }
 
@@ -71,6 +94,12 @@ Action add_validate(CLI::App& app) {
       ->type_name("N")
       ->check(whole_number(1, 1024));
   command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/1");
+  CLI::Option* const charts = command
+                                  ->add_option("--charts", arguments->charts,
+                                               "also write the charts of the study as SVG files into this folder")
+                                  ->type_name("FOLDER")
+                                  ->check(not_empty());
+  command->add_flag("--overwrite", arguments->overwrite, "replace those files where they are there")->needs(charts);
   command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
   return [arguments] { return run(*arguments); };
 }

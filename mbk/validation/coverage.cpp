@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "mbk/identify/impedance_fit.h"
@@ -75,7 +76,8 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
   table.seed = options.seed;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto [low, high] = numeric::binomial_interval(hits[k], options.runs, 0.99);
-    table.rows.push_back({names[k], 100.0 * hits[k] / options.runs, {100.0 * low, 100.0 * high}, {92.0, 98.0}});
+    table.rows.push_back(
+        {names[k], 100.0 * hits[k] / options.runs, {100.0 * low, 100.0 * high}, std::pair{92.0, 98.0}});
   }
   return table;
 }
