@@ -15,5 +15,6 @@ Action add_ellipse(CLI::App& app);
 Action add_info(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_validate(CLI::App& app);
+Action add_robot(CLI::App& app);
 
 }  // namespace mbk::app

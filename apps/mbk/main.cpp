@@ -28,7 +28,15 @@ class HelpFormatter : public CLI::Formatter {
 /// "mbk: what is wrong; which help to read".
 std::string one_line(const CLI::App* app, const CLI::Error& error) {
   const auto chosen = app->get_subcommands();
-  if (!chosen.empty()) return fmt::format("mbk: {}; see 'mbk {} --help'\n", error.what(), chosen.front()->get_name());
+  if (!chosen.empty()) {
+    const CLI::App* const command = chosen.front();
+    const auto part = command->get_subcommands();
+    if (!part.empty()) {
+      return fmt::format("mbk: {}; see 'mbk {} {} --help'\n", error.what(), command->get_name(),
+                         part.front()->get_name());
+    }
+    return fmt::format("mbk: {}; see 'mbk {} --help'\n", error.what(), command->get_name());
+  }
   const std::vector<std::string> words = app->remaining();
   if (words.empty()) return "mbk: no command; see 'mbk --help'\n";
   return fmt::format("mbk: '{}' is no command; see 'mbk --help'\n", words.front());
@@ -54,6 +62,7 @@ int main(int argc, char** argv) {
       {"measure", mbk::app::add_measure(app)},   {"identify", mbk::app::add_identify(app)},
       {"ellipse", mbk::app::add_ellipse(app)},   {"info", mbk::app::add_info(app)},
       {"simulate", mbk::app::add_simulate(app)}, {"validate", mbk::app::add_validate(app)},
+      {"robot", mbk::app::add_robot(app)},
   };
   try {
     app.parse(argc, argv);

@@ -18,9 +18,11 @@ using result::Measured;
 std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordings,
                                            const measurement::Options& options, const MeasureArguments& arguments) {
   std::vector<Result<Measured>> results(recordings.size(), bad_data("not measured"));
-  Progress progress(static_cast<int>(recordings.size()), arguments.quiet);
+  const int count = static_cast<int>(recordings.size());
+  Progress progress(arguments.quiet);
+  int done = 0;
   std::ignore = numeric::parallel_for(
-      static_cast<int>(recordings.size()), arguments.threads,
+      count, arguments.threads,
       [&](int i) -> Result<void> {
         const auto k = static_cast<std::size_t>(i);
         results[k] = measurement::measure({&recordings[k], 1}, options);
@@ -28,7 +30,7 @@ std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordi
       },
       [&](int i) {
         const Recording& recording = recordings[static_cast<std::size_t>(i)];
-        progress.finished(recording.sources.empty() ? "" : recording.sources.front().path);
+        progress.count(++done, count, recording.sources.empty() ? "" : recording.sources.front().path);
       });  // a failure is kept with its recording
   return results;
 }

@@ -14,26 +14,27 @@ namespace mbk::app {
 class Progress {
  public:
   /// @param what  goes before the count: "coverage: "
-  Progress(int total, bool quiet, std::string_view what = "") : total_(total), quiet_(quiet), what_(what) {}
+  explicit Progress(bool quiet, std::string_view what = "") : quiet_(quiet), what_(what) {}
 
-  /// One more is done: "what3 of 8: name".
-  void finished(std::string_view name = "") {
-    ++done_;
-    if (quiet_ || total_ < 2 || Clock::now() - last_ < std::chrono::seconds(1)) return;
-    last_ = Clock::now();
-    fmt::print(stderr, "{}{} of {}{}{}\n", what_, done_, total_, name.empty() ? "" : ": ", name);
+  /// "what3 of 8: name".
+  void count(int done, int of, std::string_view name = "") {
+    if (of < 2 || !due()) return;
+    fmt::print(stderr, "{}{} of {}{}{}\n", what_, done, of, name.empty() ? "" : ": ", name);
   }
 
   /// A share of the one that is under way: "what40 %".
   void reached(double fraction) {
-    if (quiet_ || Clock::now() - last_ < std::chrono::seconds(1)) return;
-    last_ = Clock::now();
-    fmt::print(stderr, "{}{:.0f} %\n", what_, 100.0 * fraction);
+    if (due()) fmt::print(stderr, "{}{:.0f} %\n", what_, 100.0 * fraction);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  int total_, done_ = 0;
+  bool due() {
+    if (quiet_ || Clock::now() - last_ < std::chrono::seconds(1)) return false;
+    last_ = Clock::now();
+    return true;
+  }
+
   bool quiet_;
   std::string what_;
   Clock::time_point last_ = Clock::now();

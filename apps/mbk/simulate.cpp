@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <limits>
 #include <memory>
 #include <optional>
@@ -70,7 +69,8 @@ Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
   }
   std::vector<Job> jobs;
   for (const laboratory::Scenario& scenario : *scenarios) {
-    if (!arguments.trials.empty() && std::ranges::find(arguments.trials, scenario.trial_name) == arguments.trials.end()) {
+    if (!arguments.trials.empty() &&
+        std::ranges::find(arguments.trials, scenario.trial_name) == arguments.trials.end()) {
       continue;
     }
     for (int k = 0; k < arguments.seeds; ++k) {
@@ -130,7 +130,8 @@ int run(const Arguments& arguments) {
   if (auto ok = check_files(*jobs, arguments); !ok) return report_error(ok.error());
   const int count = static_cast<int>(jobs->size());
   std::vector<std::string> lines(jobs->size());
-  Progress progress(count, arguments.quiet, "simulate: ");
+  Progress progress(arguments.quiet, "simulate: ");
+  int done = 0;
   const auto made = numeric::parallel_for(
       count, arguments.threads,
       [&](int i) -> Result<void> {
@@ -143,7 +144,7 @@ int run(const Arguments& arguments) {
         if (arguments.blind) performance->recording = laboratory::without_truth(std::move(performance->recording));
         return recording::write_mat(performance->recording, job.file, arguments.overwrite);
       },
-      [&](int i) { progress.finished((*jobs)[static_cast<std::size_t>(i)].file.string()); });
+      [&](int i) { progress.count(++done, count, (*jobs)[static_cast<std::size_t>(i)].file.string()); });
   if (!made) return report_error(made.error());
   std::string text;
   for (const std::string& line : lines) text += line;

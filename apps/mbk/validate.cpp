@@ -1,15 +1,19 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
+#include "mbk/recording/write_file.h"
+#include "mbk/report/chart.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
-#include "mbk/validation/coverage.h"
+#include "mbk/validation/study.h"
 
 namespace mbk::app {
 namespace {
@@ -18,23 +22,67 @@ constexpr int kFallsShort = 1;
 
 struct Arguments {
   std::string study = "coverage";
-  int runs = 400;
+  std::optional<int> runs;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  bool json = false, quiet = false;
+  std::optional<std::filesystem::path> charts;
+  bool json = false, quiet = false, overwrite = false;
 };
 
+const validation::Study* find_study(const std::string& name) {
+  for (const validation::Study& study : validation::studies()) {
+    if (study.name == name) return &study;
+  }
+  return nullptr;
+}
+
+std::string study_names() {
+  std::string names;
+  for (const validation::Study& study : validation::studies()) {
+    names += (names.empty() ? "" : ", ") + std::string(study.name);
+  }
+  return names;
+}
+
+/// One line for each study, as they stand in the help.
+std::string study_lines() {
+  std::string lines;
+  for (const validation::Study& study : validation::studies()) {
+    lines += fmt::format("  {:<12} {}; {} runs\n", study.name, study.what, study.runs);
+  }
+  return lines;
+}
+
+/// "FOLDER/coverage-1.svg", "FOLDER/coverage-2.svg", …
+Result<void> write_charts(const ValidationTable& table, const std::filesystem::path& folder, bool overwrite) {
+  if (table.charts.empty()) {
+    return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "leave --charts away");
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return fail(ErrorKind::usage, error.message(), "name a folder that can be made", folder.string());
+  for (std::size_t k = 0; k < table.charts.size(); ++k) {
+    const auto file = folder / fmt::format("{}-{}.svg", table.study, k + 1);
+    if (auto ok = recording::write_file(file, overwrite, report::chart_svg(table.charts[k])); !ok) return ok;
+  }
+  return {};
+}
+
 int run(const Arguments& arguments) {
-  validation::CoverageOptions options;
-  options.runs = arguments.runs;
+  const validation::Study& study = *find_study(arguments.study);
+  Progress progress(arguments.quiet, arguments.study + ": ");
+  validation::StudyOptions options;
+  options.runs = arguments.runs.value_or(study.runs);
   options.seed = arguments.seed;
   options.threads = arguments.threads;
-  Progress progress(arguments.runs, arguments.quiet, arguments.study + ": ");
-  options.progress = [&](int) { progress.finished(); };
-  const auto table = validation::coverage(options);
+  options.progress = [&](int done, int of) { progress.count(done, of); };
+  const auto table = study.perform(options);
   if (!table) return report_error(table.error());
   const std::string text = arguments.json ? result::to_json(*table) : report::validation_text(*table);
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (arguments.charts) {
+    if (auto ok = write_charts(*table, *arguments.charts, arguments.overwrite); !ok) return report_error(ok.error());
+  }
   return table->met() ? kFine : kFallsShort;
 }
 
@@ -43,25 +91,32 @@ int run(const Arguments& arguments) {
 Action add_validate(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("validate", "a method against known truth, as a table");
-  command->footer(
-      "Studies:\n"
-      "  coverage   how often the 95 % intervals of M, B, K and x0 hold the truth (about half a minute)\n\n"
-      "Example:\n"
-      "  mbk validate coverage --runs 2000 --seed 7 --json\n\n"
-      "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage.");
-  command->add_option("STUDY", arguments->study, "coverage")->check([](const std::string& study) {
-    return study == "coverage" ? std::string() : fmt::format("'{}' is no study; there is: coverage", study);
+  command->footer("Studies:\n" + study_lines() +
+                  "\nExamples:\n"
+                  "  mbk validate coverage --runs 2000 --seed 7 --json\n"
+                  "  mbk validate participant --charts charts\n"
+                  "      charts/participant-1.svg: energy against the amplitude of the pulses\n\n"
+                  "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage.");
+  command->add_option("STUDY", arguments->study, study_names())->check([](const std::string& study) {
+    if (find_study(study) != nullptr) return std::string();
+    return fmt::format("'{}' is no study; there are: {}", study, study_names());
   });
-  command->add_option("--runs", arguments->runs, "how many simulated trials (400)")
+  command->add_option("--runs", arguments->runs, "how many seeds (see the studies)")
       ->type_name("N")
       ->check(whole_number(1, 1'000'000));
   command->add_option("--seed", arguments->seed, "the same seed gives the same table (1)")
       ->type_name("N")
       ->check(whole_number(0, std::numeric_limits<long>::max()));
-  command->add_option("--threads", arguments->threads, "runs at a time (as many as there are cores)")
+  command->add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
       ->type_name("N")
       ->check(whole_number(1, 1024));
   command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/1");
+  CLI::Option* const charts = command
+                                  ->add_option("--charts", arguments->charts,
+                                               "also write the charts of the study as SVG files into this folder")
+                                  ->type_name("FOLDER")
+                                  ->check(not_empty());
+  command->add_flag("--overwrite", arguments->overwrite, "replace those files where they are there")->needs(charts);
   command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
   return [arguments] { return run(*arguments); };
 }

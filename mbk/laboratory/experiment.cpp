@@ -186,15 +186,15 @@ Result<Performance> perform(const Experiment& experiment, participant::Load& loa
     result.energy_exchanged += std::abs(state.force_hand_on_robot.dot(state.velocity)) * interval;
     if (i % kTruthTicks == 0) truth.add(load.impedance(experiment.home));
     if (experiment.watch) experiment.watch(state);
-    result.energy_absorbed =
-        state.energy.absorbed - 0.5 * experiment.robot.handle_mass * state.velocity.squaredNorm();
+    result.energy_absorbed = state.energy.absorbed - 0.5 * experiment.robot.handle_mass * state.velocity.squaredNorm();
     loop->advance();
     if (experiment.progress && i % 1000 == 0) {
       experiment.progress(static_cast<double>(i) / static_cast<double>(samples));
     }
   }
   recording.channels = std::move(channels.channels);
-  for (const auto& event : experiment.schedule.events()) recording.events.push_back({event.time, event.name, event.value});
+  for (const auto& event : experiment.schedule.events())
+    recording.events.push_back({event.time, event.name, event.value});
 
   result.truth = truth.mean();
   recording.metadata = truth_metadata(result.truth, experiment.rate, result.energy_absorbed);

@@ -34,8 +34,8 @@ struct Experiment {
   perturbation::Schedule schedule;
   std::variant<PositionMode, ForceMode, LineMode> control;
   SensorOptions sensors;
-  Hertz rate{1000.0};                            ///< of control and recording
-  std::uint64_t seed = 1;                        ///< of the sensors' noise
+  Hertz rate{1000.0};                             ///< of control and recording
+  std::uint64_t seed = 1;                         ///< of the sensors' noise
   std::function<void(double fraction)> progress;  ///< called now and then with the share that is done
   std::function<void(const TrueState&)> watch;    ///< called with the truth of each tick, for studies and plots
 };
@@ -43,8 +43,9 @@ struct Experiment {
 /// Runs the closed loop of robot, controller and load, and records what the sensors see. Tick i = 0, 1, … is at
 /// (i + 1)/rate unless the clock jitters. The recording has hand_x … acceleration_y, joint_1, joint_2, torque_1 and
 /// torque_2; reference is the hand's place [m] in position mode, else the commanded force [N]. The metadata hold the
-/// truth: truth_M, truth_B, truth_K, truth_x0 (the load's intrinsic impedance about home, without the handle, averaged over
-/// the trial, as JSON arrays with 17 digits), truth_energy_absorbed_J, and handle_mass_kg, seed, rate_hz. Nothing that measures reads it.
+/// truth: truth_M, truth_B, truth_K, truth_x0 (the load's intrinsic impedance about home, without the handle, averaged
+/// over the trial, as JSON arrays with 17 digits), truth_energy_absorbed_J, and handle_mass_kg, seed, rate_hz. Nothing
+/// that measures reads it.
 /// @fails  usage: control and schedule speak of different quantities; the schedule leaves the workspace; as ClosedLoop,
 ///         SensorSuite and the control laws. data: the hand leaves the workspace or the motion does not stay finite,
 ///         with the time.

@@ -39,9 +39,9 @@ Result<Performance> perform(const OneAxisExperiment& experiment, participant::On
     if (i > 0) velocity = memory * velocity + (1.0 - memory) * (measured - last_position) / sample_time;
     last_position = measured;
     const auto wanted = experiment.schedule.at(t);
-    const double motor = position ? servo.proportional * (wanted.value[0] - measured) +
-                                        servo.derivative * (wanted.first[0] - velocity)
-                                  : wanted.value[0];
+    const double motor =
+        position ? servo.proportional * (wanted.value[0] - measured) + servo.derivative * (wanted.first[0] - velocity)
+                 : wanted.value[0];
     const OneAxisTrueState& state = loop->hold(motor, sample_time);
     if (!(std::isfinite(state.position) && std::isfinite(state.reaction))) {
       return bad_data(fmt::format("the motion is not finite any more at {:.3f} s", t),
@@ -60,7 +60,8 @@ Result<Performance> perform(const OneAxisExperiment& experiment, participant::On
       experiment.progress(static_cast<double>(i) / static_cast<double>(samples));
     }
   }
-  for (const auto& event : experiment.schedule.events()) recording.events.push_back({event.time, event.name, event.value});
+  for (const auto& event : experiment.schedule.events())
+    recording.events.push_back({event.time, event.name, event.value});
   result.truth = load.impedance(0.0);
   recording.metadata = truth_metadata(result.truth, experiment.rate, result.energy_absorbed);
   return result;

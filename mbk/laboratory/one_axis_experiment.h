@@ -4,8 +4,8 @@
 
 #include "mbk/core/units.h"
 #include "mbk/laboratory/one_axis_loop.h"
-#include "mbk/laboratory/performance.h"
 #include "mbk/laboratory/one_axis_sensors.h"
+#include "mbk/laboratory/performance.h"
 #include "mbk/perturbation/schedule.h"
 
 namespace mbk::laboratory {

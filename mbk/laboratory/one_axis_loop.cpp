@@ -50,7 +50,7 @@ void OneAxisLoop::advance() {
   const double step = sample_time_ / machine_.steps_per_tick;
   const auto after = [&](const Change& slope, double time) {
     return participant::JointState{state_.position + time * slope.velocity,
-                                     state_.velocity + time * slope.acceleration};
+                                   state_.velocity + time * slope.acceleration};
   };
   for (int k = 0; k < machine_.steps_per_tick; ++k) {
     const Change first = change(state_);

@@ -31,8 +31,8 @@ class OneAxisLoop {
   };
   /// Servo of the axis: u = K_p (r − x) + K_d (ṙ − ẋ); gains of zero and a force command leave it open loop.
   struct Servo {
-    double proportional = 800.0;  ///< K_p [N·m/rad or N/m] ≥ 0
-    double derivative = 12.0;     ///< K_d ≥ 0
+    double proportional = 800.0;   ///< K_p [N·m/rad or N/m] ≥ 0
+    double derivative = 12.0;      ///< K_d ≥ 0
     Hertz velocity_cutoff{200.0};  ///< of the velocity estimate
   };
 

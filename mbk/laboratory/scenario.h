@@ -36,8 +36,8 @@ struct MultisinePlan {
   Phases phases = Phases::random;
   std::optional<perturbation::OptimalPowerOptions> optimal_power;  ///< absent: the same at every line
   Axes axes = Axes::independent;
-  double duration = 62.1;   ///< [s]
-  double moving_in = 5.0;   ///< from rest [s]
+  double duration = 62.1;  ///< [s]
+  double moving_in = 5.0;  ///< from rest [s]
 };
 
 /// Underdamped pulses in random order.
@@ -71,10 +71,10 @@ struct PerturbationPlan {
 
 /// A payload held by springs: a linear field, or an array of real springs on the disc of the handle.
 struct RigPlan {
-  double mass = 0.0;                                 ///< payload [kg]
-  Matrix2d damping = Matrix2d::Zero();               ///< dampers [N·s/m]
-  Matrix2d stiffness = Matrix2d::Zero();             ///< of the linear field [N/m]
-  Vector2d equilibrium = {0.3, -0.05};               ///< of the linear field [m]
+  double mass = 0.0;                      ///< payload [kg]
+  Matrix2d damping = Matrix2d::Zero();    ///< dampers [N·s/m]
+  Matrix2d stiffness = Matrix2d::Zero();  ///< of the linear field [N/m]
+  Vector2d equilibrium = {0.3, -0.05};    ///< of the linear field [m]
 };
 
 /// Nothing at the handle.
@@ -101,7 +101,7 @@ struct OneAxisTrial {
 struct Scenario {
   std::string file_name;   ///< without its folder and ending
   std::string trial_name;  ///< of the [[trial]]; empty where the file has none
-  std::string condition;  ///< in words
+  std::string condition;   ///< in words
   std::variant<PlanarTrial, OneAxisTrial> trial;
   PerturbationPlan perturbation;
   Hertz rate{1000.0};

@@ -29,12 +29,11 @@ ClosedLoop::Options read_robot(const Section& s) {
   robot::PlanarRobot& robot = options.robot;
   robot.geometry.d1 = s.number("d1_mm", robot.geometry.d1, above(0));
   robot.geometry.d2 = s.number("d2_mm", robot.geometry.d2, above(0));
-  const std::vector<double> alpha = s.numbers(
-      "alpha_kg_m2", {robot.inertia.alpha1, robot.inertia.alpha2, robot.inertia.alpha3}, config::any(), 3);
+  const std::vector<double> alpha =
+      s.numbers("alpha_kg_m2", {robot.inertia.alpha1, robot.inertia.alpha2, robot.inertia.alpha3}, config::any(), 3);
   robot.inertia = {alpha[0], alpha[1], alpha[2]};
   const auto both = [&](const char* key, double robot::JointFriction::*part, config::Range allowed) {
-    const auto value =
-        pair_of(s.vector2(key, Vector2d(robot.friction[0].*part, robot.friction[1].*part), allowed));
+    const auto value = pair_of(s.vector2(key, Vector2d(robot.friction[0].*part, robot.friction[1].*part), allowed));
     for (std::size_t joint = 0; joint < 2; ++joint) robot.friction[joint].*part = value[joint];
   };
   both("viscous_Nms_per_rad", &robot::JointFriction::viscous, at_least(0));
@@ -102,11 +101,10 @@ std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Sectio
   enum class Power { flat, d_optimal };
   const auto power = s.choice("power", {{"flat", Power::flat}, {"d_optimal", Power::d_optimal}}, Power::flat);
   perturbation::OptimalPowerOptions options;
-  options.limited = s.choice("power_limited_by",
-                             {{"position", LimitedSignal::position},
-                              {"velocity", LimitedSignal::velocity},
-                              {"force", LimitedSignal::force}},
-                             options.limited);
+  options.limited = s.choice(
+      "power_limited_by",
+      {{"position", LimitedSignal::position}, {"velocity", LimitedSignal::velocity}, {"force", LimitedSignal::force}},
+      options.limited);
   options.floor = s.number("power_floor_percent", options.floor, between(0, 100));
   if (const Section nominal = s.section("nominal"); nominal.given()) {
     options.nominal = {nominal.required_number("mass_kg"), nominal.required_number("damping_Ns_per_m"),
@@ -317,8 +315,8 @@ participant::OneAxisJoint::Options read_joint(const Section& s) {
   const Section r = s.section("reflex");
   joint.reflex.gain = r.number("gain_Nms_per_rad", joint.reflex.gain, at_least(0));
   joint.reflex.delay = r.number("delay_ms", joint.reflex.delay, at_least(0));
-  joint.reflex.natural_frequency = RadPerSec(Hertz(r.number(
-      "natural_frequency_hz", Hertz(joint.reflex.natural_frequency).value, above(0))));
+  joint.reflex.natural_frequency =
+      RadPerSec(Hertz(r.number("natural_frequency_hz", Hertz(joint.reflex.natural_frequency).value, above(0))));
   joint.reflex.damping_ratio = r.number("damping_ratio", joint.reflex.damping_ratio, above(0));
   joint.reflex.stretched_by_positive_velocity =
       r.flag("stretched_by_positive_velocity", joint.reflex.stretched_by_positive_velocity);
@@ -375,8 +373,7 @@ SensorOptions read_sensors(const Section& s) {
 
   const Section force = s.section("force");
   switch (force.choice(
-      "kind",
-      {{"load_cell", Force::load_cell}, {"strain_gauge", Force::strain_gauge}, {"perfect", Force::perfect}},
+      "kind", {{"load_cell", Force::load_cell}, {"strain_gauge", Force::strain_gauge}, {"perfect", Force::perfect}},
       Force::load_cell)) {
     case Force::load_cell:
       sensors.force = read_load_cell(force);
@@ -389,8 +386,7 @@ SensorOptions read_sensors(const Section& s) {
       break;
   }
   const Section acceleration = s.section("acceleration");
-  if (acceleration.choice("kind",
-                          {{"accelerometer", Acceleration::accelerometer}, {"perfect", Acceleration::perfect}},
+  if (acceleration.choice("kind", {{"accelerometer", Acceleration::accelerometer}, {"perfect", Acceleration::perfect}},
                           Acceleration::accelerometer) == Acceleration::perfect) {
     sensors.acceleration = PerfectSensor{};
   } else {
@@ -417,8 +413,7 @@ OneAxisSensorOptions read_one_axis_sensors(const Section& s) {
   sensors.position_resolution = s.number("position_resolution_rad", sensors.position_resolution, at_least(0));
   sensors.reaction_noise = s.number("reaction_noise_Nm", sensors.reaction_noise, at_least(0));
   sensors.coloured_noise = s.number("coloured_noise_Nm", sensors.coloured_noise, at_least(0));
-  sensors.coloured_bandwidth =
-      Hertz(s.number("coloured_bandwidth_hz", sensors.coloured_bandwidth.value, above(0)));
+  sensors.coloured_bandwidth = Hertz(s.number("coloured_bandwidth_hz", sensors.coloured_bandwidth.value, above(0)));
   sensors.drift_walk = s.number("drift_walk_Nm_per_sqrt_s", sensors.drift_walk, at_least(0));
   sensors.drift_rate = s.number("drift_rate_Nm_per_s", sensors.drift_rate);
   sensors.acceleration_noise = s.number("acceleration_noise_rad_per_s2", sensors.acceleration_noise, at_least(0));

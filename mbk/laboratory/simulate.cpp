@@ -10,9 +10,7 @@ using participant::Load;
 /// Nothing at the handle.
 class EmptyHandle : public Load {
  public:
-  [[nodiscard]] participant::LoadDynamics dynamics(const participant::HandState& /*hand*/) const override {
-    return {};
-  }
+  [[nodiscard]] participant::LoadDynamics dynamics(const participant::HandState& /*hand*/) const override { return {}; }
   [[nodiscard]] impedance::Model impedance(const Vector2d& hand) const override {
     return {Matrix2d::Zero(), Matrix2d::Zero(), Matrix2d::Zero(), hand};
   }
@@ -70,8 +68,8 @@ Result<Performance> run(const OneAxisTrial& trial, const Scenario& scenario, con
 Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options) {
   auto schedule = make_schedule(scenario.perturbation, scenario.seed);
   if (!schedule) return tl::unexpected(schedule.error());
-  auto performance = std::visit(
-      [&](const auto& trial) { return run(trial, scenario, options, std::move(*schedule)); }, scenario.trial);
+  auto performance = std::visit([&](const auto& trial) { return run(trial, scenario, options, std::move(*schedule)); },
+                                scenario.trial);
   if (!performance) return performance;
   auto& metadata = performance->recording.metadata;
   metadata["truth_scenario"] = scenario.file_name;

@@ -8,6 +8,7 @@ namespace mbk::numeric {
 
 /// z with P(|Z| < z) = 0.95 for a standard normal Z.
 inline constexpr double kNormal95 = 1.959963984540054;
+inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 
 /// Σ(x − x̄)²/(n − 1), in two passes; 0 for fewer than two values.
 [[nodiscard]] double variance(const Eigen::Ref<const Vector>& values);

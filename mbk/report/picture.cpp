@@ -6,40 +6,26 @@
 #include <cmath>
 #include <numbers>
 
+#include "mbk/report/braille.h"
+
 namespace mbk::report {
 namespace {
 
-constexpr int kColumns = 23, kRows = 11;                        // characters of one panel
-constexpr int kDotsWide = 2 * kColumns, kDotsHigh = 4 * kRows;  // Braille: 2 × 4 dots a character
+constexpr int kColumns = 23, kRows = 11;  // characters of one panel
 
-/// A panel of dots.
-class Canvas {
+/// A panel of dots in [−1, 1], y upwards; dots are taken as square.
+class Panel {
  public:
-  void dot(double x, double y) {  // in [−1, 1], y upwards; dots are taken as square
-    const double radius = 0.5 * std::min(kDotsWide, kDotsHigh) - 0.5;
-    const auto column = static_cast<int>(std::lround(0.5 * (kDotsWide - 1) + radius * x));
-    const auto row = static_cast<int>(std::lround(0.5 * (kDotsHigh - 1) - radius * y));
-    if (column < 0 || column >= kDotsWide || row < 0 || row >= kDotsHigh) return;
-    constexpr unsigned kBits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
-    cells_[static_cast<std::size_t>((row / 4) * kColumns + column / 2)] |= kBits[row % 4][column % 2];
+  void dot(double x, double y) {
+    const double radius = 0.5 * std::min(canvas_.dots_wide(), canvas_.dots_high()) - 0.5;
+    canvas_.dot(static_cast<int>(std::lround(0.5 * (canvas_.dots_wide() - 1) + radius * x)),
+                static_cast<int>(std::lround(0.5 * (canvas_.dots_high() - 1) - radius * y)));
   }
 
-  [[nodiscard]] std::string line(int row) const {
-    std::string text;
-    for (int column = 0; column < kColumns; ++column) {
-      const unsigned bits = cells_[static_cast<std::size_t>(row * kColumns + column)];
-      const unsigned code = 0x2800u + bits;  // Braille patterns, U+2800 …
-      text += bits == 0 ? ' ' : static_cast<char>(0xE0u | (code >> 12));
-      if (bits != 0) {
-        text += static_cast<char>(0x80u | ((code >> 6) & 0x3Fu));
-        text += static_cast<char>(0x80u | (code & 0x3Fu));
-      }
-    }
-    return text;
-  }
+  [[nodiscard]] std::string line(int row) const { return canvas_.line(row); }
 
  private:
-  std::vector<unsigned> cells_ = std::vector<unsigned>(static_cast<std::size_t>(kColumns * kRows), 0u);
+  BrailleCanvas canvas_{kColumns, kRows};
 };
 
 bool exists(const impedance::Ellipse& ellipse) {
@@ -55,11 +41,11 @@ double round_up(double value) {
   return 10.0 * power;
 }
 
-Canvas draw(const impedance::Ellipse& ellipse, double scale) {
-  Canvas canvas;
+Panel draw(const impedance::Ellipse& ellipse, double scale) {
+  Panel panel;
   for (int i = -20; i <= 20; i += 2) {
-    canvas.dot(i / 20.0, 0.0);
-    canvas.dot(0.0, i / 20.0);
+    panel.dot(i / 20.0, 0.0);
+    panel.dot(0.0, i / 20.0);
   }
   const double c = std::cos(ellipse.orientation), s = std::sin(ellipse.orientation);
   constexpr int kPoints = 720;
@@ -67,9 +53,9 @@ Canvas draw(const impedance::Ellipse& ellipse, double scale) {
     const double angle = 2.0 * std::numbers::pi * i / kPoints;
     const double major = ellipse.lambda_max * std::cos(angle) / scale;
     const double minor = ellipse.lambda_min * std::sin(angle) / scale;
-    canvas.dot(c * major - s * minor, s * major + c * minor);
+    panel.dot(c * major - s * minor, s * major + c * minor);
   }
-  return canvas;
+  return panel;
 }
 
 std::string padded(std::string text, std::size_t width) {
@@ -93,11 +79,11 @@ std::string draw_ellipses(const std::vector<EllipsePanel>& panels) {
   for (const EllipsePanel& panel : panels) {
     const bool drawn = exists(panel.ellipse);
     const double scale = drawn ? round_up(panel.ellipse.lambda_max) : 1.0;
-    const Canvas canvas = drawn ? draw(panel.ellipse, scale) : Canvas();
+    const Panel picture = drawn ? draw(panel.ellipse, scale) : Panel();
     lines[0] += padded(drawn ? fmt::format("{}, radius {:g} {}", panel.title, scale, panel.unit)
                              : fmt::format("{}: no ellipse", panel.title),
                        kWidth);
-    for (int row = 0; row < kRows; ++row) lines[static_cast<std::size_t>(row) + 1] += padded(canvas.line(row), kWidth);
+    for (int row = 0; row < kRows; ++row) lines[static_cast<std::size_t>(row) + 1] += padded(picture.line(row), kWidth);
   }
   std::string text;
   for (std::string& line : lines) {

@@ -9,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/impedance/ellipse.h"
 #include "mbk/numeric/statistics.h"
+#include "mbk/report/chart.h"
 #include "mbk/report/picture.h"
 
 namespace mbk::report {
@@ -165,6 +167,22 @@ std::string warnings_text(const std::vector<Warning>& warnings) {
     text += paragraph("    try: ", warning.remedy);
   }
   return text;
+}
+
+/// Two, or as many as show four digits of what is smaller than ten.
+int decimals_of(const ValidationRow& row) {
+  double largest = 0.0;
+  for (const double value : {row.value, row.interval99.first, row.interval99.second}) {
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  }
+  if (!(largest > 0.0)) return 2;
+  return std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 2, 9);
+}
+
+std::string wanted_text(const Interval& wanted) {
+  if (!std::isfinite(wanted.second)) return fmt::format("at least {:g}", wanted.first);
+  if (!std::isfinite(wanted.first)) return fmt::format("at most {:g}", wanted.second);
+  return fmt::format("[{:g}, {:g}]", wanted.first, wanted.second);
 }
 
 std::string source_line(const SourceFile& source) {
@@ -331,14 +349,94 @@ std::string contents_text(const FileContents& contents, const Error& unrecognise
   return text;
 }
 
-std::string validation_text(const ValidationTable& validation) {
-  std::vector<std::vector<std::string>> rows = {{"", validation.unit, "99 % interval", "wanted: overlaps", ""}};
-  for (const ValidationRow& row : validation.rows) {
-    rows.push_back({row.what, fmt::format("{:.2f}", row.value), range(row.interval99, 2), range(row.wanted, 0),
-                    row.met() ? "ok" : "FALLS SHORT"});
+Chart workspace_chart(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
+  constexpr double kMillimetres = 1e3;
+  Chart chart;
+  chart.title = "Where the hand can be";
+  chart.x = {"x", "mm"};
+  chart.y = {"y", "mm"};
+  chart.equal_scale = true;
+  const auto add = [](ChartSeries& series, const Eigen::Vector2d& place) {
+    series.x.push_back(kMillimetres * place.x());
+    series.y.push_back(kMillimetres * place.y());
+  };
+  ChartSeries outline{"workspace", {}, {}, {}, ChartSeries::Drawn::line};
+  for (const Eigen::Vector2d& place : workspace.outline) add(outline, place);
+  ChartSeries base{"base (both motors)", {0.0}, {0.0}, {}, ChartSeries::Drawn::marks};
+  chart.series = {outline, base};
+  if (posture) {
+    ChartSeries links{"links", {}, {}, {}, ChartSeries::Drawn::line};
+    add(links, Eigen::Vector2d::Zero());
+    add(links, robot::elbow_position(workspace.geometry, posture->theta));
+    add(links, posture->hand);
+    ChartSeries hand{"hand", {}, {}, {}, ChartSeries::Drawn::marks};
+    add(hand, posture->hand);
+    chart.series.push_back(links);
+    chart.series.push_back(hand);
   }
-  return paragraph(validation.study + ": ", validation.question) +
-         fmt::format("{} runs, seed {}\n", validation.runs, validation.seed) + table(rows);
+  return chart;
+}
+
+std::string workspace_text(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
+  const double degrees = 180.0 / std::numbers::pi;
+  const robot::Geometry& geometry = workspace.geometry;
+  const robot::JointLimits& limits = geometry.limits;
+  std::string text = chart_text(workspace_chart(workspace, posture)) + "\n";
+  text += table(
+      {{"links", fmt::format("d₁ {:.4g} mm, d₂ {:.4g} mm", 1e3 * geometry.d1, 1e3 * geometry.d2)},
+       {"limits", fmt::format("{:.4g}° ≤ θ₁ ≤ {:.4g}°, {:.4g}° ≤ θ₂ ≤ {:.4g}°, θ₁ − (θ₂ − 90°) ≥ {:.4g}°",
+                              degrees * limits.theta1_low, degrees * limits.theta1_high, degrees * limits.theta2_low,
+                              degrees * limits.theta2_high, degrees * limits.smallest_opening)},
+       {"x", fmt::format("{:.1f} to {:.1f} mm", 1e3 * workspace.low.x(), 1e3 * workspace.high.x())},
+       {"y", fmt::format("{:.1f} to {:.1f} mm", 1e3 * workspace.low.y(), 1e3 * workspace.high.y())},
+       {"area", fmt::format("{:.4f} m²", workspace.area)}});
+  if (!posture) return text;
+  const impedance::Ellipse felt = impedance::ellipse(posture->inertia_at_hand);
+  const Eigen::Matrix2d& J = posture->jacobian;
+  text += fmt::format("\nwith the hand at ({:g}, {:g}) mm\n", 1e3 * posture->hand.x(), 1e3 * posture->hand.y());
+  text +=
+      table({{"joint angles",
+              fmt::format("θ₁ {:.2f}°, θ₂ {:.2f}°", degrees * posture->theta[0], degrees * posture->theta[1])},
+             {"Jacobian", fmt::format("[{:.4f} {:.4f}; {:.4f} {:.4f}] m", J(0, 0), J(0, 1), J(1, 0), J(1, 1))},
+             {"manipulability", fmt::format("|det J| = {:.4f} m²", posture->manipulability)},
+             {"inertia at hand", fmt::format("{:.3g} to {:.3g} kg, most along {:.1f}° from x (J⁻ᵀ I J⁻¹, table A.1)",
+                                             felt.lambda_min, felt.lambda_max, degrees * felt.orientation)}});
+  text += "\n";
+  std::vector<std::vector<std::string>> rows = {{"limit", "is", "left"}};
+  for (const robot::Margin& margin : posture->margins) {
+    rows.push_back({fmt::format("{} {} {:.4g}°", margin.quantity, margin.upper ? "≤" : "≥", degrees * margin.limit),
+                    fmt::format("{:.2f}°", degrees * margin.value), fmt::format("{:.2f}°", degrees * margin.left())});
+  }
+  return text + table(rows);
+}
+
+std::string validation_text(const ValidationTable& validation) {
+  const auto any = [&](auto member) {
+    return std::ranges::any_of(validation.rows, [&](const ValidationRow& row) { return (row.*member).has_value(); });
+  };
+  const bool spread = any(&ValidationRow::spread), coverage = any(&ValidationRow::coverage);
+  std::vector<std::vector<std::string>> rows(1);
+  rows[0] = {"", validation.unit, "99 % interval"};
+  if (spread) rows[0].emplace_back("spread of runs");
+  if (coverage) rows[0].emplace_back("95 % intervals hold");
+  rows[0].insert(rows[0].end(), {"wanted: overlaps", ""});
+  for (const ValidationRow& row : validation.rows) {
+    const int decimals = decimals_of(row);
+    std::vector<std::string> cells = {row.what, fmt::format("{:.{}f}", row.value, decimals),
+                                      range(row.interval99, decimals)};
+    if (!std::isfinite(row.value)) cells[1] = "undefined";
+    if (row.unit && !row.unit->empty()) cells[1] += " " + *row.unit;
+    if (spread) cells.push_back(row.spread ? fmt::format("{:.{}f}", *row.spread, decimals) : "");
+    if (coverage) cells.push_back(row.coverage ? fmt::format("{:.1f} %", 100.0 * *row.coverage) : "");
+    cells.push_back(row.wanted ? wanted_text(*row.wanted) : "");
+    cells.emplace_back(!row.judged() ? "reported" : row.met() ? "ok" : "FALLS SHORT");
+    rows.push_back(std::move(cells));
+  }
+  std::string text = paragraph(validation.study + ": ", validation.question) +
+                     fmt::format("{} runs, seed {}\n", validation.runs, validation.seed) + table(rows);
+  for (const std::string& note : validation.notes) text += paragraph("  ", note);
+  for (const Chart& chart : validation.charts) text += "\n" + chart_text(chart);
+  return text;
 }
 
 }  // namespace mbk::report

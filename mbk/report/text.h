@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "mbk/core/result.h"
+#include "mbk/robot/workspace.h"
+#include "mbk/trial/chart.h"
 #include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
 #include "mbk/trial/identification.h"
@@ -38,7 +40,14 @@ inline constexpr std::size_t kLineColumns = 100;
 /// What a file holds where nothing in it is recognised as a recording, why, and what to do.
 [[nodiscard]] std::string contents_text(const FileContents& contents, const Error& unrecognised);
 
-/// A study against known truth, row by row, with what is wanted.
+/// Where the hand can be, drawn with the links at `posture` where there is one [mm]. The outline is that of fig. A.2.
+[[nodiscard]] Chart workspace_chart(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture);
+
+/// The same in words and Braille: links, limits, extents and area, and what holds at the one place.
+[[nodiscard]] std::string workspace_text(const robot::Workspace& workspace,
+                                         const std::optional<robot::Posture>& posture);
+
+/// A study against known truth, row by row, with what is wanted, then its charts.
 [[nodiscard]] std::string validation_text(const ValidationTable& table);
 
 }  // namespace mbk::report

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "mbk/core/version.h"
+#include "mbk/impedance/ellipse.h"
 #include "mbk/impedance/model.h"
 
 namespace mbk::result {
@@ -84,6 +85,35 @@ Json preparation_json(const Preparation& how) {
   if (how.split_s) json["split_s"] = *how.split_s;
   if (how.protocol == Protocol::underdamped) json["perturbations"] = how.perturbations;
   if (how.mode == Mode::reference) json["procedure"] = text(how.procedure);
+  return json;
+}
+
+Json numbers(const std::vector<double>& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(number(value));
+  return array;
+}
+
+Json references_json(const std::vector<ChartReference>& lines) {
+  Json array = Json::array();
+  for (const ChartReference& line : lines) array.push_back({{"value", number(line.value)}, {"name", line.name}});
+  return array;
+}
+
+Json chart_json(const Chart& chart) {
+  Json json = {{"title", chart.title},
+               {"x", {{"label", chart.x.label}, {"unit", chart.x.unit}}},
+               {"y", {{"label", chart.y.label}, {"unit", chart.y.unit}}},
+               {"series", Json::array()}};
+  for (const ChartSeries& series : chart.series) {
+    Json one = {{"name", series.name}, {"x", numbers(series.x)}, {"y", numbers(series.y)}};
+    for (const auto& ends : series.intervals) one["intervals"].push_back(interval(ends));
+    json["series"].push_back(std::move(one));
+  }
+  if (!chart.horizontal.empty()) json["horizontal"] = references_json(chart.horizontal);
+  if (!chart.vertical.empty()) json["vertical"] = references_json(chart.vertical);
+  if (chart.identity) json["identity"] = true;
+  if (!chart.notes.empty()) json["notes"] = chart.notes;
   return json;
 }
 
@@ -403,13 +433,56 @@ std::string to_json(const ValidationTable& table) {
   json["seed"] = table.seed;
   json["rows"] = Json::array();
   for (const ValidationRow& row : table.rows) {
-    json["rows"].push_back({{"what", row.what},
-                            {"value", number(row.value)},
-                            {"interval99", interval(row.interval99)},
-                            {"wanted", interval(row.wanted)},
-                            {"met", row.met()}});
+    Json one = {{"what", row.what},
+                {"value", number(row.value)},
+                {"interval99", interval(row.interval99)},
+                {"wanted", row.wanted ? interval(*row.wanted) : Json(nullptr)},
+                {"met", row.judged() ? Json(row.met()) : Json(nullptr)}};
+    if (row.unit) one["unit"] = *row.unit;
+    if (row.spread) one["spread"] = number(*row.spread);
+    if (row.coverage) one["coverage"] = number(*row.coverage);
+    json["rows"].push_back(std::move(one));
   }
   json["met"] = table.met();
+  if (!table.notes.empty()) json["notes"] = table.notes;
+  for (const Chart& chart : table.charts) json["charts"].push_back(chart_json(chart));
+  return dumped(json);
+}
+
+std::string to_json(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
+  const double degrees = 180.0 / std::numbers::pi;
+  const robot::Geometry& geometry = workspace.geometry;
+  const robot::JointLimits& limits = geometry.limits;
+  const auto at = [](const Eigen::Vector2d& place) { return Json::array({number(place.x()), number(place.y())}); };
+  Json json = header("mbk.workspace/1");
+  json["links_m"] = {geometry.d1, geometry.d2};
+  json["limits_deg"] = {{"theta1", {degrees * limits.theta1_low, degrees * limits.theta1_high}},
+                        {"theta2", {degrees * limits.theta2_low, degrees * limits.theta2_high}},
+                        {"smallest_opening", degrees * limits.smallest_opening}};
+  json["x_m"] = {number(workspace.low.x()), number(workspace.high.x())};
+  json["y_m"] = {number(workspace.low.y()), number(workspace.high.y())};
+  json["area_m2"] = number(workspace.area);
+  json["outline_m"] = Json::array();
+  for (const Eigen::Vector2d& place : workspace.outline) json["outline_m"].push_back(at(place));
+  if (posture) {
+    const impedance::Ellipse felt = impedance::ellipse(posture->inertia_at_hand);
+    Json margins = Json::array();
+    for (const robot::Margin& margin : posture->margins) {
+      margins.push_back({{"quantity", margin.quantity},
+                         {"limit_deg", degrees * margin.limit},
+                         {"kind", margin.upper ? "most" : "least"},
+                         {"left_deg", number(degrees * margin.left())}});
+    }
+    json["at"] = {{"hand_m", at(posture->hand)},
+                  {"theta_deg", at(degrees * posture->theta)},
+                  {"jacobian_m", rows(posture->jacobian)},
+                  {"manipulability_m2", number(posture->manipulability)},
+                  {"margins", std::move(margins)},
+                  {"inertia_at_hand_kg",
+                   {{"matrix", rows(posture->inertia_at_hand)},
+                    {"eigenvalues", {number(felt.lambda_min), number(felt.lambda_max)}},
+                    {"orientation_deg", number(degrees * felt.orientation)}}}};
+  }
   return dumped(json);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/core/result.h"
+#include "mbk/robot/workspace.h"
 #include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
 #include "mbk/trial/identification.h"
@@ -38,8 +39,12 @@ struct Measured {
 /// Schema "mbk.contents/1": what a file holds where nothing in it is recognised as a recording, and why.
 [[nodiscard]] std::string to_json(const FileContents& contents, const Error& unrecognised);
 
-/// Schema "mbk.validation/1": a study against known truth.
+/// Schema "mbk.validation/1": a study against known truth. A row that is only reported has null for `wanted` and `met`.
 [[nodiscard]] std::string to_json(const ValidationTable& table);
+
+/// Schema "mbk.workspace/1": where the hand can be, and the robot at one place where one is given. Metres, except that
+/// angles are in degrees and say so.
+[[nodiscard]] std::string to_json(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture);
 
 /// Reads back what `to_json` wrote, schema mbk.result/1 or mbk.results/1: model, covariance (from the standard errors
 /// where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and inputs; not the

@@ -71,7 +71,7 @@ Result<void> check_joints(const JointLimits& limits, const Vector2d& theta) {
   const Margin& worst =
       *std::ranges::min_element(all, [](const Margin& a, const Margin& b) { return a.left() < b.left(); });
   if (worst.left() >= -kRounding) return {};
-  return bad_usage(fmt::format("{} is {:.2f}°, {:.2g}° {} its limit {:.4g}°", worst.quantity, degrees(worst.value),
+  return bad_usage(fmt::format("{} is {:.2f}°, {:.3g}° {} its limit {:.4g}°", worst.quantity, degrees(worst.value),
                                -degrees(worst.left()), worst.upper ? "above" : "below", degrees(worst.limit)),
                    "choose a place inside the workspace; 'mbk robot workspace' draws it");
 }

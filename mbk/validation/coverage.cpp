@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "mbk/identify/impedance_fit.h"
@@ -62,7 +63,7 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
     int hits = 0;
     for (const auto& run : inside) hits += run[static_cast<Index>(k)] ? 1 : 0;
     const auto [low, high] = numeric::binomial_interval(hits, options.runs, 0.99);
-    table.rows.push_back({names[k], 100.0 * hits / options.runs, {100.0 * low, 100.0 * high}, {92.0, 98.0}});
+    table.rows.push_back({names[k], 100.0 * hits / options.runs, {100.0 * low, 100.0 * high}, std::pair{92.0, 98.0}});
   }
   return table;
 }

@@ -1,5 +1,3 @@
-#include "mbk/validation/participant.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "mbk/numeric/statistics.h"
 #include "mbk/validation/simulated_trials.h"
+#include "mbk/validation/study.h"
 
 namespace mbk::validation {
 namespace {
@@ -20,10 +19,10 @@ using laboratory::Scenario;
 
 /// A ready scenario, and what is expected of it.
 struct Condition {
-  const char* name;                  ///< as it stands in the table
-  const char* scenario;              ///< ready file
-  double energy_sign;                ///< +1: the energy absorbed rises; −1: it falls
-  std::pair<double, double> vaf;     ///< [%] that every run and axis must keep
+  const char* name;               ///< as it stands in the table
+  const char* scenario;           ///< ready file
+  double energy_sign;             ///< +1: the energy absorbed rises; −1: it falls
+  std::pair<double, double> vaf;  ///< [%] that every run and axis must keep
   bool controller = true;
 };
 
@@ -40,6 +39,9 @@ const std::vector<Condition>& conditions() {
   };
   return all;
 }
+
+/// Participants of the thesis whose limbs are used.
+constexpr std::array kArms = {1, 4, 5};
 
 /// Amplitudes of the crossover [N].
 constexpr std::array kAmplitudes = {1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0};
@@ -64,9 +66,9 @@ void switch_controller_off(Scenario& scenario) {
 }
 
 /// Every arm and seed of one scenario, appended to `plans`.
-Result<void> add_plans(const Scenario& scenario, const ParticipantOptions& options, bool measured,
+Result<void> add_plans(const Scenario& scenario, const StudyOptions& options, bool measured,
                        std::vector<TrialPlan>& plans) {
-  for (const int arm : options.arms) {
+  for (const int arm : kArms) {
     auto with_arm = with_limb(scenario, arm);
     if (!with_arm) return tl::unexpected(with_arm.error());
     for (int run = 0; run < options.runs; ++run) {
@@ -77,7 +79,7 @@ Result<void> add_plans(const Scenario& scenario, const ParticipantOptions& optio
   return {};
 }
 
-Result<std::vector<TrialPlan>> all_plans(const ParticipantOptions& options) {
+Result<std::vector<TrialPlan>> all_plans(const StudyOptions& options) {
   std::vector<TrialPlan> plans;
   for (const Condition& condition : conditions()) {
     auto scenarios = ready(condition.scenario);
@@ -151,25 +153,25 @@ Spread spread_of_energy(Trials trials) {
 }
 
 /// Energy against amplitude, one line for each arm, and where each crosses zero.
-void add_crossover(const ParticipantOptions& options, Trials trials, ValidationTable& table) {
+void add_crossover(const StudyOptions& options, Trials trials, ValidationTable& table) {
   Chart chart;
   chart.title = "The same arm against pulses of different amplitude";
   chart.x = {"amplitude of the force pulses", "N"};
   chart.y = {"energy that the arm absorbed", "J"};
   chart.horizontal = {{0.0, "passive above"}};
   const auto runs = static_cast<std::size_t>(options.runs);
-  for (std::size_t arm = 0; arm < options.arms.size(); ++arm) {
+  for (std::size_t arm = 0; arm < kArms.size(); ++arm) {
     ChartSeries line;
-    line.name = fmt::format("P{}", options.arms[arm]);
+    line.name = fmt::format("P{}", kArms[arm]);
     line.drawn = ChartSeries::Drawn::line;
     for (std::size_t a = 0; a < kAmplitudes.size(); ++a) {
-      const Spread energy = spread_of_energy(trials.subspan((a * options.arms.size() + arm) * runs, runs));
+      const Spread energy = spread_of_energy(trials.subspan((a * kArms.size() + arm) * runs, runs));
       line.x.push_back(kAmplitudes[a]);
       line.y.push_back(energy.mean);
       line.intervals.emplace_back(energy.mean - energy.deviation, energy.mean + energy.deviation);
     }
     ValidationRow row;
-    row.what = fmt::format("amplitude at which the mean energy crosses zero, P{}", options.arms[arm]);
+    row.what = fmt::format("amplitude at which the mean energy crosses zero, P{}", kArms[arm]);
     row.value = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t a = 1; a < kAmplitudes.size(); ++a) {
       if (!(line.y[a - 1] < 0.0 && line.y[a] >= 0.0)) continue;
@@ -187,14 +189,11 @@ void add_crossover(const ParticipantOptions& options, Trials trials, ValidationT
 
 }  // namespace
 
-Result<ValidationTable> participant(const ParticipantOptions& options) {
+Result<ValidationTable> participant_study(const StudyOptions& options) {
   if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 10");
   const auto plans = all_plans(options);
   if (!plans) return tl::unexpected(plans.error());
-  int done = 0;
-  const auto trials = run_trials(*plans, options.threads, [&](int) {
-    if (options.progress) options.progress(++done, static_cast<int>(plans->size()));
-  });
+  const auto trials = run_trials(*plans, options);
   if (!trials) return tl::unexpected(trials.error());
 
   ValidationTable table;
@@ -208,7 +207,7 @@ Result<ValidationTable> participant(const ParticipantOptions& options) {
   const auto runs = static_cast<std::size_t>(options.runs);
   Trials left = *trials;
   for (const Condition& condition : conditions()) {
-    for (const int arm : options.arms) {
+    for (const int arm : kArms) {
       const Trials mine = left.first(runs);
       left = left.subspan(runs);
       table.rows.push_back(energy_row(condition, arm, mine));

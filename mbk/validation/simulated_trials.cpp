@@ -33,18 +33,21 @@ Result<std::vector<laboratory::Scenario>> ready(std::string_view name) {
   return laboratory::read_scenarios(scenario->text, std::string(name) + ".toml");
 }
 
-Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, unsigned threads,
-                                               const std::function<void(int)>& done) {
+Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, const StudyOptions& options) {
+  const auto count = static_cast<int>(plans.size());
   std::vector<SimulatedTrial> trials(plans.size());
+  int done = 0;
   const auto ran = numeric::parallel_for(
-      static_cast<int>(plans.size()), threads,
+      count, options.threads,
       [&](int i) -> Result<void> {
         auto trial = run(plans[static_cast<std::size_t>(i)]);
         if (!trial) return tl::unexpected(trial.error());
         trials[static_cast<std::size_t>(i)] = std::move(*trial);
         return {};
       },
-      done);
+      [&](int) {
+        if (options.progress) options.progress(++done, count);
+      });
   if (!ran) return tl::unexpected(ran.error());
   return trials;
 }

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "mbk/laboratory/scenario.h"
 #include "mbk/measurement/measure.h"
+#include "mbk/validation/study.h"
 
 namespace mbk::validation {
 
@@ -15,8 +16,8 @@ namespace mbk::validation {
 
 /// One simulated trial, measured.
 struct SimulatedTrial {
-  double energy_absorbed = 0.0;  ///< by the limb [J]
-  impedance::Model truth;        ///< intrinsic, mean over the trial
+  double energy_absorbed = 0.0;   ///< by the limb [J]
+  impedance::Model truth;         ///< intrinsic, mean over the trial
   Identification identification;  ///< empty where the trial was not measured
 };
 
@@ -27,9 +28,9 @@ struct TrialPlan {
 };
 
 /// Every plan once, several at a time; the order is that of the plans, on any number of threads. The handle's mass is
-/// taken off as a user would. `done` is called after each, never two at a time.
+/// taken off as a user would. Of the options, threads and progress count.
 /// @fails  as simulate and measure; a model that is not usable is no failure.
-[[nodiscard]] Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, unsigned threads,
-                                                             const std::function<void(int)>& done = {});
+[[nodiscard]] Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans,
+                                                             const StudyOptions& options);
 
 }  // namespace mbk::validation

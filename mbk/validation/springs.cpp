@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "mbk/numeric/statistics.h"
+#include "mbk/validation/simulated_trials.h"
+#include "mbk/validation/study.h"
+
+namespace mbk::validation {
+namespace {
+
+/// What is wanted of a mean error.
+constexpr double kStiffnessError = 5.0;  // [N/m], as much as the thesis's own closest rows
+constexpr double kMassError = 0.02;      // [kg]
+
+/// A file of rigs, and what its trials are called in the table.
+struct RigFile {
+  const char* file;
+  const char* name;
+};
+constexpr RigFile kFiles[] = {{"rig_table_3_1", "table 3.1"}, {"rig_table_5_1", "table 5.1"}};
+
+/// One number of a rig: identified and true, trial by trial.
+struct Errors {
+  std::vector<double> identified, truth;
+  const char* unit = "N/m";
+  double wanted = kStiffnessError;
+
+  void add(double value, double true_value) {
+    identified.push_back(value);
+    truth.push_back(true_value);
+  }
+};
+
+measurement::Options mass_and_springs() {
+  measurement::Options options;
+  options.identify.structure = Structure::mass_spring;
+  return options;
+}
+
+/// "K5" of "K5_M3": the stiffness of a trial; "M3", its mass; both the whole name where it has no "_M".
+std::pair<std::string, std::string> rig_names(const std::string& trial) {
+  const auto cut = trial.find("_M");
+  if (cut == std::string::npos) return {trial, trial};
+  return {trial.substr(0, cut), trial.substr(cut + 1)};
+}
+
+ValidationRow row_of(const std::string& what, const Errors& errors) {
+  const auto count = static_cast<Index>(errors.identified.size());
+  const Vector error =
+      Eigen::Map<const Vector>(errors.identified.data(), count) - Eigen::Map<const Vector>(errors.truth.data(), count);
+  ValidationRow row;
+  row.what = what;
+  row.value = error.mean();
+  row.spread = count > 1 ? std::sqrt(numeric::variance(error)) : 0.0;
+  const double reach = numeric::kNormal99 * *row.spread / std::sqrt(static_cast<double>(count));
+  row.interval99 = {row.value - reach, row.value + reach};
+  row.wanted = {-errors.wanted, errors.wanted};
+  row.unit = errors.unit;
+  return row;
+}
+
+/// Identified against true, one point for each row's parameter (figs 3.8 and 5.4).
+Chart chart_of(const std::string& title, const std::vector<std::pair<std::string, Errors>>& all, const char* unit) {
+  Chart chart;
+  chart.title = title;
+  chart.x = {"true", unit};
+  chart.y = {"identified", unit};
+  chart.identity = true;
+  std::map<std::string, ChartSeries> series;
+  for (const auto& [what, errors] : all) {
+    if (std::string(errors.unit) != unit) continue;
+    const std::string parameter = what.substr(what.rfind(' ') + 1);
+    ChartSeries& marks = series[parameter];
+    marks.name = parameter;
+    const auto count = static_cast<Index>(errors.truth.size());
+    marks.x.push_back(errors.truth.front());
+    marks.y.push_back(Eigen::Map<const Vector>(errors.identified.data(), count).mean());
+  }
+  for (auto& [name, marks] : series) chart.series.push_back(std::move(marks));
+  return chart;
+}
+
+Result<void> add_file(const RigFile& file, const StudyOptions& options, std::vector<TrialPlan>& plans) {
+  const auto scenarios = ready(file.file);
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  for (const laboratory::Scenario& scenario : *scenarios) {
+    for (int run = 0; run < options.runs; ++run) {
+      plans.push_back({scenario, mass_and_springs()});
+      plans.back().scenario.seed = scenario.seed + 1000 * (options.seed + static_cast<std::uint64_t>(run));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ValidationTable> springs_study(const StudyOptions& options) {
+  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 3");
+  std::vector<TrialPlan> plans;
+  for (const RigFile& file : kFiles) {
+    if (auto ok = add_file(file, options, plans); !ok) return tl::unexpected(ok.error());
+  }
+  const auto trials = run_trials(plans, options);
+  if (!trials) return tl::unexpected(trials.error());
+
+  ValidationTable table;
+  table.study = "springs";
+  table.question = "how far from the truth are the stiffness and mass that mbk identifies of a rig of springs?";
+  table.unit = "error";
+  table.runs = options.runs;
+  table.seed = options.seed;
+  for (const RigFile& file : kFiles) {
+    std::vector<std::pair<std::string, Errors>> all;  // in the order of the file
+    const auto errors_of = [&](const std::string& what) -> Errors& {
+      for (auto& [name, errors] : all) {
+        if (name == what) return errors;
+      }
+      return all.emplace_back(what, Errors{}).second;
+    };
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      if (plans[i].scenario.file_name != file.file) continue;
+      const auto [stiffness, mass] = rig_names(plans[i].scenario.trial_name);
+      const impedance::Model& truth = (*trials)[i].truth;
+      const impedance::Model& model = (*trials)[i].identification.model;
+      const std::pair<const char*, std::pair<Index, Index>> elements[] = {
+          {"k_xx", {0, 0}}, {"k_yy", {1, 1}}, {"k_s", {0, 1}}};
+      for (const auto& [name, at] : elements) {
+        errors_of(fmt::format("{} {} {}", file.name, stiffness, name))
+            .add(model.K(at.first, at.second), truth.K(at.first, at.second));
+      }
+      Errors& payload = errors_of(fmt::format("{} {} m", file.name, mass));
+      payload.unit = "kg";
+      payload.wanted = kMassError;
+      payload.add(model.M(0, 0), truth.M(0, 0));
+    }
+    for (const auto& [what, errors] : all) table.rows.push_back(row_of(what, errors));
+    table.charts.push_back(chart_of(fmt::format("Stiffness of the rigs of {}", file.name), all, "N/m"));
+    table.charts.push_back(chart_of(fmt::format("Mass of the rigs of {}", file.name), all, "kg"));
+  }
+  table.notes = {
+      "Errors are identified − true, the sign of the thesis's text, not of its printed table 5.4.",
+      "Each stiffness of table 5.1 is the mean over its five masses, and each mass over its five stiffnesses."};
+  return table;
+}
+
+}  // namespace mbk::validation

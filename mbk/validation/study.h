@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "mbk/core/result.h"
+#include "mbk/trial/validation_table.h"
+
+namespace mbk::validation {
+
+/// How large a study is made.
+struct StudyOptions {
+  int runs = 1;  ///< seeds; what a run is stands at each study
+  std::uint64_t seed = 1;
+  unsigned threads = 0;                                 ///< 0: as many as there are cores
+  std::function<void(int done, int of)> progress = {};  ///< called after each trial, never two at a time
+};
+
+/// A method against known truth, by its name on the command line.
+struct Study {
+  std::string_view name;
+  std::string_view what;  ///< one line for the help
+  int runs;               ///< by default
+  Result<ValidationTable> (*perform)(const StudyOptions&);
+};
+
+/// All of them.
+[[nodiscard]] std::span<const Study> studies();
+
+/// How often do the nominal 95 % intervals of M, B, K and x₀ hold the truth? A run is one recording of a prescribed
+/// motion with coloured force noise of 0.3 N (coverage.h).
+/// @fails  runs < 1; as the laboratory and the measurement. The same for the others.
+[[nodiscard]] Result<ValidationTable> coverage_study(const StudyOptions& options);
+
+/// Bias, spread and coverage of M, B, K and x₀ of a relaxed arm in the closed loop, with sinusoidal and with
+/// underdamped perturbations: the ready scenarios, measured by the default pipeline. A run is one seed of each. Wanted
+/// is a bias below 5 % of the largest element of the matrix, and below 2 mm for x₀.
+[[nodiscard]] Result<ValidationTable> recovery_study(const StudyOptions& options);
+
+/// Stiffness and mass of the rigs of Dyck (2013), tables 3.1 and 5.1, as they are identified against what they are
+/// (fig. 3.8, table 5.4 and fig. 5.4 in form), for linear rigs and for arrays of real springs. A run is one seed of
+/// each of their trials.
+[[nodiscard]] Result<ValidationTable> springs_study(const StudyOptions& options);
+
+/// Does the simulated participant behave as people did (Dyck 2013, figs 4.3–4.5, tables 4.1–4.3 in form)? The ready
+/// scenarios, three arms, seed after seed: does the energy that the limb absorbed rise, and how much of the force does
+/// a fitted M, B, K explain (published procedure)? The same arm and controller face 2 N and 8 N pulses, which differ in
+/// `amplitude_N` alone; between them the energy crosses zero at an amplitude that is found by interpolation and drawn.
+/// A run is one seed of every arm and condition.
+[[nodiscard]] Result<ValidationTable> participant_study(const StudyOptions& options);
+
+}  // namespace mbk::validation
