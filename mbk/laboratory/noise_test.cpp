@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <vector>
 
 namespace mbk::laboratory {
@@ -88,11 +89,16 @@ TEST(Quantised, ErrsByHalfAStepAtMostAndByItsTwelfthInSquare) {
   EXPECT_EQ(quantised(0.1234567, 0.0), 0.1234567);
 }
 
-TEST(NoiseStream, DiffersForEverySourceAndAxis) {
-  const auto first = [](NoiseSource source, std::uint32_t axis) { return noise_stream(7, source, axis).uniform(); };
-  EXPECT_EQ(first(NoiseSource::white_force, 1), first(NoiseSource::white_force, 1));
-  EXPECT_NE(first(NoiseSource::white_force, 0), first(NoiseSource::white_force, 1));
-  EXPECT_NE(first(NoiseSource::white_force, 0), first(NoiseSource::coloured_force, 0));
+TEST(NoiseStream, DiffersForEverySourceAndAxisAndOnlyForThem) {
+  using enum NoiseSource;
+  std::set<double> first;
+  for (const NoiseSource source :
+       {white_force, coloured_force, force_drift, strain_gauge, acceleration, motor_current, clock}) {
+    for (const std::uint32_t axis : {0u, 1u, 9u}) {
+      EXPECT_TRUE(first.insert(noise_stream(7, source, axis).uniform()).second);
+      EXPECT_FALSE(first.insert(noise_stream(7, source, axis).uniform()).second);
+    }
+  }
 }
 
 TEST(NoiseSources, SwitchedOffAddNothing) {
