@@ -81,7 +81,7 @@ Action add_workspace(CLI::App& group) {
       "  mbk robot workspace\n"
       "  mbk robot workspace --at 300,50\n"
       "  mbk robot workspace --at 300,50 --out workspace.svg\n\n"
-      "x and y are those of the robot's base frame: θ₁ turns the first link from x, θ₂ the last link from −y.\n"
+      "x and y are those of the robot's base: θ₁ turns the first link from x, θ₂ the last from −y.\n"
       "A place that the robot cannot reach is refused with the limit that forbids it (exit code 2).");
   command->add_option("--at", arguments->at, "also the joint angles, Jacobian, inertia and margins with the hand here")
       ->type_name("X,Y[mm]");

@@ -160,7 +160,7 @@ Action add_simulate(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   auto shown = std::make_shared<std::string>();
   CLI::App* command =
-      app.add_subcommand("simulate", "a robot with a participant or a spring rig: a recording with the truth in it");
+      app.add_subcommand("simulate", "a simulated trial: a recording with the truth in it");
   command->footer(
       "Examples:\n"
       "  mbk simulate --list\n"

@@ -63,7 +63,7 @@ Ranges ranges_of(const Chart& chart) {
       if (!drawable(series, k)) continue;
       ranges.x.take(series.x[k]);
       ranges.y.take(series.y[k]);
-      if (k < series.intervals.size()) {
+      if (k < series.intervals.size() && finite(series.intervals[k])) {
         ranges.y.take(series.intervals[k].first);
         ranges.y.take(series.intervals[k].second);
       }

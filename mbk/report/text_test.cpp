@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "mbk/report/picture.h"
 
@@ -225,6 +227,64 @@ TEST(InfoText, NamesEveryProblem) {
   EXPECT_THAT(text, HasSubstr("clipped?"));
   EXPECT_THAT(text, HasSubstr("note: a comma too many"));
   EXPECT_THAT(text, Not(HasSubstr("no gap")));
+}
+
+ValidationTable validation() {
+  ValidationTable table;
+  table.study = "springs";
+  table.question = "does the fit give the springs?";
+  table.unit = "N/m";
+  table.runs = 20;
+  table.rows.push_back({"k_xx", 431.5, {429.0, 434.0}, std::pair{420.0, 440.0}});
+  return table;
+}
+
+TEST(ValidationText, ShowsARowWithItsIntervalAndVerdict) {
+  ValidationTable table = validation();
+  EXPECT_THAT(line_with(validation_text(table), "k_xx"),
+              testing::ContainsRegex("431.50 +.429.00, 434.00. +.420, 440. +ok$"));
+  table.rows[0].wanted = {435.0, 440.0};
+  EXPECT_THAT(line_with(validation_text(table), "k_xx"), HasSubstr("FALLS SHORT"));
+  EXPECT_FALSE(table.met());
+}
+
+TEST(ValidationText, ARowThatIsNotJudgedIsReported) {
+  ValidationTable table = validation();
+  table.rows.push_back({"k_yx", 900.0, {899.0, 901.0}, std::nullopt});
+  EXPECT_THAT(line_with(validation_text(table), "k_yx"), testing::EndsWith("reported"));
+  EXPECT_TRUE(table.met());
+}
+
+TEST(ValidationText, SpreadCoverageAndUnitStandWhereARowHasThem) {
+  ValidationTable table = validation();
+  EXPECT_THAT(validation_text(table), Not(HasSubstr("spread")));
+  EXPECT_THAT(validation_text(table), Not(HasSubstr("intervals hold")));
+  table.rows.push_back({"m_xx", 1.3264, {1.31, 1.34}, std::nullopt, "kg", 0.0123, 0.945});
+  const std::string text = validation_text(table);
+  EXPECT_THAT(text, HasSubstr("spread of runs"));
+  EXPECT_THAT(line_with(text, "m_xx"), HasSubstr("1.326 kg"));
+  EXPECT_THAT(line_with(text, "m_xx"), HasSubstr("0.012"));
+  EXPECT_THAT(line_with(text, "m_xx"), HasSubstr("94.5 %"));
+}
+
+TEST(ValidationText, AWishWithOneEndIsWords) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  ValidationTable table = validation();
+  table.rows[0].wanted = {400.0, infinity};
+  EXPECT_THAT(validation_text(table), HasSubstr("at least 400"));
+  table.rows[0].wanted = {-infinity, 500.0};
+  EXPECT_THAT(validation_text(table), HasSubstr("at most 500"));
+}
+
+TEST(ValidationText, NotesAndChartsFollowTheTable) {
+  ValidationTable table = validation();
+  table.notes.emplace_back("The springs are those of the maker.");
+  Chart chart;
+  chart.title = "Springs, found and made";
+  table.charts.push_back(chart);
+  const std::string text = validation_text(table);
+  EXPECT_LT(text.find("k_xx"), text.find("  The springs are those"));
+  EXPECT_LT(text.find("The springs are those"), text.find("Springs, found and made"));
 }
 
 }  // namespace

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace mbk::result {
 namespace {
@@ -328,6 +330,45 @@ TEST(FromJson, NeverThrowsOnMutatedDocuments) {
       FAIL() << "run " << run << ":\n" << text;
     }
   }
+}
+
+TEST(ToJson, AValidationKeepsItsRowsAndAddsWhatTheyHave) {
+  ValidationTable table;
+  table.study = "springs";
+  table.unit = "N/m";
+  table.rows.push_back({"k_xx", 431.5, {429.0, 434.0}, std::pair{420.0, 440.0}});
+  table.rows.push_back({"m_xx", 1.3, {1.2, 1.4}, std::nullopt, "kg", 0.01, 0.95});
+  Json json = Json::parse(to_json(table));
+  const Json plain = {
+      {"what", "k_xx"}, {"value", 431.5}, {"interval99", {429.0, 434.0}}, {"wanted", {420.0, 440.0}}, {"met", true}};
+  EXPECT_EQ(json.at("rows").at(0), plain);
+  const Json& reported = json.at("rows").at(1);
+  EXPECT_TRUE(reported.at("wanted").is_null() && reported.at("met").is_null());
+  EXPECT_EQ(reported.at("unit"), "kg");
+  EXPECT_EQ(reported.at("spread"), 0.01);
+  EXPECT_EQ(reported.at("coverage"), 0.95);
+  EXPECT_EQ(json.at("met"), true);
+  EXPECT_FALSE(json.contains("notes") || json.contains("charts"));
+}
+
+TEST(ToJson, AChartKeepsItsNumbers) {
+  ValidationTable table;
+  table.notes = {"a note"};
+  Chart chart;
+  chart.title = "K";
+  chart.x = {"made", "N/m"};
+  chart.series.push_back({"k_xx", {1.0, 2.0}, {1.5, kNaN}, {{1.0, 2.0}, {kNaN, 3.0}}});
+  chart.horizontal.push_back({0.5, "limit"});
+  chart.identity = true;
+  table.charts.push_back(chart);
+  const Json json = Json::parse(to_json(table));
+  EXPECT_EQ(json.at("notes"), Json({"a note"}));
+  const Json& one = json.at("charts").at(0);
+  EXPECT_EQ(one.at("x"), Json({{"label", "made"}, {"unit", "N/m"}}));
+  EXPECT_EQ(one.at("series").at(0).at("y"), Json::array({1.5, nullptr}));
+  EXPECT_EQ(one.at("series").at(0).at("intervals"), Json::parse("[[1.0, 2.0], [null, 3.0]]"));
+  EXPECT_EQ(one.at("horizontal").at(0).at("value"), 0.5);
+  EXPECT_EQ(one.at("identity"), true);
 }
 
 }  // namespace

@@ -96,7 +96,8 @@ class Values(Case):
                 with self.subTest(option=option, value=value):
                     self.refused(WRONG_USAGE, "validate", f"{option}={value}", says=option)
         self.refused(WRONG_USAGE, "validate", "--runs", "0", says="--runs")
-        self.refused(WRONG_USAGE, "validate", "springs", "--runs", "1", says=["'springs'", "coverage"])
+        self.refused(WRONG_USAGE, "validate", "magic", "--runs", "1", says=["'magic'", "coverage", "springs"])
+        self.refused(WRONG_USAGE, "validate", "--runs", "1", "--overwrite", says=["--overwrite", "--charts"])
 
 
 def float_of(text):
@@ -360,6 +361,11 @@ class Validate(Case):
 
     def test_more_threads_than_runs(self):
         self.fine("validate", "--runs", "1", "--threads", "1024", "--quiet")
+
+    def test_a_study_without_charts_says_so(self):
+        ran = self.mbk("validate", "--runs", "1", "--quiet", "--charts", self.folder / "charts", code=WRONG_USAGE)
+        self.assertIn("draws no chart", ran.err)
+        self.assertEqual(self.names(), [])
 
     def test_the_text_is_a_table_of_rows(self):
         text = self.fine("validate", "--runs", "2", "--quiet").out
