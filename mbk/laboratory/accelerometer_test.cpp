@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace mbk::laboratory {
 namespace {
@@ -53,7 +54,7 @@ TEST(Accelerometer, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(Accelerometer::create({.noise = -1.0}, kTick, 1).error().message,
             "noise of the accelerometer -1 m/s² is below zero or not finite");
   EXPECT_FALSE(Accelerometer::create({.gain_error = {-1.0, 0.0}}, kTick, 1));
-  EXPECT_FALSE(Accelerometer::create({.misalignment = NAN}, kTick, 1));
+  EXPECT_FALSE(Accelerometer::create({.misalignment = std::numeric_limits<double>::quiet_NaN()}, kTick, 1));
   EXPECT_FALSE(Accelerometer::create({.bandwidth = Hertz(500.0)}, kTick, 1));
 }
 

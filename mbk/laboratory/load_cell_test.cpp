@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace mbk::laboratory {
 namespace {
@@ -83,7 +84,7 @@ TEST(LoadCell, RefusesNegativeNoise) {
   EXPECT_EQ(LoadCell::create(options, kTick, 1).error().message,
             "bandwidth of the load cell's coloured noise 0 Hz is not above zero");
   options = {};
-  options.gain(1, 0) = NAN;
+  options.gain(1, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(LoadCell::create(options, kTick, 1));
   EXPECT_FALSE(LoadCell::create({}, 0.0, 1));
 }

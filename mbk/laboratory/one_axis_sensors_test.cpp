@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace mbk::laboratory {
 namespace {
@@ -65,7 +66,7 @@ TEST(OneAxisSensors, RefuseNegativeNoise) {
   EXPECT_EQ(OneAxisSensors::create(options, kTick, 1).error().message,
             "reaction noise -0.5 N·m or N is below zero or not finite");
   options = {};
-  options.drift_rate = INFINITY;
+  options.drift_rate = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(OneAxisSensors::create(options, kTick, 1));
   EXPECT_FALSE(OneAxisSensors::create({}, -1.0, 1));
 }

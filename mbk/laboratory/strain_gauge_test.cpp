@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <set>
 
 namespace mbk::laboratory {
@@ -152,7 +153,7 @@ TEST(StrainGauge, RefusesWhatHasNoMeaning) {
             "crosstalk of the strain gauge 1.5 N/N is not between -1 and 1 N/N");
   EXPECT_EQ(message([](auto& o) { o.converter_bits = 1; }), "1 bits of the strain gauge's converter are not 2 to 24");
   EXPECT_EQ(message([](auto& o) { o.cutoff = Hertz(600.0); }), "cutoff 600 Hz is not between 0 and Nyquist 500 Hz");
-  EXPECT_NE(message([](auto& o) { o.bridge_noise = NAN; }), "");
+  EXPECT_NE(message([](auto& o) { o.bridge_noise = std::numeric_limits<double>::quiet_NaN(); }), "");
   EXPECT_NE(message([](auto& o) { o.filter_order = 0; }), "");
 }
 
