@@ -168,23 +168,27 @@ Result<void> check(const SpringRequest& request) {
 /// What comes nearest to the wanted stiffness, in words.
 tl::unexpected<Error> out_of_reach(const SpringRequest& request, const Places& all, const std::vector<Places>& choices,
                                    const Vector& wanted) {
+  constexpr double kNoForce = 1e-3;  // [N]
   double best = std::numeric_limits<double>::infinity();
   std::string nearest_words = "no spring of these lengths stays in tension";
   for (const Places& places : choices) {
     const numeric::QuadraticProgram program = program_of(places, request, wanted);
     const auto solution = numeric::solve_quadratic_program(nearest(program));
     if (!solution) continue;
-    const double miss = (program.C * solution->z - program.b).norm();
-    if (miss >= best) continue;
-    best = miss;
     Eigen::Matrix<double, kEquations, 1> reached = Eigen::Matrix<double, kEquations, 1>::Zero();
     for (std::size_t i = 0; i < places.size(); ++i) {
       const auto at = static_cast<Index>(i), n = static_cast<Index>(places.size());
       reached += places[i]->row * Vector2d(solution->z[at], solution->z[n + at]);
     }
+    const double force = reached.head<2>().norm();
+    const double miss = (reached - wanted).tail<3>().norm() + force / request.travel;  // [N/m]
+    if (miss >= best) continue;
+    best = miss;
     nearest_words =
-        fmt::format("the nearest has kxx {:.1f}, kyy {:.1f}, ks {:.1f} N/m there, with a force of {:.2g} N left over",
-                    reached[2], reached[3], reached[4], reached.head<2>().norm());
+        fmt::format("the nearest has kxx {:.1f}, kyy {:.1f}, ks {:.1f} N/m", reached[2], reached[3], reached[4]);
+    if (force > kNoForce) {
+      nearest_words += fmt::format(" and pulls with {:.2g} N", force);
+    }
   }
   return fail(
       ErrorKind::not_usable,
