@@ -2,10 +2,13 @@
 """mbk springs field, find and calibrate."""
 
 import math
+import os
+import pathlib
 import random
 import re
+import subprocess
 
-from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main
+from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main, program
 
 ARRAY = ("k=60,l=110mm,anchor=215:-183", "k=45N/m,l=90,anchor=215:0", "k=110,l=120,anchor=215:183",
          "k=80,l=85,anchor=390:183", "k=35,l=130,anchor=565:183", "k=120,l=95,anchor=565:0",
@@ -207,6 +210,30 @@ class Calibrate(Case):
                 ran = self.refused(BAD_DATA, "springs", "calibrate", path, says=says)
                 self.assertIn(name, ran.err)
         self.refused(BAD_DATA, "springs", "calibrate", self.folder / "none.csv", says="no such file")
+
+
+class Guide(Case):
+    """docs/guide/springs.md: what stands below each command is what it prints."""
+
+    def examples(self):
+        text = (pathlib.Path(__file__).parents[2] / "docs/guide/springs.md").read_text(encoding="utf-8")
+        for block in re.findall(r"^```\n(\$ .*?)^```", text, re.S | re.M):
+            for example in re.split(r"^\$ ", block, flags=re.M)[1:]:
+                lines, command = example.splitlines(), ""
+                while not command or command.endswith("\\\n") or command.count("'") % 2:
+                    command += lines.pop(0) + "\n"
+                yield command, "\n".join(lines)
+
+    def test_prints_what_the_commands_print(self):
+        folder = os.path.dirname(os.path.abspath(program("MBK")))
+        examples = list(self.examples())
+        self.assertEqual(len(examples), 4)
+        for command, shown in examples:
+            ran = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, text=True, timeout=120,
+                                 env={**os.environ, "PATH": folder + os.pathsep + os.environ["PATH"]}, check=True)
+            # the force left over is rounding, and a line of only an ellipsis stands for any number of lines
+            shown, printed = (re.sub(r"\d+e-\d+ N left", "N left", words) for words in (shown, ran.stdout.rstrip()))
+            self.assertRegex(printed, r"\A" + re.escape(shown).replace("…", r"(.|\n)*") + r"\Z", command)
 
 
 if __name__ == "__main__":
