@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-
 namespace mbk::report {
 namespace {
 
@@ -36,7 +35,7 @@ TEST(SpringsText, SaysWhereASpringGoesSlackWithinTheCircle) {
 TEST(SpringsText, SaysWhereTheGridEndsAtItsBorder) {
   SpringField one = field();
   one.grid = GridField{0.001, {0.391, -0.01}, 0.2, one.K, false};
-  EXPECT_THAT(spring_field_text(one), HasSubstr("point is 1 mm off"));
+  EXPECT_THAT(spring_field_text(one), HasSubstr("is 1 mm off"));
   one.grid->at_border = true;
   EXPECT_THAT(spring_field_text(one), HasSubstr("edge of the grid"));
 }
