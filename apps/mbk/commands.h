@@ -14,6 +14,7 @@ Action add_identify(CLI::App& app);
 Action add_ellipse(CLI::App& app);
 Action add_info(CLI::App& app);
 Action add_simulate(CLI::App& app);
+Action add_springs(CLI::App& app);
 Action add_validate(CLI::App& app);
 Action add_robot(CLI::App& app);
 

@@ -12,19 +12,11 @@
 #include "mbk/impedance/ellipse.h"
 #include "mbk/numeric/statistics.h"
 #include "mbk/report/chart.h"
+#include "mbk/report/layout.h"
 #include "mbk/report/picture.h"
 
 namespace mbk::report {
 namespace {
-
-/// A value and its half width with the digits that mean something: 1.2002 ± 0.0011.
-std::string with_interval(double value, double half_width) {
-  if (!std::isfinite(value)) return "undefined";
-  if (!std::isfinite(half_width)) return fmt::format("{:.4g}", value);
-  if (!(half_width > 0.0)) return fmt::format("{:.6g}", value);
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width))), 0, 9);
-  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, half_width, decimals);
-}
 
 std::string range(const Interval& interval, int decimals, double scale = 1.0) {
   if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return "";
@@ -33,44 +25,6 @@ std::string range(const Interval& interval, int decimals, double scale = 1.0) {
     return fmt::format("[{:.3g}, {:.3g}]", scale * interval.first, scale * interval.second);
   }
   return fmt::format("[{:.{}f}, {:.{}f}]", scale * interval.first, decimals, scale * interval.second, decimals);
-}
-
-/// `first`, then the text, in lines of the terminal's width; they stand under each other.
-std::string paragraph(std::string_view first, std::string_view text) {
-  const std::size_t indent = columns(first);
-  std::string lines(first);
-  for (const char c : wrapped(text, kLineColumns - indent)) {
-    lines += c;
-    if (c == '\n') lines.append(indent, ' ');
-  }
-  return lines + "\n";
-}
-
-/// Left-aligned columns; the width of each is that of its longest cell. A last cell that is too long is broken.
-std::string table(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns(row[k]));
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line = "  ";
-    for (std::size_t k = 0; k + 1 < row.size(); ++k) {
-      line += row[k];
-      line.append(widths[k] - columns(row[k]) + 2, ' ');
-    }
-    constexpr std::size_t kNarrowest = 40;
-    if (!row.empty() && columns(line) + kNarrowest < kLineColumns) {
-      line = paragraph(line, row.back());
-      line.pop_back();
-    } else if (!row.empty()) {
-      line += row.back();
-    }
-    while (!line.empty() && line.back() == ' ') line.pop_back();
-    text += line + "\n";
-  }
-  return text;
 }
 
 std::string per_axis(const Vector& values, std::string_view unit, int decimals) {

@@ -8,39 +8,15 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "mbk/core/version.h"
 #include "mbk/impedance/ellipse.h"
 #include "mbk/impedance/model.h"
+#include "mbk/result/json_parts.h"
 
 namespace mbk::result {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kResultSchema = "mbk.result/1";
 constexpr const char* kResultsSchema = "mbk.results/1";
-
-/// null where a number is undefined.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json list(const Vector& values) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(number(value));
-  return array;
-}
-
-Json rows(const Matrix& matrix) {
-  Json array = Json::array();
-  for (Index i = 0; i < matrix.rows(); ++i) array.push_back(list(matrix.row(i).transpose()));
-  return array;
-}
-
-/// Names of files and channels may hold bytes that are not UTF-8, which JSON cannot say: they become U+FFFD.
-std::string dumped(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
 
 Json model_json(const impedance::Model& model) {
   return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
@@ -48,18 +24,6 @@ Json model_json(const impedance::Model& model) {
 
 Json interval(const Interval& value, double scale = 1.0) {
   return Json::array({number(scale * value.first), number(scale * value.second)});
-}
-
-Json header(const char* schema) {
-  return {{"schema", schema}, {"software", fmt::format("mbk {}", version())}};
-}
-
-Json inputs_json(const std::vector<SourceFile>& sources) {
-  Json inputs = Json::array();
-  for (const SourceFile& source : sources) {
-    inputs.push_back({{"file", source.path}, {"sha256", source.sha256}, {"format", source.format}});
-  }
-  return inputs;
 }
 
 Json warnings_json(const std::vector<Warning>& warnings) {

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mbk/core/linear_algebra.h"
+#include "mbk/core/version.h"
+#include "mbk/trial/recording.h"
+
+/// What every JSON document of mbk is put together from. For the sources of this module only.
+namespace mbk::result {
+
+using Json = nlohmann::ordered_json;
+
+/// null where a number is undefined.
+inline Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+inline Json list(const Vector& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(number(value));
+  return array;
+}
+
+inline Json rows(const Matrix& matrix) {
+  Json array = Json::array();
+  for (Index i = 0; i < matrix.rows(); ++i) array.push_back(list(matrix.row(i).transpose()));
+  return array;
+}
+
+/// Names of files and channels may hold bytes that are not UTF-8, which JSON cannot say: they become U+FFFD.
+inline std::string dumped(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+inline Json header(const char* schema) {
+  return {{"schema", schema}, {"software", fmt::format("mbk {}", version())}};
+}
+
+inline Json inputs_json(const std::vector<SourceFile>& sources) {
+  Json inputs = Json::array();
+  for (const SourceFile& source : sources) {
+    inputs.push_back({{"file", source.path}, {"sha256", source.sha256}, {"format", source.format}});
+  }
+  return inputs;
+}
+
+}  // namespace mbk::result
