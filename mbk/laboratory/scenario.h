@@ -19,6 +19,7 @@
 #include "mbk/perturbation/optimal_power.h"
 #include "mbk/perturbation/random_binary.h"
 #include "mbk/perturbation/underdamped_pulse.h"
+#include "mbk/trial/springs.h"
 
 namespace mbk::laboratory {
 
@@ -75,6 +76,7 @@ struct RigPlan {
   Matrix2d damping = Matrix2d::Zero();    ///< dampers [N·s/m]
   Matrix2d stiffness = Matrix2d::Zero();  ///< of the linear field [N/m]
   Vector2d equilibrium = {0.3, -0.05};    ///< of the linear field [m]
+  std::vector<Spring> springs;            ///< where there are any, the linear field is not used
 };
 
 /// Nothing at the handle.

@@ -281,8 +281,20 @@ RigPlan read_rig(const Section& s, const Vector2d& home) {
   RigPlan rig;
   rig.mass = s.number("mass_kg", rig.mass, at_least(0));
   rig.damping = read_matrix_or_number(s, "damping_matrix_Ns_per_m", "damping_Ns_per_m");
-  rig.stiffness = s.required_matrix2("stiffness_N_per_m");
-  rig.equilibrium = s.vector2("equilibrium_mm", home);
+  const std::vector<Section> springs = s.sections("spring");
+  for (const Section& one : springs) {
+    rig.springs.push_back({one.required_number("stiffness_N_per_m", above(0)),
+                           one.required_number("rest_length_mm", at_least(0)), one.required_vector2("anchor_mm"),
+                           one.vector2("hole_mm", Vector2d::Zero())});
+  }
+  if (springs.empty()) {
+    rig.stiffness = s.required_matrix2("stiffness_N_per_m");
+    rig.equilibrium = s.vector2("equilibrium_mm", home);
+  } else {
+    for (const char* key : {"stiffness_N_per_m", "equilibrium_mm"}) {
+      if (s.has(key)) s.reject(key, "the springs decide it", "leave it out, or leave the springs out");
+    }
+  }
   return rig;
 }
 

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "mbk/laboratory/scenario.h"
+#include "mbk/laboratory/spring_rig.h"
 
 namespace mbk::laboratory {
 namespace {
@@ -23,14 +24,14 @@ Result<std::unique_ptr<Load>> owned(Result<Kind> load, const char* section) {
 }
 
 struct MakeLoad {
-  double sample_time;
-  std::uint64_t seed;
+  const Scenario& scenario;
+  const PlanarTrial& trial;
 
   Result<std::unique_ptr<Load>> operator()(const NoLoad& /*nothing*/) const { return std::make_unique<EmptyHandle>(); }
 
   Result<std::unique_ptr<Load>> operator()(participant::ArmOptions arm) const {
-    arm.seed = seed;
-    return owned(participant::Arm::create(arm, sample_time), "participant");
+    arm.seed = scenario.seed;
+    return owned(participant::Arm::create(arm, 1.0 / scenario.rate.value), "participant");
   }
 
   Result<std::unique_ptr<Load>> operator()(const participant::ToneRobot::Options& tone) const {
@@ -38,6 +39,11 @@ struct MakeLoad {
   }
 
   Result<std::unique_ptr<Load>> operator()(const RigPlan& rig) const {
+    if (!rig.springs.empty()) {
+      const auto angles = robot::joint_angles(trial.robot.robot.geometry, trial.home);
+      if (!angles) return tl::unexpected(angles.error().in("home"));
+      return owned(SpringRig::create(rig.springs, rig.mass, rig.damping, (*angles)[1], trial.home), "rig");
+    }
     const impedance::Model field{rig.mass * Matrix2d::Identity(), rig.damping, rig.stiffness, rig.equilibrium};
     return owned(participant::LinearLimb::create(field), "rig");
   }
@@ -45,7 +51,7 @@ struct MakeLoad {
 
 Result<Performance> run(const PlanarTrial& trial, const Scenario& scenario, const SimulateOptions& options,
                         perturbation::Schedule schedule) {
-  auto load = std::visit(MakeLoad{1.0 / scenario.rate.value, scenario.seed}, trial.load);
+  auto load = std::visit(MakeLoad{scenario, trial}, trial.load);
   if (!load) return tl::unexpected(load.error());
   return perform(Experiment{trial.robot, trial.home, std::move(schedule), trial.control, trial.sensors, scenario.rate,
                             scenario.seed, options.progress, options.watch},
