@@ -1,6 +1,7 @@
 #include "mbk/participant/two_link_arm.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -54,11 +55,16 @@ Result<ChainInertia> ChainInertia::from_matrix(const Matrix2d& I_q, double elbow
   chain.c = I_q(1, 1);
   chain.b = (I_q(0, 1) - chain.c) / cosine;
   chain.a = I_q(0, 0) - 2.0 * chain.b * cosine;
-  if (!(chain.c > 0.0 && chain.c * (chain.a - chain.c) > chain.b * chain.b)) {
+  double largest_cosine = 0.0;  // |cos q₂| in the range
+  for (const double angle : {elbow_angle - kElbowRange, elbow_angle, elbow_angle + kElbowRange}) {
+    largest_cosine = std::max(largest_cosine, std::abs(std::cos(angle)));
+  }
+  // det I = c (a − c) − b² cos² q₂
+  if (!(chain.c > 0.0 && chain.c * (chain.a - chain.c) > std::pow(chain.b * largest_cosine, 2))) {
     return bad_usage(fmt::format("the joint inertia gives a, b, c = {:.4g}, {:.4g}, {:.4g} kg·m², which is not "
-                                 "positive definite in every posture",
-                                 chain.a, chain.b, chain.c),
-                     "c (a - c) must be above b²");
+                                 "positive definite {:.2g} rad of the elbow away",
+                                 chain.a, chain.b, chain.c, kElbowRange),
+                     "c (a - c) must be above (b cos q2)²");
   }
   return chain;
 }

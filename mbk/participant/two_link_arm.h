@@ -16,9 +16,12 @@ struct ChainInertia {
   /// C(q, q̇) q̇ = b sin q₂ [−(2 q̇₁ + q̇₂) q̇₂, q̇₁²] [N·m].
   [[nodiscard]] Vector2d coriolis_torque(double elbow_angle, const Vector2d& q_rate) const;
 
+  static constexpr double kElbowRange = 0.35;  ///< 20° [rad]
+
   /// a, b, c of the chain that has the inertia I_q at one angle of the elbow.
   /// @fails  usage: I_q is not symmetric or not finite; |cos q₂| < 0.05, which does not show b; the chain is not
-  ///         positive definite in every posture, c (a − c) > b².
+  ///         positive definite, c (a − c) > b² cos² q₂, within kElbowRange of that angle. Inertias that were measured
+  ///         at one place need not be those of a chain in every posture.
   [[nodiscard]] static Result<ChainInertia> from_matrix(const Matrix2d& I_q, double elbow_angle);
 };
 
