@@ -113,8 +113,11 @@ std::string spring_field_text(const SpringField& field) {
   std::vector<std::vector<std::string>> rows = {{"", "xx", "xy", "yx", "yy", ""}, matrix_row("stiffness K", field.K)};
   if (field.grid) rows.push_back(matrix_row("on the grid", field.grid->K));
   text += table(rows);
-  text += fmt::format("  principal    {:.3f} N/m at {:.1f}°, {:.3f} N/m across\n", principal.lambda_max,
-                      kDegrees * principal.orientation, principal.lambda_min);
+  constexpr double kRound = 1e-6;  // difference of the principal values that no figure shows
+  text += principal.lambda_max - principal.lambda_min <= kRound * principal.lambda_max
+              ? fmt::format("  principal    {:.3f} N/m in every direction\n", principal.lambda_max)
+              : fmt::format("  principal    {:.3f} N/m at {:.1f}°, {:.3f} N/m across\n", principal.lambda_max,
+                            kDegrees * principal.orientation, principal.lambda_min);
   if (field.grid) text += paragraph("  grid         ", grid_words(field, *field.grid));
   text += paragraph(fmt::format("  {:<13}", fmt::format("within {} mm", in_mm(field.linearisation.radius, 0))),
                     straightness(field.linearisation)) +

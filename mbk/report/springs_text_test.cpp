@@ -25,6 +25,13 @@ TEST(SpringsText, OptionHasFourDecimalsNoMinusZeroAndAHoleOnlyWhereThereIsOne) {
   EXPECT_EQ(spring_option(field().springs[1]), "k=80.0000,l=100.0000mm,anchor=215.0000:0.0000,hole=10.0000:-2.0000");
 }
 
+TEST(SpringsText, NamesNoDirectionWhereTheStiffnessHasNone) {
+  SpringField one = field();
+  EXPECT_THAT(spring_field_text(one), HasSubstr("174.3°"));
+  one.K = 300.0 * Eigen::Matrix2d::Identity();
+  EXPECT_THAT(spring_field_text(one), HasSubstr("300.000 N/m in every direction"));
+}
+
 TEST(SpringsText, SaysWhereASpringGoesSlackWithinTheCircle) {
   SpringField one = field();
   EXPECT_THAT(spring_field_text(one), HasSubstr("4.0 mm longer than at rest"));
