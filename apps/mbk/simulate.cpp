@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-
-#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -9,6 +7,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
+#include "apps/mbk/scenario_argument.h"
 #include "mbk/laboratory/scenario.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/recording/mat_writer.h"
@@ -34,21 +33,6 @@ struct Job {
   fs::path file;
 };
 
-/// The scenarios of a file, or of a ready one by its name.
-Result<std::vector<laboratory::Scenario>> scenarios_of(const Arguments& arguments) {
-  if (const auto* ready = laboratory::find_ready_scenario(arguments.scenario)) {
-    return laboratory::read_scenarios(ready->text, std::string(ready->name) + ".toml");
-  }
-  std::error_code error;
-  if (!fs::exists(arguments.scenario, error)) {
-    return bad_data(fmt::format("no such file, and no ready scenario of that name"),
-                    "'mbk simulate --list' names the ready ones", arguments.scenario);
-  }
-  const auto text = read_text(arguments.scenario);
-  if (!text) return tl::unexpected(text.error());
-  return laboratory::read_scenarios(*text, arguments.scenario);
-}
-
 /// out.mat → out_NAME_seedN.mat, where there are several trials or seeds.
 fs::path file_name(const Arguments& arguments, const std::string& trial, std::optional<std::uint64_t> seed) {
   std::string stem = arguments.out.stem().string();
@@ -58,21 +42,16 @@ fs::path file_name(const Arguments& arguments, const std::string& trial, std::op
 }
 
 Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
-  const auto scenarios = scenarios_of(arguments);
+  const auto scenarios = read_scenario_argument(arguments.scenario);
   if (!scenarios) return tl::unexpected(scenarios.error());
-  for (const std::string& wanted : arguments.trials) {
-    if (std::ranges::find(*scenarios, wanted, &laboratory::Scenario::trial_name) != scenarios->end()) continue;
-    std::string known;
-    for (const laboratory::Scenario& one : *scenarios) known += (known.empty() ? "" : ", ") + one.trial_name;
-    return bad_usage(fmt::format("there is no trial '{}' in {}", wanted, arguments.scenario),
-                     known.empty() ? "it has no [[trial]]" : "there are: " + known);
+  std::vector<laboratory::Scenario> chosen;
+  for (const std::string& name : arguments.trials) {
+    const auto trial = find_trial(*scenarios, name);
+    if (!trial) return tl::unexpected(trial.error());
+    chosen.push_back(*trial);
   }
   std::vector<Job> jobs;
-  for (const laboratory::Scenario& scenario : *scenarios) {
-    if (!arguments.trials.empty() &&
-        std::ranges::find(arguments.trials, scenario.trial_name) == arguments.trials.end()) {
-      continue;
-    }
+  for (const laboratory::Scenario& scenario : arguments.trials.empty() ? *scenarios : chosen) {
     for (int k = 0; k < arguments.seeds; ++k) {
       Job job{scenario, {}};
       job.scenario.seed = arguments.seed.value_or(scenario.seed) + static_cast<std::uint64_t>(k);

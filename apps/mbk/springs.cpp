@@ -9,6 +9,7 @@
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/spring_options.h"
 #include "mbk/calibration/spring_constant.h"
 #include "mbk/calibration/spring_design.h"
@@ -21,6 +22,7 @@ namespace {
 constexpr double kMillimetres = 1000.0;
 
 struct FieldArguments {
+  std::string scenario, trial;
   std::vector<std::string> springs;
   std::string start;
   double radius_mm = 30.0, rotation_deg = 0.0;
@@ -39,13 +41,38 @@ struct FindArguments {
   Output output;
 };
 
-Result<SpringField> field_of(const FieldArguments& arguments) {
+/// The springs of a scenario's [rig].
+Result<std::vector<Spring>> springs_of_scenario(const FieldArguments& arguments) {
+  const auto scenarios = read_scenario_argument(arguments.scenario);
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  if (arguments.trial.empty() && scenarios->size() > 1) {
+    return bad_usage(fmt::format("{} has {} trials", arguments.scenario, scenarios->size()), "choose one by --trial");
+  }
+  const auto chosen = arguments.trial.empty() ? scenarios->front() : find_trial(*scenarios, arguments.trial);
+  if (!chosen) return tl::unexpected(chosen.error());
+  const auto* planar = std::get_if<laboratory::PlanarTrial>(&chosen->trial);
+  const auto* rig = planar == nullptr ? nullptr : std::get_if<laboratory::RigPlan>(&planar->load);
+  if (rig == nullptr || rig->springs.empty()) {
+    return bad_data("there is no [[rig.spring]]", "'mbk springs find' writes some", arguments.scenario);
+  }
+  return rig->springs;
+}
+
+Result<std::vector<Spring>> springs_of(const FieldArguments& arguments) {
+  if (!arguments.scenario.empty()) return springs_of_scenario(arguments);
   std::vector<Spring> springs;
   for (const std::string& given : arguments.springs) {
     const auto spring = parse_spring(given);
     if (!spring) return tl::unexpected(spring.error());
     springs.push_back(*spring);
   }
+  return springs;
+}
+
+Result<SpringField> field_of(const FieldArguments& arguments) {
+  const auto given = springs_of(arguments);
+  if (!given) return tl::unexpected(given.error());
+  const std::vector<Spring>& springs = *given;
   Eigen::Vector2d start = calibration::centre_of_anchors(springs);
   if (!arguments.start.empty()) {
     const auto place = parse_place("--start", arguments.start);
@@ -68,7 +95,10 @@ Result<SpringField> field_of(const FieldArguments& arguments) {
 }
 
 int run_field(const FieldArguments& arguments) {
-  if (auto ok = arguments.output.check({}); !ok) return report_error(ok.error());
+  if (arguments.scenario.empty() && arguments.springs.empty()) {
+    return report_error({ErrorKind::usage, "no springs", "name a scenario file, or give each by --spring", ""});
+  }
+  if (auto ok = arguments.output.check({arguments.scenario}); !ok) return report_error(ok.error());
   const auto field = field_of(arguments);
   if (!field) return report_error(field.error());
   const std::string text = arguments.json ? result::to_json(*field) : report::spring_field_text(*field);
@@ -164,16 +194,21 @@ Action add_field(CLI::App& springs) {
   auto arguments = std::make_shared<FieldArguments>();
   CLI::App* command = springs.add_subcommand("field", "equilibrium and stiffness of an array of springs");
   command->footer(
-      "Example:\n"
+      "Examples:\n"
+      "  mbk springs field rig.toml\n"
+      "      the [[rig.spring]] of a scenario file; --trial chooses among several\n"
       "  mbk springs field --spring k=120,l=90mm,anchor=565:183 --spring k=120,l=90,anchor=565:-183 \\\n"
       "      --spring k=150,l=80,anchor=215:0 --grid-step 0.15\n\n"
       "Places are x:y in mm in the robot's base frame; a hole is where the spring hangs in the disc, from the\n"
       "hand. K is minus the gradient of the force at the place where the force is zero.");
+  CLI::Option* const scenario =
+      command->add_option("SCENARIO.toml", arguments->scenario, "a scenario with [[rig.spring]], or a ready one's name");
+  command->add_option("--trial", arguments->trial, "which [[trial]] of it")->type_name("NAME")->needs(scenario);
   command->add_option("--spring", arguments->springs, "k in N/m, rest length l in mm, anchor, and hole; once for each")
       ->type_name("k=K,l=L,anchor=X:Y[,hole=X:Y]")
-      ->required()
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->excludes(scenario);
   command->add_option("--radius", arguments->radius_mm, "circle in mm in which K is compared with the force (30)")
       ->type_name("MM")
       ->check(positive());

@@ -1,0 +1,35 @@
+#include "apps/mbk/scenario_argument.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "apps/mbk/output.h"
+
+namespace mbk::app {
+
+Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument) {
+  if (const auto* ready = laboratory::find_ready_scenario(argument)) {
+    return laboratory::read_scenarios(ready->text, std::string(ready->name) + ".toml");
+  }
+  std::error_code error;
+  if (!std::filesystem::exists(argument, error)) {
+    return bad_data("no such file, and no ready scenario of that name", "'mbk simulate --list' names the ready ones",
+                    argument);
+  }
+  const auto text = read_text(argument);
+  if (!text) return tl::unexpected(text.error());
+  return laboratory::read_scenarios(*text, argument);
+}
+
+Result<laboratory::Scenario> find_trial(const std::vector<laboratory::Scenario>& scenarios, const std::string& name) {
+  const auto found = std::ranges::find(scenarios, name, &laboratory::Scenario::trial_name);
+  if (found != scenarios.end()) return *found;
+  std::string known;
+  for (const laboratory::Scenario& one : scenarios) known += (known.empty() ? "" : ", ") + one.trial_name;
+  return bad_usage(fmt::format("there is no trial '{}' in {}", name, scenarios.front().file_name),
+                   known.empty() ? "it has no [[trial]]" : "there are: " + known);
+}
+
+}  // namespace mbk::app

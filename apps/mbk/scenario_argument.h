@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mbk/core/result.h"
+#include "mbk/laboratory/scenario.h"
+
+namespace mbk::app {
+
+/// The trials behind a SCENARIO argument: a ready scenario by its name, or a TOML file.
+/// @fails  data: neither; as read_scenarios.
+[[nodiscard]] Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument);
+
+/// The one that is called so. @fails  usage: none is; the message names those that there are.
+[[nodiscard]] Result<laboratory::Scenario> find_trial(const std::vector<laboratory::Scenario>& scenarios,
+                                                      const std::string& name);
+
+}  // namespace mbk::app
