@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+
 #include <limits>
 #include <memory>
 #include <optional>
@@ -138,8 +139,7 @@ int run(const Arguments& arguments) {
 Action add_simulate(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   auto shown = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("simulate", "a simulated trial: a recording with the truth in it");
+  CLI::App* command = app.add_subcommand("simulate", "a simulated trial: a recording with the truth in it");
   command->footer(
       "Examples:\n"
       "  mbk simulate --list\n"
