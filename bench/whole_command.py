@@ -58,18 +58,23 @@ def has_scipy(python):
     return found.stdout.split() if found.returncode == 0 else None
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def arguments_of(description):
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=pathlib.Path, default=HERE.parent / "build/release/bin", help="folder of mbk")
     parser.add_argument("--runs", type=int, default=9, help="timed runs of each program (9)")
     parser.add_argument("--python", default=sys.executable, help="the Python that has numpy and scipy, if any")
     arguments = parser.parse_args()
     if arguments.runs < 1:
         parser.error("--runs must be at least 1")
+    return arguments
+
+
+def main():
+    arguments = arguments_of(__doc__)
     mbk, make_log = arguments.bin / "mbk", arguments.bin / "make_log"
     for program in (mbk, make_log):
         if not program.exists():
-            parser.error(f"{program} is not there; build first, or name its folder with --bin")
+            sys.exit(f"whole_command.py: {program} is not there; build first, or name its folder with --bin")
 
     with tempfile.TemporaryDirectory() as folder:
         log = pathlib.Path(folder) / "log.mat"

@@ -4,9 +4,10 @@
 #
 # DEPENDS lists every module whose headers this one includes; tests/layering.py reads the includes and fails
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
-# libraries that only the implementation uses; PUBLIC_LIBRARIES are those that stand in its headers.
+# libraries that only the implementation uses; PUBLIC_LIBRARIES are those that stand in its headers, TEST_LIBRARIES
+# those that only its tests link.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES;LIBRARIES;PUBLIC_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -27,7 +28,7 @@ function(mbk_module name)
   add_library(mbk::${name} ALIAS mbk_${name})
 
   if(MBK_BUILD_TESTS AND tests)
-    mbk_test(${name}_test SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES})
+    mbk_test(${name}_test SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
   endif()
 endfunction()
 

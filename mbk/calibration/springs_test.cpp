@@ -4,29 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <memory>
-#include <new>
 #include <numbers>
 
 #include "mbk/numeric/random.h"
-
-namespace {
-std::size_t allocations = 0;
-}  // namespace
-
-// Counts what this program allocates, to show that a call allocates nothing.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocations.h"
 
 namespace mbk::calibration {
 namespace {
@@ -161,17 +143,17 @@ TEST(Springs, ASpringOfNoLengthExertsNoForce) {
 
 TEST(Springs, AllocateNothing) {
   const SpringArray array = array_of(representative_springs(0.01125));
-  const std::size_t before = allocations;
+  const long before = testing_support::allocations();
   double sum = 0.0;
   for (int i = 0; i < 100; ++i) {
     const Vector2d hand(0.39 + 1e-4 * i, 0.01);
     sum += array.force(hand, 0.1).sum() + array.moment(hand, 0.1) + array.energy(hand, 0.1) +
            array.stiffness(hand, 0.1).sum() + array.tension(0, hand, 0.1);
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(testing_support::allocations(), before);
   EXPECT_TRUE(std::isfinite(sum));
   const auto guard = std::make_unique<double>(sum);
-  EXPECT_GT(allocations, before) << "the guard itself does not count";
+  EXPECT_GT(testing_support::allocations(), before) << "the guard itself does not count";
 }
 
 TEST(Springs, RefuseWhatIsNoSpring) {

@@ -2,32 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mbk/laboratory/link_axes.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocations.h"
 
 namespace mbk::laboratory {
 namespace {
@@ -263,16 +245,16 @@ TEST(SensorSuite, ReadsWithoutAllocating) {
   strain_gauge.torque = MotorCurrentOptions{.noise = 0.01};
   strain_gauge.clock.jitter = 1e-5;
   for (const SensorOptions& options : {SensorOptions{}, strain_gauge}) {
-    const long before_making = allocations;
+    const long before_making = testing_support::allocations();
     SensorSuite sensors = suite(options);
-    EXPECT_GT(allocations, before_making);  // the counter counts
-    const long before = allocations;
+    EXPECT_GT(testing_support::allocations(), before_making);  // the counter counts
+    const long before = testing_support::allocations();
     double sum = 0.0;
     for (int k = 0; k < 1000; ++k) {
       sum +=
           sensors.next_interval() + sensors.encoders(state(k).motor_angle).sum() + sensors.read(state(k)).force.sum();
     }
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(testing_support::allocations(), before);
     EXPECT_TRUE(std::isfinite(sum));
   }
 }

@@ -2,27 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 
-namespace {
-std::atomic<long> allocations{0};
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocations.h"
 
 namespace mbk::perturbation {
 namespace {
@@ -73,15 +56,15 @@ TEST(Schedule, DerivativesAgreeWithCentralDifferencesBetweenBreaks) {
 TEST(Schedule, DoesNotAllocateWhileItRuns) {
   const std::vector<Schedule> schedules = all();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  const long before = allocations;
+  const long before = testing_support::allocations();
   for (const Schedule& schedule : schedules) {
     for (int k = 0; k < 5000; ++k) sum += schedule.at(0.01 * k).second + schedule.reference(0.01 * k);
   }
-  const long after = allocations;
+  const long after = testing_support::allocations();
   EXPECT_EQ(after, before);
   EXPECT_TRUE(sum.allFinite());
   const std::vector<long> counted(static_cast<std::size_t>(after), 1);
-  EXPECT_GT(allocations.load(), after) << "the counter does not count " << counted.back();
+  EXPECT_GT(testing_support::allocations(), after) << "the counter does not count " << counted.back();
 }
 
 TEST(Schedule, SinesGrowAndThenAreThemselves) {

@@ -11,22 +11,26 @@
 namespace mbk::validation {
 namespace {
 
-/// What is wanted of a mean error.
-constexpr double kStiffnessError = 5.0;  // [N/m], as much as the thesis's own closest rows
-constexpr double kMassError = 0.02;      // [kg]
-
-/// A file of rigs, and what its trials are called in the table.
+/// A file of rigs, what its trials are called in the table, and what is wanted of a mean error.
 struct RigFile {
   const char* file;
   const char* name;
+  double stiffness_error;  ///< [N/m]
 };
-constexpr RigFile kFiles[] = {{"rig_table_3_1", "table 3.1"}, {"rig_table_5_1", "table 5.1"}};
+
+/// A linear field has no excuse. That of real springs bends over the motion, and as the disc turns with the last link,
+/// moving the hand also winds the springs around it: there K differs from −∂F/∂x by up to a few percent.
+constexpr RigFile kFiles[] = {{"rig_table_3_1", "3.1 linear", 2.0},
+                              {"rig_table_5_1", "5.1 linear", 2.0},
+                              {"rig_springs_table_3_1", "3.1 springs", 8.0},
+                              {"rig_springs_table_5_1", "5.1 springs", 8.0}};
+constexpr double kMassError = 0.02;  // [kg]
 
 /// One number of a rig: identified and true, trial by trial.
 struct Errors {
   std::vector<double> identified, truth;
   const char* unit = "N/m";
-  double wanted = kStiffnessError;
+  double wanted = 0.0;
 
   void add(double value, double true_value) {
     identified.push_back(value);
@@ -128,8 +132,9 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
       const std::pair<const char*, std::pair<Index, Index>> elements[] = {
           {"k_xx", {0, 0}}, {"k_yy", {1, 1}}, {"k_s", {0, 1}}};
       for (const auto& [name, at] : elements) {
-        errors_of(fmt::format("{} {} {}", file.name, stiffness, name))
-            .add(model.K(at.first, at.second), truth.K(at.first, at.second));
+        Errors& element = errors_of(fmt::format("{} {} {}", file.name, stiffness, name));
+        element.wanted = file.stiffness_error;
+        element.add(model.K(at.first, at.second), truth.K(at.first, at.second));
       }
       Errors& payload = errors_of(fmt::format("{} {} m", file.name, mass));
       payload.unit = "kg";
@@ -137,12 +142,14 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
       payload.add(model.M(0, 0), truth.M(0, 0));
     }
     for (const auto& [what, errors] : all) table.rows.push_back(row_of(what, errors));
-    table.charts.push_back(chart_of(fmt::format("Stiffness of the rigs of {}", file.name), all, "N/m"));
-    table.charts.push_back(chart_of(fmt::format("Mass of the rigs of {}", file.name), all, "kg"));
+    table.charts.push_back(chart_of(fmt::format("Stiffness of the rigs, table {}", file.name), all, "N/m"));
+    table.charts.push_back(chart_of(fmt::format("Mass of the rigs, table {}", file.name), all, "kg"));
   }
   table.notes = {
       "Errors are identified − true, the sign of the thesis's text, not of its printed table 5.4.",
-      "Each stiffness of table 5.1 is the mean over its five masses, and each mass over its five stiffnesses."};
+      "Each stiffness of table 5.1 is the mean over its five masses, and each mass over its five stiffnesses.",
+      "The arrays of real springs were found for these K (mbk springs find); the thesis does not say what its "
+      "springs were. Their field is not linear, and the disc turns with the robot's last link."};
   return table;
 }
 

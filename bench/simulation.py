@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""How long does a simulated trial take? 62.1 s at 1 kHz with controller, arm and all sensors, from starting the process
+to the recording on disk.
+
+Where numpy and scipy can be imported, plain_closed_loop.py moves the same robot and arm again from the recorded motor
+torques, in turns with mbk (A B A B ...); it does neither controller nor sensors, energies or file. Both must put the hand
+at the same places to 1e-9 m. Times are reported and never judged: the exit code is 0 unless a program fails or the
+answers differ.
+
+usage: simulation.py [--bin build/release/bin] [--runs 9] [--python /usr/bin/python3]
+"""
+
+import json
+import pathlib
+import statistics
+import sys
+import tempfile
+
+from whole_command import HERE, arguments_of, has_scipy, row, run
+
+AGREEMENT = 1e-9  # [m] and [N]
+
+
+def main():
+    arguments = arguments_of(__doc__)
+    mbk = arguments.bin / "mbk"
+    if not mbk.exists():
+        sys.exit(f"simulation.py: {mbk} is not there; build first, or name its folder with --bin")
+    with tempfile.TemporaryDirectory() as folder:
+        recording = pathlib.Path(folder) / "recording.mat"
+        end = ["--out", recording, "--overwrite", "--quiet"]
+        scipy = has_scipy(arguments.python)
+        ready, plain, twin = [], [], []
+        for _ in range(arguments.runs + 1):  # the first one warms up
+            ready.append(run([mbk, "simulate", "relaxed_sinusoidal", *end])[1:])
+            plain.append(run([mbk, "simulate", HERE / "closed_loop.toml", *end])[1:])
+            if scipy:
+                text, *_ = run([arguments.python, HERE / "plain_closed_loop.py", recording])
+                twin.append(json.loads(text))
+        print(f"62.1 s at 1 kHz, {arguments.runs} runs; whole process, in ms\n")
+        print(f"  {'':<34}{'least':>10}{'median':>10}{'greatest':>10}")
+        row("mbk simulate relaxed_sinusoidal, wall", [wall for wall, _ in ready[1:]])
+        row("  CPU", [cpu for _, cpu in ready[1:]])
+        row("mbk simulate closed_loop.toml, wall", [wall for wall, _ in plain[1:]])
+    if not scipy:
+        print(f"\n{arguments.python} has no numpy and scipy: nothing to compare with")
+        return
+    row("plain_closed_loop.py, plant alone", [one["seconds"] for one in twin[1:]])
+    ratios = [b["seconds"] / a[0] for a, b in zip(plain[1:], twin[1:])]
+    print(f"\nplant alone in Python over the whole of mbk simulate, pair by pair: median {statistics.median(ratios):.2f}, "
+          f"{min(ratios):.2f} to {max(ratios):.2f}")
+    place, force = twin[-1]["largest_distance_m"], twin[-1]["largest_force_difference_N"]
+    print(f"the hand differs by at most {place:.1e} m, its force by {force:.1e} N (limit {AGREEMENT:g})")
+    if not max(place, force) <= AGREEMENT:
+        sys.exit("simulation.py: the two answers differ")
+
+
+if __name__ == "__main__":
+    main()
