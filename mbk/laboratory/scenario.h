@@ -115,6 +115,9 @@ struct Scenario {
 /// @fails  data: with file, line, key, value and what is allowed.
 [[nodiscard]] Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file);
 
+/// Said wherever something is shown that a participant who corrects position or force had a part in.
+inline constexpr const char* kTunedGains = "the gains of the participant's will are tuned, not fitted to anyone";
+
 struct SimulateOptions {
   std::optional<std::uint64_t> seed;              ///< instead of the scenario's
   std::function<void(double fraction)> progress;  ///< of this recording

@@ -69,6 +69,13 @@ Result<Performance> run(const OneAxisTrial& trial, const Scenario& scenario, con
                  *joint);
 }
 
+/// Whether somebody in the scenario acts by will.
+bool has_will(const Scenario& scenario) {
+  const auto* planar = std::get_if<PlanarTrial>(&scenario.trial);
+  const auto* arm = planar == nullptr ? nullptr : std::get_if<participant::ArmOptions>(&planar->load);
+  return arm != nullptr && (arm->controller.position_gain > 0.0 || arm->controller.force_gain > 0.0);
+}
+
 }  // namespace
 
 Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options) {
@@ -81,6 +88,7 @@ Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& op
   metadata["truth_scenario"] = scenario.file_name;
   if (!scenario.trial_name.empty()) metadata["truth_trial"] = scenario.trial_name;
   if (!scenario.condition.empty()) metadata["truth_condition"] = scenario.condition;
+  if (has_will(scenario)) metadata["truth_note"] = kTunedGains;
   metadata["truth_seed"] = std::to_string(scenario.seed);
   return performance;
 }

@@ -40,6 +40,10 @@ const std::vector<Condition>& conditions() {
   return all;
 }
 
+constexpr const char* kTuned =
+    "The gains of the participant's controller are tuned to the findings of Dyck (2013, chapter 4), not fitted to "
+    "anyone.";
+
 /// Participants of the thesis whose limbs are used.
 constexpr std::array kArms = {1, 4, 5};
 
@@ -183,7 +187,7 @@ void add_crossover(const StudyOptions& options, Trials trials, ValidationTable& 
     table.rows.push_back(row);
     chart.series.push_back(std::move(line));
   }
-  chart.notes = {"Bars show one standard deviation over the seeds."};
+  chart.notes = {"Bars show one standard deviation over the seeds.", kTuned};
   table.charts.push_back(std::move(chart));
 }
 
@@ -216,8 +220,7 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
   }
   add_crossover(options, left, table);
   table.notes = {
-      "The gains of the participant's controller are tuned to the findings of Dyck (2013, chapter 4), not fitted to "
-      "anyone.",
+      kTuned,
       "E is the energy that the limb absorbed in one trial, without the handle; VAF is that of the published procedure "
       "on held-back data, mean of both axes.",
       "2 N and 8 N differ in amplitude_N alone."};

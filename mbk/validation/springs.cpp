@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
-#include <optional>
 
 #include "mbk/numeric/statistics.h"
 #include "mbk/validation/simulated_trials.h"
@@ -29,7 +27,7 @@ constexpr double kMassError = 0.02;  // [kg]
 /// One number of a rig: identified and true, trial by trial.
 struct Errors {
   std::vector<double> identified, truth;
-  const char* unit = "N/m";
+  std::string unit = "N/m";
   double wanted = 0.0;
 
   void add(double value, double true_value) {
@@ -66,24 +64,27 @@ ValidationRow row_of(const std::string& what, const Errors& errors) {
   return row;
 }
 
-/// Identified against true, one point for each row's parameter (figs 3.8 and 5.4).
-Chart chart_of(const std::string& title, const std::vector<std::pair<std::string, Errors>>& all, const char* unit) {
+using NamedErrors = std::vector<std::pair<std::string, Errors>>;
+
+/// Identified against true, one point for each row of that unit (figs 3.8 and 5.4 in form).
+ChartSeries series_of(const char* name, const NamedErrors& all, const std::string& unit) {
+  ChartSeries marks;
+  marks.name = name;
+  for (const auto& [what, errors] : all) {
+    if (errors.unit != unit) continue;
+    const auto count = static_cast<Index>(errors.truth.size());
+    marks.x.push_back(errors.truth.front());
+    marks.y.push_back(Eigen::Map<const Vector>(errors.identified.data(), count).mean());
+  }
+  return marks;
+}
+
+Chart empty_chart(const char* title, const char* unit) {
   Chart chart;
   chart.title = title;
   chart.x = {"true", unit};
   chart.y = {"identified", unit};
   chart.identity = true;
-  std::map<std::string, ChartSeries> series;
-  for (const auto& [what, errors] : all) {
-    if (std::string(errors.unit) != unit) continue;
-    const std::string parameter = what.substr(what.rfind(' ') + 1);
-    ChartSeries& marks = series[parameter];
-    marks.name = parameter;
-    const auto count = static_cast<Index>(errors.truth.size());
-    marks.x.push_back(errors.truth.front());
-    marks.y.push_back(Eigen::Map<const Vector>(errors.identified.data(), count).mean());
-  }
-  for (auto& [name, marks] : series) chart.series.push_back(std::move(marks));
   return chart;
 }
 
@@ -116,8 +117,10 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
   table.unit = "error";
   table.runs = options.runs;
   table.seed = options.seed;
+  Chart stiffnesses = empty_chart("Stiffness of the rigs: k_xx, k_yy and k_s", "N/m");
+  Chart masses = empty_chart("Mass of the rigs", "kg");
   for (const RigFile& file : kFiles) {
-    std::vector<std::pair<std::string, Errors>> all;  // in the order of the file
+    NamedErrors all;  // in the order of the file
     const auto errors_of = [&](const std::string& what) -> Errors& {
       for (auto& [name, errors] : all) {
         if (name == what) return errors;
@@ -142,9 +145,10 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
       payload.add(model.M(0, 0), truth.M(0, 0));
     }
     for (const auto& [what, errors] : all) table.rows.push_back(row_of(what, errors));
-    table.charts.push_back(chart_of(fmt::format("Stiffness of the rigs, table {}", file.name), all, "N/m"));
-    table.charts.push_back(chart_of(fmt::format("Mass of the rigs, table {}", file.name), all, "kg"));
+    stiffnesses.series.push_back(series_of(file.name, all, "N/m"));
+    masses.series.push_back(series_of(file.name, all, "kg"));
   }
+  table.charts = {stiffnesses, masses};
   table.notes = {
       "Errors are identified − true, the sign of the thesis's text, not of its printed table 5.4.",
       "Each stiffness of table 5.1 is the mean over its five masses, and each mass over its five stiffnesses.",
