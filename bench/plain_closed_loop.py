@@ -56,11 +56,14 @@ def motion(state, torque):
 def main():
     logs = scipy.io.loadmat(sys.argv[1])["logs"]
     places, forces, torques = logs[1:3].T.tolist(), logs[9:11].T.tolist(), logs[13:15].T.tolist()
-    state = (*logs[5:7, 0].tolist(), 0.0, 0.0)
+    state, held = (*logs[5:7, 0].tolist(), 0.0, 0.0), (0.0, 0.0)
     away = wrong = 0.0
     start = time.perf_counter()
     for place, measured, torque in zip(places, forces, torques):
-        k1, force = motion(state, torque)
+        _, before = motion(state, held)
+        k1, after = motion(state, torque)
+        force = [0.5 * (a + b) for a, b in zip(before, after)]  # as it is between two torques
+        held = torque
         away = max(away, math.dist(hand(state[0], state[1]), place))
         wrong = max(wrong, math.dist(force, measured))
         k2, _ = motion([s + 0.5 * STEP * k for s, k in zip(state, k1)], torque)

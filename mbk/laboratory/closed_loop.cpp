@@ -134,15 +134,16 @@ ClosedLoop::State ClosedLoop::derivative(const State& state, TrueState* seen) co
 }
 
 const TrueState& ClosedLoop::hold(const Vector2d& motor_torque, double sample_time) {
-  const Vector2d theta = state_.segment<2>(kTheta), rate = state_.segment<2>(kRate);
-  const robot::Geometry& geometry = options_.robot.geometry;
-  load_->tick(time_, sample_time,
-              {robot::hand_position(geometry, theta), robot::jacobian(geometry, theta) * rate, theta[1], rate[1]},
+  TrueState before;
+  derivative(state_, &before);
+  load_->tick(time_, sample_time, {before.position, before.velocity, before.theta[1], before.theta_rate[1]},
               true_state_.force_hand_on_robot);
   torque_ = motor_torque;
   sample_time_ = sample_time;
   true_state_.time = time_;
   derivative(state_, &true_state_);
+  true_state_.acceleration = 0.5 * (before.acceleration + true_state_.acceleration);
+  true_state_.force_hand_on_robot = 0.5 * (before.force_hand_on_robot + true_state_.force_hand_on_robot);
   return true_state_;
 }
 

@@ -65,7 +65,9 @@ class ClosedLoop {
   /// Where the loop stands [s].
   [[nodiscard]] double time() const { return time_; }
 
-  /// Begins a tick of length T [s]: the load decides, the torque takes effect; the state an instant later.
+  /// Begins a tick of length T [s]: the load decides, the torque takes effect. Force and acceleration jump with the
+  /// torque; what is given is the mean of before and after, as a sensor of less bandwidth than the tick rate sees them:
+  /// either limit would be half a tick off the motion.
   const TrueState& hold(const Vector2d& motor_torque, double sample_time);
 
   /// Moves on to the end of the tick.

@@ -32,16 +32,23 @@ OneAxisLoop::Change OneAxisLoop::change(const participant::JointState& state) co
   return {state.velocity, acceleration, motor_ * state.velocity, taken * state.velocity, friction * state.velocity};
 }
 
+double OneAxisLoop::reaction(double acceleration) const {
+  const participant::OneAxisDynamics load = load_->dynamics(state_);
+  return -(load.inertia * acceleration + load.bias);
+}
+
 const OneAxisTrueState& OneAxisLoop::hold(double motor, double sample_time) {
+  const double acceleration_before = change(state_).acceleration;
+  const double reaction_before = reaction(acceleration_before);
   load_->tick(time_, sample_time, state_, seen_.reaction);
   motor_ = motor;
   sample_time_ = sample_time;
-  const participant::OneAxisDynamics load = load_->dynamics(state_);
+  const double acceleration_after = change(state_).acceleration;
   seen_.time = time_;
   seen_.position = state_.position;
   seen_.velocity = state_.velocity;
-  seen_.acceleration = change(state_).acceleration;
-  seen_.reaction = -(load.inertia * seen_.acceleration + load.bias);
+  seen_.acceleration = 0.5 * (acceleration_before + acceleration_after);
+  seen_.reaction = 0.5 * (reaction_before + reaction(acceleration_after));
   seen_.motor = motor;
   return seen_;
 }

@@ -44,7 +44,8 @@ class OneAxisLoop {
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double position() const { return state_.position; }
 
-  /// Begins a tick of length T [s]; the state an instant later.
+  /// Begins a tick of length T [s]. Acceleration and reaction, which jump with the motor, are the means of before and
+  /// after, as in ClosedLoop::hold.
   const OneAxisTrueState& hold(double motor, double sample_time);
   /// Moves on to the end of the tick.
   void advance();
@@ -54,6 +55,7 @@ class OneAxisLoop {
     double velocity, acceleration, work_motor, absorbed, lost;
   };
   OneAxisLoop(const Machine& machine, double position, participant::OneAxisLoad& load, double start_time);
+  [[nodiscard]] double reaction(double acceleration) const;
   [[nodiscard]] Change change(const participant::JointState& state) const;
 
   Machine machine_;

@@ -94,7 +94,8 @@ struct PlanarTrial {
 /// A trial of a one-axis machine.
 struct OneAxisTrial {
   OneAxisLoop::Machine machine;
-  OneAxisLoop::Servo servo;
+  perturbation::Quantity controlled = perturbation::Quantity::position;  ///< what the schedule must command
+  OneAxisLoop::Servo servo;                                              ///< where that is the position
   participant::OneAxisJoint::Options joint;
   OneAxisSensorOptions sensors;
 };

@@ -149,7 +149,6 @@ PulsePlan read_pulses(const Section& s) {
   PulsePlan plan;
   perturbation::PulseSchedule::Options& p = plan.pulses;
   const Size size = read_size(s, "amplitude", {plan.quantity, Space::hand, p.amplitude});
-  if (size.space == Space::joint) s.reject("amplitude_deg", "pulses are given at the hand", "use amplitude_mm");
   plan.quantity = size.quantity;
   p.amplitude = size.value;
   p.damping_ratio = s.number("damping_ratio", p.damping_ratio, config::within(0, 1));
@@ -441,6 +440,8 @@ OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   machine.friction.smoothing = robot.number("smoothing_rad_per_s", machine.friction.smoothing, above(0));
   machine.steps_per_tick = robot.integer("steps_per_tick", machine.steps_per_tick, 1, 100);
   const Section control = root.section("control");
+  trial.controlled =
+      control.required_choice<Quantity>("kind", {{"position", Quantity::position}, {"force", Quantity::force}});
   trial.servo.proportional = control.number("proportional_Nm_per_rad", trial.servo.proportional, at_least(0));
   trial.servo.derivative = control.number("derivative_Nms_per_rad", trial.servo.derivative, at_least(0));
   trial.servo.velocity_cutoff =
@@ -477,6 +478,16 @@ PlanarTrial read_planar(const Section& root, const Section& robot) {
   return trial;
 }
 
+/// The machine's axis is the first one of the schedule: everything goes to and fro along it.
+void along_one_axis(PerturbationPlan& plan) {
+  if (auto* binary = std::get_if<RandomBinaryPlan>(&plan.kind)) binary->angle = 0.0;
+  if (auto* pulses = std::get_if<PulsePlan>(&plan.kind)) {
+    perturbation::PulseSchedule::Options& p = pulses->pulses;
+    p.repetitions *= p.directions / 2;  // as many as there would be in all directions
+    p.directions = 2;
+  }
+}
+
 Scenario read_scenario(const Section& root) {
   Scenario scenario;
   const Section recording = root.section("recording");
@@ -490,7 +501,13 @@ Scenario read_scenario(const Section& root) {
   } else {
     scenario.trial = read_one_axis(root, robot);
   }
-  scenario.perturbation = read_perturbation(root.section("perturbation"));
+  const Section perturbation = root.section("perturbation");
+  scenario.perturbation = read_perturbation(perturbation);
+  if (std::holds_alternative<OneAxisTrial>(scenario.trial)) {
+    along_one_axis(scenario.perturbation);
+  } else if (perturbation.has("amplitude_deg")) {
+    perturbation.reject("amplitude_deg", "pulses and binary sequences are given at the hand", "use amplitude_mm");
+  }
   return scenario;
 }
 

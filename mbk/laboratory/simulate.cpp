@@ -60,6 +60,10 @@ Result<Performance> run(const PlanarTrial& trial, const Scenario& scenario, cons
 
 Result<Performance> run(const OneAxisTrial& trial, const Scenario& scenario, const SimulateOptions& options,
                         perturbation::Schedule schedule) {
+  if (trial.controlled != schedule.quantity()) {
+    return bad_usage("control and perturbation speak of different quantities",
+                     "let both be of positions, or both of torques");
+  }
   participant::OneAxisJoint::Options person = trial.joint;
   person.seed = scenario.seed;
   auto joint = participant::OneAxisJoint::create(person, 1.0 / scenario.rate.value);

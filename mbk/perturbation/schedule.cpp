@@ -118,7 +118,6 @@ Jet<Eigen::Vector2d> Schedule::at(double t) const {
 
 Eigen::Vector2d Schedule::reference(double t) const {
   if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) return pulses->reference(t);
-  if (const auto* binary = std::get_if<Binary>(&shape_)) return binary->sequence.reference(t) * binary->direction_B;
   return at(t).value;
 }
 

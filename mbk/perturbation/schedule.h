@@ -97,8 +97,8 @@ class Schedule {
   /// r, ṙ, r̈ at t [s]: displacement from home [m or rad] or force [N or N·m]; zero before 0. Does not allocate.
   [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
 
-  /// What a recording stores as the reference at t [s], in the unit of the value: the signal itself for sines; the
-  /// steps behind pulses and binary sequences, before G. Does not allocate.
+  /// What a recording stores as the reference at t [s], in the unit of the value: the steps behind pulses, before G, so
+  /// that each pulse has an onset and an offset; for all else, which never rests, the signal itself. Does not allocate.
   [[nodiscard]] Eigen::Vector2d reference(double t) const;
 
   /// Onset and offset of every pulse, in time order; empty for all else.

@@ -29,7 +29,7 @@ struct Condition {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 const std::vector<Condition>& conditions() {
-  static const std::vector<Condition> all = {
+  static const std::vector<Condition> kAll = {
       {"relaxed, sinusoidal", "relaxed_sinusoidal", 1.0, std::pair{92.0, 100.0}},
       {"relaxed, underdamped", "relaxed_underdamped", 1.0, std::pair{92.0, 100.0}},
       {"rigid, 2 N pulses", "rigid_underdamped_2N", -1.0, std::pair{-kNone, 50.0}},
@@ -37,7 +37,7 @@ const std::vector<Condition>& conditions() {
       {"rigid, 6 N sinusoidal", "rigid_sinusoidal_6N", 1.0, std::pair{60.0, 85.0}},
       {"rigid, 2 N pulses, controller off", "rigid_underdamped_2N", 1.0, {}, false},
   };
-  return all;
+  return kAll;
 }
 
 constexpr const char* kTuned =
