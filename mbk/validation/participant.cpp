@@ -19,10 +19,10 @@ using laboratory::Scenario;
 
 /// A ready scenario, and what is expected of it.
 struct Condition {
-  const char* name;               ///< as it stands in the table
-  const char* scenario;           ///< ready file
-  double energy_sign;             ///< +1: the energy absorbed rises; −1: it falls
-  std::pair<double, double> vaf;  ///< [%] that every run and axis must keep
+  const char* name;                              ///< as it stands in the table
+  const char* scenario;                          ///< ready file
+  double energy_sign;                            ///< +1: the energy absorbed rises; −1: it falls
+  std::optional<std::pair<double, double>> vaf;  ///< [%] that the mean of both axes keeps in every run
   bool controller = true;
 };
 

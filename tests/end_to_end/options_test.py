@@ -9,7 +9,7 @@ import unittest
 from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
                      write_csv)
 
-COMMANDS = ("measure", "identify", "ellipse", "info", "validate")
+COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "validate")
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
 NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
     "--rate": ("0", "-1", "-1e300"),

@@ -1,0 +1,167 @@
+"""mbk simulate: from a scenario to recordings, and what becomes of them."""
+
+import json
+import re
+import struct
+import unittest
+import zlib
+
+import mat_file
+from command import BAD_DATA, WRONG_USAGE, Case, main, run
+
+SHORT = """
+[robot]
+handle_mass_kg = 0.1
+[control]
+kind = "position"
+[perturbation]
+kind = "multisine"
+peak_deg = 2
+duration_s = 20
+[participant]
+kind = "linear"
+mass_kg = [[1.3, -0.9], [-0.9, 1.9]]
+damping_Ns_per_m = [[5.8, -2.1], [-2.1, 10.6]]
+stiffness_N_per_m = [[42, -29], [-29, 125]]
+"""
+TRIALS = SHORT + '[[trial]]\nname = "a"\n[[trial]]\nname = "b"\nrecording.seed = 7\n'
+
+
+def without_structures(data):
+    """The same file, byte by byte, without its structures: no metadata, no events."""
+    kept, place = data[:128], 128
+    while place < len(data):
+        kind, size = struct.unpack_from("<II", data, place)
+        whole = data[place:place + 8 + (size if kind == mat_file.COMPRESSED else (size + 7) // 8 * 8)]
+        inner = zlib.decompress(whole[8:]) if kind == mat_file.COMPRESSED else whole
+        (_, matrix), = mat_file.elements(inner)
+        if next(mat_file.elements(matrix))[1][0] != mat_file.STRUCTURE:
+            kept += whole
+        place += len(whole)
+    return kept
+
+
+class Recordings(Case):
+    def test_a_scenario_becomes_a_recording_with_its_truth(self):
+        scenario = self.file("mine.toml", SHORT)
+        ran = self.fine("simulate", scenario, "--out", self.folder / "mine.mat")
+        self.assertRegex(ran.out, r"mine\.mat: 20\.0 s at 1000 Hz, seed 1; .*absorbed [+-]\d\.\d{3} J\n")
+        info = self.fine("info", "--json", self.folder / "mine.mat").json
+        self.assertEqual(json.loads(info["metadata"]["truth_M"]), [[1.3, -0.9], [-0.9, 1.9]])
+        self.assertEqual(info["metadata"]["handle_mass_kg"], "0.1")
+        model = self.fine("measure", "--json", "--handle-mass", "0.1", self.folder / "mine.mat").json["model"]
+        for name, wanted in (("M", 1.3), ("B", 5.8), ("K", 42.0)):
+            self.assertAlmostEqual(model[name][0][0], wanted, delta=0.1 * wanted)
+
+    def test_ready_scenarios_are_listed_shown_and_run_by_name(self):
+        names = re.findall(r"(?m)^  (\w+) ", self.fine("simulate", "--list").out)
+        for name in ("relaxed_sinusoidal", "relaxed_underdamped", "rigid_underdamped_2N", "rigid_underdamped_8N",
+                     "rigid_sinusoidal_6N", "one_axis_random_binary", "rig_table_3_1", "rig_table_5_1",
+                     "rig_springs_table_3_1", "rig_springs_table_5_1", "free_motion"):
+            self.assertIn(name, names)
+        shown = self.file("copy.toml", self.fine("simulate", "--show", "free_motion").out)
+        self.fine("simulate", shown, "--out", self.folder / "a.mat")
+        self.fine("simulate", "free_motion", "--out", self.folder / "b.mat", "--quiet")
+        one, two = (without_structures((self.folder / name).read_bytes()) for name in ("a.mat", "b.mat"))
+        self.assertTrue(one == two)
+
+    def test_many_seeds_are_the_same_on_any_number_of_threads(self):
+        scenario = self.file("mine.toml", SHORT)
+        for threads in (1, 2):
+            self.fine("simulate", scenario, "--out", self.folder / f"on{threads}.mat", "--seeds", 3, "--seed", 5,
+                      "--threads", threads)
+        for seed in (5, 6, 7):
+            one, two = (self.folder / f"on{threads}_seed{seed}.mat" for threads in (1, 2))
+            self.assertEqual(one.read_bytes(), two.read_bytes())
+        self.assertNotEqual(one.read_bytes(), (self.folder / "on1_seed5.mat").read_bytes())
+
+    def test_trials_become_files_of_their_own_and_can_be_chosen(self):
+        scenario = self.file("mine.toml", TRIALS)
+        self.fine("simulate", scenario, "--out", self.folder / "all.mat", "--quiet")
+        self.assertEqual(self.names(), ["all_a.mat", "all_b.mat", "mine.toml"])
+        self.fine("simulate", scenario, "--trial", "b", "--out", self.folder / "one.mat", "--quiet")
+        self.assertEqual((self.folder / "one_b.mat").read_bytes(), (self.folder / "all_b.mat").read_bytes())
+
+    def test_what_measures_never_reads_the_truth(self):
+        for name in ("relaxed_sinusoidal", "rigid_underdamped_2N"):
+            with self.subTest(name):
+                folders = {kind: self.folder / name / kind for kind in ("told", "blind", "stripped")}
+                for folder in folders.values():
+                    folder.mkdir(parents=True)
+                self.fine("simulate", name, "--out", folders["told"] / "log.mat", "--quiet")
+                self.fine("simulate", name, "--out", folders["blind"] / "log.mat", "--quiet", "--blind")
+                told = (folders["told"] / "log.mat").read_bytes()
+                self.assertIn(b"truth", b"".join(zlib.decompress(data) for kind, data in mat_file.elements(told[128:])
+                                                 if kind == mat_file.COMPRESSED))
+                (folders["stripped"] / "log.mat").write_bytes(without_structures(told))
+                texts, results = {}, {}
+                for kind, folder in folders.items():
+                    texts[kind] = run("measure", "log.mat", folder=folder).bytes
+                    results[kind] = run("measure", "--json", "log.mat", folder=folder).json
+                    del results[kind]["inputs"][0]["sha256"]  # of the file's own bytes
+                for kind in ("blind", "stripped"):
+                    self.assertEqual(texts[kind], texts["told"], kind)
+                    self.assertEqual(results[kind], results["told"], kind)
+                info = run("info", "log.mat", folder=folders["blind"]).out
+                self.assertNotIn("truth", info)
+                self.assertNotIn(name, info)
+
+
+class Refusals(Case):
+    def test_mistakes_of_usage(self):
+        scenario, out = self.file("mine.toml", SHORT), self.folder / "r.mat"
+        self.refused(WRONG_USAGE, "simulate", says="scenario")
+        self.refused(WRONG_USAGE, "simulate", scenario, says="--out")
+        self.refused(WRONG_USAGE, "simulate", scenario, "--out", self.folder / "r.h5", says=[".h5", ".mat"])
+        self.refused(WRONG_USAGE, "simulate", scenario, "--out", out, "--trial", "x", says="[[trial]]")
+        self.refused(WRONG_USAGE, "simulate", "rig_table_3_1", "--out", out, "--trial", "x", says="config_1")
+        self.refused(WRONG_USAGE, "simulate", "--show", "nothing", says="--list")
+        for option in ("--seeds=0", "--seeds=x", "--seed=-1", "--threads=0"):
+            self.refused(WRONG_USAGE, "simulate", scenario, "--out", out, option, says=option.split("=")[0])
+        kept = self.file("kept.mat", "precious")
+        self.refused(WRONG_USAGE, "simulate", scenario, "--out", kept, says="--overwrite")
+        self.assertEqual((self.names(), kept.read_text()), (["kept.mat", "mine.toml"], "precious"))
+
+    def test_bad_scenarios_are_named_by_file_line_key_and_value_and_leave_nothing(self):
+        mistakes = {
+            SHORT.replace("peak_deg = 2", "peak_deg = -2"): ["line 8", "perturbation.peak_deg", "-2"],
+            SHORT.replace("peak_deg", "peak_dge"): ["line 8", "'peak_dge'", "'peak_deg'"],
+            SHORT.replace('"linear"', '"liner"'): ["participant.kind", "'liner'", "linear"],
+            SHORT.replace("[1.3, -0.9]", "[1.3, 0.5]"): ["participant", "symmetric"],
+            SHORT.replace("peak_deg = 2", "peak_deg = 60"): ["perturbation"],
+            SHORT.replace("peak_deg = 2", "peak_N = 2"): ["position", "force"],
+            SHORT + "[robot\n": ["line"],
+            "\0\0\0": ["bad.toml"],
+        }
+        for text, words in mistakes.items():
+            with self.subTest(words):
+                bad = self.file("bad.toml", text)
+                ran = run("simulate", bad, "--out", self.folder / "r.mat")
+                self.assertIn(ran.code, (WRONG_USAGE, BAD_DATA), ran)
+                self.assertEqual(ran.err.count("\n"), 1, ran)
+                for word in words:
+                    self.assertIn(word, ran.err)
+                self.assertEqual(self.names(), ["bad.toml"])
+        self.refused(BAD_DATA, "simulate", self.folder / "nothing.toml", "--out", self.folder / "r.mat", says="--list")
+
+    def test_springs_of_a_scenario(self):
+        field = self.fine("springs", "field", "rig_springs_table_3_1", "--trial", "config_1").out
+        self.assertIn("443.860", field)
+        self.refused(WRONG_USAGE, "springs", "field", "rig_springs_table_3_1", says="--trial")
+        self.refused(BAD_DATA, "springs", "field", "rig_table_3_1", "--trial", "config_1", says="[[rig.spring]]")
+        self.refused(WRONG_USAGE, "springs", "field", says="--spring")
+
+
+class Studies(Case):
+    def test_recovery_and_springs_are_met_and_drawn(self):
+        ran = self.fine("validate", "recovery", "--runs", 4, "--quiet", "--json")
+        self.assertTrue(ran.json["met"])
+        self.assertEqual(len(ran.json["rows"]), 28)
+        self.assertEqual(ran.json["rows"][0]["unit"], "kg")
+        self.fine("validate", "springs", "--runs", 1, "--quiet", "--charts", self.folder / "charts")
+        self.assertEqual(sorted(path.name for path in (self.folder / "charts").iterdir()),
+                         ["springs-1.svg", "springs-2.svg"])
+
+
+if __name__ == "__main__":
+    main()
