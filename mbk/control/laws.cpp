@@ -1,23 +1,14 @@
 #include "mbk/control/laws.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <numbers>
+
+#include "mbk/core/option_limits.h"
 
 namespace mbk::control {
-namespace {
-
-Result<void> check_gain(const char* name, double gain, const char* unit) {
-  if (gain >= 0.0 && std::isfinite(gain)) return {};
-  return bad_usage(fmt::format("{} {:g} {} is below zero or not finite", name, gain, unit));
-}
-
-}  // namespace
-
 Result<VelocityEstimate> VelocityEstimate::create(double sample_time, Hertz cutoff) {
-  if (!(sample_time > 0.0)) return bad_usage(fmt::format("sample time {:g} s is not above zero", sample_time));
-  if (!(cutoff.value > 0.0)) return bad_usage(fmt::format("velocity cutoff {:g} Hz is not above zero", cutoff.value));
+  if (auto ok = above_zero({{"sample time", sample_time, "s"}, {"velocity cutoff", cutoff.value, "Hz"}}); !ok) {
+    return tl::unexpected(ok.error());
+  }
   return VelocityEstimate(sample_time, std::exp(-RadPerSec(cutoff).value * sample_time));
 }
 
@@ -30,10 +21,9 @@ Vector2d VelocityEstimate::step(const Vector2d& angles) noexcept {
 
 Result<JointPositionControl> JointPositionControl::create(const Gains& gains, double sample_time) {
   for (int joint = 0; joint < 2; ++joint) {
-    if (auto ok = check_gain("proportional gain", gains.proportional[joint], "N·m/rad"); !ok) {
-      return tl::unexpected(ok.error());
-    }
-    if (auto ok = check_gain("derivative gain", gains.derivative[joint], "N·m·s/rad"); !ok) {
+    if (auto ok = not_negative({{"proportional gain", gains.proportional[joint], "N·m/rad"},
+                                {"derivative gain", gains.derivative[joint], "N·m·s/rad"}});
+        !ok) {
       return tl::unexpected(ok.error());
     }
   }
@@ -61,10 +51,9 @@ LineConstraint::LineConstraint(const Options& options, const robot::Geometry& ge
 
 Result<LineConstraint> LineConstraint::create(const Options& options, const robot::Geometry& geometry,
                                               double sample_time) {
-  if (auto ok = check_gain("stiffness across the line", options.stiffness, "N/m"); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  if (auto ok = check_gain("damping across the line", options.damping, "N·s/m"); !ok) {
+  if (auto ok = not_negative({{"stiffness across the line", options.stiffness, "N/m"},
+                              {"damping across the line", options.damping, "N·s/m"}});
+      !ok) {
     return tl::unexpected(ok.error());
   }
   const auto velocity = VelocityEstimate::create(sample_time, options.velocity_cutoff);

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "mbk/laboratory/option_limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::laboratory {
 namespace {

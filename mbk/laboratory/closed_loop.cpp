@@ -3,46 +3,35 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <cmath>
 #include <vector>
+
+#include "mbk/core/option_limits.h"
 
 namespace mbk::laboratory {
 namespace {
 
-Result<void> not_negative(const char* name, double value, const char* unit) {
-  if (value >= 0.0 && std::isfinite(value)) return {};
-  return bad_usage(fmt::format("{} {:g} {} is below zero or not finite", name, value, unit));
-}
-
-Result<void> above_zero(const char* name, double value, const char* unit) {
-  if (value > 0.0 && std::isfinite(value)) return {};
-  return bad_usage(fmt::format("{} {:g} {} is not above zero", name, value, unit));
-}
-
 Result<void> check(const ClosedLoop::Options& options) {
   const robot::PlanarRobot& robot = options.robot;
-  std::vector<Result<void>> checks = {not_negative("handle mass", options.handle_mass, "kg"),
-                                      above_zero("link length", robot.geometry.d1, "m"),
-                                      above_zero("link length", robot.geometry.d2, "m")};
+  std::vector<Choice> at_least_zero = {{"handle mass", options.handle_mass, "kg"}};
+  std::vector<Choice> positive = {{"link length", robot.geometry.d1, "m"}, {"link length", robot.geometry.d2, "m"}};
   for (const robot::JointFriction& joint : robot.friction) {
-    checks.push_back(not_negative("viscous friction", joint.viscous, "N·m·s/rad"));
-    checks.push_back(not_negative("Coulomb friction", joint.coulomb, "N·m"));
-    checks.push_back(not_negative("breakaway friction", joint.breakaway, "N·m"));
-    checks.push_back(above_zero("Stribeck velocity", joint.stribeck_velocity, "rad/s"));
-    checks.push_back(above_zero("smoothing of dry friction", joint.smoothing, "rad/s"));
+    at_least_zero.push_back({"viscous friction", joint.viscous, "N·m·s/rad"});
+    at_least_zero.push_back({"Coulomb friction", joint.coulomb, "N·m"});
+    at_least_zero.push_back({"breakaway friction", joint.breakaway, "N·m"});
+    positive.push_back({"Stribeck velocity", joint.stribeck_velocity, "rad/s"});
+    positive.push_back({"smoothing of dry friction", joint.smoothing, "rad/s"});
   }
   Vector2d motors = {0.0, 0.0};
   if (options.capstan) {
     motors = options.capstan->motor_inertia;
     for (int joint = 0; joint < 2; ++joint) {
-      checks.push_back(above_zero("capstan stiffness", options.capstan->stiffness[joint], "N·m/rad"));
-      checks.push_back(not_negative("capstan damping", options.capstan->damping[joint], "N·m·s/rad"));
-      checks.push_back(above_zero("motor inertia", motors[joint], "kg·m²"));
+      positive.push_back({"capstan stiffness", options.capstan->stiffness[joint], "N·m/rad"});
+      at_least_zero.push_back({"capstan damping", options.capstan->damping[joint], "N·m·s/rad"});
+      positive.push_back({"motor inertia", motors[joint], "kg·m²"});
     }
   }
-  for (const Result<void>& one : checks) {
-    if (!one) return one;
-  }
+  if (auto ok = not_negative(at_least_zero); !ok) return ok;
+  if (auto ok = above_zero(positive); !ok) return ok;
   const robot::Inertia& inertia = robot.inertia;
   const double links1 = inertia.alpha1 - motors[0], links2 = inertia.alpha3 - motors[1];
   if (!(links1 > 0.0 && links2 > 0.0 && links1 * links2 > 0.25 * inertia.alpha2 * inertia.alpha2)) {

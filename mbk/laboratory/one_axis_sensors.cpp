@@ -1,6 +1,6 @@
 #include "mbk/laboratory/one_axis_sensors.h"
 
-#include "mbk/laboratory/option_limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::laboratory {
 

@@ -1,7 +1,7 @@
 #include "mbk/laboratory/sensors.h"
 
+#include "mbk/core/option_limits.h"
 #include "mbk/laboratory/link_axes.h"
-#include "mbk/laboratory/option_limits.h"
 
 namespace mbk::laboratory {
 namespace {

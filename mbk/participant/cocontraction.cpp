@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mbk/participant/limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::participant {
 
 Result<Cocontraction> Cocontraction::create(const Options& options, double sample_time) {
-  if (auto ok = above_zero({{"sample time", sample_time, " s"},
-                            {"speed scale of co-contraction", options.speed, " m/s"},
-                            {"time constant of co-contraction", options.time_constant, " s"}});
+  if (auto ok = above_zero({{"sample time", sample_time, "s"},
+                            {"speed scale of co-contraction", options.speed, "m/s"},
+                            {"time constant of co-contraction", options.time_constant, "s"}});
       !ok) {
     return tl::unexpected(ok.error());
   }

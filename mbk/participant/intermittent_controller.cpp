@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mbk/participant/limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::participant {
 namespace {
@@ -20,20 +20,20 @@ int ticks(double duration, double sample_time) {
 
 Result<IntermittentController> IntermittentController::create(const Options& options, double sample_time,
                                                               std::uint64_t seed, std::uint32_t stream) {
-  if (auto ok = above_zero({{"sample time", sample_time, " s"},
-                            {"interval between decisions", options.interval, " s"},
-                            {"duration of a correction", options.ramp, " s"},
-                            {"leak time", options.leak, " s"}});
+  if (auto ok = above_zero({{"sample time", sample_time, "s"},
+                            {"interval between decisions", options.interval, "s"},
+                            {"duration of a correction", options.ramp, "s"},
+                            {"leak time", options.leak, "s"}});
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = not_negative({{"delay", options.delay, " s"},
+  if (auto ok = not_negative({{"delay", options.delay, "s"},
                               {"position gain", options.position_gain, ""},
-                              {"position threshold", options.position_threshold, " m"},
-                              {"force gain", options.force_gain, " N/N"},
-                              {"force threshold", options.force_threshold, " N"},
+                              {"position threshold", options.position_threshold, "m"},
+                              {"force gain", options.force_gain, "N/N"},
+                              {"force threshold", options.force_threshold, "N"},
                               {"random error", options.random_error, ""},
-                              {"largest increment", options.largest_increment, " N"}});
+                              {"largest increment", options.largest_increment, "N"}});
       !ok) {
     return tl::unexpected(ok.error());
   }

@@ -4,19 +4,18 @@
 #include <cmath>
 #include <utility>
 
-#include "mbk/participant/limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::participant {
 
 Result<StretchReflex> StretchReflex::create(const Options& options, double sample_time) {
-  if (auto ok = above_zero({{"sample time", sample_time, " s"},
-                            {"natural frequency of the reflex", options.natural_frequency.value, " rad/s"},
+  if (auto ok = above_zero({{"sample time", sample_time, "s"},
+                            {"natural frequency of the reflex", options.natural_frequency.value, "rad/s"},
                             {"damping ratio of the reflex", options.damping_ratio, ""}});
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = not_negative({{"reflex gain", options.gain, " N·m·s/rad"}, {"reflex delay", options.delay, " s"}});
-      !ok) {
+  if (auto ok = not_negative({{"reflex gain", options.gain, "N·m·s/rad"}, {"reflex delay", options.delay, "s"}}); !ok) {
     return tl::unexpected(ok.error());
   }
   if (options.delay > 10.0) return bad_usage(fmt::format("reflex delay {:g} s is above 10 s", options.delay));
@@ -54,11 +53,11 @@ double StretchReflex::step(double velocity) {
 }
 
 Result<OneAxisJoint> OneAxisJoint::create(const Options& options, double sample_time) {
-  if (auto ok = above_zero({{"inertia of the joint", options.inertia, " kg·m²"}}); !ok) {
+  if (auto ok = above_zero({{"inertia of the joint", options.inertia, "kg·m²"}}); !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = not_negative({{"viscosity of the joint", options.viscosity, " N·m·s/rad"},
-                              {"stiffness of the joint", options.stiffness, " N·m/rad"}});
+  if (auto ok = not_negative({{"viscosity of the joint", options.viscosity, "N·m·s/rad"},
+                              {"stiffness of the joint", options.stiffness, "N·m/rad"}});
       !ok) {
     return tl::unexpected(ok.error());
   }

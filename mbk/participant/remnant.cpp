@@ -2,15 +2,14 @@
 
 #include <cmath>
 
-#include "mbk/participant/limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::participant {
 
 template <int Axes>
 Result<Remnant<Axes>> Remnant<Axes>::create(const Options& options, double sample_time, std::uint64_t seed,
                                             std::uint32_t stream) {
-  if (auto ok = above_zero({{"sample time", sample_time, " s"}, {"cutoff of noise", options.cutoff.value, " Hz"}});
-      !ok) {
+  if (auto ok = above_zero({{"sample time", sample_time, "s"}, {"cutoff of noise", options.cutoff.value, "Hz"}}); !ok) {
     return tl::unexpected(ok.error());
   }
   if (auto ok = not_negative({{"floor of noise", options.floor, ""}, {"noise per force", options.per_force, ""}});

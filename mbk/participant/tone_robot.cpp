@@ -4,21 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mbk/participant/limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::participant {
 
 Result<ToneRobot> ToneRobot::create(const Options& options) {
-  if (auto ok = not_negative({{"inertia of the device", options.inertia, " kg"},
-                              {"rigidity", options.rigidity, " N"},
-                              {"catch gain", options.catch_gain, " N·s/m"},
-                              {"catch speed", options.catch_speed, " m/s"},
-                              {"motor lag", options.motor_lag, " s"}});
+  if (auto ok = not_negative({{"inertia of the device", options.inertia, "kg"},
+                              {"rigidity", options.rigidity, "N"},
+                              {"catch gain", options.catch_gain, "N·s/m"},
+                              {"catch speed", options.catch_speed, "m/s"},
+                              {"motor lag", options.motor_lag, "s"}});
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = above_zero({{"speed over which rigidity turns round", options.rigidity_speed, " m/s"},
-                            {"largest force", options.largest_force, " N"}});
+  if (auto ok = above_zero({{"speed over which rigidity turns round", options.rigidity_speed, "m/s"},
+                            {"largest force", options.largest_force, "N"}});
       !ok) {
     return tl::unexpected(ok.error());
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mbk/participant/limits.h"
+#include "mbk/core/option_limits.h"
 
 namespace mbk::participant {
 namespace {
@@ -25,7 +25,7 @@ Result<void> check(const ArmGeometry& geometry) {
   if (!geometry.shoulder.allFinite() || !std::isfinite(geometry.rotation)) {
     return bad_usage("the place and the rotation of the shoulder must be finite");
   }
-  return above_zero({{"upper arm", geometry.upper_arm, " m"}, {"forearm", geometry.forearm, " m"}});
+  return above_zero({{"upper arm", geometry.upper_arm, "m"}, {"forearm", geometry.forearm, "m"}});
 }
 
 }  // namespace

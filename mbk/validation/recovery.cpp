@@ -44,15 +44,7 @@ void add_rows(const char* condition, Trials trials, ValidationTable& table) {
       const double reach = numeric::kNormal95 * impedance::stacked(trial.identification.standard_error)[at];
       held += std::abs(error[i]) <= reach ? 1 : 0;
     }
-    const double spread = runs > 1 ? std::sqrt(numeric::variance(error)) : 0.0;
-    const double reach = numeric::kNormal99 * spread / std::sqrt(static_cast<double>(runs));
-    ValidationRow row;
-    row.what = fmt::format("{} {}", condition, names[k]);
-    row.value = error.mean();
-    row.interval99 = {row.value - reach, row.value + reach};
-    row.wanted = {-allowed[at], allowed[at]};
-    row.unit = unit_of(k);
-    row.spread = spread;
+    ValidationRow row = bias_row(fmt::format("{} {}", condition, names[k]), error, allowed[at], unit_of(k));
     row.coverage = static_cast<double>(held) / static_cast<double>(runs);
     table.rows.push_back(row);
   }

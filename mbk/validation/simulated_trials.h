@@ -33,4 +33,7 @@ struct TrialPlan {
 [[nodiscard]] Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans,
                                                              const StudyOptions& options);
 
+/// The mean of errors over runs, with its 99 % interval and their spread; wanted is a mean within ±`allowed`.
+[[nodiscard]] ValidationRow bias_row(std::string what, const Vector& errors, double allowed, std::string unit);
+
 }  // namespace mbk::validation

@@ -53,15 +53,7 @@ ValidationRow row_of(const std::string& what, const Errors& errors) {
   const auto count = static_cast<Index>(errors.identified.size());
   const Vector error =
       Eigen::Map<const Vector>(errors.identified.data(), count) - Eigen::Map<const Vector>(errors.truth.data(), count);
-  ValidationRow row;
-  row.what = what;
-  row.value = error.mean();
-  row.spread = count > 1 ? std::sqrt(numeric::variance(error)) : 0.0;
-  const double reach = numeric::kNormal99 * *row.spread / std::sqrt(static_cast<double>(count));
-  row.interval99 = {row.value - reach, row.value + reach};
-  row.wanted = {-errors.wanted, errors.wanted};
-  row.unit = errors.unit;
-  return row;
+  return bias_row(what, error, errors.wanted, errors.unit);
 }
 
 using NamedErrors = std::vector<std::pair<std::string, Errors>>;
