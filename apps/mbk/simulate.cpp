@@ -12,6 +12,7 @@
 #include "mbk/laboratory/scenario.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/recording/mat_writer.h"
+#include "mbk/report/schedule_text.h"
 
 namespace mbk::app {
 namespace {
@@ -25,7 +26,7 @@ struct Arguments {
   std::optional<std::uint64_t> seed;
   int seeds = 1;
   unsigned threads = 0;
-  bool blind = false, overwrite = false, list = false, quiet = false;
+  bool blind = false, overwrite = false, list = false, facts = false, quiet = false;
 };
 
 /// One recording that is to be made.
@@ -106,6 +107,22 @@ int show(const std::string& name) {
   return kFine;
 }
 
+/// What the perturbation of each trial demands; nothing is simulated.
+int show_facts(const Arguments& arguments) {
+  const auto jobs = jobs_of(arguments);
+  if (!jobs) return report_error(jobs.error());
+  std::string text;
+  for (const Job& job : *jobs) {
+    const auto schedule = laboratory::make_schedule(job.scenario.perturbation, job.scenario.seed);
+    if (!schedule) return report_error(schedule.error().in(arguments.scenario));
+    text += fmt::format("{}{}{}, seed {}\n", job.scenario.file_name, job.scenario.trial_name.empty() ? "" : " ",
+                        job.scenario.trial_name, job.scenario.seed) +
+            report::schedule_text(*schedule);
+  }
+  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
 int run(const Arguments& arguments) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
@@ -151,7 +168,9 @@ Action add_simulate(CLI::App& app) {
       "      a commented file to begin your own with; every key carries its unit\n"
       "  mbk simulate mine.toml --out mine.mat --seeds 20\n"
       "      mine_seed1.mat … mine_seed20.mat, as many at a time as there are cores\n"
-      "  mbk simulate rig_table_5_1 --trial K5_M5 --out rig.mat\n\n"
+      "  mbk simulate rig_table_5_1 --trial K5_M5 --out rig.mat\n"
+      "  mbk simulate mine.toml --facts\n"
+      "      peaks, speed, crest factor and band of the perturbation, before anything moves\n\n"
       "The recording holds the truth (truth_M, truth_B, truth_K, …) as metadata, which 'mbk info' shows and\n"
       "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
       "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
@@ -173,6 +192,8 @@ Action add_simulate(CLI::App& app) {
   command->add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
   command->add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
   command->add_flag("--list", arguments->list, "the ready scenarios");
+  command->add_flag("--facts", arguments->facts,
+                    "what the perturbation demands: peaks, speed, band; simulates nothing");
   command->add_option("--show", *shown, "print a ready scenario")->type_name("NAME");
   command->add_flag("--quiet", arguments->quiet, "no progress and no summary");
   return [arguments, shown] {
@@ -181,6 +202,7 @@ Action add_simulate(CLI::App& app) {
     if (arguments->scenario.empty()) {
       return report_error({ErrorKind::usage, "no scenario", "name a TOML file, or one of 'mbk simulate --list'", ""});
     }
+    if (arguments->facts) return show_facts(*arguments);
     if (arguments->out.empty()) {
       return report_error({ErrorKind::usage, "no --out", "name the recording to write: --out recording.mat", ""});
     }

@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "mbk/numeric/statistics.h"
 #include "mbk/validation/simulated_trials.h"
 #include "mbk/validation/study.h"
 

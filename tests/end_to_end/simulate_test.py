@@ -65,6 +65,11 @@ class Recordings(Case):
         one, two = (without_structures((self.folder / name).read_bytes()) for name in ("a.mat", "b.mat"))
         self.assertTrue(one == two)
 
+    def test_facts_of_the_perturbation_are_told_without_simulating(self):
+        facts = self.fine("simulate", "rigid_underdamped_2N", "--facts").out
+        self.assertRegex(facts, r"peak +3\.4\d* N at")  # 2 N times 1 + exp(-pi 0.1/sqrt(0.99))
+        self.assertEqual(self.names(), [])
+
     def test_many_seeds_are_the_same_on_any_number_of_threads(self):
         scenario = self.file("mine.toml", SHORT)
         for threads in (1, 2):
