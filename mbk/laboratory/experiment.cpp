@@ -199,6 +199,10 @@ Result<Performance> perform(const Experiment& experiment, participant::Load& loa
   result.truth = truth.mean();
   recording.metadata = truth_metadata(result.truth, experiment.rate, result.energy_absorbed);
   recording.metadata["handle_mass_kg"] = exact_text(experiment.robot.handle_mass);
+  recording.metadata["truth_force_delay_s"] = exact_text(sensors->force_delay());
+  if (sensors->clipped_samples() > 0) {
+    recording.metadata["force_samples_clipped"] = std::to_string(sensors->clipped_samples());
+  }
   return result;
 }
 

@@ -212,6 +212,18 @@ TEST(Experiment, MetadataHoldTheTruthOfTheLoad) {
   EXPECT_NEAR(trial.performance.truth.K(0, 1), -20.9, 1e-12);  // a mean over the trial
 }
 
+TEST(Experiment, MetadataTellOfASensorThatIsLateAndClips) {
+  participant::LinearLimb load = limb();
+  Experiment e = experiment(sines(Quantity::force, Space::hand, 1.0, 2.0), ForceMode{});
+  StrainGaugeOptions gauge;
+  gauge.converter_range = 0.1;  // ±0.9 N
+  e.sensors.force = gauge;
+  const Watched trial = watched(e, load);
+  const auto& metadata = trial.performance.recording.metadata;
+  EXPECT_GT(std::stoi(metadata.at("force_samples_clipped")), 10);
+  EXPECT_NEAR(std::stod(metadata.at("truth_force_delay_s")), 8.6e-3, 1e-4);
+}
+
 TEST(Experiment, SaysWhenTheHandLeavesTheWorkspace) {
   participant::LinearLimb load = limb();
   Experiment e = experiment(sines(Quantity::force, Space::hand, 40.0), ForceMode{});
