@@ -79,9 +79,9 @@ Result<void> check_files(const std::vector<Job>& jobs, const Arguments& argument
 std::string summary_line(const Job& job, const laboratory::Performance& performance) {
   const Recording& recording = performance.recording;
   const auto note = recording.metadata.find("truth_note");
-  return fmt::format("{}: {:.1f} s at {:g} Hz, seed {}; {}; the limb absorbed {:+.3f} J{}\n", job.file.string(),
+  return fmt::format("{}: {:.1f} s at {:g} Hz, seed {}; {}the limb absorbed {:+.3f} J{}\n", job.file.string(),
                      recording.time[recording.samples() - 1], job.scenario.rate.value, job.scenario.seed,
-                     job.scenario.condition, performance.energy_absorbed,
+                     job.scenario.condition.empty() ? "" : job.scenario.condition + "; ", performance.energy_absorbed,
                      note == recording.metadata.end() ? "" : "; " + note->second);
 }
 

@@ -44,8 +44,8 @@ struct Experiment {
 /// (i + 1)/rate unless the clock jitters. The recording has hand_x … acceleration_y, joint_1, joint_2, torque_1 and
 /// torque_2; reference is the hand's place [m] in position mode, else the commanded force [N]. The metadata hold the
 /// truth: truth_M, truth_B, truth_K, truth_x0 (the load's intrinsic impedance about home, without the handle, averaged
-/// over the trial, as JSON arrays with 17 digits), truth_energy_absorbed_J, truth_force_delay_s of the sensor, and
-/// handle_mass_kg, force_samples_clipped where there are any, seed, rate_hz. Nothing that measures reads it.
+/// over the trial, as JSON arrays with 12 digits), truth_energy_absorbed_J and truth_force_delay_s of the sensor; and
+/// handle_mass_kg, rate_hz, and force_samples_clipped where there are any. Nothing that measures reads them.
 /// @fails  usage: control and schedule speak of different quantities; the schedule leaves the workspace; as ClosedLoop,
 ///         SensorSuite and the control laws. data: the hand leaves the workspace or the motion does not stay finite,
 ///         with the time.
