@@ -63,7 +63,9 @@ Vector2d joint_angles(const ArmGeometry& geometry, const Vector2d& hand) {
   const Vector2d p = Eigen::Rotation2Dd(-geometry.rotation) * (hand - geometry.shoulder);
   const double cosine = std::clamp((p.squaredNorm() - l1 * l1 - l2 * l2) / (2.0 * l1 * l2), -1.0, 1.0);
   const double q2 = std::clamp(std::acos(cosine), kSmallestElbowAngle, std::numbers::pi - kSmallestElbowAngle);
-  return {std::atan2(p.y(), p.x()) - std::atan2(l2 * std::sin(q2), l1 + l2 * std::cos(q2)), q2};
+  // Measured from straight ahead, so that the angle jumps only behind the person
+  const double toward_hand = 0.5 * std::numbers::pi - std::atan2(p.x(), p.y());
+  return {toward_hand - std::atan2(l2 * std::sin(q2), l1 + l2 * std::cos(q2)), q2};
 }
 
 }  // namespace mbk::participant

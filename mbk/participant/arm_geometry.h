@@ -33,9 +33,10 @@ struct ArmGeometry {
 [[nodiscard]] Matrix2d force_curvature(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& force);
 
 /// The posture that has the hand at a place, elbow to the right:
-///   q₂ = acos((r² − l₁² − l₂²)/(2 l₁l₂)),  q₁ = atan2(y, x) − atan2(l₂ sin q₂, l₁ + l₂ cos q₂)
-/// with (x, y) the hand in the arm's axes, r its distance. A place out of reach gives the posture toward it whose
-/// elbow is `kSmallestElbowAngle` from straight or from folded, so that J always has an inverse.
+///   q₂ = acos((r² − l₁² − l₂²)/(2 l₁l₂)),  q₁ = α − atan2(l₂ sin q₂, l₁ + l₂ cos q₂)
+/// with (x, y) the hand in the arm's axes, r its distance, α = 90° − atan2(x, y) its direction, −90° ≤ α < 270°. A
+/// place out of reach gives the posture toward it whose elbow is `kSmallestElbowAngle` from straight or from folded, so
+/// that J always has an inverse.
 [[nodiscard]] Vector2d joint_angles(const ArmGeometry& geometry, const Vector2d& hand);
 
 inline constexpr double kSmallestElbowAngle = 0.05;  ///< [rad]
