@@ -10,19 +10,16 @@ namespace {
 
 constexpr std::uint32_t kControllerStream = 1, kRemnantStream = 2;
 
-/// Symmetric parts [xx, yy, xy] of a hand impedance, and links [m] for it.
+/// Symmetric parts [xx, yy, xy] of a hand impedance.
 struct HandImpedance {
   std::array<double, 3> M, B, K;
-  double upper_arm = 0.31, forearm = 0.34;
 };
 
 /// From area and shape of the published ellipses (Dyck 2013, tables 3.3 and 3.5): λmax = √(A R/π), λmin = √(A/(πR)).
-/// The lengths of their arms are not published. With 0.31 and 0.34 m the second and the third would have an inertia
-/// that is not positive definite with the elbow straight, so they have other links.
 constexpr std::array<HandImpedance, 6> kParticipants = {{
     {{1.326, 1.883, -0.935}, {5.76, 10.56, -2.14}, {42.4, 125.3, -28.6}},
-    {{1.301, 1.357, -0.807}, {5.78, 9.10, -2.57}, {45.2, 112.1, -34.2}, 0.35, 0.30},
-    {{1.536, 1.717, -0.958}, {6.01, 10.48, -3.34}, {39.5, 108.3, -28.0}, 0.34, 0.32},
+    {{1.301, 1.357, -0.807}, {5.78, 9.10, -2.57}, {45.2, 112.1, -34.2}},
+    {{1.536, 1.717, -0.958}, {6.01, 10.48, -3.34}, {39.5, 108.3, -28.0}},
     {{1.419, 1.885, -1.025}, {4.75, 9.56, -3.17}, {36.6, 151.6, -43.3}},
     {{1.275, 2.082, -0.951}, {4.80, 11.95, -2.54}, {39.0, 165.1, -28.3}},
     {{1.105, 1.659, -0.770}, {3.16, 8.21, -1.31}, {22.7, 93.4, -23.7}},
@@ -35,7 +32,9 @@ Matrix symmetric(const std::array<double, 3>& parts) {
 }  // namespace
 
 ArmOptions relaxed_arm_options() {
-  return {};
+  ArmOptions options;
+  options.remnant.floor = 0.10;
+  return options;
 }
 
 ArmOptions rigid_arm_options() {
@@ -52,8 +51,6 @@ Result<TwoLinkArm::Options> participant_limb(int participant) {
   }
   const HandImpedance& hand = kParticipants[static_cast<std::size_t>(participant - 1)];
   TwoLinkArm::Options options;
-  options.geometry.upper_arm = hand.upper_arm;
-  options.geometry.forearm = hand.forearm;
   const auto joints = joint_parameters(options.geometry,
                                        {symmetric(hand.M), symmetric(hand.B), symmetric(hand.K), options.equilibrium});
   if (!joints) return tl::unexpected(joints.error());

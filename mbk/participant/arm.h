@@ -29,7 +29,8 @@ struct ArmOptions {
 [[nodiscard]] ArmOptions rigid_arm_options();
 
 /// The passive arm of one of the six participants of Dyck (2013), relaxed: joint matrices from tables 3.3 and 3.5 as
-/// rebuilt (symmetric parts), links of 0.31 and 0.34 m, the hand 0.52 m ahead of the shoulder.
+/// rebuilt (symmetric parts), links of 0.31 and 0.34 m, the hand 0.52 m ahead of the shoulder. The inertias of the
+/// second and the third are those of no such chain with a straight elbow, so keep these two near that posture.
 /// @param participant  1 … 6
 /// @fails  usage: another number.
 [[nodiscard]] Result<TwoLinkArm::Options> participant_limb(int participant);
