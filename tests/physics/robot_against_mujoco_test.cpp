@@ -3,25 +3,21 @@
 #include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <cstring>
-#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
 
 #include "mbk/robot/dynamics.h"
+#include "tests/physics/engine.h"
 
 namespace mbk::robot {
 namespace {
 
-constexpr double kRightAngle = 0.5 * std::numbers::pi;
+using physics::compiled;
+using physics::EngineData;
+using physics::EngineModel;
 
-template <class Value, void (*free)(Value*)>
-struct Free {
-  void operator()(Value* value) const { free(value); }
-};
-using EngineModel = std::unique_ptr<mjModel, Free<mjModel, mj_deleteModel>>;
-using EngineData = std::unique_ptr<mjData, Free<mjData, mj_deleteData>>;
+constexpr double kRightAngle = 0.5 * std::numbers::pi;
 
 /// The robot as a serial arm of two links: hinges at base and elbow, absolute angles φ₁ = θ₁ and φ₂ = θ₂ − 90°. Its
 /// centres of mass may lie anywhere, as long as
@@ -40,18 +36,6 @@ std::string serial_arm(const PlanarRobot& robot, double time_step) {
         <body name="last" pos="{:.17g} 0 0"><joint type="hinge" axis="0 0 1"/>{}
           <site name="hand" pos="{:.17g} 0 0"/></body></body></worldbody></mujoco>)",
                      time_step, inertial(c1, m1, I1), d1, inertial(c2, m2, I2), d2);
-}
-
-EngineModel compiled(const std::string& xml) {
-  const auto files = std::make_unique<mjVFS>();  // too large for the stack
-  mj_defaultVFS(files.get());
-  EXPECT_EQ(mj_makeEmptyFileVFS(files.get(), "arm.xml", static_cast<int>(xml.size())), 0);
-  std::memcpy(files->filedata[0], xml.data(), xml.size());
-  char error[500] = "";
-  EngineModel model(mj_loadXML("arm.xml", files.get(), error, sizeof error));
-  mj_deleteFileVFS(files.get(), "arm.xml");
-  EXPECT_TRUE(model) << error;
-  return model;
 }
 
 struct State {
