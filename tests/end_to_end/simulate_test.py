@@ -44,7 +44,7 @@ def without_structures(data):
 class Recordings(Case):
     def test_a_scenario_becomes_a_recording_with_its_truth(self):
         scenario = self.file("mine.toml", SHORT)
-        ran = self.fine("simulate", scenario, "--out", self.folder / "mine.mat")
+        ran = self.mbk("simulate", scenario, "--out", self.folder / "mine.mat")  # may tell how far it is
         self.assertRegex(ran.out, r"mine\.mat: 20\.0 s at 1000 Hz, seed 1; .*absorbed [+-]\d\.\d{3} J\n")
         info = self.fine("info", "--json", self.folder / "mine.mat").json
         self.assertEqual(json.loads(info["metadata"]["truth_M"]), [[1.3, -0.9], [-0.9, 1.9]])
@@ -60,7 +60,7 @@ class Recordings(Case):
                      "rig_springs_table_3_1", "rig_springs_table_5_1", "free_motion"):
             self.assertIn(name, names)
         shown = self.file("copy.toml", self.fine("simulate", "--show", "free_motion").out)
-        self.fine("simulate", shown, "--out", self.folder / "a.mat")
+        self.fine("simulate", shown, "--out", self.folder / "a.mat", "--quiet")
         self.fine("simulate", "free_motion", "--out", self.folder / "b.mat", "--quiet")
         one, two = (without_structures((self.folder / name).read_bytes()) for name in ("a.mat", "b.mat"))
         self.assertTrue(one == two)
@@ -74,7 +74,7 @@ class Recordings(Case):
         scenario = self.file("mine.toml", SHORT)
         for threads in (1, 2):
             self.fine("simulate", scenario, "--out", self.folder / f"on{threads}.mat", "--seeds", 3, "--seed", 5,
-                      "--threads", threads)
+                      "--threads", threads, "--quiet")
         for seed in (5, 6, 7):
             one, two = (self.folder / f"on{threads}_seed{seed}.mat" for threads in (1, 2))
             self.assertEqual(one.read_bytes(), two.read_bytes())
