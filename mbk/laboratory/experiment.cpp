@@ -26,6 +26,9 @@ class Command {
                                 : "force control cannot follow a position perturbation",
                        "let control and perturbation speak of the same quantity");
     }
+    if (!position && experiment.schedule.space() == Space::joint) {
+      return bad_usage("a perturbation of the joints' torques cannot be exerted at the hand", "give it as a force");
+    }
     Command command(experiment, home_angles);
     const double sample_time = 1.0 / experiment.rate.value;
     if (const auto* mode = std::get_if<PositionMode>(&experiment.control)) {

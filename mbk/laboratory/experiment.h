@@ -46,7 +46,8 @@ struct Experiment {
 /// truth: truth_M, truth_B, truth_K, truth_x0 (the load's intrinsic impedance about home, without the handle, averaged
 /// over the trial, as JSON arrays with 12 digits), truth_energy_absorbed_J and truth_force_delay_s of the sensor; and
 /// handle_mass_kg, rate_hz, and force_samples_clipped where there are any. Nothing that measures reads them.
-/// @fails  usage: control and schedule speak of different quantities; the schedule leaves the workspace; as ClosedLoop,
+/// @fails  usage: control and schedule speak of different quantities; the schedule is of torques; the schedule leaves
+/// the workspace; as ClosedLoop,
 ///         SensorSuite and the control laws. data: the hand leaves the workspace or the motion does not stay finite,
 ///         with the time.
 [[nodiscard]] Result<Performance> perform(const Experiment& experiment, participant::Load& load);

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 #include <vector>
 
+#include "mbk/laboratory/truth_text.h"
 #include "mbk/participant/arm.h"
 #include "mbk/participant/linear_limb.h"
 
@@ -206,9 +209,16 @@ TEST(Experiment, LineModeKeepsTheHandOnTheLine) {
 TEST(Experiment, MetadataHoldTheTruthOfTheLoad) {
   participant::LinearLimb load = limb();
   const Watched trial = watched(experiment(pulses(2.0), ForceMode{}), load);
-  const auto& metadata = trial.performance.recording.metadata;
-  EXPECT_EQ(metadata.at("truth_K"), "[[42.4, -20.9], [-36.3, 125.3]]");
-  EXPECT_EQ(metadata.at("handle_mass_kg"), "0.194");
+  const std::map<std::string, std::string> wanted = {
+      {"truth_M", "[[1.326, -0.935], [-0.935, 1.883]]"},
+      {"truth_B", "[[5.76, -2.14], [-2.14, 10.56]]"},
+      {"truth_K", "[[42.4, -20.9], [-36.3, 125.3]]"},
+      {"truth_x0", "[0.302, -0.051]"},
+      {"truth_energy_absorbed_J", exact_text(trial.performance.energy_absorbed)},
+      {"truth_force_delay_s", "0"},
+      {"handle_mass_kg", "0.194"},
+      {"rate_hz", "1000"}};
+  EXPECT_EQ(trial.performance.recording.metadata, wanted);
   EXPECT_NEAR(trial.performance.truth.K(0, 1), -20.9, 1e-12);  // a mean over the trial
 }
 
@@ -238,6 +248,7 @@ TEST(Experiment, RefusesToFollowAForceOrToExertAPlace) {
   participant::LinearLimb load = limb();
   EXPECT_FALSE(perform(experiment(pulses(2.0), PositionMode{}), load));
   EXPECT_FALSE(perform(experiment(sines(Quantity::position, Space::joint, 0.01), ForceMode{}), load));
+  EXPECT_FALSE(perform(experiment(sines(Quantity::force, Space::joint, 0.1), ForceMode{}), load));
   Experiment e = experiment(pulses(2.0), ForceMode{});
   e.home = Vector2d(0.9, 0.0);
   const auto outcome = perform(e, load);

@@ -69,13 +69,13 @@ Result<Schedule> schedule_of(const MultisinePlan& plan, std::uint64_t seed) {
 Result<Schedule> schedule_of(const PulsePlan& plan, std::uint64_t seed) {
   perturbation::PulseSchedule::Options pulses = plan.pulses;
   pulses.seed = seed;
-  return Schedule::pulses(pulses, plan.quantity, plan.tail);
+  return Schedule::pulses(pulses, plan.quantity, plan.tail, plan.space);
 }
 
 Result<Schedule> schedule_of(const RandomBinaryPlan& plan, std::uint64_t seed) {
   perturbation::RandomBinaryOptions sequence = plan.sequence;
   sequence.seed = seed;
-  return Schedule::random_binary(sequence, plan.angle, plan.quantity, plan.duration);
+  return Schedule::random_binary(sequence, plan.angle, plan.quantity, plan.duration, plan.space);
 }
 
 Result<Schedule> schedule_of(const RestPlan& plan, std::uint64_t /*seed*/) {

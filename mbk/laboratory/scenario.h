@@ -31,7 +31,7 @@ struct MultisinePlan {
   enum class Axes { independent, interleaved, hadamard_first, hadamard_second };
   perturbation::Quantity quantity = perturbation::Quantity::position;
   perturbation::Space space = perturbation::Space::joint;
-  double peak = 0.034906585039886591;  ///< of each axis: ±2° by default [rad, m or N]
+  double peak = 0.034906585039886591;  ///< of each axis: ±2° by default [rad, m, N or N·m]
   double period = 10.0;                ///< [s]
   std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
   Phases phases = Phases::random;
@@ -44,6 +44,7 @@ struct MultisinePlan {
 /// Underdamped pulses in random order.
 struct PulsePlan {
   perturbation::Quantity quantity = perturbation::Quantity::position;
+  perturbation::Space space = perturbation::Space::hand;
   perturbation::PulseSchedule::Options pulses;
   double tail = 3.0;  ///< recorded after the last pulse [s]
 };
@@ -51,6 +52,7 @@ struct PulsePlan {
 /// A filtered random binary sequence along one line.
 struct RandomBinaryPlan {
   perturbation::Quantity quantity = perturbation::Quantity::force;
+  perturbation::Space space = perturbation::Space::hand;
   perturbation::RandomBinaryOptions sequence;
   double angle = 1.5707963267948966;  ///< of the line from +x [rad]
   double duration = 62.1;             ///< [s]
@@ -120,13 +122,12 @@ struct Scenario {
 inline constexpr const char* kTunedGains = "the gains of the participant's will are tuned, not fitted to anyone";
 
 struct SimulateOptions {
-  std::optional<std::uint64_t> seed;              ///< instead of the scenario's
   std::function<void(double fraction)> progress;  ///< of this recording
   std::function<void(const TrueState&)> watch;    ///< of a planar trial
 };
 
 /// Runs a scenario. The same scenario and seed give the same recording, to the bit.
-/// @fails  as `perform` and `perform_one_axis`.
+/// @fails  usage: control and perturbation speak of different quantities; as make_schedule and both `perform`.
 [[nodiscard]] Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options = {});
 
 /// The recording without what only a simulation can know: the truth, and the scenario's name and words.

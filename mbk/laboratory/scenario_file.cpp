@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "mbk/config/document.h"
 #include "mbk/laboratory/scenario.h"
@@ -73,27 +77,42 @@ std::variant<PositionMode, ForceMode, LineMode> read_control(const Section& s) {
   return mode;
 }
 
+/// A unit in which a perturbation may be given, and what it commands.
+struct SizeUnit {
+  std::string_view name;
+  Quantity quantity;
+  Space space;
+};
+constexpr SizeUnit kDegrees{"deg", Quantity::position, Space::joint},
+    kMillimetres{"mm", Quantity::position, Space::hand}, kNewtons{"N", Quantity::force, Space::hand},
+    kNewtonMetres{"Nm", Quantity::force, Space::joint};
+constexpr std::array kSizeUnits = {kDegrees, kMillimetres, kNewtons, kNewtonMetres};
+
 /// A size whose key's unit says what is commanded: peak_deg, peak_mm, peak_N.
 struct Size {
-  Quantity quantity = Quantity::position;
-  Space space = Space::hand;
-  double value = 0.0;
+  SizeUnit unit;
+  double value;  ///< [rad, m, N or N·m]
 };
 
-Size read_size(const Section& s, const std::string& word, const Size& fallback) {
-  const std::string deg = word + "_deg", mm = word + "_mm", newton = word + "_N", newton_metre = word + "_Nm";
-  Size size = fallback;
-  int given = 0;
-  const auto take = [&](const std::string& key, Quantity quantity, Space space) {
-    if (!s.has(key)) return;
-    size = {quantity, space, s.number(key, fallback.value, above(0))};
-    if (++given > 1) s.reject(key, "the size is given twice, in different units", "keep one of them");
+/// The one of the allowed units that stands in the file. Without any it is the fallback, unless that has a unit of
+/// another machine.
+Size read_size(const Section& s, const std::string& word, const std::vector<SizeUnit>& allowed, const Size& fallback) {
+  const auto key = [&](const SizeUnit& unit) { return fmt::format("{}_{}", word, unit.name); };
+  std::string keys;
+  for (const SizeUnit& unit : allowed) keys += (keys.empty() ? "" : " or ") + key(unit);
+  const auto is_allowed = [&](const SizeUnit& unit) {
+    return std::ranges::find(allowed, unit.name, &SizeUnit::name) != allowed.end();
   };
-  take(deg, Quantity::position, Space::joint);
-  take(mm, Quantity::position, Space::hand);
-  take(newton, Quantity::force, Space::hand);
-  take(newton_metre, Quantity::force, Space::hand);
-  return size;
+  std::optional<Size> size;
+  for (const SizeUnit& unit : kSizeUnits) {
+    if (!s.has(key(unit))) continue;
+    if (!is_allowed(unit)) s.reject(key(unit), "this machine is not driven in that unit", "use " + keys);
+    if (size) s.reject(key(unit), "the size is given twice, in different units", "keep one of them");
+    size = {unit, s.number(key(unit), fallback.value, above(0))};
+  }
+  if (size) return *size;
+  if (is_allowed(fallback.unit)) return fallback;
+  return {allowed.front(), s.required_number(key(allowed.front()), above(0))};
 }
 
 std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Section& s) {
@@ -114,13 +133,12 @@ std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Sectio
   return options;
 }
 
-MultisinePlan read_multisine(const Section& s) {
+MultisinePlan read_multisine(const Section& s, const Size& size) {
   using Phases = MultisinePlan::Phases;
   using Axes = MultisinePlan::Axes;
   MultisinePlan plan;
-  const Size size = read_size(s, "peak", {plan.quantity, plan.space, plan.peak});
-  plan.quantity = size.quantity;
-  plan.space = size.space;
+  plan.quantity = size.unit.quantity;
+  plan.space = size.unit.space;
   plan.peak = size.value;
   plan.period = s.number("period_s", plan.period, above(0));
   std::vector<double> harmonics(plan.harmonics.begin(), plan.harmonics.end());
@@ -145,11 +163,11 @@ MultisinePlan read_multisine(const Section& s) {
   return plan;
 }
 
-PulsePlan read_pulses(const Section& s) {
+PulsePlan read_pulses(const Section& s, const Size& size) {
   PulsePlan plan;
   perturbation::PulseSchedule::Options& p = plan.pulses;
-  const Size size = read_size(s, "amplitude", {plan.quantity, Space::hand, p.amplitude});
-  plan.quantity = size.quantity;
+  plan.quantity = size.unit.quantity;
+  plan.space = size.unit.space;
   p.amplitude = size.value;
   p.damping_ratio = s.number("damping_ratio", p.damping_ratio, config::within(0, 1));
   p.natural_frequency = RadPerSec(s.number("natural_frequency_rad_per_s", p.natural_frequency.value, above(0)));
@@ -165,11 +183,11 @@ PulsePlan read_pulses(const Section& s) {
   return plan;
 }
 
-RandomBinaryPlan read_random_binary(const Section& s) {
+RandomBinaryPlan read_random_binary(const Section& s, const Size& size) {
   RandomBinaryPlan plan;
   perturbation::RandomBinaryOptions& b = plan.sequence;
-  const Size size = read_size(s, "amplitude", {plan.quantity, Space::hand, b.amplitude});
-  plan.quantity = size.quantity;
+  plan.quantity = size.unit.quantity;
+  plan.space = size.unit.space;
   b.amplitude = size.value;
   b.switching_time = s.number("switching_time_s", b.switching_time, above(0));
   b.zero_mean = s.flag("zero_mean", b.zero_mean);
@@ -180,9 +198,36 @@ RandomBinaryPlan read_random_binary(const Section& s) {
   return plan;
 }
 
-PerturbationPlan read_perturbation(const Section& s) {
+enum class Machine { planar, one_axis };
+
+/// A signal has limits in its own unit.
+perturbation::Limits read_limits(const Section& s, const SizeUnit& unit) {
+  perturbation::Limits limits;
+  const auto limit = [&](std::string_view before, std::string_view after) {
+    const auto key = [&](const SizeUnit& one) { return fmt::format("{}{}{}", before, one.name, after); };
+    for (const SizeUnit& other : kSizeUnits) {
+      if (other.name != unit.name && s.has(key(other))) {
+        s.reject(key(other), fmt::format("the perturbation is in {}", unit.name), "use " + key(unit));
+      }
+    }
+    return s.optional_number(key(unit), above(0));
+  };
+  limits.peak = limit("peak_", "");
+  limits.speed = limit("speed_", "_per_s");
+  if (const auto value = s.optional_number("bandwidth_hz", above(0))) limits.bandwidth = Hertz(*value);
+  return limits;
+}
+
+PerturbationPlan read_perturbation(const Section& s, Machine machine) {
   enum class Kind { none, multisine, pulses, random_binary };
+  const bool one_axis = machine == Machine::one_axis;
+  const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, at_hand = {kMillimetres, kNewtons},
+                              of_sines = {kDegrees, kMillimetres, kNewtons};
+  const auto amplitude = [&](const SizeUnit& unit, double fallback) {
+    return read_size(s, "amplitude", one_axis ? of_axis : at_hand, {unit, fallback});
+  };
   PerturbationPlan plan;
+  SizeUnit unit = kMillimetres;
   switch (s.required_choice<Kind>("kind", {{"multisine", Kind::multisine},
                                            {"pulses", Kind::pulses},
                                            {"random_binary", Kind::random_binary},
@@ -190,24 +235,26 @@ PerturbationPlan read_perturbation(const Section& s) {
     case Kind::none:
       plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
       break;
-    case Kind::multisine:
-      plan.kind = read_multisine(s);
+    case Kind::multisine: {
+      const Size size = read_size(s, "peak", one_axis ? of_axis : of_sines, {kDegrees, MultisinePlan{}.peak});
+      plan.kind = read_multisine(s, size);
+      unit = size.unit;
       break;
-    case Kind::pulses:
-      plan.kind = read_pulses(s);
+    }
+    case Kind::pulses: {
+      const Size size = amplitude(kMillimetres, PulsePlan{}.pulses.amplitude);
+      plan.kind = read_pulses(s, size);
+      unit = size.unit;
       break;
-    case Kind::random_binary:
-      plan.kind = read_random_binary(s);
+    }
+    case Kind::random_binary: {
+      const Size size = amplitude(kNewtons, RandomBinaryPlan{}.sequence.amplitude);
+      plan.kind = read_random_binary(s, size);
+      unit = size.unit;
       break;
+    }
   }
-  const Section limits = s.section("limits");
-  for (const char* key : {"peak_mm", "peak_deg", "peak_N"}) {
-    if (auto value = limits.optional_number(key, above(0))) plan.limits.peak = value;
-  }
-  for (const char* key : {"speed_mm_per_s", "speed_deg_per_s", "speed_N_per_s"}) {
-    if (auto value = limits.optional_number(key, above(0))) plan.limits.speed = value;
-  }
-  if (auto value = limits.optional_number("bandwidth_hz", above(0))) plan.limits.bandwidth = Hertz(*value);
+  plan.limits = read_limits(s.section("limits"), unit);
   return plan;
 }
 
@@ -442,10 +489,12 @@ OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   const Section control = root.section("control");
   trial.controlled =
       control.required_choice<Quantity>("kind", {{"position", Quantity::position}, {"force", Quantity::force}});
-  trial.servo.proportional = control.number("proportional_Nm_per_rad", trial.servo.proportional, at_least(0));
-  trial.servo.derivative = control.number("derivative_Nms_per_rad", trial.servo.derivative, at_least(0));
-  trial.servo.velocity_cutoff =
-      Hertz(control.number("velocity_cutoff_hz", trial.servo.velocity_cutoff.value, above(0)));
+  if (trial.controlled == Quantity::position) {
+    trial.servo.proportional = control.number("proportional_Nm_per_rad", trial.servo.proportional, at_least(0));
+    trial.servo.derivative = control.number("derivative_Nms_per_rad", trial.servo.derivative, at_least(0));
+    trial.servo.velocity_cutoff =
+        Hertz(control.number("velocity_cutoff_hz", trial.servo.velocity_cutoff.value, above(0)));
+  }
   trial.joint = read_joint(root.section("participant"));
   trial.sensors = read_one_axis_sensors(root.section("sensors"));
   return trial;
@@ -483,7 +532,7 @@ void along_one_axis(PerturbationPlan& plan) {
   if (auto* binary = std::get_if<RandomBinaryPlan>(&plan.kind)) binary->angle = 0.0;
   if (auto* pulses = std::get_if<PulsePlan>(&plan.kind)) {
     perturbation::PulseSchedule::Options& p = pulses->pulses;
-    p.repetitions *= p.directions / 2;  // as many as there would be in all directions
+    p.repetitions = std::max(1, p.repetitions * p.directions / 2);  // as many as there would be in all directions
     p.directions = 2;
   }
 }
@@ -495,18 +544,14 @@ Scenario read_scenario(const Section& root) {
   scenario.rate = Hertz(recording.number("rate_hz", scenario.rate.value, between(10, 100'000)));
   scenario.seed = recording.integer<std::uint64_t>("seed", scenario.seed, 0, std::numeric_limits<std::int64_t>::max());
   const Section robot = root.section("robot");
-  enum class Kind { planar, one_axis };
-  if (robot.choice("kind", {{"planar", Kind::planar}, {"one_axis", Kind::one_axis}}, Kind::planar) == Kind::planar) {
+  const auto machine =
+      robot.choice("kind", {{"planar", Machine::planar}, {"one_axis", Machine::one_axis}}, Machine::planar);
+  scenario.perturbation = read_perturbation(root.section("perturbation"), machine);
+  if (machine == Machine::planar) {
     scenario.trial = read_planar(root, robot);
   } else {
     scenario.trial = read_one_axis(root, robot);
-  }
-  const Section perturbation = root.section("perturbation");
-  scenario.perturbation = read_perturbation(perturbation);
-  if (std::holds_alternative<OneAxisTrial>(scenario.trial)) {
     along_one_axis(scenario.perturbation);
-  } else if (perturbation.has("amplitude_deg")) {
-    perturbation.reject("amplitude_deg", "pulses and binary sequences are given at the hand", "use amplitude_mm");
   }
   return scenario;
 }

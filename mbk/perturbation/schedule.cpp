@@ -72,7 +72,7 @@ Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity
       Schedule(Sines{std::move(first), std::move(second), growth, moving_in}, quantity, space, duration));
 }
 
-Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantity quantity, double tail) {
+Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantity quantity, double tail, Space space) {
   auto schedule = PulseSchedule::create(options);
   if (!schedule) return tl::unexpected(schedule.error());
   if (!(tail >= options.return_duration)) {
@@ -80,17 +80,16 @@ Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantit
   }
   const double duration = schedule->pulses().back().offset + tail;
   if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
-  return with_countable_cycles(Schedule(*std::move(schedule), quantity, Space::hand, duration));
+  return with_countable_cycles(Schedule(*std::move(schedule), quantity, space, duration));
 }
 
 Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, double angle, Quantity quantity,
-                                         double duration) {
+                                         double duration, Space space) {
   if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
   if (!std::isfinite(angle)) return bad_usage(fmt::format("angle {} rad is not finite", angle));
   auto sequence = RandomBinary::create(options, duration);
   if (!sequence) return tl::unexpected(sequence.error());
-  return with_countable_cycles(
-      Schedule(Binary{*std::move(sequence), unit_vector(angle)}, quantity, Space::hand, duration));
+  return with_countable_cycles(Schedule(Binary{*std::move(sequence), unit_vector(angle)}, quantity, space, duration));
 }
 
 Result<Schedule> Schedule::rest(double duration) {

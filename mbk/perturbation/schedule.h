@@ -74,18 +74,19 @@ class Schedule {
   [[nodiscard]] static Result<Schedule> multisine(Multisine first, Multisine second, Quantity quantity, Space space,
                                                   double duration, double moving_in);
 
-  /// Underdamped pulses, Space::hand.
+  /// Underdamped pulses; in Space::joint, direction +x is the first joint's.
   /// @param tail  from the last offset to the end [s]; not below the time of the way back
   /// @fails  as PulseSchedule::create; the tail is too short or not finite; the whole is longer than kLongest; more
   /// than kMostCycles of the filter's bandwidth.
-  [[nodiscard]] static Result<Schedule> pulses(const PulseSchedule::Options& options, Quantity quantity, double tail);
+  [[nodiscard]] static Result<Schedule> pulses(const PulseSchedule::Options& options, Quantity quantity, double tail,
+                                               Space space = Space::hand);
 
-  /// A filtered random binary sequence along one direction, Space::hand.
-  /// @param angle  of the direction of +A from +x, base frame [rad]
+  /// A filtered random binary sequence along one direction.
+  /// @param angle  of the direction of +A from +x, base frame, or from the first joint's axis in Space::joint [rad]
   /// @fails  as RandomBinary::create; the angle is not finite; duration above kLongest; more than
   /// kMostCycles of the filter's bandwidth.
   [[nodiscard]] static Result<Schedule> random_binary(const RandomBinaryOptions& options, double angle,
-                                                      Quantity quantity, double duration);
+                                                      Quantity quantity, double duration, Space space = Space::hand);
 
   /// Nothing moves: position, Space::hand, zero.   @fails  duration ≤ 0, above kLongest or not finite.
   [[nodiscard]] static Result<Schedule> rest(double duration);
