@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -48,6 +49,9 @@ Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
   if (!scenarios) return tl::unexpected(scenarios.error());
   std::vector<laboratory::Scenario> chosen;
   for (const std::string& name : arguments.trials) {
+    if (std::ranges::count(arguments.trials, name) > 1) {
+      return bad_usage(fmt::format("trial '{}' is asked for twice", name), "name each --trial once");
+    }
     const auto trial = find_trial(*scenarios, name);
     if (!trial) return tl::unexpected(trial.error());
     chosen.push_back(*trial);
@@ -63,6 +67,12 @@ Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
     }
   }
   return jobs;
+}
+
+/// The scenario as it was asked for, and the trial in it: where an experiment that cannot be is described.
+std::string place_of(const Arguments& arguments, const Job& job) {
+  const std::string& trial = job.scenario.trial_name;
+  return trial.empty() ? arguments.scenario : fmt::format("{}, trial '{}'", arguments.scenario, trial);
 }
 
 Result<void> check_files(const std::vector<Job>& jobs, const Arguments& arguments) {
@@ -114,7 +124,7 @@ int show_facts(const Arguments& arguments) {
   std::string text;
   for (const Job& job : *jobs) {
     const auto schedule = laboratory::make_schedule(job.scenario.perturbation, job.scenario.seed);
-    if (!schedule) return report_error(schedule.error().in(arguments.scenario));
+    if (!schedule) return report_error(schedule.error().in(place_of(arguments, job)));
     text += fmt::format("{}{}{}, seed {}\n", job.scenario.file_name, job.scenario.trial_name.empty() ? "" : " ",
                         job.scenario.trial_name, job.scenario.seed) +
             report::schedule_text(*schedule);
@@ -138,7 +148,7 @@ int run(const Arguments& arguments) {
         laboratory::SimulateOptions options;
         if (count == 1) options.progress = [&](double fraction) { progress.reached(fraction); };
         auto performance = laboratory::simulate(job.scenario, options);
-        if (!performance) return tl::unexpected(performance.error());
+        if (!performance) return tl::unexpected(performance.error().in(place_of(arguments, job)));
         lines[static_cast<std::size_t>(i)] = summary_line(job, *performance);
         if (arguments.blind) performance->recording = laboratory::without_truth(std::move(performance->recording));
         return recording::write_mat(performance->recording, job.file, arguments.overwrite);

@@ -199,8 +199,8 @@ Action add_field(CLI::App& springs) {
       "      the [[rig.spring]] of a scenario file; --trial chooses among several\n"
       "  mbk springs field --spring k=120,l=90mm,anchor=565:183 --spring k=120,l=90,anchor=565:-183 \\\n"
       "      --spring k=150,l=80,anchor=215:0 --grid-step 0.15\n\n"
-      "Places are x:y in mm in the robot's base frame; a hole is where the spring hangs in the disc, from the\n"
-      "hand. K is minus the gradient of the force at the place where the force is zero.");
+      "Places are x:y in mm in the robot's base frame; a hole is where the spring hangs in the disc, from\n"
+      "the hand. K is minus the gradient of the force at the place where the force is zero.");
   CLI::Option* const scenario = command->add_option("SCENARIO.toml", arguments->scenario,
                                                     "a scenario with [[rig.spring]], or a ready one's name");
   command->add_option("--trial", arguments->trial, "which [[trial]] of it")->type_name("NAME")->needs(scenario);
@@ -281,7 +281,7 @@ Action add_calibrate(CLI::App& springs) {
       "  mbk springs calibrate spring_1.csv spring_2.csv\n"
       "      columns time, position and reaction; units as in position_mm\n"
       "  mbk springs calibrate --channels time=1,x=2:mm,F=-3 gauge.csv\n"
-      "      F is what the spring exerts on the machine: it falls as x grows; -3 turns a gauge that reads tension\n\n"
+      "      F is what the spring exerts on the machine: it falls as x grows; -3 turns a gauge of tension\n\n"
       "The hooks of a spring bend at first. Where that shows, the constant is the slope beyond it.");
   add_reading_options(*command, *arguments);
   command->add_option("--hac-lag", arguments->hac_lag_s, "reach of the noise's correlation for the intervals, s (1)")

@@ -53,14 +53,6 @@ TEST(MakeSchedule, PhasesOfLowCrestPutMorePowerUnderTheSamePeak) {
   EXPECT_GT(after, 1.3 * before);
 }
 
-TEST(MakeSchedule, InterleavedAxesAreUncorrelated) {
-  MultisinePlan plan;
-  plan.axes = MultisinePlan::Axes::interleaved;
-  const Matrix values = period(made(sines(plan)));
-  const double together = values.col(0).dot(values.col(1));
-  EXPECT_LT(std::abs(together), 1e-9 * values.squaredNorm());
-}
-
 TEST(MakeSchedule, HadamardPairDiffersInTheSignOfTheSecondAxis) {
   MultisinePlan first, second;
   first.axes = MultisinePlan::Axes::hadamard_first;
@@ -70,21 +62,63 @@ TEST(MakeSchedule, HadamardPairDiffersInTheSignOfTheSecondAxis) {
   EXPECT_EQ(a.col(1), -b.col(1));
 }
 
-TEST(MakeSchedule, OptimalPowerGoesToTheEndsOfTheBand) {
+/// Share of each harmonic in the power of each axis, which nothing but the harmonics has.
+Matrix shares(const MultisinePlan& plan) {
+  const Matrix values = period(made(sines(plan)));
+  Matrix power(static_cast<Index>(plan.harmonics.size()), 2);
+  for (Index k = 0; k < power.rows(); ++k) {
+    Eigen::RowVector2cd sum = Eigen::RowVector2cd::Zero();
+    for (Index i = 0; i < values.rows(); ++i) {
+      const double angle = 2.0 * std::numbers::pi * plan.harmonics[static_cast<std::size_t>(k)] *
+                           static_cast<double>(i) / static_cast<double>(values.rows());
+      sum += values.row(i) * std::complex<double>(std::cos(angle), std::sin(angle));
+    }
+    power.row(k) = 2.0 * sum.cwiseAbs2() / static_cast<double>(values.rows());
+  }
+  return power.array().rowwise() / values.colwise().squaredNorm().array();
+}
+
+TEST(MakeSchedule, OptimalPowerIsSharedAmongTheLinesAsItSays) {
   MultisinePlan plan;
   plan.optimal_power.emplace();
-  const Matrix values = period(made(sines(plan)));
-  const auto power_at = [&](int harmonic) {
-    std::complex<double> sum = 0.0;
-    for (Index i = 0; i < values.rows(); ++i) {
-      const double angle = 2.0 * std::numbers::pi * harmonic * static_cast<double>(i) / 10000.0;
-      sum += values(i, 0) * std::complex<double>(std::cos(angle), std::sin(angle));
-    }
-    return std::norm(sum);
-  };
-  EXPECT_GT(power_at(29), 1.5 * power_at(1));
-  EXPECT_GT(power_at(1), 5.0 * power_at(13));
-  EXPECT_GT(power_at(13), 0.0);
+  const Vector wanted = perturbation::optimal_power(plan.period, plan.harmonics, *plan.optimal_power)->shares;
+  EXPECT_GT(wanted.maxCoeff(), 10.0 * wanted.minCoeff());
+  for (const auto phases : {MultisinePlan::Phases::random, MultisinePlan::Phases::low_crest}) {
+    plan.phases = phases;
+    const Matrix power = shares(plan);
+    for (Index axis = 0; axis < 2; ++axis) EXPECT_LT((power.col(axis) - wanted).cwiseAbs().maxCoeff(), 1e-12);
+  }
+}
+
+TEST(MakeSchedule, PowerIsFlatWithoutARuleForIt) {
+  const Matrix power = shares({});
+  EXPECT_LT((power.array() - 0.1).abs().maxCoeff(), 1e-12);  // ten lines
+}
+
+TEST(MakeSchedule, InterleavedAxesShareNoLine) {
+  MultisinePlan plan;
+  plan.axes = MultisinePlan::Axes::interleaved;
+  const Matrix power = shares(plan);
+  EXPECT_LT(power.rowwise().minCoeff().maxCoeff(), 1e-20);
+  EXPECT_NEAR(power.col(0).sum(), 1.0, 1e-12);
+  EXPECT_NEAR(power.col(1).sum(), 1.0, 1e-12);
+}
+
+TEST(MakeSchedule, TakesSeedAndSizeOfPulsesAndSequencesFromPlanAndSeed) {
+  PulsePlan pulses;
+  RandomBinaryPlan binary;
+  binary.angle = std::numbers::pi / 6.0;
+  for (const PerturbationPlan& plan : {PerturbationPlan{pulses, {}}, PerturbationPlan{binary, {}}}) {
+    EXPECT_EQ(period(made(plan, 3)), period(made(plan, 3)));
+  }
+  const auto onsets = [&](std::uint64_t seed) { return made({pulses, {}}, seed).events().front().time; };
+  EXPECT_NE(onsets(3), onsets(4));
+  EXPECT_NEAR(made({pulses, {}}, 3).duration(), made({pulses, {}}, 3).events().back().time + pulses.tail, 1e-12);
+  const Matrix along = period(made({binary, {}}, 3));
+  EXPECT_LT((along.col(1) * std::cos(binary.angle) - along.col(0) * std::sin(binary.angle)).cwiseAbs().maxCoeff(),
+            1e-12);
+  EXPECT_GT(along.norm(), 0.0);
+  EXPECT_EQ(made({RestPlan{4.0}, {}}).facts().peak, 0.0);
 }
 
 TEST(MakeSchedule, SaysWhichLimitIsBroken) {

@@ -9,7 +9,8 @@ import unittest
 from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
                      write_csv)
 
-COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "validate")
+COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "robot", "validate")
+SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "robot": ("workspace",)}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
 NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
     "--rate": ("0", "-1", "-1e300"),
@@ -111,6 +112,8 @@ def float_of(text):
 class Commands(Case):
     def test_unknown_options_are_named(self):
         for command in COMMANDS:
+            if command in SUBCOMMANDS:
+                continue  # their commands have tests of their own
             file = [] if command == "validate" else [make_log().path]
             self.refused(WRONG_USAGE, command, *file, "--cutof=5", says=["--cutof", f"mbk {command} --help"])
 
@@ -314,6 +317,9 @@ class Help(Case):
                 text = self.fine(command, "--help").out
                 self.assert_lines_fit(text)
                 self.assertRegex(text, rf"Examples?:\n  mbk {command}")
+            for below in SUBCOMMANDS.get(command, ()):
+                with self.subTest(f"{command} {below}"):
+                    self.assert_lines_fit(self.fine(command, below, "--help").out)
 
     def test_options_with_a_value_name_it_or_its_unit(self):
         text = run("measure", "--help").out

@@ -24,6 +24,18 @@ mass_kg = [[1.3, -0.9], [-0.9, 1.9]]
 damping_Ns_per_m = [[5.8, -2.1], [-2.1, 10.6]]
 stiffness_N_per_m = [[42, -29], [-29, 125]]
 """
+TABLE = "rig_table_3_1"
+ONE_AXIS = """
+[robot]
+kind = "one_axis"
+[control]
+kind = "position"
+[perturbation]
+kind = "pulses"
+amplitude_deg = 1.5
+[participant]
+kind = "joint"
+"""
 TRIALS = SHORT + '[[trial]]\nname = "a"\n[[trial]]\nname = "b"\nrecording.seed = 7\n'
 
 
@@ -70,6 +82,21 @@ class Recordings(Case):
         self.assertRegex(facts, r"peak +3\.4\d* N at")  # 2 N times 1 + exp(-pi 0.1/sqrt(0.99))
         self.assertEqual(self.names(), [])
 
+    def test_facts_of_a_one_axis_machine_are_in_its_units(self):
+        facts = self.fine("simulate", self.file("joint.toml", ONE_AXIS), "--facts").out
+        self.assertRegex(facts, r"peak +2\.59\d* ° at")  # 1.5 degrees times 1 + exp(-pi 0.1/sqrt(0.99))
+        self.assertNotIn("mm", facts)
+
+    def test_a_recording_that_is_there_is_replaced_only_when_told(self):
+        scenario, out = self.file("mine.toml", SHORT), self.folder / "mine.mat"
+        self.fine("simulate", scenario, "--out", out, "--quiet")
+        first = out.read_bytes()
+        self.refused(WRONG_USAGE, "simulate", scenario, "--out", out, "--seed", 2, says=["mine.mat", "--overwrite"])
+        self.assertEqual(out.read_bytes(), first)
+        ran = self.fine("simulate", scenario, "--out", out, "--seed", 2, "--overwrite", "--quiet")
+        self.assertEqual((ran.out, self.names()), ("", ["mine.mat", "mine.toml"]))
+        self.assertNotEqual(out.read_bytes(), first)
+
     def test_many_seeds_are_the_same_on_any_number_of_threads(self):
         scenario = self.file("mine.toml", SHORT)
         for threads in (1, 2):
@@ -113,14 +140,32 @@ class Recordings(Case):
 
 
 class Refusals(Case):
+    def test_an_experiment_that_cannot_be_is_named_by_file_and_trial_and_leaves_nothing(self):
+        mistakes = {
+            SHORT.replace("[1.3, -0.9]", "[1.3, 0.5]"): ["participant", "symmetric"],
+            SHORT.replace("peak_deg = 2", "peak_deg = 60"): ["perturbation", "workspace"],
+            SHORT.replace("peak_deg = 2", "peak_N = 2"): ["position", "force"],
+            SHORT + '[[trial]]\nname = "a"\nperturbation.moving_in_s = 30\n': ["trial 'a'", "30"],
+        }
+        for text, words in mistakes.items():
+            with self.subTest(words):
+                bad = self.file("bad.toml", text)
+                self.refused(WRONG_USAGE, "simulate", bad, "--out", self.folder / "r.mat", says=[str(bad), *words])
+                self.assertEqual(self.names(), ["bad.toml"])
+
     def test_mistakes_of_usage(self):
         scenario, out = self.file("mine.toml", SHORT), self.folder / "r.mat"
         self.refused(WRONG_USAGE, "simulate", says="scenario")
         self.refused(WRONG_USAGE, "simulate", scenario, says="--out")
         self.refused(WRONG_USAGE, "simulate", scenario, "--out", self.folder / "r.h5", says=[".h5", ".mat"])
         self.refused(WRONG_USAGE, "simulate", scenario, "--out", out, "--trial", "x", says="[[trial]]")
-        self.refused(WRONG_USAGE, "simulate", "rig_table_3_1", "--out", out, "--trial", "x", says="config_1")
+        self.refused(WRONG_USAGE, "simulate", TABLE, "--out", out, "--trial", "x", says="config_1")
+        self.refused(WRONG_USAGE, "simulate", TABLE, "--out", out, "--trial", "config_1", "--trial", "config_1",
+                     says=["'config_1'", "twice"])
         self.refused(WRONG_USAGE, "simulate", "--show", "nothing", says="--list")
+        self.refused(BAD_DATA, "simulate", "relaxed", "--out", out, says=["relaxed", "--list"])
+        self.refused(BAD_DATA, "simulate", self.folder, "--out", out, says=str(self.folder))
+        self.refused(BAD_DATA, "simulate", scenario, "--out", self.folder / "gone" / "r.mat", "--quiet", says="folder")
         for option in ("--seeds=0", "--seeds=x", "--seed=-1", "--threads=0"):
             self.refused(WRONG_USAGE, "simulate", scenario, "--out", out, option, says=option.split("=")[0])
         kept = self.file("kept.mat", "precious")
@@ -132,20 +177,19 @@ class Refusals(Case):
             SHORT.replace("peak_deg = 2", "peak_deg = -2"): ["line 8", "perturbation.peak_deg", "-2"],
             SHORT.replace("peak_deg", "peak_dge"): ["line 8", "'peak_dge'", "'peak_deg'"],
             SHORT.replace('"linear"', '"liner"'): ["participant.kind", "'liner'", "linear"],
-            SHORT.replace("[1.3, -0.9]", "[1.3, 0.5]"): ["participant", "symmetric"],
-            SHORT.replace("peak_deg = 2", "peak_deg = 60"): ["perturbation"],
-            SHORT.replace("peak_deg = 2", "peak_N = 2"): ["position", "force"],
+            SHORT.replace("peak_deg = 2", "peak_Nm = 2"): ["line 8", "perturbation.peak_Nm", "use peak_deg"],
+            SHORT.replace("peak_deg = 2", 'peak_deg = "2"'): ["line 8", "perturbation.peak_deg", "a number is wanted"],
+            SHORT.replace("peak_deg = 2", "peak_deg = 2\npeak_mm = 2"): ["line 9", "peak_mm", "given twice"],
+            SHORT + "[rig]\nmass_kg = 1\nstiffness_N_per_m = [[1, 0], [0, 1]]\n": ["participant and a rig"],
+            SHORT.replace('kind = "linear"', ""): ["line 10", "'kind'"],
+            SHORT.replace("[perturbation]", "[disturbance]"): ["bad.toml", "perturbation", "kind"],
             SHORT + "[robot\n": ["line"],
             "\0\0\0": ["bad.toml"],
         }
         for text, words in mistakes.items():
             with self.subTest(words):
                 bad = self.file("bad.toml", text)
-                ran = run("simulate", bad, "--out", self.folder / "r.mat")
-                self.assertIn(ran.code, (WRONG_USAGE, BAD_DATA), ran)
-                self.assertEqual(ran.err.count("\n"), 1, ran)
-                for word in words:
-                    self.assertIn(word, ran.err)
+                self.refused(BAD_DATA, "simulate", bad, "--out", self.folder / "r.mat", says=["bad.toml", *words])
                 self.assertEqual(self.names(), ["bad.toml"])
         self.refused(BAD_DATA, "simulate", self.folder / "nothing.toml", "--out", self.folder / "r.mat", says="--list")
 
