@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "mbk/core/result.h"
+#include "mbk/trial/recording.h"
+
+namespace mbk::recording {
+
+/// The formats that recordings are written in.
+enum class Format {
+  mat5,   ///< .mat
+  mat73,  ///< .mat, asked for by name: HDF5 within
+  hdf5,   ///< .h5, .hdf5
+  csv,    ///< .csv
+};
+
+/// The format that the end of a file's name says, or that `name` says ("mat", "mat5", "mat73", "hdf5", "csv").
+/// @fails  usage: neither says one that is known; those that are known are named.
+[[nodiscard]] Result<Format> format_of(const std::filesystem::path& file, std::string_view name = "");
+
+/// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes.
+/// @fails  usage: the file is there and `overwrite` is false. data: the recording cannot be written in this format (the
+///         message says what stands in the way); the folder cannot be written.
+[[nodiscard]] Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format,
+                                 bool overwrite);
+
+}  // namespace mbk::recording
