@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
+#include <vector>
 
 #include "mbk/dsp/butterworth.h"
+#include "mbk/dsp/filter_chain.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -69,23 +70,30 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
                                 filters.cutoff ? fmt::format(" and a padding of {}", padding.samples) : ""),
                     "record longer, or choose a smaller --sg-window or --padding");
   }
-  const auto smooth = [&](const Matrix& columns, int derivative) {
-    return dsp::savitzky_golay(filters.smoothing, derivative, columns.middleRows(cut.begin, length), rate);
-  };
-  const bool sensor = signals.acceleration.size() > 0;
-  Matrix all(length - filters.smoothing.window + 1 - 2 * trim, 4 * n);
-  const std::array<Result<Matrix>, 4> parts = {smooth(signals.position, 0), smooth(signals.position, 1),
-                                               sensor ? smooth(signals.acceleration, 0) : smooth(signals.position, 2),
-                                               smooth(signals.force_hand_on_robot, 0)};
-  for (Index k = 0; k < 4; ++k) {
-    const Result<Matrix>& part = parts[static_cast<std::size_t>(k)];
-    if (!part) return tl::unexpected(part.error());
-    all.middleCols(k * n, n) = part->middleRows(trim, all.rows());
+  dsp::FilterChain chain{filters.smoothing, {}, padding};
+  if (filters.cutoff) {
+    auto lowpass = dsp::butterworth_lowpass(kButterworthOrder, *filters.cutoff, rate);
+    if (!lowpass) return tl::unexpected(lowpass.error());
+    chain.lowpass = std::move(*lowpass);
   }
-  if (!filters.cutoff) return all;
-  auto lowpass = dsp::butterworth_lowpass(kButterworthOrder, *filters.cutoff, rate);
-  if (!lowpass) return tl::unexpected(lowpass.error());
-  return dsp::filter_zero_phase(*lowpass, all, padding);
+  std::vector<dsp::Column> columns;
+  for (const Matrix* quantity : {&signals.position, &signals.force_hand_on_robot, &signals.acceleration}) {
+    for (Index k = 0; k < quantity->cols(); ++k) columns.emplace_back(quantity->col(k).data() + cut.begin, length);
+  }
+  std::vector<dsp::Wanted> wanted;
+  const auto want = [&](Index first, int derivative) {
+    for (Index k = 0; k < n; ++k) wanted.push_back({first + k, derivative});
+  };
+  want(0, 0);
+  want(0, 1);
+  if (signals.acceleration.size() > 0) {
+    want(2 * n, 0);
+  } else {
+    want(0, 2);
+  }
+  want(n, 0);
+  if (filters.step == 1) return dsp::smooth_then_lowpass(chain, columns, wanted, trim, rate);
+  return dsp::smooth_then_lowpass_every(filters.step, chain, columns, wanted, rate);
 }
 
 }  // namespace mbk::preprocess
