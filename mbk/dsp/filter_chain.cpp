@@ -51,12 +51,12 @@ std::vector<Batch> batches_of(std::span<const Wanted> wanted) {
   return batches;
 }
 
-/// The columns of a batch from sample `first` on; a lane without a column repeats the first one.
-FourColumns lanes_of(const Batch& batch, std::span<const Column> columns, Index first) {
+/// The columns of a batch; a lane without a column repeats the first one.
+FourColumns lanes_of(const Batch& batch, std::span<const Column> columns) {
   FourColumns lanes{};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const Index column = batch.columns[lane < batch.columns.size() ? lane : 0];
-    lanes[lane] = columns[static_cast<std::size_t>(column)].data() + first;
+    lanes[lane] = columns[static_cast<std::size_t>(column)].data();
   }
   return lanes;
 }
@@ -152,12 +152,11 @@ std::vector<Group> groups_of(const Batch& batch, const FourValues& reference, Ma
 
 /// Each wanted signal by itself: where there are no running sums.
 Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column> columns,
-                               std::span<const Wanted> wanted, Index trim, Hertz rate) {
+                               std::span<const Wanted> wanted, Hertz rate) {
   Matrix smoothed;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     const Column& column = columns[static_cast<std::size_t>(wanted[k].column)];
-    const auto one =
-        savitzky_golay(chain.smoothing, wanted[k].derivative, column.segment(trim, column.size() - 2 * trim), rate);
+    const auto one = savitzky_golay(chain.smoothing, wanted[k].derivative, column, rate);
     if (!one) return tl::unexpected(one.error());
     smoothed.conservativeResize(one->rows(), static_cast<Index>(wanted.size()));
     smoothed.col(static_cast<Index>(k)) = *one;
@@ -166,10 +165,46 @@ Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column>
   return filter_zero_phase(chain.lowpass, smoothed, chain.padding);
 }
 
+/// Every row.
+Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> columns, std::span<const Wanted> wanted,
+                          Hertz rate) {
+  if (!has_running_sums(chain.smoothing)) return smooth_directly(chain, columns, wanted, rate);
+  const Index length = columns.front().size(), count = length - chain.smoothing.window + 1;
+
+  Matrix answer(count, static_cast<Index>(wanted.size()));
+  const Index padding = chain.lowpass.empty() ? 0 : chain.padding.samples;
+  for (const Batch& batch : batches_of(wanted)) {
+    const auto sums = running_sums(chain.smoothing, batch.derivatives, rate.value);
+    if (!sums) return tl::unexpected(sums.error());
+    const FourColumns lanes = lanes_of(batch, columns);
+    const FourValues reference = values_at(lanes, 0);  // sums of differences keep the digits that sums of values lose
+    Interleaved rows(length);
+    interleave(lanes, rows.rows(), reference, rows.row(0));
+
+    const std::vector<Group> groups = groups_of(batch, reference, answer);
+    std::vector<Padded> smoothed;
+    std::vector<Destination> destinations;
+    for (const Group& group : groups) {
+      smoothed.emplace_back(count, padding);
+      destinations.push_back({smoothed.back().data(), group.from});
+    }
+    smooth(*sums, rows.row(0), count, destinations);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      Padded& one = smoothed[g];
+      if (!chain.lowpass.empty()) {
+        one.extend(chain.padding.extension, row_of(one.rows, padding), row_of(one.rows, padding + count - 1));
+        filter_both_ways(chain.lowpass, one.rows.row(0), one.rows.rows(), row_of(one.rows, 0));
+      }
+      separate(one.data(), count, groups[g].plus, groups[g].to);
+    }
+  }
+  return answer;
+}
+
 /// Low-pass first, then the smoothing where it is wanted: right wherever the low-pass has forgotten the ends.
-/// @param answer its rows [first, end) are written, row i from sample i·step on
+/// @param answer its rows [first, end) are written, row i from sample i·every on
 Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Column> columns,
-                                 std::span<const Wanted> wanted, Index step, Hertz rate, Index first, Index end,
+                                 std::span<const Wanted> wanted, Index every, Hertz rate, Index first, Index end,
                                  Matrix& answer) {
   const Index length = columns.front().size();
   for (const Batch& batch : batches_of(wanted)) {
@@ -180,14 +215,14 @@ Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Colum
       *one *= std::pow(rate.value, derivative);
       weights.insert(weights.end(), one->begin(), one->end());
     }
-    const FourColumns lanes = lanes_of(batch, columns, 0);
+    const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);
     Interleaved rows(length);
     interleave(lanes, length, reference, rows.row(0));
     filter_both_ways(chain.lowpass, rows.row(0), length, {});
     const std::size_t derivatives = batch.derivatives.size();
     std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(end - first));
-    correlate_every(weights, derivatives, rows.row(first * step), step, end - first, values.data());
+    correlate_every(weights, derivatives, rows.row(first * every), every, end - first, values.data());
     for (const auto& [from, to] : batch.outputs) {
       const double plus = batch.derivatives[from / kLanes] == 0 ? reference[from % kLanes] : 0.0;
       const double* value = values.data() + from;
@@ -206,74 +241,35 @@ std::vector<Column> part_of(std::span<const Column> columns, Index first, Index 
 }  // namespace
 
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                   std::span<const Wanted> wanted, Index trim, Hertz sample_rate) {
-  const auto length = length_of(columns);
-  if (!length) return tl::unexpected(length.error());
-  const auto count = smoothed_length(chain, *length - 2 * trim);
-  if (!count) return tl::unexpected(count.error());
-  if (!has_running_sums(chain.smoothing)) return smooth_directly(chain, columns, wanted, trim, sample_rate);
-
-  Matrix answer(*count, static_cast<Index>(wanted.size()));
-  const Index padding = chain.lowpass.empty() ? 0 : chain.padding.samples;
-  for (const Batch& batch : batches_of(wanted)) {
-    const auto sums = running_sums(chain.smoothing, batch.derivatives, sample_rate.value);
-    if (!sums) return tl::unexpected(sums.error());
-    const FourColumns lanes = lanes_of(batch, columns, trim);
-    const FourValues reference = values_at(lanes, 0);  // sums of differences keep the digits that sums of values lose
-    Interleaved rows(*length - 2 * trim);
-    interleave(lanes, rows.rows(), reference, rows.row(0));
-
-    const std::vector<Group> groups = groups_of(batch, reference, answer);
-    std::vector<Padded> smoothed;
-    std::vector<Destination> destinations;
-    for (const Group& group : groups) {
-      smoothed.emplace_back(*count, padding);
-      destinations.push_back({smoothed.back().data(), group.from});
-    }
-    smooth(*sums, rows.row(0), *count, destinations);
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      Padded& one = smoothed[g];
-      if (!chain.lowpass.empty()) {
-        one.extend(chain.padding.extension, row_of(one.rows, padding), row_of(one.rows, padding + *count - 1));
-        filter_both_ways(chain.lowpass, one.rows.row(0), one.rows.rows(), row_of(one.rows, 0));
-      }
-      separate(one.data(), *count, groups[g].plus, groups[g].to);
-    }
-  }
-  return answer;
-}
-
-Result<Matrix> smooth_then_lowpass_every(Index step, const FilterChain& chain, std::span<const Column> columns,
-                                         std::span<const Wanted> wanted, Hertz sample_rate) {
-  if (step < 1) return bad_usage(fmt::format("every {}-th sample is none", step));
+                                   std::span<const Wanted> wanted, Hertz sample_rate, Index every) {
+  if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
   const auto length = length_of(columns);
   if (!length) return tl::unexpected(length.error());
   const auto left = smoothed_length(chain, *length);
   if (!left) return tl::unexpected(left.error());
 
-  const Index count = (*left - 1) / step + 1;
+  const Index count = (*left - 1) / every + 1;
   const Index memory = memory_of(chain.lowpass, kForgotten);
   // An end is `memory` rows long, and another `memory` behind it to forget where the piece was cut off.
   const Index piece = 2 * memory + chain.smoothing.window + chain.padding.samples;
-  const Index first = std::min(count, (memory + step - 1) / step);                         // rows of the left end
-  const Index end = std::max(first, std::min(count, (*left - memory + step - 1) / step));  // first row of the right end
-  if (step == 1 || *length < 2 * piece) {
-    const auto all = smooth_then_lowpass(chain, columns, wanted, 0, sample_rate);
-    if (!all) return all;
-    return Matrix((*all)(Eigen::seqN(0, count, step), Eigen::all));
+  if (every == 1 || *length < 2 * piece) {
+    auto all = filter_all(chain, columns, wanted, sample_rate);
+    if (!all || every == 1) return all;
+    return Matrix((*all)(Eigen::seqN(0, count, every), Eigen::all));
   }
+  const Index first = (memory + every - 1) / every, end = (*left - memory + every - 1) / every;  // rows of the inside
   Matrix answer(count, static_cast<Index>(wanted.size()));
-  if (auto ok = lowpass_then_smooth(chain, columns, wanted, step, sample_rate, first, end, answer); !ok) {
+  if (auto ok = lowpass_then_smooth(chain, columns, wanted, every, sample_rate, first, end, answer); !ok) {
     return tl::unexpected(ok.error());
   }
-  if (chain.lowpass.empty()) return answer;
-  const auto at_start = smooth_then_lowpass(chain, part_of(columns, 0, piece), wanted, 0, sample_rate);
+  if (memory == 0) return answer;
+  const auto at_start = filter_all(chain, part_of(columns, 0, piece), wanted, sample_rate);
   if (!at_start) return at_start;
-  answer.topRows(first) = (*at_start)(Eigen::seqN(0, first, step), Eigen::all);
+  answer.topRows(first) = (*at_start)(Eigen::seqN(0, first, every), Eigen::all);
   const Index begin = *length - piece;
-  const auto at_end = smooth_then_lowpass(chain, part_of(columns, begin, piece), wanted, 0, sample_rate);
+  const auto at_end = filter_all(chain, part_of(columns, begin, piece), wanted, sample_rate);
   if (!at_end) return at_end;
-  answer.bottomRows(count - end) = (*at_end)(Eigen::seqN(end * step - begin, count - end, step), Eigen::all);
+  answer.bottomRows(count - end) = (*at_end)(Eigen::seqN(end * every - begin, count - end, every), Eigen::all);
   return answer;
 }
 

@@ -31,19 +31,15 @@ using Column = Eigen::Map<const Vector>;
 ///   C(j, k) = C(j + 1, k) − C(j, k − 1),
 /// and start anew after each half window, so that rounding has no time to grow; a wanted signal is a sum of N + 1 of
 /// them. Four columns go side by side.
-/// @param columns of equal length L, evenly sampled    @param trim samples left out at each end between the filters
-/// @returns (L − W + 1 − 2 trim)×wanted; row i belongs to sample half window + trim + i.   Offline: allocates.
-/// @fails as savitzky_golay and filter_zero_phase.
+///
+/// Where only every so many rows are wanted, they are right to kForgotten of the signals: away from the ends the two
+/// filters commute, so that the low-pass goes first and the smoothing is evaluated where it is wanted. Near the ends,
+/// where the low-pass still remembers how the signal was continued, and for short signals, every row is computed.
+/// @param columns of equal length L, evenly sampled
+/// @returns ⌈(L − W + 1)/every⌉×wanted; row i belongs to sample half window + i·every.   Offline: allocates.
+/// @fails as savitzky_golay and filter_zero_phase; every < 1.
 [[nodiscard]] Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                                 std::span<const Wanted> wanted, Index trim, Hertz sample_rate);
-
-/// The same, but only every `step`-th row, to kForgotten of the signals. Away from the ends the two filters commute:
-/// the low-pass goes first, and the smoothing is evaluated only where it is wanted. Near the ends, where the low-pass
-/// still remembers how the signal was continued, and for short signals, everything is computed as above.
-/// @returns row i belongs to sample half window + i·step    @fails as smooth_then_lowpass; step < 1.
-[[nodiscard]] Result<Matrix> smooth_then_lowpass_every(Index step, const FilterChain& chain,
-                                                       std::span<const Column> columns, std::span<const Wanted> wanted,
-                                                       Hertz sample_rate);
+                                                 std::span<const Wanted> wanted, Hertz sample_rate, Index every = 1);
 inline constexpr double kForgotten = 1e-9;
 
 /// Samples after which the response of a filter to what was before is below a fraction of it: log(fraction)/log|p| of

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mbk/dsp/vector4.h"
+#include "mbk/core/vector4.h"
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between functions that are inlined always

@@ -17,6 +17,10 @@ constexpr int kButterworthOrder = 5;
 constexpr double kCutoffOverBand = 1.0 / 0.6;
 /// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
 constexpr double kSmoothingOverCutoff = 4.6;
+/// At ten samples for each period of the cutoff the low-pass leaves 1e-7 above half of their rate.
+constexpr double kRateOverCutoff = 10.0;
+/// Rows of the shortest cut that are kept at least, so that its ends stay where they are.
+constexpr Index kFewestRows = 1000;
 
 FilterPlan with_choices(FilterPlan plan, const Options& options) {
   if (options.smoothing_order) plan.smoothing.order = *options.smoothing_order;
@@ -29,6 +33,7 @@ FilterPlan with_choices(FilterPlan plan, const Options& options) {
     plan.cutoff.reset();
     plan.rule = "none, as asked";
   }
+  if (options.every) plan.every = *options.every;
   return plan;
 }
 
@@ -58,6 +63,10 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   // A short pulse must keep most of its samples.
   const Index longest = std::max<Index>(shortest_cut / 4, order + 3) | 1;
   plan.smoothing.window = static_cast<int>(std::min<Index>(plan.smoothing.window, longest));
+  if (!options.no_lowpass) {
+    const auto enough = static_cast<Index>(rate.value / (kRateOverCutoff * cutoff));
+    plan.every = std::max<Index>(1, std::min(enough, shortest_cut / kFewestRows));
+  }
   return with_choices(std::move(plan), options);
 }
 
@@ -78,7 +87,9 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   }
   std::vector<dsp::Column> columns;
   for (const Matrix* quantity : {&signals.position, &signals.force_hand_on_robot, &signals.acceleration}) {
-    for (Index k = 0; k < quantity->cols(); ++k) columns.emplace_back(quantity->col(k).data() + cut.begin, length);
+    for (Index k = 0; k < quantity->cols(); ++k) {
+      columns.emplace_back(quantity->col(k).data() + cut.begin + trim, length - 2 * trim);
+    }
   }
   std::vector<dsp::Wanted> wanted;
   const auto want = [&](Index first, int derivative) {
@@ -92,8 +103,7 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
     want(0, 2);
   }
   want(n, 0);
-  if (filters.step == 1) return dsp::smooth_then_lowpass(chain, columns, wanted, trim, rate);
-  return dsp::smooth_then_lowpass_every(filters.step, chain, columns, wanted, rate);
+  return dsp::smooth_then_lowpass(chain, columns, wanted, rate, filters.every);
 }
 
 }  // namespace mbk::preprocess

@@ -1,9 +1,9 @@
 #pragma once
 
-/// Four doubles at a time, for the inner loops of this module. A body is written once with these and compiled twice:
+/// Four doubles at a time, for inner loops. A body is written once with these and compiled twice:
 /// for every processor, and with MBK_X86_64_V3 for those that have AVX2 and fused multiply-add (x86-64-v3, 2013 and
 /// later). Which one runs is decided where the program runs.
-namespace mbk::dsp {
+namespace mbk {
 
 typedef double Vector4 __attribute__((vector_size(32)));                            // NOLINT(modernize-use-using)
 typedef double Unaligned4 __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
@@ -27,4 +27,4 @@ inline bool has_x86_64_v3() {
   return *reinterpret_cast<const Unaligned4*>(at);
 }
 
-}  // namespace mbk::dsp
+}  // namespace mbk
