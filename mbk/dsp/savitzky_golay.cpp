@@ -97,15 +97,26 @@ Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const
   return filtered;
 }
 
-Result<double> savitzky_golay_gain(const SavitzkyGolay& filter, int derivative, Hertz frequency, Hertz sample_rate) {
+Result<Vector> savitzky_golay_response(const SavitzkyGolay& filter, int derivative, const Vector& frequency_hz,
+                                       Hertz sample_rate) {
   const auto weights = savitzky_golay_weights(filter, derivative);
   if (!weights) return tl::unexpected(weights.error());
-  const double omega = 2.0 * std::numbers::pi * frequency.value / sample_rate.value;  // per sample
-  std::complex<double> response = 0.0;
-  for (Index i = 0; i < weights->size(); ++i) {
-    response += (*weights)[i] * std::polar(1.0, omega * static_cast<double>(i - filter.half_window()));
+  Vector response(frequency_hz.size());
+  for (Index k = 0; k < response.size(); ++k) {
+    const double omega = 2.0 * std::numbers::pi * frequency_hz[k] / sample_rate.value;  // per sample
+    std::complex<double> sum = 0.0;
+    for (Index i = 0; i < weights->size(); ++i) {
+      sum += (*weights)[i] * std::polar(1.0, omega * static_cast<double>(i - filter.half_window()));
+    }
+    response[k] = std::abs(sum) * std::pow(sample_rate.value, derivative);
   }
-  return std::abs(response) / std::pow(omega, derivative);
+  return response;
+}
+
+Result<double> savitzky_golay_gain(const SavitzkyGolay& filter, int derivative, Hertz frequency, Hertz sample_rate) {
+  const auto response = savitzky_golay_response(filter, derivative, Vector::Constant(1, frequency.value), sample_rate);
+  if (!response) return tl::unexpected(response.error());
+  return (*response)[0] / std::pow(2.0 * std::numbers::pi * frequency.value, derivative);
 }
 
 Result<Hertz> savitzky_golay_cutoff(const SavitzkyGolay& filter, Hertz sample_rate) {

@@ -39,6 +39,10 @@ struct SavitzkyGolayWeights {
 [[nodiscard]] Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const Matrix& signals,
                                             Hertz sample_rate);
 
+/// |H(f)| at each frequency, in 1/s^derivative.
+[[nodiscard]] Result<Vector> savitzky_golay_response(const SavitzkyGolay& filter, int derivative,
+                                                     const Vector& frequency_hz, Hertz sample_rate);
+
 /// |H(f)| of the smoothing filter (derivative 0), or that of the derivative divided by (2πf)ᵈ, the ideal one.
 [[nodiscard]] Result<double> savitzky_golay_gain(const SavitzkyGolay& filter, int derivative, Hertz frequency,
                                                  Hertz sample_rate);

@@ -12,7 +12,6 @@
 namespace mbk::preprocess {
 namespace {
 
-constexpr int kButterworthOrder = 5;
 /// Forward and backward, the filter passes 0.6 of its cutoff with a gain of 0.994.
 constexpr double kCutoffOverBand = 1.0 / 0.6;
 /// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
@@ -81,7 +80,7 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   }
   dsp::FilterChain chain{filters.smoothing, {}, padding};
   if (filters.cutoff) {
-    auto lowpass = dsp::butterworth_lowpass(kButterworthOrder, *filters.cutoff, rate);
+    auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, *filters.cutoff, rate);
     if (!lowpass) return tl::unexpected(lowpass.error());
     chain.lowpass = std::move(*lowpass);
   }
