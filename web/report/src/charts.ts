@@ -10,8 +10,8 @@ import {
 import { type ECharts, init, use } from "echarts/core";
 import { SVGRenderer } from "echarts/renderers";
 import type { Value } from "./data";
-import { h, svg } from "./dom";
-import { plain, significant } from "./format";
+import { h, scrolling, svg } from "./dom";
+import { plain, significant, superscript } from "./format";
 
 use([LineChart, GridComponent, TooltipComponent, DataZoomComponent, MarkAreaComponent, MarkLineComponent, SVGRenderer]);
 
@@ -62,10 +62,19 @@ const font = '"Inter", system-ui, "Segoe UI", "Helvetica Neue", Arial, "DejaVu S
 const [top, gap, bottom, slider] = [26, 46, 44, 34];
 const printWidth = 660; // of A4 between its margins [px]
 
+/** 0.1, 1, 100 or 10⁻⁵ */
+const powerOfTen = (value: number): string => {
+  const exponent = Math.round(Math.log10(value));
+  return Math.abs(exponent) < 3 ? plain(value) : `10${superscript(String(exponent))}`;
+};
+
 const number = (value: Value): number | "-" => (value === null ? "-" : value);
 
+const paper = 0.78; // panels are that much lower on paper
+const panelHeight = (chart: Chart, printed: boolean): number => (chart.panelHeight ?? 190) * (printed ? paper : 1);
+
 function height(chart: Chart, printed: boolean): number {
-  const panels = chart.panels.length * (chart.panelHeight ?? 190) + (chart.panels.length - 1) * gap;
+  const panels = chart.panels.length * panelHeight(chart, printed) + (chart.panels.length - 1) * gap;
   return top + panels + bottom + (printed ? 0 : slider);
 }
 
@@ -81,7 +90,7 @@ function extent(chart: Chart): [number, number] {
 }
 
 function options(chart: Chart, printed: boolean): Record<string, unknown> {
-  const each = chart.panelHeight ?? 190;
+  const each = panelHeight(chart, printed);
   const text = { fontFamily: font, color: "#333333", fontSize: 12 };
   const line = { lineStyle: { color: "#8a8a8a" } };
   const [low, high] = extent(chart);
@@ -117,7 +126,7 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       nameLocation: "middle",
       nameGap: 26,
       nameTextStyle: text,
-      axisLabel: { ...text, formatter: label, hideOverlap: true, showMinLabel: !chart.x.log, showMaxLabel: false },
+      axisLabel: { ...text, formatter: chart.x.log ? powerOfTen : label, hideOverlap: true, showMinLabel: !chart.x.log, showMaxLabel: false },
       axisLine: { ...line, onZero: false },
       axisTick: line,
       splitLine: { show: false },
@@ -133,10 +142,10 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       nameTextStyle: { ...text, align: "left", fontWeight: 600, padding: [0, 0, 0, -66] },
       axisLabel: {
         ...text,
-        formatter: panel.log ? (value: number) => significant(value, 1) : label,
+        formatter: panel.log ? powerOfTen : label,
         hideOverlap: true,
       },
-      splitNumber: 4,
+      splitNumber: panel.log ? 6 : 4,
       splitLine: { lineStyle: { color: "#ececec" } },
     })),
     tooltip: {
@@ -177,27 +186,24 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
   };
 }
 
+const shadeColors = { band: "rgba(86,180,233,0.2)", level: "rgba(110,110,110,0.2)" };
+
 function shades(panel: Panel): object {
   const areas: object[] = [];
-  const label = { show: true, color: "#444444", fontSize: 11, fontFamily: font };
-  if (panel.band) {
-    areas.push([
-      { xAxis: panel.band.from, name: panel.band.name, itemStyle: { color: "rgba(86,180,233,0.17)" }, label: { ...label, position: "insideTopLeft" } },
-      { xAxis: panel.band.to },
-    ]);
-  }
-  if (panel.level) {
-    areas.push([
-      { yAxis: panel.level.from, name: panel.level.name, itemStyle: { color: "rgba(120,120,120,0.17)" }, label: { ...label, position: "insideTopRight" } },
-      { yAxis: panel.level.to },
-    ]);
-  }
-  return areas.length ? { markArea: { silent: true, animation: false, data: areas } } : {};
+  if (panel.band) areas.push([{ xAxis: panel.band.from, itemStyle: { color: shadeColors.band } }, { xAxis: panel.band.to }]);
+  if (panel.level) areas.push([{ yAxis: panel.level.from, itemStyle: { color: shadeColors.level } }, { yAxis: panel.level.to }]);
+  return areas.length ? { markArea: { silent: true, animation: false, label: { show: false }, data: areas } } : {};
 }
 
 /** Which dash is which. */
 function legend(chart: Chart): HTMLElement {
   const seen = new Map(chart.panels.flatMap((panel) => panel.series).map((series) => [series.name, series.style]));
+  const shaded = new Map(
+    chart.panels.flatMap((panel) => [
+      ...(panel.band ? [[panel.band.name, shadeColors.band] as const] : []),
+      ...(panel.level ? [[panel.level.name, shadeColors.level] as const] : []),
+    ]),
+  );
   return h(
     "ul",
     { class: "legend" },
@@ -210,6 +216,14 @@ function legend(chart: Chart): HTMLElement {
           { width: 34, height: 10, "aria-hidden": "true" },
           svg("line", { x1: 1, y1: 5, x2: 33, y2: 5, stroke: style.color, "stroke-width": style.width + 0.4, "stroke-dasharray": dashes[style.dash] }),
         ),
+        name,
+      ),
+    ),
+    ...[...shaded].map(([name, color]) =>
+      h(
+        "li",
+        {},
+        svg("svg", { width: 22, height: 12, "aria-hidden": "true" }, svg("rect", { x: 0.5, y: 0.5, width: 21, height: 11, fill: color, stroke: "#8a8a8a", "stroke-width": 0.6 })),
         name,
       ),
     ),
@@ -257,9 +271,8 @@ function dataTable(chart: Chart): HTMLElement {
   const shown = rows.filter((_, i) => i % step === 0);
   const caption = `${chart.title}: ${step === 1 ? "every value" : `every ${step}th of ${rows.length} rows; the CSV file has all`}`;
   const cells = (row: Value[]) => row.map((value) => h("td", {}, value === null ? "" : significant(value, 5)));
-  return h(
-    "div",
-    { class: "table-scroll", tabindex: 0, role: "region", "aria-label": caption },
+  return scrolling(
+    caption,
     h(
       "table",
       { class: "values" },
@@ -383,9 +396,9 @@ export function figure(chart: Chart): HTMLElement {
       tool("−", "Zoom out", view((s, e) => [s - (e - s) / 2, e + (e - s) / 2])),
       tool("←", "Earlier, or lower", view((s, e) => [s - (e - s) / 2, e - (e - s) / 2])),
       tool("→", "Later, or higher", view((s, e) => [s + (e - s) / 2, e + (e - s) / 2])),
-      tool("Show all", "Reset zoom", view(() => [0, 100])),
+      tool("Show all", "Show all", view(() => [0, 100])),
       zoom,
-      tool("Save CSV", "Save the values as CSV", () => download(`${chart.id}.csv`, csv(chart))),
+      tool("Save CSV", "Save CSV", () => download(`${chart.id}.csv`, csv(chart))),
     ),
     table,
     h("figcaption", {}, h("strong", {}, "How to read this. "), chart.howToRead),

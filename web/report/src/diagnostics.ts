@@ -179,7 +179,7 @@ function filterSection(d: Diagnostics, trial: Trial, id: string): Section {
   if (keep < 0) return { title: "", charts: [] };
   const x = f.frequency_hz.slice(keep);
   const line = (name: string, y: Value[], style: (typeof styles)[keyof typeof styles]) => ({ name, x, y: y.slice(keep), style });
-  const gains = [...f.smoothing, ...f.first, ...f.second, ...f.second_ideal].filter((v): v is number => v !== null && v > 0);
+  const gains = [...f.smoothing, ...f.first, ...f.second].filter((v): v is number => v !== null && v > 0);
   const top = 10 ** Math.ceil(Math.log10(Math.max(...gains, 1)));
   return {
     title: "What the filters did",
@@ -264,10 +264,16 @@ function recordingSection(d: Diagnostics, trial: Trial, id: string): Section {
 }
 
 export function diagnosticElements(trial: Trial, id: string, level: HeadingLevel): HTMLElement[] {
+  if (!trial.diagnostics) {
+    return [
+      h("section", { id: `${id}-diagnostics` }, heading(level, "Plots"),
+        h("p", {}, "There are none: the signals behind this result were not kept for the report.")),
+    ];
+  }
   return diagnosticSections(trial, id).map((section, k) =>
     h(
       "section",
-      { id: `${id}-diagnostics-${k}`, "aria-label": section.title },
+      { id: `${id}-diagnostics-${k}` },
       heading(level, section.title),
       section.note ? h("p", {}, section.note) : "",
       ...section.charts.map(figure),

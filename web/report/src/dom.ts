@@ -32,11 +32,23 @@ export type HeadingLevel = 2 | 3 | 4;
 export const heading = (level: HeadingLevel, ...children: Child[]): HTMLHeadingElement =>
   h(`h${level}`, {}, ...children);
 
+/** Room to scroll in for what is too wide or too long; the keyboard stops there only where there is something to scroll. */
+export function scrolling(name: string, content: HTMLElement): HTMLElement {
+  const room = h("div", { class: "table-scroll" }, content);
+  new ResizeObserver(() => {
+    const needed = room.scrollWidth > room.clientWidth || room.scrollHeight > room.clientHeight;
+    for (const [key, value] of [["tabindex", "0"], ["role", "group"], ["aria-label", name]] as const) {
+      if (needed) room.setAttribute(key, value);
+      else room.removeAttribute(key);
+    }
+  }).observe(room);
+  return room;
+}
+
 /** A table with a header row; the first cell of each row is its header. */
 export function table(caption: string, head: Child[], rows: Child[][], className = ""): HTMLElement {
-  return h(
-    "div",
-    { class: "table-scroll", tabindex: 0, role: "region", "aria-label": caption },
+  return scrolling(
+    caption,
     h(
       "table",
       { class: className },

@@ -2,13 +2,15 @@
 import { type Ellipse, type Posture, type Trial, matrices, unitsOf } from "./data";
 import { h, svg } from "./dom";
 import { fixed, plain, significant } from "./format";
+import { angleBetween } from "./words";
 
 const radius = 92; // of the largest ellipse [px]
 const armSize = 176; // of the posture's longer side [px]
 const margin = 30;
 
-/** The largest of 1, 2 and 5 times a power of ten that is no larger. */
+/** The largest of 1, 2 and 5 times a power of ten that is no larger; 0 where there is none. */
 export function niceBelow(value: number): number {
+  if (!(value > 0)) return 0;
   const power = 10 ** Math.floor(Math.log10(value));
   const factor = [5, 2, 1].find((f) => f * power <= value * (1 + 1e-9)) ?? 1;
   return factor * power;
@@ -82,6 +84,23 @@ function orientationArcs(ellipse: Ellipse, r: number): SVGElement[] {
   );
 }
 
+/** The reference circle's value, written beside it where neither the ellipse nor the limb is. */
+function referenceLabel(text: string, r: number, angle: number, posture: Posture | undefined, frame: Frame): SVGElement {
+  const [x, y] = posture && posture.points_m.length > 1 ? (relative(posture, frame.pixelsPerMetre).at(-2) ?? [0, 0]) : [0, 0];
+  const limb = (Math.atan2(y, x) * 180) / Math.PI;
+  const free = (degrees: number): number => {
+    const fromLimb = x === 0 && y === 0 ? 180 : Math.abs(((degrees - limb + 540) % 360) - 180);
+    return Math.min(angleBetween(degrees, angle), fromLimb);
+  };
+  const best = [40, 140, -140, -40].reduce((a, b) => (free(b) > free(a) ? b : a));
+  const [dx, dy] = [Math.cos((best * Math.PI) / 180), -Math.sin((best * Math.PI) / 180)];
+  return svg(
+    "text",
+    { x: (r * dx + 5 * Math.sign(dx)).toFixed(1), y: (r * dy + (dy > 0 ? 12 : -4)).toFixed(1), "text-anchor": dx > 0 ? "start" : "end", class: "reference-value" },
+    text,
+  );
+}
+
 /** One drawing. `largest` is the value at the radius of the drawing, the same for all that are compared. */
 function drawing(
   ellipse: Ellipse,
@@ -93,7 +112,7 @@ function drawing(
 ): SVGSVGElement {
   const frame = frameFor(posture);
   const [small, large] = ellipse.eigenvalues;
-  const scale = radius / largest;
+  const scale = largest > 0 ? radius / largest : 0;
   const r = reference * scale;
   const angle = ellipse.orientation_deg;
   const shapes: SVGElement[] = [];
@@ -116,7 +135,7 @@ function drawing(
     {
       viewBox: `${frame.left.toFixed(1)} ${frame.top.toFixed(1)} ${frame.width.toFixed(1)} ${frame.height.toFixed(1)}`,
       role: "img",
-      "aria-label": `${title} ellipse: ${words}; reference circle ${plain(reference)} ${unit}`,
+      "aria-label": `${title} ellipse: ${words}${reference > 0 ? `; reference circle ${plain(reference)} ${unit}` : ""}`,
       class: "ellipse-drawing",
     },
     posture && posture.points_m.length > 1 && drawPosture(posture, frame),
@@ -124,20 +143,16 @@ function drawing(
     svg("line", { x1: 0, y1: -end, x2: 0, y2: end, class: "axis" }),
     svg("text", { x: end + 4, y: 4, class: "axis-name" }, "x"),
     svg("text", { x: 0, y: -end - 6, "text-anchor": "middle", class: "axis-name" }, "y"),
-    svg("circle", { r: r.toFixed(2), class: "reference" }),
+    reference > 0 && svg("circle", { r: r.toFixed(2), class: "reference" }),
     ...shapes,
     svg("circle", { r: 3.2, class: "hand" }),
-    svg(
-      "text",
-      { x: (r * 0.7071 + 4).toFixed(1), y: (r * 0.7071 + 10).toFixed(1), class: "reference-value" },
-      `${plain(reference)} ${unit}`,
-    ),
+    reference > 0 && referenceLabel(`${plain(reference)} ${unit}`, r, angle ?? 0, posture, frame),
   );
 }
 
 const largestOf = (ellipses: (Ellipse | undefined)[]): number => {
   const values = ellipses.flatMap((ellipse) => ellipse?.eigenvalues.map((v) => Math.abs(v ?? 0)) ?? []);
-  return Math.max(...values, Number.MIN_VALUE);
+  return Math.max(...values, 0);
 };
 
 const postureWords = {

@@ -27,7 +27,7 @@ function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLEleme
 }
 
 function recordingsSection(report: Report): HTMLElement {
-  return h("section", { id: "recordings", "aria-label": "Each recording" },
+  return h("section", { id: "recordings" },
     heading(2, "Each recording"),
     ...inOrder(report.trials).map(({ trial, id }) => {
       const said = verdict(trial);
@@ -80,7 +80,7 @@ function foot(): HTMLElement {
     h("details", { class: "licences" }, h("summary", {}, "Software inside this file, and its licences"),
       h("p", {}, "This page draws with Apache ECharts, zrender and tslib."),
       ...[["Apache ECharts: notice", apacheNotice], ["Apache ECharts: licence", apache], ["d3, parts of which are in ECharts", d3], ["zrender", zrender], ["tslib", tslib]].map(([name, text]) =>
-        h("div", {}, h("p", {}, h("strong", {}, name)), h("pre", { tabindex: 0, role: "region", "aria-label": name }, text)))));
+        h("div", {}, h("p", {}, h("strong", {}, name)), h("pre", { tabindex: 0, role: "group", "aria-label": name }, text)))));
 }
 
 function draw(report: Report): void {
@@ -89,11 +89,11 @@ function draw(report: Report): void {
     ? [overviewSection(report), recordingsSection(report)]
     : trialSections(report.trials[0] as Trial, "trial-1", 2);
   sections.push(
-    h("section", { id: "reproduce", "aria-label": "How to make it again" }, heading(2, "How to make it again"),
+    h("section", { id: "reproduce" }, heading(2, "How to make it again"),
       h("p", {}, "The same files, options and version give the same numbers, digit for digit, and this same page."),
-      h("pre", { class: "command", tabindex: 0, role: "region", "aria-label": "Command" }, report.command),
+      h("pre", { class: "command" }, report.command),
       h("p", {}, "Made with ", h("strong", {}, report.software), ".")),
-    h("section", { id: "glossary", "aria-label": "Glossary" }, heading(2, "Glossary"), facts(glossary)),
+    h("section", { id: "glossary" }, heading(2, "Glossary"), facts(glossary)),
   );
   document.getElementById("report")?.replaceWith(
     h("div", { class: "page" }, head(report), contents(report, sections), h("main", { id: "content", tabindex: -1 }, ...sections), foot()));

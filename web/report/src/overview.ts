@@ -43,21 +43,24 @@ export function overviewSection(report: Report): HTMLElement {
   const first = trials[0] as Trial;
   const sameUnits = trials.every((trial) => unitsOf(trial.result).M === unitsOf(first.result).M);
   const unit = (trial: Trial, symbol: "M" | "B" | "K") => (sameUnits ? "" : ` ${unitsOf(trial.result)[symbol]}`);
-  const head = ["recording", "participant", "condition", "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
+  const told = [
+    { name: "participant", of: participantOf },
+    { name: "condition", of: conditionOf },
+  ].filter(({ of }) => trials.some((trial) => of(trial) !== undefined));
+  const head = ["recording", ...told.map(({ name }) => name), "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
   const body: (Node | string)[][] = rows.map(({ trial, id }) => {
     const { result } = trial;
     const said = verdict(trial);
     return [
       h("a", { href: `#${id}` }, fileOf(trial)),
-      participantOf(trial) ?? "–",
-      conditionOf(trial) ?? "–",
+      ...told.map(({ of }) => of(trial) ?? "–"),
       h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "yes") : "no"}`),
       ...matrices.map(({ symbol }) => h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol))),
       perAxis(result.fit.VAF, 1, "", "VAF"),
     ];
   });
   if (summary) {
-    body.push([`mean of ${summary.trials}`, "", "", "", ...matrices.map(({ symbol }) => matrix(summary.model[symbol], summary.between_trial_standard_error[symbol], `mean-${symbol}`)), ""]);
+    body.push([`mean of ${summary.trials}`, ...told.map(() => ""), "", ...matrices.map(({ symbol }) => matrix(summary.model[symbol], summary.between_trial_standard_error[symbol], `mean-${symbol}`)), ""]);
   }
   const two = trials.some((trial) => trial.result.ellipses);
   const ellipseRows: (Node | string)[][] = rows.filter(({ trial }) => trial.result.ellipses).map(({ trial }) => [
@@ -75,7 +78,7 @@ export function overviewSection(report: Report): HTMLElement {
   const order = axisNames(first.result.axes).length === 2 ? " A matrix stands as xx, xy over yx, yy." : "";
   return h(
     "section",
-    { id: "overview", "aria-label": "Side by side" },
+    { id: "overview" },
     heading(2, "Side by side"),
     table("Model of each recording, by participant and condition", head, body, "numbers overview"),
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval within one recording; in the row of the mean it is the standard error between recordings.${order}`),

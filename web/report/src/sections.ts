@@ -20,7 +20,7 @@ export function identityFacts(trial: Trial): HTMLElement {
     ["Posture", metadataOf(trial, "posture")],
     ["Protocol", how ? `${how.protocol} (${how.protocol_rule})` : result.protocol],
     ["Duration", `${listed(result.inputs.map((input) => plain(input.duration_s, 4)))} s at ${onlyOne(result.inputs.map((input) => plain(input.rate_hz, 5)))} Hz`],
-    ["Window", how ? `${plain(how.from_s, 5)} s to ${plain(how.to_s, 5)} s: ${how.window_rule}` : undefined],
+    ["Window", how?.window_rule],
     ["Filters", filters],
     ["Mode", result.mode === "reference" ? `reference: the published procedure, ${how?.procedure ?? ""}` : result.mode],
   ]);
@@ -56,7 +56,7 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
   ];
   return h(
     "section",
-    { id: `${id}-model`, "aria-label": "The model" },
+    { id: `${id}-model` },
     heading(level, "The model"),
     h("p", { class: "equation" }, "M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."),
     table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval", head, rows, "numbers"),
@@ -78,16 +78,16 @@ export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): 
     const areaDecimals = e.area !== null && e.area < 100 ? 2 : 0;
     return [
       `${name} ${symbol}`,
-      e.area === null ? "none" : h("span", {}, withInterval(e.area, e.interval95.area, `${name}-area`, areaDecimals), ` ${unit.includes("·") || unit.includes("/") ? `(${unit})` : unit}²`),
+      e.area === null ? "none" : h("span", { class: "number" }, withInterval(e.area, e.interval95.area, `${name}-area`, areaDecimals), ` ${unit.includes("·") || unit.includes("/") ? `(${unit})` : unit}²`),
       e.shape === null ? "none" : withInterval(e.shape, e.interval95.shape, `${name}-shape`, 2),
-      h("span", {}, withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 1), e.orientation_deg === null ? "" : "°"),
+      h("span", { class: "number" }, withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 1), e.orientation_deg === null ? "" : "°"),
       h("span", { class: "number" }, data(e.eigenvalues[1], significant(e.eigenvalues[1]), `${name}-large`), " and ", data(e.eigenvalues[0], significant(e.eigenvalues[0]), `${name}-small`), ` ${unit}`),
-      anti === undefined ? "" : anti.zmean_percent === null ? "undefined" : h("span", {}, withInterval(anti.zmean_percent, anti.interval95, `${name}-zmean`, 1), " %"),
+      anti === undefined ? "" : anti.zmean_percent === null ? "undefined" : h("span", { class: "number" }, withInterval(anti.zmean_percent, anti.interval95, `${name}-zmean`, 1), " %"),
     ];
   });
   return h(
     "section",
-    { id: `${id}-ellipses`, "aria-label": "Ellipses" },
+    { id: `${id}-ellipses` },
     heading(level, "Ellipses"),
     ellipsesOf(trial),
     table("Ellipses in numbers; brackets are 95 % intervals", ["", "area", "shape", "orientation", "half axes", "antisymmetry"], rows, "numbers"),
@@ -124,7 +124,7 @@ export function provenanceSection(trial: Trial, id: string, level: HeadingLevel)
     Object.entries(one.metadata).map(([key, value]): [string, string] => [trial.recordings.length > 1 ? `${k + 1}: ${key}` : key, value]));
   return h(
     "section",
-    { id: `${id}-provenance`, "aria-label": "Where the numbers come from" },
+    { id: `${id}-provenance` },
     heading(level, "Where the numbers come from"),
     table("Files", ["file", "format", "SHA-256"], inputs, "files"),
     ...preparationFacts(trial),

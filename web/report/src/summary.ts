@@ -23,12 +23,12 @@ function fitSentence(trial: Trial): HTMLElement {
   const parts: (Node | string)[] = ["The model explains "];
   fit.VAF.forEach((value, axis) => {
     if (axis > 0) parts.push(" and ");
-    parts.push(data(value, `${fixed(value, 0)} %`), axes === 1 ? " of the force" : ` of the force along ${"xy"[axis]}`);
+    parts.push(data(value, value === null ? "an undefined share" : `${fixed(value, value > 99 ? 1 : 0)} %`), axes === 1 ? " of the force" : ` of the force along ${"xy"[axis]}`);
   });
   parts.push(heldBack ? ", on data that had no share in making it" : ", on the very data that made it, which flatters it");
   const worst = fit.VAF.reduce<number>((least, value) => Math.min(least, value ?? -Infinity), Infinity);
   const judgement = worst >= 90 ? "That is a very good fit." : worst >= 80 ? "That is a good fit." : worst >= 70 ? "That is a fair fit." : "That is a poor fit.";
-  parts.push(`. ${judgement} 100 % would be everything.`);
+  parts.push(`. ${trial.result.usable ? `${judgement} ` : ""}100 % would be everything.`);
   return h("p", {}, ...parts);
 }
 
@@ -65,10 +65,10 @@ function card(trial: Trial, symbol: "M" | "B" | "K", name: "inertia" | "damping"
     const angle = ellipse.orientation_deg ?? 0;
     const [low, high] = ellipse.interval95.orientation_deg;
     parts.push(
-      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`),
-      h("p", {}, arrow(angle), "at most, ", data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
-        low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : "", ` from x: ${direction(angle)}.`),
-      h("p", {}, "Across that, ", data(small, significant(small, 3), `card-${symbol}-small`), ` ${unit}.`),
+      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, h("span", { class: "half" }, " at most")),
+      h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
+        h("span", { class: "half" }, low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : ""), ` from x, ${direction(angle)}`),
+      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), ` ${unit} across that`),
     );
     if (small > 0) parts.push(h("p", {}, everyday(symbol, large, unit)));
   } else {
@@ -97,7 +97,7 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
     : "From force and position while the robot perturbed the hand, three properties of the arm were estimated, as they are felt at the hand.";
   return h(
     "section",
-    { id: `${id}-summary`, "aria-label": "Summary" },
+    { id: `${id}-summary` },
     heading(level, "In short"),
     h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
@@ -112,7 +112,7 @@ export function warningsSection(trial: Trial, id: string, level: HeadingLevel): 
   const { warnings } = trial.result;
   return h(
     "section",
-    { id: `${id}-warnings`, "aria-label": "Warnings" },
+    { id: `${id}-warnings` },
     heading(level, "Warnings"),
     warnings.length === 0 ? h("p", {}, "There are none.") : "",
     h("ul", { class: "warnings" },
