@@ -1,7 +1,7 @@
 #include "mbk/report/html.h"
 
 #ifdef MBK_WEB
-extern "C" const char mbk_report_page_begin[], mbk_report_page_end[];  // page.S
+extern "C" const char kReportPageBegin[], kReportPageEnd[];  // page.S
 #endif
 
 namespace mbk::report {
@@ -11,7 +11,7 @@ constexpr std::string_view kPlaceOfData = "@MBK_REPORT_DATA@";
 
 std::string_view page_template() {
 #ifdef MBK_WEB
-  return {mbk_report_page_begin, static_cast<std::size_t>(mbk_report_page_end - mbk_report_page_begin)};
+  return {kReportPageBegin, static_cast<std::size_t>(kReportPageEnd - kReportPageBegin)};
 #else
   return {};
 #endif

@@ -24,12 +24,14 @@ export function inOrder(trials: Trial[]): { trial: Trial; id: string }[] {
     });
 }
 
-/** Rows of a matrix under each other, each value with its half width. */
+/** Rows of a matrix under each other, each value with its half width; no more digits than fit side by side. */
 function matrix(values: Value[][], halves: Value[][], name: string): HTMLElement {
+  const largest = Math.max(...values.flat().map((value) => Math.abs(value ?? 0)));
+  const most = largest > 0 ? Math.max(3 - Math.floor(Math.log10(largest)), 0) : 0;
   return h("div", { class: "matrix", style: `grid-template-columns: repeat(${values.length}, auto)` },
     ...values.flatMap((row, j) => row.map((value, i) => {
       const half = halves[j]?.[i] ?? null;
-      const decimals = decimalsFor(half);
+      const decimals = Math.min(decimalsFor(half), most);
       return h("span", { class: "number" }, data(value, half === null ? significant(value) : fixed(value, decimals), `${name}${j}${i}`),
         half === null ? "" : h("span", { class: "half" }, ` ± ${fixed(half, decimals)}`));
     })));
