@@ -2,7 +2,7 @@
 import { type Report, type Trial, type Value, axisNames, conditionOf, fileOf, matrices, participantOf, unitsOf } from "./data";
 import { h, heading, table } from "./dom";
 import { ellipsesSideBySide } from "./ellipses";
-import { data, decimalsFor, fixed, normal95, perAxis, significant, withInterval } from "./format";
+import { data, decimalsFor, fixed, normal95, significant, withInterval } from "./format";
 import { verdict } from "./summary";
 
 /** "P1, relaxed", or the name of the file where nothing else tells it apart. */
@@ -58,7 +58,8 @@ export function overviewSection(report: Report): HTMLElement {
       ...told.map(({ of }) => of(trial) ?? "–"),
       h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "yes") : "no"}`),
       ...matrices.map(({ symbol }) => h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol))),
-      perAxis(result.fit.VAF, 1, "", "VAF"),
+      h("div", {}, ...result.fit.VAF.map((vaf, axis) =>
+        h("div", { class: "number" }, result.axes === 1 ? "" : `${"xy"[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
     ];
   });
   if (summary) {
