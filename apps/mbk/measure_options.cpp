@@ -6,6 +6,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "mbk/recording/channel_map.h"
+#include "mbk/report/html.h"
 
 namespace mbk::app {
 namespace {
@@ -150,6 +151,41 @@ void add_output_options(CLI::App& command, MeasureArguments& arguments, const st
   command.add_flag("--json", arguments.json, fmt::format("for machines: schema {}, SI units, every digit", schema));
   arguments.output.add_options(command);
   command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
+}
+
+void add_report_options(CLI::App& command, MeasureArguments& arguments) {
+  CLI::Option* const report =
+      command
+          .add_option("--report", arguments.report,
+                      "also write everything, with plots, as one HTML file to read, print or pass on")
+          ->type_name("FILE")
+          ->check(not_empty());
+  command
+      .add_option(
+          "--report-note", arguments.report_note,
+          "a line below the report's title, such as a date and a name; mbk adds no date of its own, so that the "
+          "same inputs give the same report")
+      ->type_name("TEXT")
+      ->check(not_empty())
+      ->needs(report);
+  CLI::Option* const overwrite = command.get_option("--overwrite");
+  overwrite->remove_needs(command.get_option("--out"));
+  overwrite->description("replace the files of --out and --report where they are there");
+}
+
+Result<void> check_files(const MeasureArguments& arguments) {
+  const Output& output = arguments.output;
+  if (output.overwrite && !output.file && !arguments.report) {
+    return bad_usage("--overwrite requires --out or --report", "name a file to write");
+  }
+  if (auto ok = output.check(arguments.files); !ok || !arguments.report) return ok;
+  if (auto page = report::page(""); !page) return tl::unexpected(page.error());
+  std::error_code error;
+  if (output.file && std::filesystem::weakly_canonical(*output.file, error) ==
+                         std::filesystem::weakly_canonical(*arguments.report, error)) {
+    return bad_usage("--out and --report name the same file", "choose another name for one of them");
+  }
+  return check_new_file(*arguments.report, "--report", output.overwrite, arguments.files);
 }
 
 Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {

@@ -142,7 +142,7 @@ class Effects(Case):
     def test_each_option_of_the_help_is_known_to_these_tests(self):
         options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
         elsewhere = {"--help", "--channels", "--variable", "--parts", "--json", "--out", "--overwrite", "--quiet",
-                     "--pool", "--decimate-check"}
+                     "--pool", "--decimate-check", "--report", "--report-note"}
         self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
 
     def test_mode_and_procedure(self):
