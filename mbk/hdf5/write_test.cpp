@@ -1,0 +1,452 @@
+#include "mbk/hdf5/write.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <random>
+#include <utility>
+
+namespace mbk::hdf5 {
+namespace {
+
+using testing::HasSubstr;
+
+/// Closes what the HDF5 library opened.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor)
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+const std::array<std::pair<Stored, hid_t>, 10>& stored_types() {
+  static const std::array<std::pair<Stored, hid_t>, 10> types{{{Stored::float64, H5T_IEEE_F64LE},
+                                                               {Stored::float32, H5T_IEEE_F32LE},
+                                                               {Stored::int8, H5T_STD_I8LE},
+                                                               {Stored::uint8, H5T_STD_U8LE},
+                                                               {Stored::int16, H5T_STD_I16LE},
+                                                               {Stored::uint16, H5T_STD_U16LE},
+                                                               {Stored::int32, H5T_STD_I32LE},
+                                                               {Stored::uint32, H5T_STD_U32LE},
+                                                               {Stored::int64, H5T_STD_I64LE},
+                                                               {Stored::uint64, H5T_STD_U64LE}}};
+  return types;
+}
+
+/// The HDF5 library's own eyes: reads a file back into the tree that should have been written.
+class Library {
+ public:
+  explicit Library(const std::string& bytes) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fapl_core(access, 1 << 20, 0);
+    H5Pset_file_image(access, const_cast<char*>(bytes.data()), bytes.size());
+    file_ = H5Fopen("image", H5F_ACC_RDONLY, access);
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+  ~Library() {
+    if (file_ >= 0) H5Fclose(file_);
+  }
+  [[nodiscard]] hid_t file() const { return file_; }
+
+  [[nodiscard]] Group read() const { return group(Handle(H5Gopen2(file_, "/", H5P_DEFAULT), H5Gclose)); }
+
+ private:
+  static std::string name_of(hid_t group, hsize_t i) {
+    std::string name(4096, '\0');
+    const auto size = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), 4096, H5P_DEFAULT);
+    name.resize(static_cast<std::size_t>(size));
+    return name;
+  }
+
+  Group group(hid_t id) const {
+    Group read{attributes(id), {}, {}};
+    H5G_info_t info{};
+    EXPECT_GE(H5Gget_info(id, &info), 0);
+    for (hsize_t i = 0; i < info.nlinks; ++i) {
+      const std::string name = name_of(id, i);
+      const Handle child(H5Oopen(id, name.c_str(), H5P_DEFAULT), H5Oclose);
+      if (H5Iget_type(child) == H5I_GROUP) {
+        read.groups[name] = group(child);
+      } else {
+        const Handle type(H5Dget_type(child), H5Tclose);
+        const Handle space(H5Dget_space(child), H5Sclose);
+        read.datasets[name] = {value(type, space,
+                                     [&](hid_t memory, void* to) {
+                                       return H5Dread(child, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, to);
+                                     }),
+                               attributes(child)};
+      }
+    }
+    return read;
+  }
+
+  Attributes attributes(hid_t object) const {
+    Attributes read;
+    for (int i = 0; i < H5Aget_num_attrs(object); ++i) {
+      const Handle attribute(
+          H5Aopen_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, static_cast<hsize_t>(i), H5P_DEFAULT, H5P_DEFAULT),
+          H5Aclose);
+      std::string name(4096, '\0');
+      name.resize(static_cast<std::size_t>(H5Aget_name(attribute, 4096, name.data())));
+      const Handle type(H5Aget_type(attribute), H5Tclose);
+      const Handle space(H5Aget_space(attribute), H5Sclose);
+      read[name] = value(type, space, [&](hid_t memory, void* to) { return H5Aread(attribute, memory, to); });
+    }
+    return read;
+  }
+
+  template <class Read>
+  Value value(hid_t type, hid_t space, const Read& read_into) const {
+    Value value;
+    std::vector<hsize_t> shape(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+    H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+    value.shape.assign(shape.begin(), shape.end());
+    const auto count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+    const auto read = [&](hid_t memory, void* to) { return count == 0 ? 0 : read_into(memory, to); };
+    if (H5Tget_class(type) == H5T_REFERENCE) {
+      std::vector<hobj_ref_t> references(count);
+      EXPECT_GE(read(H5T_STD_REF_OBJ, references.data()), 0);
+      References paths;
+      for (const hobj_ref_t& reference : references) {
+        std::string path(4096, '\0');
+        const auto size = reference == 0 ? 0 : H5Rget_name(file_, H5R_OBJECT, &reference, path.data(), 4096);
+        path.resize(static_cast<std::size_t>(size));
+        paths.paths.push_back(path);
+      }
+      value.data = paths;
+    } else if (H5Tget_class(type) == H5T_STRING) {
+      value.data = texts(type, count, space, read);
+    } else {
+      Numbers numbers{Vector(static_cast<Index>(count)), Stored::float64};
+      for (const auto& [stored, library_type] : stored_types()) {
+        if (H5Tequal(type, library_type) > 0) numbers.stored = stored;
+      }
+      EXPECT_GE(read(H5T_NATIVE_DOUBLE, numbers.values.data()), 0);
+      value.data = numbers;
+    }
+    return value;
+  }
+
+  template <class Read>
+  static Texts texts(hid_t type, std::size_t count, hid_t space, const Read& read) {
+    Texts texts;
+    if (H5Tis_variable_str(type) > 0) {
+      EXPECT_EQ(H5Tget_cset(type), H5T_CSET_UTF8);
+      std::vector<char*> found(count);
+      EXPECT_GE(read(type, found.data()), 0);
+      for (const char* text : found) texts.emplace_back(text);
+      if (count > 0) H5Dvlen_reclaim(type, space, H5P_DEFAULT, found.data());
+      return texts;
+    }
+    const std::size_t size = H5Tget_size(type);
+    std::string found(count * size, '\0');
+    EXPECT_GE(read(type, found.data()), 0);
+    for (std::size_t i = 0; i < count; ++i) texts.emplace_back(found.substr(i * size, size).c_str());
+    return texts;
+  }
+
+  hid_t file_ = -1;
+};
+
+void expect_same(const Value& read, const Value& written, const std::string& place) {
+  EXPECT_EQ(read.shape, written.shape) << place;
+  ASSERT_EQ(read.data.index(), written.data.index()) << place;
+  if (const auto* numbers = std::get_if<Numbers>(&written.data)) {
+    const auto& found = std::get<Numbers>(read.data);
+    EXPECT_EQ(found.stored, numbers->stored) << place;
+    ASSERT_EQ(found.values.size(), numbers->values.size()) << place;
+    for (Index i = 0; i < found.values.size(); ++i) {
+      ASSERT_THAT(found.values[i], testing::NanSensitiveDoubleEq(numbers->values[i])) << place << " " << i;
+    }
+  } else if (const auto* texts = std::get_if<Texts>(&written.data)) {
+    EXPECT_EQ(std::get<Texts>(read.data), *texts) << place;
+  } else {
+    EXPECT_EQ(std::get<References>(read.data).paths, std::get<References>(written.data).paths) << place;
+  }
+}
+
+void expect_same(const Attributes& read, const Attributes& written, const std::string& place) {
+  ASSERT_EQ(read.size(), written.size()) << place;
+  for (const auto& [name, value] : written) {
+    ASSERT_TRUE(read.contains(name)) << place << " " << name;
+    expect_same(read.at(name), value, place + " " + name);
+  }
+}
+
+void expect_same(const Group& read, const Group& written, const std::string& place) {
+  expect_same(read.attributes, written.attributes, place);
+  ASSERT_EQ(read.datasets.size(), written.datasets.size()) << place;
+  for (const auto& [name, dataset] : written.datasets) {
+    ASSERT_TRUE(read.datasets.contains(name)) << place << "/" << name;
+    expect_same(read.datasets.at(name).value, dataset.value, place + "/" + name);
+    expect_same(read.datasets.at(name).attributes, dataset.attributes, place + "/" + name);
+  }
+  ASSERT_EQ(read.groups.size(), written.groups.size()) << place;
+  for (const auto& [name, group] : written.groups) {
+    ASSERT_TRUE(read.groups.contains(name)) << place << "/" << name;
+    expect_same(read.groups.at(name), group, place + "/" + name);
+  }
+}
+
+void expect_comes_back(const Group& written, std::string_view user_block = "") {
+  const auto bytes = serialise(written, user_block);
+  ASSERT_TRUE(bytes) << bytes.error().line();
+  const Library library(*bytes);
+  ASSERT_GE(library.file(), 0) << "the library does not open it";
+  expect_same(library.read(), written, "");
+}
+
+Value numbers(std::vector<std::uint64_t> shape, Vector values, Stored stored = Stored::float64) {
+  return {std::move(shape), Numbers{std::move(values), stored}};
+}
+
+Value texts(Texts all) {
+  const std::uint64_t count = all.size();
+  return {{count}, std::move(all)};
+}
+
+Value text(std::string one) {
+  return {{}, Texts{std::move(one)}};
+}
+
+TEST(Serialise, AFileWithNothingInIt) {
+  expect_comes_back({});
+}
+
+TEST(Serialise, NumbersOfEveryTypeAtTheirLimits) {
+  Group root;
+  const auto add = [&](const char* name, Stored stored, std::initializer_list<double> values) {
+    Vector all(static_cast<Index>(values.size()));
+    std::ranges::copy(values, all.begin());
+    root.datasets[name] = {numbers({values.size()}, all, stored), {}};
+    root.attributes[name] = numbers({values.size()}, all, stored);
+  };
+  const double infinity = std::numeric_limits<double>::infinity();
+  add("float64", Stored::float64, {0.1, -0.0, 5e-324, 1.7976931348623157e308, infinity, -infinity, std::nan("")});
+  add("float32", Stored::float32, {0.5, -0.0, 0x1p-149, 0x1.fffffep127, -infinity, std::nan("")});
+  add("int8", Stored::int8, {-128, 127});
+  add("uint8", Stored::uint8, {0, 255});
+  add("int16", Stored::int16, {-32768, 32767});
+  add("uint16", Stored::uint16, {0, 65535});
+  add("int32", Stored::int32, {-2147483648.0, 2147483647.0});
+  add("uint32", Stored::uint32, {0, 4294967295.0});
+  add("int64", Stored::int64, {-0x1p63, 0x1p62});
+  add("uint64", Stored::uint64, {0, 0x1p63});
+  expect_comes_back(root);
+}
+
+TEST(Serialise, ShapesFromNoneToFourDimensions) {
+  Group root;
+  root.datasets["single"] = {numbers({}, Vector::Constant(1, 7)), {}};
+  root.datasets["empty"] = {numbers({0}, Vector(0)), {}};
+  root.datasets["empty 3×0"] = {numbers({3, 0}, Vector(0)), {}};
+  root.datasets["four"] = {numbers({2, 3, 4, 5}, Vector::LinSpaced(120, 0, 119)), {}};
+  root.attributes["empty"] = numbers({0}, Vector(0));
+  expect_comes_back(root);
+}
+
+/// How the library says that a dataset is stored.
+std::pair<H5D_layout_t, hsize_t> layout_of(const Library& library, const char* path) {
+  const Handle dataset(H5Dopen2(library.file(), path, H5P_DEFAULT), H5Dclose);
+  const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
+  return {H5Pget_layout(properties), H5Dget_storage_size(dataset)};
+}
+
+TEST(Serialise, PacksLargeNumbersWhereThatIsShorter) {
+  Group root;
+  const Vector smooth = Vector::LinSpaced(200'000, 0.0, 199.999);
+  root.datasets["smooth"] = {numbers({200'000}, smooth), {}};
+  std::mt19937_64 random(1);
+  Vector noise(2000);
+  for (double& value : noise) value = std::bit_cast<double>(random());
+  root.datasets["noise"] = {numbers({2000}, noise.unaryExpr([](double v) { return std::isnan(v) ? 1.0 : v; })), {}};
+  const auto bytes = serialise(root);
+  ASSERT_TRUE(bytes);
+  const Library library(*bytes);
+  EXPECT_EQ(layout_of(library, "/smooth").first, H5D_CHUNKED);
+  EXPECT_LT(layout_of(library, "/smooth").second, 8u * 200'000 / 2);
+  EXPECT_EQ(layout_of(library, "/noise"), std::pair(H5D_CONTIGUOUS, hsize_t{16'000}));
+  expect_comes_back(root);
+}
+
+TEST(Serialise, ManyChunksInSeveralDimensions) {
+  Group root;
+  const auto counted = [](Index size) { return Vector(Vector::LinSpaced(size, 0.0, static_cast<double>(size - 1))); };
+  root.datasets["one"] = {numbers({40'000'000}, Vector::Zero(40'000'000), Stored::int8), {}};  // 153 chunks, two levels
+  root.datasets["two"] = {numbers({30'001, 19}, counted(30'001 * 19)), {}};
+  root.datasets["wide"] = {numbers({3, 70'000}, counted(210'000)), {}};
+  root.datasets["deep"] = {numbers({5, 1, 7, 9000, 1}, counted(315'000)), {}};
+  expect_comes_back(root);
+}
+
+TEST(Serialise, AnyNumberOfNames) {
+  for (const int count : {1, 7, 8, 9, 255, 256, 257, 9000}) {
+    Group root;
+    for (int i = 0; i < count; ++i) {
+      const std::string name = fmt::format("n{}", (i * 7919) % 100'003);
+      if (i % 3 == 0) {
+        root.groups[name];
+      } else {
+        root.datasets[name] = {numbers({}, Vector::Constant(1, i)), {}};
+      }
+    }
+    SCOPED_TRACE(count);
+    expect_comes_back(root);
+  }
+}
+
+TEST(Serialise, TextsOfEveryLength) {
+  Group root;
+  root.attributes["plain"] = text("participant 7");
+  root.attributes["Größe"] = text("Ánna 😀");
+  root.attributes["empty"] = text("");
+  root.attributes["long"] = text(std::string(300'000, 'x'));
+  root.attributes["several"] = texts({"", "a", std::string(70'000, 'y'), "ü"});
+  root.attributes["MATLAB_class"] = text("double");
+  root.attributes["MATLAB_many"] = texts({"a", "bcd", ""});
+  Texts many;
+  for (int i = 0; i < 20'000; ++i) many.push_back(fmt::format("event {}", i));
+  root.datasets["many"] = {texts(many), {}};
+  root.datasets["none"] = {texts({}), {}};
+  root.datasets["single"] = {text("one"), {{"unit", text("m")}}};
+  expect_comes_back(root);
+}
+
+TEST(Serialise, ReferencesToObjectsAnywhere) {
+  Group root;
+  root.groups["#refs#"].datasets["a"] = {numbers({1, 2}, Vector::Ones(2)), {}};
+  root.groups["#refs#"].groups["deep"].groups["er"];
+  root.datasets["cells"] = {{{2, 2}, References{{"/#refs#/a", "", "/#refs#/deep/er", "/"}}},
+                            {{"self", {{1}, References{{"/cells"}}}}}};
+  root.attributes["first"] = {{}, References{{"/#refs#/a"}}};
+  expect_comes_back(root);
+}
+
+TEST(Serialise, AUserBlockStandsBeforeIt) {
+  Group root;
+  root.datasets["x"] = {numbers({50'000}, Vector::LinSpaced(50'000, 0, 1)), {{"unit", text("m")}}};
+  root.datasets["r"] = {{{1}, References{{"/x"}}}, {}};
+  const std::string block = "MATLAB" + std::string(506, '\0');
+  expect_comes_back(root, block);
+  EXPECT_TRUE(serialise(root, block)->starts_with(block + "\x89HDF"));
+  EXPECT_FALSE(serialise(root, "too short"));
+  EXPECT_FALSE(serialise(root, std::string(513, ' ')));
+}
+
+/// A tree of random shape, names, types and values.
+class RandomTree {
+ public:
+  explicit RandomTree(unsigned seed) : random_(seed) {}
+
+  Group group(int depth) {
+    Group made{attributes(), {}, {}};
+    for (int i = upto(12); i > 0; --i) made.datasets["d" + name()] = {value(400), attributes()};
+    for (int i = depth > 0 ? upto(4) : 0; i > 0; --i) made.groups["g" + name()] = group(depth - 1);
+    return made;
+  }
+
+ private:
+  int upto(int most) { return static_cast<int>(random_() % static_cast<unsigned>(most + 1)); }
+
+  std::string name() {
+    static const std::array<const char*, 8> parts{"a", "Z", "_", "9", "é", " ", "😀", "."};
+    std::string made;
+    for (int i = 1 + upto(12); i > 0; --i) made += parts[random_() % parts.size()];
+    return made;
+  }
+
+  Attributes attributes() {
+    Attributes made;
+    for (int i = upto(5); i > 0; --i) made[name()] = value(10);
+    return made;
+  }
+
+  Value value(int most) {
+    std::vector<std::uint64_t> shape;
+    std::uint64_t count = 1;
+    for (int i = upto(3); i > 0; --i) {
+      shape.push_back(static_cast<std::uint64_t>(upto(most)));
+      count *= shape.back();
+      most = most / 8 + 2;
+    }
+    if (upto(3) == 0) {
+      Texts all(count);
+      for (std::string& one : all) one = upto(4) == 0 ? "" : name();
+      return {shape, all};
+    }
+    const Stored stored = stored_types()[random_() % stored_types().size()].first;
+    Vector values(static_cast<Index>(count));
+    for (double& one : values) one = upto(100);
+    if (stored == Stored::float64) {
+      for (double& one : values) one = std::ldexp(static_cast<double>(random_()), upto(200) - 100);
+    }
+    return {shape, Numbers{values, stored}};
+  }
+
+  std::mt19937 random_;
+};
+
+TEST(Serialise, RandomTreesComeBack) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_comes_back(RandomTree(seed).group(3), seed % 2 == 0 ? "" : std::string(1024, 'u'));
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(Serialise, EqualTreesGiveEqualBytes) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    EXPECT_EQ(*serialise(RandomTree(seed).group(2)), *serialise(RandomTree(seed).group(2)));
+  }
+}
+
+TEST(Serialise, RefusesWhatAFileCannotHold) {
+  const auto said = [](const Group& root) {
+    const auto bytes = serialise(root);
+    return bytes ? "" : bytes.error().line();
+  };
+  const auto with_dataset = [](const std::string& name, Value value) {
+    Group root;
+    root.datasets[name] = {std::move(value), {}};
+    return root;
+  };
+  for (const std::string& name : {std::string(), std::string("a/b"), std::string("."), std::string("a\0b", 3)}) {
+    EXPECT_THAT(said(with_dataset(name, text("x"))), HasSubstr("cannot be the name of an HDF5 object"));
+  }
+  EXPECT_THAT(said(with_dataset("x", numbers({3}, Vector::Ones(2)))), HasSubstr("/x: there are 2 values for a shape of 3"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 256), Stored::uint8))), HasSubstr("256 does not fit"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0.5), Stored::int32))), HasSubstr("does not fit"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0x1p64), Stored::uint64))), HasSubstr("does not fit"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0.1), Stored::float32))), HasSubstr("does not fit"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, std::nan("")), Stored::int8))),
+              HasSubstr("nan does not fit"));
+  EXPECT_THAT(said(with_dataset("x", text(std::string("a\0b", 3)))), HasSubstr("null character"));
+  EXPECT_THAT(said(with_dataset("x", {{}, Unread{"of a compound type"}})), HasSubstr("of a compound type"));
+  EXPECT_THAT(said(with_dataset("x", {{1}, References{{"/y"}}})), HasSubstr("'/y', which is not there"));
+  Group both = with_dataset("x", text("x"));
+  both.groups["x"];
+  EXPECT_THAT(said(both), HasSubstr("/x: is both a group and a dataset"));
+  Group large;
+  large.attributes["x"] = numbers({9000}, Vector::Zero(9000));
+  EXPECT_THAT(said(large), HasSubstr("are more than the 65000 of an attribute"));
+}
+
+}  // namespace
+}  // namespace mbk::hdf5
