@@ -61,8 +61,9 @@ int main(int argc, char** argv) {
   const std::vector<std::pair<const char*, mbk::app::Action>> commands = {
       {"measure", mbk::app::add_measure(app)},   {"identify", mbk::app::add_identify(app)},
       {"ellipse", mbk::app::add_ellipse(app)},   {"info", mbk::app::add_info(app)},
-      {"simulate", mbk::app::add_simulate(app)}, {"springs", mbk::app::add_springs(app)},
-      {"robot", mbk::app::add_robot(app)},       {"validate", mbk::app::add_validate(app)},
+      {"convert", mbk::app::add_convert(app)},   {"simulate", mbk::app::add_simulate(app)},
+      {"springs", mbk::app::add_springs(app)},   {"robot", mbk::app::add_robot(app)},
+      {"validate", mbk::app::add_validate(app)},
   };
   try {
     app.parse(argc, argv);

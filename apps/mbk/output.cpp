@@ -38,7 +38,7 @@ Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) con
   if (!file || !std::filesystem::exists(*file, error)) return {};
   for (const std::filesystem::path& input : inputs) {
     if (std::filesystem::equivalent(*file, input, error)) {
-      return fail(ErrorKind::usage, "is what is read, and would be lost", "choose another name for --out",
+      return fail(ErrorKind::usage, "is what is read, and would be lost", "choose another name for what is written",
                   file->string());
     }
   }
