@@ -204,7 +204,7 @@ class Writer {
     };
     const auto add_attributes = [&](const Attributes& attributes) {
       for (const auto& [name, value] : attributes) {
-        if (!is_fixed(name)) add(value);
+        if (stand_of(name) != Stand::fixed) add(value);
       }
     };
     add_attributes(group.attributes);
@@ -215,22 +215,28 @@ class Writer {
     for (const auto& [name, child] : group.groups) collect(child, texts);
   }
 
-  /// Whether the texts of an attribute have a fixed length.
-  static bool is_fixed(std::string_view attribute) { return attribute.starts_with("MATLAB_"); }
+  /// How the texts of a value stand in the file.
+  enum class Stand { variable, fixed, letters };
+
+  static Stand stand_of(std::string_view attribute) {
+    if (attribute == "MATLAB_fields") return Stand::letters;
+    return attribute.starts_with("MATLAB_") ? Stand::fixed : Stand::variable;
+  }
 
   // ---- values ----
 
-  static Output type_of(const Value& value, bool fixed) {
+  static Output type_of(const Value& value, Stand stand) {
     if (const auto* numbers = std::get_if<Numbers>(&value.data)) return number_type(numbers->stored);
     if (std::holds_alternative<References>(value.data)) return datatype(7, 0, 0, 8);
     const auto& texts = std::get<Texts>(value.data);
-    if (fixed) return datatype(3, std::ranges::all_of(texts, is_ascii) ? 0 : 0x10, 0, longest(texts));
-    Output type = datatype(9, 1, 1, 16);  // a string of bytes, in UTF-8
-    type.append(number_type(Stored::uint8));
+    if (stand == Stand::fixed) return datatype(3, std::ranges::all_of(texts, is_ascii) ? 0 : 0x10, 0, longest(texts));
+    const bool letters = stand == Stand::letters;  // sequences of strings of one byte; otherwise strings in UTF-8
+    Output type = datatype(9, letters ? 0 : 1, letters ? 0 : 1, 16);
+    type.append(letters ? datatype(3, 0, 0, 1) : number_type(Stored::uint8));
     return type;
   }
 
-  [[nodiscard]] Output content_of(const Value& value, bool fixed) const {
+  [[nodiscard]] Output content_of(const Value& value, Stand stand) const {
     Output out;
     if (const auto* numbers = std::get_if<Numbers>(&value.data)) {
       out.bytes = bytes_of(*numbers);
@@ -239,7 +245,7 @@ class Writer {
     } else {
       const auto& texts = std::get<Texts>(value.data);
       for (const std::string& text : texts) {
-        if (fixed) {
+        if (stand == Stand::fixed) {
           out.put_text(text);
           out.put_zeros(longest(texts) - text.size());
           continue;
@@ -255,7 +261,7 @@ class Writer {
 
   void add_attributes(Header& header, const Attributes& attributes) const {
     for (const auto& [name, value] : attributes) {
-      Output type = type_of(value, is_fixed(name));
+      Output type = type_of(value, stand_of(name));
       Output space = dataspace(value.shape);
       Output message;
       message.put_u8(3);
@@ -268,7 +274,7 @@ class Writer {
       message.put_u8(0);
       message.append(std::move(type));
       message.append(std::move(space));
-      message.append(content_of(value, is_fixed(name)));
+      message.append(content_of(value, stand_of(name)));
       header.add(kAttribute, std::move(message));
     }
   }
@@ -276,7 +282,7 @@ class Writer {
   // ---- datasets ----
 
   std::uint64_t dataset(const Dataset& dataset, const std::string& path) {
-    Output content = content_of(dataset.value, false);
+    Output content = content_of(dataset.value, Stand::variable);
     const auto& shape = dataset.value.shape;
     std::optional<Chunks> chunks;
     std::size_t size = 0;
@@ -290,7 +296,7 @@ class Writer {
     }
     Header header;
     header.add(kDataspace, dataspace(shape));
-    header.add(kDatatype, type_of(dataset.value, false));
+    header.add(kDatatype, type_of(dataset.value, Stand::variable));
     Output fill;
     fill.put_u8(2);
     fill.put_u8(chunks ? 3 : 2);  // space is allocated as it is needed; as late as possible

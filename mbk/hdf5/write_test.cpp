@@ -131,6 +131,13 @@ class Library {
         paths.paths.push_back(path);
       }
       value.data = paths;
+    } else if (H5Tget_class(type) == H5T_VLEN) {
+      std::vector<hvl_t> sequences(count);
+      EXPECT_GE(read(type, sequences.data()), 0);
+      Texts letters;
+      for (const hvl_t& one : sequences) letters.emplace_back(static_cast<const char*>(one.p), one.len);
+      if (count > 0) H5Dvlen_reclaim(type, space, H5P_DEFAULT, sequences.data());
+      value.data = letters;
     } else if (H5Tget_class(type) == H5T_STRING) {
       value.data = texts(type, count, space, read);
     } else {
@@ -173,7 +180,11 @@ void expect_same(const Value& read, const Value& written, const std::string& pla
     EXPECT_EQ(found.stored, numbers->stored) << place;
     ASSERT_EQ(found.values.size(), numbers->values.size()) << place;
     for (Index i = 0; i < found.values.size(); ++i) {
-      ASSERT_THAT(found.values[i], testing::NanSensitiveDoubleEq(numbers->values[i])) << place << " " << i;
+      const double one = found.values[i], other = numbers->values[i];
+      if (std::isnan(one) && std::isnan(other)) continue;
+      if (one != other || std::signbit(one) != std::signbit(other)) {
+        FAIL() << place << " " << i << ": " << one << " for " << other;
+      }
     }
   } else if (const auto* texts = std::get_if<Texts>(&written.data)) {
     EXPECT_EQ(std::get<Texts>(read.data), *texts) << place;
@@ -289,7 +300,7 @@ TEST(Serialise, PacksLargeNumbersWhereThatIsShorter) {
 TEST(Serialise, ManyChunksInSeveralDimensions) {
   Group root;
   const auto counted = [](Index size) { return Vector(Vector::LinSpaced(size, 0.0, static_cast<double>(size - 1))); };
-  root.datasets["one"] = {numbers({40'000'000}, Vector::Zero(40'000'000), Stored::int8), {}};  // 153 chunks, two levels
+  root.datasets["one"] = {numbers({17'000'000}, Vector::Zero(17'000'000), Stored::int8), {}};  // 65 chunks: two levels
   root.datasets["two"] = {numbers({30'001, 19}, counted(30'001 * 19)), {}};
   root.datasets["wide"] = {numbers({3, 70'000}, counted(210'000)), {}};
   root.datasets["deep"] = {numbers({5, 1, 7, 9000, 1}, counted(315'000)), {}};
@@ -320,6 +331,7 @@ TEST(Serialise, TextsOfEveryLength) {
   root.attributes["long"] = text(std::string(300'000, 'x'));
   root.attributes["several"] = texts({"", "a", std::string(70'000, 'y'), "ü"});
   root.attributes["MATLAB_class"] = text("double");
+  root.attributes["MATLAB_fields"] = texts({"time", "a", "value"});
   root.attributes["MATLAB_many"] = texts({"a", "bcd", ""});
   Texts many;
   for (int i = 0; i < 20'000; ++i) many.push_back(fmt::format("event {}", i));
@@ -357,7 +369,7 @@ class RandomTree {
 
   Group group(int depth) {
     Group made{attributes(), {}, {}};
-    for (int i = upto(12); i > 0; --i) made.datasets["d" + name()] = {value(400), attributes()};
+    for (int i = upto(12); i > 0; --i) made.datasets["d" + name()] = {value(120), attributes()};
     for (int i = depth > 0 ? upto(4) : 0; i > 0; --i) made.groups["g" + name()] = group(depth - 1);
     return made;
   }
@@ -404,7 +416,7 @@ class RandomTree {
 };
 
 TEST(Serialise, RandomTreesComeBack) {
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < 25; ++seed) {
     SCOPED_TRACE(seed);
     expect_comes_back(RandomTree(seed).group(3), seed % 2 == 0 ? "" : std::string(1024, 'u'));
     if (testing::Test::HasFailure()) return;

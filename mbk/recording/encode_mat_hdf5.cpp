@@ -67,7 +67,12 @@ class Encoder {
   void add(hdf5::Group& group, const std::string& name, const MatVariable::Structure& fields) {
     hdf5::Group& structure = group.groups[name];
     structure.attributes["MATLAB_class"] = one_text("struct");
-    for (const MatVariable& field : fields) add(structure, field);
+    hdf5::Texts names;
+    for (const MatVariable& field : fields) {
+      add(structure, field);
+      names.push_back(field.name);
+    }
+    structure.attributes["MATLAB_fields"] = {{names.size()}, std::move(names)};
   }
 };
 
