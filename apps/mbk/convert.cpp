@@ -56,7 +56,8 @@ int run(Arguments arguments) {
     fmt::print(stderr, "mbk: {}: not written: {}\n", output.file->string(), lost);
   }
   if (reading.quiet) return kFine;
-  for (const std::string& note : recording.notes) fmt::print(stderr, "mbk: {}: {}\n", reading.files.front().string(), note);
+  for (const std::string& note : recording.notes)
+    fmt::print(stderr, "mbk: {}: {}\n", reading.files.front().string(), note);
   if (auto ok = Output().write(summary_line(recording, *output.file, *format)); !ok) return report_error(ok.error());
   return kFine;
 }

@@ -186,7 +186,9 @@ Action add_simulate(CLI::App& app) {
       "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
       "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
   command->add_option("SCENARIO", arguments->scenario, "a TOML file, or the name of a ready scenario");
-  command->add_option("--out", arguments->out, "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
+  command
+      ->add_option("--out", arguments->out,
+                   "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
       ->type_name("REC")
       ->check(not_empty());
   command->add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")

@@ -16,7 +16,8 @@ using namespace mbk;
 constexpr Hertz kRate{1000.0};  // of the published logs
 constexpr char kHelp[] =
     "Writes a synthetic trial at 1 kHz as .mat, .h5 or .csv, and prints the truth behind it.\n"
-    "A MAT file of two axes holds the 19-row matrix 'logs': row 1 time, 2-3 hand, 10-11 force of the hand on the robot,\n"
+    "A MAT file of two axes holds the 19-row matrix 'logs': row 1 time, 2-3 hand, 10-11 force of the hand on the "
+    "robot,\n"
     "12-13 reference, 18-19 acceleration; every other row is NaN. One axis: time, position, reaction, reference, "
     "acceleration.\n"
     "Example: make_log --protocol underdamped --seed 3 --out trial.mat";

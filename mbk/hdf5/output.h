@@ -47,6 +47,14 @@ class Output {
     bytes += more.bytes;
   }
 
+  /// Appends something where it may begin; its address.
+  std::uint64_t place(Output content) {
+    align();
+    const std::uint64_t address = bytes.size();
+    append(std::move(content));
+    return address;
+  }
+
   void overwrite_u64(std::size_t place, std::uint64_t value) {
     Output eight;
     eight.put_u64(value);

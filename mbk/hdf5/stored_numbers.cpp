@@ -46,8 +46,8 @@ auto with_type(Stored stored, const Use& use) {
 template <class T>
 bool holds(double value) {
   if constexpr (std::is_floating_point_v<T>) {
-    return !std::isfinite(value) ||
-           (std::abs(value) <= static_cast<double>(std::numeric_limits<T>::max()) && static_cast<double>(static_cast<T>(value)) == value);
+    return !std::isfinite(value) || (std::abs(value) <= static_cast<double>(std::numeric_limits<T>::max()) &&
+                                     static_cast<double>(static_cast<T>(value)) == value);
   } else {
     const double above = std::ldexp(1.0, std::numeric_limits<T>::digits);
     return value >= static_cast<double>(std::numeric_limits<T>::min()) && value < above && value == std::trunc(value);

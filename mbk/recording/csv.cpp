@@ -143,8 +143,7 @@ void take_comments(std::string_view text, Contents& contents) {
     if (line.starts_with(kEvent)) {
       if (const auto one = event(line.substr(kEvent.size()))) contents.events.push_back(*one);
     } else if (colon != line.npos) {
-      contents.metadata[printable(std::string(line.substr(0, colon)))] =
-          printable(std::string(line.substr(colon + 2)));
+      contents.metadata[printable(std::string(line.substr(0, colon)))] = printable(std::string(line.substr(colon + 2)));
     }
   }
 }

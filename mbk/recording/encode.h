@@ -14,8 +14,8 @@ namespace mbk::recording {
 /// @fails  as mat_variables does; more than 2³¹ bytes of matrix.
 [[nodiscard]] Result<std::string> encode_mat_level5(const Recording& recording);
 
-/// The same variables as MATLAB keeps them in HDF5, v7.3: dimensions in reverse order, texts as numbers of UTF-16, cells
-/// as references into #refs#, classes as attributes.
+/// The same variables as MATLAB keeps them in HDF5, v7.3: dimensions in reverse order, texts as numbers of UTF-16,
+/// cells as references into #refs#, classes as attributes.
 /// @fails  as mat_variables does.
 [[nodiscard]] Result<std::string> encode_mat_hdf5(const Recording& recording);
 

@@ -52,8 +52,8 @@ std::string matrix(const std::string& name, std::uint32_t array_class, std::size
                    const std::string& content) {
   const std::int32_t size[] = {static_cast<std::int32_t>(rows), static_cast<std::int32_t>(columns)};
   const std::uint32_t flags[] = {array_class, 0};
-  return element(kMatrix, element(kUint32, raw(flags, 2)) + element(kInt32, raw(size, 2)) + element(kInt8, name) +
-                              content);
+  return element(kMatrix,
+                 element(kUint32, raw(flags, 2)) + element(kInt32, raw(size, 2)) + element(kInt8, name) + content);
 }
 
 std::string encoded(const std::string& name, const Matrix& values) {
@@ -115,8 +115,8 @@ Result<std::string> encode_mat_level5(const Recording& recording) {
   if (!variables) return tl::unexpected(variables.error());
   std::string file = header();
   for (const MatVariable& variable : *variables) {
-    file += element(kCompressed, compressed(std::visit(
-                                     [&](const auto& value) { return encoded(variable.name, value); }, variable.value)));
+    file += element(kCompressed, compressed(std::visit([&](const auto& value) { return encoded(variable.name, value); },
+                                                       variable.value)));
   }
   return file;
 }

@@ -89,7 +89,8 @@ class RandomRecording {
 void expect_same(const Vector& a, const Vector& b, const std::string& place) {
   ASSERT_EQ(a.size(), b.size()) << place;
   for (Index k = 0; k < a.size(); ++k) {
-    const bool same = std::isnan(b[k]) ? std::isnan(a[k]) : std::bit_cast<std::uint64_t>(a[k]) == std::bit_cast<std::uint64_t>(b[k]);
+    const bool same =
+        std::isnan(b[k]) ? std::isnan(a[k]) : std::bit_cast<std::uint64_t>(a[k]) == std::bit_cast<std::uint64_t>(b[k]);
     ASSERT_TRUE(same) << place << " " << k << ": " << a[k] << " for " << b[k];
   }
 }
@@ -180,7 +181,7 @@ TEST(Write, LeavesNothingBehindOnAFullDisk) {
   struct rlimit before {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const struct rlimit small{1000, before.rlim_max};
+  const struct rlimit small { 1000, before.rlim_max };
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
   std::vector<Result<void>> refused;
   for (const Kind& kind : kKinds) refused.push_back(write(recording, folder / kind.file, kind.format, false));
@@ -283,7 +284,8 @@ TEST(WriteMat, RefusesMoreThanAV5FileHolds) {
   recording.channels = {{"hand_x", "m", "base", recording.time}};
   const auto refused = write(recording, folder / "a.mat", Format::mat5, false);
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().line(), HasSubstr("14128182 samples are too many for a MAT v5 file; write it as MAT v7.3"));
+  EXPECT_THAT(refused.error().line(),
+              HasSubstr("14128182 samples are too many for a MAT v5 file; write it as MAT v7.3"));
 }
 
 using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
@@ -304,7 +306,8 @@ TEST(WriteMat, BothVersionsAreReadByMatio) {
   for (const Kind& kind : {kKinds[0], kKinds[1]}) {
     SCOPED_TRACE(kind.file);
     ASSERT_TRUE(write(recording, folder / kind.file, kind.format, false));
-    const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open((folder / kind.file).c_str(), MAT_ACC_RDONLY), Mat_Close);
+    const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open((folder / kind.file).c_str(), MAT_ACC_RDONLY),
+                                                      Mat_Close);
     ASSERT_NE(mat, nullptr);
     EXPECT_EQ(Mat_GetVersion(mat.get()), kind.format == Format::mat5 ? MAT_FT_MAT5 : MAT_FT_MAT73);
     const MatVariable logs(Mat_VarRead(mat.get(), "logs"), Mat_VarFree);
@@ -359,9 +362,10 @@ TEST(WriteCsv, CommentsOfOtherFilesSayNothing) {
 
 TEST(WriteCsv, CommentsThatWereChangedAreOnlyComments) {
   const test::Folder folder;
-  const auto file = folder.write("a.csv",
-                                 "# mbk.recording/1\r\n# lost\r\n# participant: 7\r\n# event\n# event x 3 a\n# event 1\n"
-                                 "# event 0.5 2\r\n#\ntime_s,hand_x_m\r\n0,1\r\n0.1,2\r\n# late: comment\r\n");
+  const auto file =
+      folder.write("a.csv",
+                   "# mbk.recording/1\r\n# lost\r\n# participant: 7\r\n# event\n# event x 3 a\n# event 1\n"
+                   "# event 0.5 2\r\n#\ntime_s,hand_x_m\r\n0,1\r\n0.1,2\r\n# late: comment\r\n");
   const auto recording = read(file, {});
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->metadata, (std::map<std::string, std::string>{{"participant", "7"}}));
