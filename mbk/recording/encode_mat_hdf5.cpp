@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "mbk/hdf5/write.h"
 #include "mbk/recording/encode.h"
 #include "mbk/recording/mat_variables.h"
@@ -9,7 +12,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kHeaderText = 116, kUserBlock = 512;
-const std::string kReferred = "#refs#";  // NOLINT(cert-err58-cpp)
+constexpr std::string_view kReferred = "#refs#";
 
 hdf5::Value one_text(std::string text) {
   return {{}, hdf5::Texts{std::move(text)}};
@@ -56,7 +59,7 @@ class Encoder {
   void add(hdf5::Group& group, const std::string& name, const MatVariable::Cells& cells) {
     hdf5::References references;
     for (const std::string& cell : cells) {
-      auto& referred = root.groups[kReferred].datasets;
+      auto& referred = root.groups[std::string(kReferred)].datasets;
       const std::string key = fmt::format("c{}", referred.size());
       referred[key] = dataset(cell);
       references.paths.push_back(fmt::format("/{}/{}", kReferred, key));
