@@ -29,9 +29,11 @@ void take_events(Contents& contents) {
     return array.values.size() == count && std::min(array.values.rows(), array.values.cols()) == 1;
   };
   if (!fits(*time) || !fits(*value)) return;
+  const Unit* const unit = find_unit(time->unit.empty() ? "s" : time->unit);
+  if (unit == nullptr || unit->dimension != Dimension::time) return;
   for (Index k = 0; k < count; ++k) {
-    contents.events.push_back(
-        {time->values.reshaped()[k], name->lines[static_cast<std::size_t>(k)], value->values.reshaped()[k]});
+    contents.events.push_back({unit->to_si(time->values.reshaped()[k]), name->lines[static_cast<std::size_t>(k)],
+                               value->values.reshaped()[k]});
   }
   std::erase_if(contents.arrays,
                 [](const Array& array) { return array.name == "events.time" || array.name == "events.value"; });
