@@ -35,7 +35,7 @@ struct Signal {
 };
 
 bool is_vector(const Array& array) {
-  return std::min(array.values.rows(), array.values.cols()) == 1 && array.values.size() > 1;
+  return std::min(array.values.rows(), array.values.cols()) == 1 && (array.values.size() > 1 || array.signal);
 }
 
 bool is_matrix(const Array& array) {

@@ -14,6 +14,7 @@ struct Array {
   std::string name;  ///< CSV column, MAT variable or "struct.field", HDF5 path; "" for a column without a header
   Matrix values;
   std::string unit = {};  ///< what the file says of it beside its name: "mm"; "" where it says nothing
+  bool signal = false;    ///< the file says that it is one, even with a single sample
 };
 
 /// Text of a file, in UTF-8 without control characters: the rows of a char array, or the entries of a cell array of

@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "mbk/hdf5/read.h"
 #include "mbk/recording/byte_view.h"
 #include "mbk/recording/channel_table.h"
+#include "mbk/recording/encode.h"
 #include "mbk/recording/file_bytes.h"
 #include "mbk/recording/hdf5_tree.h"
 #include "mbk/recording/mat_hdf5.h"
@@ -17,8 +19,8 @@ namespace {
 
 constexpr std::size_t kLongestNumbers = 64;  ///< of an attribute that becomes metadata
 
-/// What a value says, in one line; "" where it is neither text nor a few numbers.
-std::string line_of(const hdf5::Value& value) {
+/// What a value says, in one line; nothing where it is neither text nor a few numbers.
+std::optional<std::string> line_of(const hdf5::Value& value) {
   if (const auto* const texts = std::get_if<hdf5::Texts>(&value.data)) {
     return printable(fmt::format("{}", fmt::join(*texts, "; ")));
   }
@@ -33,9 +35,11 @@ class Decoder {
 
   void run(hdf5::Group& root) {
     contents.format = "HDF5";
+    own_layout_ = text_attribute(root.attributes, "format") == kLayout;
     for (const auto& [name, value] : root.attributes) {
-      std::string line = line_of(value);
-      if (!line.empty()) contents.metadata[printable(name)] = std::move(line);
+      auto line = line_of(value);
+      const bool of_the_writer = name == "format" || (name == "software" && line && line->starts_with("mbk "));
+      if (line && !(own_layout_ && of_the_writer)) contents.metadata[printable(name)] = std::move(*line);
     }
     for (const auto& [name, dataset] : root.datasets) in_root_.push_back(name);
     group(root, "");
@@ -71,7 +75,8 @@ class Decoder {
     const std::uint64_t columns = rank == 2 ? value.shape[1] : 1;
     const std::string name = name_of(path);
     check_frame(name, text_attribute(dataset.attributes, "frame"));
-    contents.arrays.push_back({name, take_rows(numbers, value.shape[0], columns), std::move(unit)});
+    const bool signal = own_layout_ && (path == "time" || path.starts_with("channels/"));
+    contents.arrays.push_back({name, take_rows(numbers, value.shape[0], columns), std::move(unit), signal});
   }
 
   /// Channels go by their own names, and events as in MAT files.
@@ -100,6 +105,7 @@ class Decoder {
     contents.notes.push_back(fmt::format("'{}' is {}; left aside", path, what));
   }
 
+  bool own_layout_ = false;  ///< as encode_hdf5 writes it
   std::vector<std::string> in_root_;
 };
 

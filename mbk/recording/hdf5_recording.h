@@ -17,7 +17,7 @@ namespace mbk::recording {
 /// note. In the layout that mbk writes
 ///   /channels/NAME   come out as NAME;
 ///   /events/time, /events/value, /events/name   as `events.time`, …, for `take_annotations`;
-/// and attributes of the root that are numbers or texts are metadata.
+/// and attributes of the root that are numbers or texts are metadata; but not `format` and mbk's own `software`.
 [[nodiscard]] Contents contents_of_hdf5(hdf5::Group root);
 
 }  // namespace mbk::recording

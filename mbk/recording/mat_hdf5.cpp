@@ -64,8 +64,8 @@ class Decoder {
   }
 
   void dataset(hdf5::Dataset& dataset, const std::string& name, const std::string& type) {
-    if (dataset.attributes.contains("MATLAB_empty")) return;
     if (type == "char") return text(dataset, name);
+    if (dataset.attributes.contains("MATLAB_empty")) return;
     if (type == "cell") return cells(dataset, name);
     if (type.empty() || is_numeric_class(type)) return numbers(dataset.value, name);
     aside(name, fmt::format("of class '{}'", type));
