@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """mbk convert: the same recording in every format, as mbk and as programs of others read it."""
 
-import json
 import math
 import os
+import pathlib
 import resource
 import shutil
 import signal
 import subprocess
+import tempfile
 import unittest
 
 import mat_file
@@ -97,7 +98,7 @@ class Convert(Case):
         self.assertEqual((self.folder / "joined.mat").read_bytes(), (self.folder / "whole.mat").read_bytes())
 
     def test_what_is_left_aside_is_said(self):
-        path = mat_file.write(self.folder / "log.mat", {"logs": mat_file.read(make_log().path)["logs"], "other": [[1.0, 2.0]]})
+        path = copy(make_log().path, self.folder / "log.mat")
         ran = self.mbk("convert", path, self.folder / "log.h5")
         self.assertIn("rows 4, 5, 8, 9, 16 and 17 have no name and were left aside", ran.err)
         self.assertEqual(self.fine("convert", path, self.folder / "quiet.h5", "--quiet").out, "")
@@ -156,19 +157,23 @@ class Refusals(Case):
 class OthersRead(Case):
     """Programs that are not ours find every number where the guide says that it is."""
 
-    def setUp(self):
-        super().setUp()
-        self.rows = mat_file.read(make_log().path)["logs"]
-        self.metadata = self.mbk("info", "--json", make_log().path).json["metadata"]
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="mbk-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.converted = pathlib.Path(folder.name)
+        cls.rows = mat_file.read(make_log().path)["logs"]
+        cls.metadata = run("info", "--json", make_log().path).json["metadata"]
         for target in FILES.values():
-            self.mbk("convert", make_log().path, *target, folder=self.folder)
+            ran = run("convert", make_log().path, *target, folder=cls.converted)
+            assert ran.code == FINE, ran
 
     def same(self, values, name):
         self.assertEqual([float(value) for value in values], self.rows[ROWS[name]])
 
     @unittest.skipIf(h5py is None, "h5py is not there")
     def test_h5py_reads_hdf5(self):
-        with h5py.File(self.folder / "log.h5") as file:
+        with h5py.File(self.converted / "log.h5") as file:
             self.assertEqual(file.attrs["format"], "mbk.recording/1")
             self.assertRegex(file.attrs["software"], r"mbk \d")
             for key, value in self.metadata.items():
@@ -183,7 +188,7 @@ class OthersRead(Case):
 
     @unittest.skipIf(h5py is None, "h5py is not there")
     def test_h5py_reads_mat_7_3(self):
-        with h5py.File(self.folder / "log73.mat") as file:
+        with h5py.File(self.converted / "log73.mat") as file:
             self.assertEqual(file.userblock_size, 512)
             logs = file["logs"]
             self.assertEqual((logs.shape, logs.attrs["MATLAB_class"]), ((len(self.rows[0]), 19), b"double"))
@@ -193,7 +198,7 @@ class OthersRead(Case):
 
     @unittest.skipIf(scipy is None, "SciPy is not there")
     def test_scipy_reads_mat_5(self):
-        variables = scipy.io.loadmat(self.folder / "log5.mat", squeeze_me=True)
+        variables = scipy.io.loadmat(self.converted / "log5.mat", squeeze_me=True)
         for name, row in ROWS.items():
             self.same(variables["logs"][row], name)
         for key, value in self.metadata.items():
@@ -201,23 +206,23 @@ class OthersRead(Case):
 
     @unittest.skipIf(numpy is None, "NumPy is not there")
     def test_numpy_reads_csv(self):
-        table = numpy.genfromtxt(self.folder / "log.csv", delimiter=",", comments="#")
+        table = numpy.genfromtxt(self.converted / "log.csv", delimiter=",", comments="#")
         self.same(table[1:, 0], "time")
-        header = [line for line in (self.folder / "log.csv").read_text().splitlines()[:50] if line[0] != "#"][0]
+        header = [line for line in (self.converted / "log.csv").read_text().splitlines()[:50] if line[0] != "#"][0]
         self.same(table[1:, header.split(",").index("force_x_N")], "force_x")
 
     @unittest.skipIf(shutil.which("h5dump") is None, "h5dump is not there")
     def test_h5dump_finds_nothing_wrong(self):
         for name in ("log.h5", "log73.mat"):
-            process = subprocess.run(["h5dump", "--enable-error-stack", self.folder / name], capture_output=True,
+            process = subprocess.run(["h5dump", "--enable-error-stack", self.converted / name], capture_output=True,
                                      check=False, timeout=120)
             self.assertEqual((process.returncode, process.stderr), (0, b""))
 
     @unittest.skipIf(shutil.which("octave-cli") is None, "Octave is not there")
-    def test_octave_reads_both_mat_files(self):
+    def test_octave_reads_both_mat_files(self):  # texts of v7.3 as their codes
         for name in ("log5.mat", "log73.mat"):
             said = subprocess.run(["octave-cli", "--eval", f"a = load('{name}'); printf('%.17g %d %d\\n', a.logs(10, 7),"
-                                   " size(a.logs)); puts([a.metadata.protocol 10]);"], cwd=self.folder, capture_output=True,
+                                   " size(a.logs)); printf('%s\\n', char(a.metadata.protocol))"], cwd=self.converted, capture_output=True,
                                   text=True, check=True, timeout=120).stdout.splitlines()
             self.assertEqual(said[0], f"{self.rows[9][6]:.17g} 19 {len(self.rows[0])}")
             self.assertEqual(said[1], self.metadata["protocol"])
