@@ -18,6 +18,7 @@ Action add_measure(CLI::App& app, const std::string& typed);
 Action add_identify(CLI::App& app);
 Action add_ellipse(CLI::App& app);
 Action add_info(CLI::App& app);
+Action add_convert(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_springs(CLI::App& app);
 Action add_validate(CLI::App& app);

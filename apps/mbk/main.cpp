@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
       {"identify", mbk::app::add_identify(app)},
       {"ellipse", mbk::app::add_ellipse(app)},
       {"info", mbk::app::add_info(app)},
+      {"convert", mbk::app::add_convert(app)},
       {"simulate", mbk::app::add_simulate(app)},
       {"springs", mbk::app::add_springs(app)},
       {"robot", mbk::app::add_robot(app)},

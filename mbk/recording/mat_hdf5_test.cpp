@@ -6,14 +6,9 @@
 
 #include <random>
 
+#include "mbk/recording/hdf5_recording.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/test_files.h"
-
-/// Under the address sanitizer: HDF5 itself loses some memory over a damaged file.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libhdf5";
-}
 
 namespace mbk::recording {
 namespace {
@@ -67,8 +62,7 @@ TEST(DecodeMatHdf5, RefusesAFileCutAnywhere) {
   for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
     const std::string whole = write_hdf5(folder / "whole.mat", test::logs(20), compression);
     for (std::size_t n = 0; n < whole.size(); ++n) {
-      const auto cut = std::as_bytes(std::span(whole)).first(n);
-      ASSERT_FALSE(looks_like_mat_hdf5(cut) && decode_mat_hdf5(folder / "none.mat", cut)) << "cut to " << n;
+      ASSERT_FALSE(decode_hdf5(std::as_bytes(std::span(whole)).first(n))) << "cut to " << n;
     }
     for (const std::size_t n : {std::size_t{5}, std::size_t{300}, std::size_t{519}, whole.size() - 1}) {
       EXPECT_FALSE(read(folder.write("cut.mat", std::string_view(whole).substr(0, n)), {})) << "cut to " << n;
