@@ -22,7 +22,7 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
     return bad_usage(fmt::format("{} files to read, and one to write", inputs.size()),
                      "pass --parts where they are numbered parts of one record, else convert each by itself");
   }
-  return output.check(inputs);
+  return check_new_file(*output.file, "OUT", output.overwrite, inputs);
 }
 
 /// "log.h5: HDF5, 62.1 s, 6 channels, 2 events, 9 entries of metadata".
