@@ -217,10 +217,10 @@ class ExtensibleArray : Array {
     return {};
   }
 
-  unsigned bits_ = 0;                ///< of the largest index
-  std::uint64_t in_index_ = 0;       ///< elements in the index block
-  std::uint64_t least_ = 0;          ///< elements in the smallest data block
-  std::uint64_t least_pointers_ = 0; ///< data blocks of the first super block of its own
+  unsigned bits_ = 0;                 ///< of the largest index
+  std::uint64_t in_index_ = 0;        ///< elements in the index block
+  std::uint64_t least_ = 0;           ///< elements in the smallest data block
+  std::uint64_t least_pointers_ = 0;  ///< data blocks of the first super block of its own
 };
 
 }  // namespace

@@ -175,7 +175,8 @@ TEST(ReadChunks, VerifiesTheChecksumOfData) {
 
 TEST(ReadChunks, NamesAFilterThatItDoesNotKnow) {
   const Group root = good(written(Writer::earliest, [](hid_t file) {
-    put_numbers(file, "x", counted(9), {{9}, {}, {9}}, H5T_STD_I32LE, [](hid_t properties) { H5Pset_nbit(properties); });
+    put_numbers(file, "x", counted(9), {{9}, {}, {9}}, H5T_STD_I32LE,
+                [](hid_t properties) { H5Pset_nbit(properties); });
   }));
   EXPECT_EQ(std::get<Unread>(root.datasets.at("x").value.data).what, "packed by filter 5");
 }

@@ -114,10 +114,9 @@ TEST(ContentsOfHdf5, ListsOtherFilesByTheirPaths) {
   EXPECT_EQ(contents.arrays[0].name, "trial/clock");
   EXPECT_EQ(contents.arrays[2].name, "trial/pos");
   EXPECT_EQ(contents.arrays[2].values, (Matrix(4, 2) << 0, 1, 2, 3, 4, 5, 6, 7).finished());  // as h5py shows it
-  EXPECT_THAT(contents.notes, ElementsAre("'cube' is an array of 3 dimensions; left aside",
-                                          "'rate' is a single number; left aside",
-                                          "'table' is of a compound type; left aside",
-                                          "variable 'label' is text; left aside"));
+  EXPECT_THAT(contents.notes,
+              ElementsAre("'cube' is an array of 3 dimensions; left aside", "'rate' is a single number; left aside",
+                          "'table' is of a compound type; left aside", "variable 'label' is text; left aside"));
 }
 
 TEST(ContentsOfHdf5, LetsAPathBeSaidWithSlashesOrDots) {
@@ -151,13 +150,17 @@ TEST(ContentsOfHdf5, SaysWhatIsThereWhereNothingIsRecognised) {
 }
 
 TEST(DecodeHdf5, NamesTheObjectThatIsDamaged) {
-  std::string bytes = hdf5::test::written(hdf5::test::Writer::earliest, [](hid_t file) {
-    hdf5::test::put_numbers(file, "x", Vector::Constant(8, 1.5), {{8}, {}, {8}}, H5T_IEEE_F64LE,
-                            [](hid_t properties) { H5Pset_fletcher32(properties); });
-  }, 512);
+  std::string bytes = hdf5::test::written(
+      hdf5::test::Writer::earliest,
+      [](hid_t file) {
+        hdf5::test::put_numbers(file, "x", Vector::Constant(8, 1.5), {{8}, {}, {8}}, H5T_IEEE_F64LE,
+                                [](hid_t properties) { H5Pset_fletcher32(properties); });
+      },
+      512);
   const double value = 1.5;
   bytes[bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof value))] = 1;
-  EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes))).error().line(), HasSubstr("/x: a chunk has a wrong checksum"));
+  EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes))).error().line(),
+              HasSubstr("/x: a chunk has a wrong checksum"));
   bytes.replace(0, 10, "MATLAB 7.3");
   EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes))).error().line(),
               HasSubstr("variable 'x': a chunk has a wrong checksum"));
