@@ -41,7 +41,7 @@ Result<void> check_order(const MeasureArguments& a) {
 }  // namespace
 
 void add_reading_options(CLI::App& command, MeasureArguments& arguments) {
-  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3) or .csv")->required();
+  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5 or .csv")->required();
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "

@@ -75,8 +75,7 @@ class Walk {
     const auto broken = [&] { return damaged(fmt::format("the B-tree node at byte {} is broken", address)); };
     if (records > level.most_records) return broken();
     const std::uint64_t pointers = depth > 0 ? (records + 1) * level.pointer_size : 0;
-    const auto block =
-        file_.checked_block(address, kFrame + records * record_size_ + pointers, "a B-tree node");
+    const auto block = file_.checked_block(address, kFrame + records * record_size_ + pointers, "a B-tree node");
     if (!block) return tl::unexpected(block.error());
     Cursor in = file_.cursor(*block);
     const bool known = in.is(depth > 0 ? "BTIN" : "BTLF") && in.byte() == 0 && in.byte() == static_cast<int>(kind_);
@@ -105,8 +104,7 @@ class Walk {
 
 }  // namespace
 
-Result<void> for_each_record(File& file, std::uint64_t header,
-                             const std::function<Result<void>(BTree2, Cursor)>& use) {
+Result<void> for_each_record(File& file, std::uint64_t header, const std::function<Result<void>(BTree2, Cursor)>& use) {
   return Walk(file, use).run(header);
 }
 

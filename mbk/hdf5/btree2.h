@@ -8,7 +8,7 @@ namespace mbk::hdf5 {
 
 /// What the records of a B-tree of version 2 are.
 enum class BTree2 : std::uint8_t {
-  huge_objects = 1,      ///< of a fractal heap
+  huge_objects = 1,  ///< of a fractal heap
   link_names = 5,
   attribute_names = 8,
   chunks = 10,

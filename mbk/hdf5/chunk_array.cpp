@@ -21,6 +21,18 @@ unsigned log2_of(std::uint64_t value) {
   return static_cast<unsigned>(std::bit_width(value)) - 1;
 }
 
+/// Which pages of a data block were written: a bit for each, from the highest of each byte.
+struct Pages {
+  Bytes bits;
+  std::uint64_t first = 0;  ///< bit of the block's first page
+
+  [[nodiscard]] bool has(std::uint64_t page) const {
+    const std::uint64_t at = first + page;
+    if (at / 8 >= bits.size()) return false;
+    return (std::to_integer<unsigned>(bits[static_cast<std::size_t>(at / 8)]) >> (7 - at % 8) & 1u) != 0;
+  }
+};
+
 /// What both kinds of arrays share: blocks of elements, cut into pages with a checksum each where they are large.
 class Array {
  public:
@@ -47,9 +59,9 @@ class Array {
 
   /// A data block: in one piece, or in pages.
   /// @param extra    [bytes] between the prefix and the elements, or the pages
-  /// @param written  bit k, from the highest of each byte: page k was written
+  /// @param written  of which pages were written; empty: the data block itself says that
   Result<void> data_block(std::uint64_t address, std::string_view signature, std::size_t extra, std::uint64_t first,
-                          std::uint64_t count, Bytes written) {
+                          std::uint64_t count, Pages written) {
     const std::uint64_t per_page = std::uint64_t{1} << page_bits_;
     const bool paged = count > per_page;
     const std::size_t head_size = prefix_size() + extra;
@@ -63,14 +75,12 @@ class Array {
     if (!begins(in, signature)) return broken(address);
     in.skip(head_size - in.at());
     if (!paged) return elements(in, first, count);
-    if (written.empty()) written = block->subspan(head_size - bitmap_size_);
+    if (written.bits.empty()) written = {block->subspan(head_size - bitmap_size_), 0};
     std::uint64_t page_address = address + head_size + kChecksumSize;
     for (std::uint64_t page = 0; page * per_page < count; ++page) {
       const std::uint64_t here = std::min(per_page, count - page * per_page);
       const std::uint64_t page_bytes = here * element_size_ + kChecksumSize;
-      if (page / 8 >= written.size()) return broken(address);
-      const auto bits = std::to_integer<unsigned>(written[static_cast<std::size_t>(page / 8)]);
-      if ((bits >> (7 - page % 8) & 1u) != 0) {
+      if (written.has(page)) {
         const auto stored = file_.checked_block(page_address, page_bytes, kWhat);
         if (!stored) return tl::unexpected(stored.error());
         Cursor page_in = file_.cursor(*stored);
@@ -189,29 +199,28 @@ class ExtensibleArray : Array {
     Cursor in = file_.cursor(*block);
     if (!begins(in, "EASB")) return broken(address);
     in.skip(head_size - in.at());
-    const Bytes written = in.take(blocks * bitmap);
-    return data_blocks(in, super, first, written);
+    return data_blocks(in, super, first, in.take(blocks * bitmap));
   }
 
   /// The data blocks whose addresses come next; their elements count from `first`, which moves on.
+  /// @param written  the bits of all their pages, without gaps: the room for them is rounded up for every block, but
+  ///                 the library fills it from the start
   Result<void> data_blocks(Cursor& addresses, unsigned super, std::uint64_t& first, Bytes written) {
     const std::uint64_t count = elements_in(super);
-    const auto blocks = static_cast<std::size_t>(blocks_in(super));
-    const std::size_t bitmap = written.size() / blocks;
-    for (std::size_t k = 0; k < blocks; ++k, first += count) {
+    const std::uint64_t pages = count >> page_bits_;
+    for (std::uint64_t k = 0; k < blocks_in(super); ++k, first += count) {
       const std::uint64_t address = addresses.address();
       if (address == kUndefined) continue;
-      const Bytes pages = written.subspan(k * bitmap, bitmap);
-      if (pages.empty() && count > std::uint64_t{1} << page_bits_) return broken(address);
-      if (auto ok = data_block(address, "EADB", offset_size(), first, count, pages); !ok) return ok;
+      if (written.empty() && pages > 1) return broken(address);
+      if (auto ok = data_block(address, "EADB", offset_size(), first, count, {written, k * pages}); !ok) return ok;
     }
     return {};
   }
 
-  unsigned bits_ = 0;                ///< of the largest index
-  std::uint64_t in_index_ = 0;       ///< elements in the index block
-  std::uint64_t least_ = 0;          ///< elements in the smallest data block
-  std::uint64_t least_pointers_ = 0; ///< data blocks of the first super block of its own
+  unsigned bits_ = 0;                 ///< of the largest index
+  std::uint64_t in_index_ = 0;        ///< elements in the index block
+  std::uint64_t least_ = 0;           ///< elements in the smallest data block
+  std::uint64_t least_pointers_ = 0;  ///< data blocks of the first super block of its own
 };
 
 }  // namespace

@@ -20,8 +20,8 @@ class Reader {
 
   Result<void> read() {
     if (auto ok = measure(); !ok) return ok;
-    const auto found =
-        for_each_chunk(file_, index_, space_, !filters_.steps.empty(), chunk_bytes_, [&](const Chunk& c) { return add(c); });
+    const auto found = for_each_chunk(file_, index_, space_, !filters_.steps.empty(), chunk_bytes_,
+                                      [&](const Chunk& c) { return add(c); });
     if (!found) return found;
     if (chunks_.size() != seen_.size()) return damaged("a part of it was never written");
     if (auto ok = elements_.allocate(space_.count); !ok) return ok;

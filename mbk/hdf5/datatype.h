@@ -18,11 +18,11 @@ struct Datatype {
     unread,
   };
   Kind kind = Kind::unread;
-  std::uint32_t size = 0;            ///< [bytes] of an element in the file
-  Stored stored = Stored::float64;   ///< of numbers
-  bool big_endian = false;           ///< of numbers
-  bool padded_with_blanks = false;   ///< of texts of fixed length
-  std::string what;                  ///< of what is not read: "of a compound type"
+  std::uint32_t size = 0;           ///< [bytes] of an element in the file
+  Stored stored = Stored::float64;  ///< of numbers
+  bool big_endian = false;          ///< of numbers
+  bool padded_with_blanks = false;  ///< of texts of fixed length
+  std::string what;                 ///< of what is not read: "of a compound type"
 };
 
 /// A datatype message (specification, IV.A.2.d). Enumerations, among them h5py's bool, are numbers.

@@ -56,7 +56,8 @@ Place place_of(std::uint64_t offset, std::uint64_t width, std::uint64_t start) {
 
 Result<FractalHeap> FractalHeap::open(File& file, std::uint64_t address) {
   const Sizes sizes = file.sizes;
-  const std::size_t size = 4 + 1 + 2 + 2 + 1 + 4 + 12 * sizes.length + 3 * sizes.address + 2 + 2 + 2 + 2 + kChecksumSize;
+  const std::size_t size =
+      4 + 1 + 2 + 2 + 1 + 4 + 12 * sizes.length + 3 * sizes.address + 2 + 2 + 2 + 2 + kChecksumSize;
   const auto prefix = file.from(address, size, "a fractal heap");
   if (!prefix) return tl::unexpected(prefix.error());
   Cursor in = file.cursor(*prefix);
@@ -71,8 +72,8 @@ Result<FractalHeap> FractalHeap::open(File& file, std::uint64_t address) {
   heap.largest_ = in.dword();
   in.length();  // the next huge object
   heap.huge_tree_ = in.address();
-  in.length();   // free space
-  in.address();  // its manager
+  in.length();                // free space
+  in.address();               // its manager
   in.skip(8 * sizes.length);  // statistics
   heap.width_ = in.word();
   heap.start_ = in.length();
@@ -129,8 +130,7 @@ Result<Bytes> FractalHeap::managed(File& file, Cursor id) {
   return block->subspan(static_cast<std::size_t>(inside), static_cast<std::size_t>(length));
 }
 
-Result<const std::vector<std::uint64_t>*> FractalHeap::children(File& file, std::uint64_t address,
-                                                                std::uint64_t rows) {
+Result<const std::vector<std::uint64_t>*> FractalHeap::children(File& file, std::uint64_t address, std::uint64_t rows) {
   if (const auto known = children_.find(address); known != children_.end()) {
     if (known->second.size() != rows * width_) return broken();
     return &known->second;

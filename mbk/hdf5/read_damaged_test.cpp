@@ -36,8 +36,8 @@ std::string little_of_everything(Writer writer) {
     H5Tset_size(type, H5T_VARIABLE);
     const char* texts[] = {"onset", "offset"};
     for (int i = 0; i < 12; ++i) {
-      const Id attribute(
-          H5Acreate2(file, ("a" + std::to_string(i)).c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+      const Id attribute(H5Acreate2(file, ("a" + std::to_string(i)).c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
       H5Awrite(attribute, type, texts);
     }
   });

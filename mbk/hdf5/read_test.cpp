@@ -29,8 +29,8 @@ std::string unread(const Value& value) {
 TEST(ReadHdf5, FindsTheSuperblockBehindAUserBlock) {
   for (const Writer writer : test::kWriters) {
     for (const hsize_t user_block : {hsize_t{0}, hsize_t{512}, hsize_t{2048}}) {
-      const std::string bytes =
-          written(writer, [](hid_t file) { put_numbers(file, "x", counted(5), {{5}}); }, user_block);
+      const std::string bytes = written(
+          writer, [](hid_t file) { put_numbers(file, "x", counted(5), {{5}}); }, user_block);
       EXPECT_TRUE(looks_like_hdf5(std::as_bytes(std::span(bytes))));
       EXPECT_EQ(numbers(good(bytes).datasets.at("x").value), counted(5));
       // A user block that someone took away, or put before a file that had none.
@@ -283,7 +283,7 @@ TEST(ReadHdf5, ReadsEmptyAndSingleValues) {
 
 TEST(ReadHdf5, RefusesAFileThatItsWriterLeftOpen) {
   std::string bytes = written(Writer::latest, [](hid_t file) { put_numbers(file, "x", counted(3), {{3}}); });
-  bytes[11] = '\x01';  // the flag of a writer
+  bytes[11] = '\x01';               // the flag of a writer
   EXPECT_FALSE(read_bytes(bytes));  // and the checksum with it
 }
 

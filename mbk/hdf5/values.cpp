@@ -31,8 +31,8 @@ void store(Reading& reading, Value& place, const Dataspace& space, Elements& ele
 Result<void> read_plain(Reading& reading, const Dataspace& space, const Datatype& type, Bytes bytes, Value& place) {
   std::uint64_t size = 0;
   if (!multiply(space.count, type.size, size) || size > bytes.size()) {
-    return damaged(fmt::format("{} elements of {} bytes do not fit into {} bytes", space.count, type.size,
-                               bytes.size()));
+    return damaged(
+        fmt::format("{} elements of {} bytes do not fit into {} bytes", space.count, type.size, bytes.size()));
   }
   Elements elements(reading.file, reading.heap, type);
   if (auto ok = elements.allocate(space.count); !ok) return ok;
@@ -97,7 +97,8 @@ Result<void> read_dense_attributes(Reading& reading, Cursor in, Attributes& all)
     const Cursor id = file.cursor(record.take(heap->id_size()));
     const bool shared = (record.byte() & kShared) != 0;
     if (kind != BTree2::attribute_names || !record.ok()) return damaged("its attributes are broken");
-    if (shared) return bad_data("its attributes are shared, which is not read", "write the file without shared messages");
+    if (shared)
+      return bad_data("its attributes are shared, which is not read", "write the file without shared messages");
     const auto message = heap->object(file, id);
     if (!message) return tl::unexpected(message.error());
     return read_attribute(reading, *message, all);

@@ -95,10 +95,9 @@ class Decoder {
   void check_frame(const std::string& name, const std::string& frame) {
     const auto kinds = kinds_called(name);
     if (frame.empty() || kinds.size() != 1 || kinds.front()->frame == frame) return;
-    contents.notes.push_back(fmt::format("'{}' says that its frame is '{}'; mbk takes it {}", name, frame,
-                                         kinds.front()->frame.empty()
-                                             ? "as it stands"
-                                             : fmt::format("in the frame '{}'", kinds.front()->frame)));
+    contents.notes.push_back(fmt::format(
+        "'{}' says that its frame is '{}'; mbk takes it {}", name, frame,
+        kinds.front()->frame.empty() ? "as it stands" : fmt::format("in the frame '{}'", kinds.front()->frame)));
   }
 
   void aside(const std::string& path, std::string_view what) {
