@@ -59,10 +59,11 @@ int main(int argc, char** argv) {
   app.failure_message(one_line);
 
   const std::vector<std::pair<const char*, mbk::app::Action>> commands = {
-      {"measure", mbk::app::add_measure(app)},   {"identify", mbk::app::add_identify(app)},
-      {"ellipse", mbk::app::add_ellipse(app)},   {"info", mbk::app::add_info(app)},
-      {"simulate", mbk::app::add_simulate(app)}, {"springs", mbk::app::add_springs(app)},
-      {"robot", mbk::app::add_robot(app)},       {"validate", mbk::app::add_validate(app)},
+      {"measure", mbk::app::add_measure(app)},       {"identify", mbk::app::add_identify(app)},
+      {"ellipse", mbk::app::add_ellipse(app)},       {"info", mbk::app::add_info(app)},
+      {"simulate", mbk::app::add_simulate(app)},     {"springs", mbk::app::add_springs(app)},
+      {"robot", mbk::app::add_robot(app)},           {"validate", mbk::app::add_validate(app)},
+      {"completion", mbk::app::add_completion(app)}, {"manual", mbk::app::add_manual(app)},
   };
   try {
     app.parse(argc, argv);

@@ -81,7 +81,7 @@ int run(const MeasureArguments& arguments, bool with_findings) {
   return kFine;
 }
 
-Action add(CLI::App& app, const char* name, const char* summary, const char* footer, bool with_findings) {
+Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, bool with_findings) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* command = app.add_subcommand(name, summary);
   command->footer(footer);
@@ -104,7 +104,8 @@ Action add_measure(CLI::App& app) {
              "      one joint from a CSV file, the first 40 s to identify, the rest held back\n"
              "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
              "      several trials: one result each, their mean and the standard error between them\n\n"
-             "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable.",
+             "Exit codes: " +
+                 std::string(kExitCodes),
              true);
 }
 
