@@ -37,8 +37,8 @@ Action add_completion(CLI::App& app) {
   CLI::App* command = app.add_subcommand("completion", "a script that lets the shell complete commands and options");
   command->footer(
       "Examples:\n"
-      "  source <(mbk completion bash)\n"
-      "      for this bash; in ~/.bashrc for every one\n"
+      "  mbk completion bash --out ~/.local/share/bash-completion/completions/mbk\n"
+      "      or, for one shell alone: source <(mbk completion bash)\n"
       "  mbk completion zsh --out ~/.zfunc/_mbk\n"
       "      with fpath+=~/.zfunc before compinit in ~/.zshrc\n"
       "  mbk completion fish --out ~/.config/fish/completions/mbk.fish\n\n"
