@@ -9,6 +9,7 @@ find_package(ZLIB REQUIRED)
 find_path(MBK_TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 add_library(mbk_tomlplusplus INTERFACE)
 target_include_directories(mbk_tomlplusplus SYSTEM INTERFACE ${MBK_TOMLPLUSPLUS_INCLUDE_DIR})
+pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
 

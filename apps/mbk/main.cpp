@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/memory.h"
 #include "mbk/core/version.h"
 #include "mbk/report/text.h"
 
@@ -45,6 +46,7 @@ std::string one_line(const CLI::App* app, const CLI::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  mbk::app::prefer_large_pages();
   CLI::App app{
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"

@@ -101,6 +101,14 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
       ->type_name("N")
       ->check(whole_number(0, 1'000'000))
       ->group(filters);
+  command
+      .add_option(
+          "--every", a.every,
+          "the fit takes every so many of the filtered samples; otherwise ten for each period of the cutoff, and "
+          "all in reference mode")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000))
+      ->group(filters);
   add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")->group(filters);
   command
       .add_option("--resample", a.resample_hz, "put an uneven clock right first, by straight lines; never done unasked")
@@ -176,6 +184,7 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
   if (a.acceleration == "derivative") p.acceleration = preprocess::AccelerationSource::derivative;
   p.window = {a.from_s, a.split_s, a.to_s};
   p.padding.samples = a.padding;
+  p.every = a.every;
   p.padding.extension = a.extension == "even"       ? dsp::Extension::even
                         : a.extension == "constant" ? dsp::Extension::constant
                                                     : dsp::Extension::odd;

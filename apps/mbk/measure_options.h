@@ -23,6 +23,7 @@ struct MeasureArguments {
   std::optional<int> sg_window, sg_order;
   std::string cutoff, acceleration, parameters_from, structure = "full", extension = "odd";
   long padding = 15;
+  std::optional<long> every;
   double handle_mass = 0.0;
   std::optional<double> from_s, split_s, to_s;
   double hac_lag_s = 1.0;

@@ -42,32 +42,41 @@ void correlate(const Vector& weights, double sign, const double* x, double* out,
 
 }  // namespace
 
-Result<Vector> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative) {
+Result<SavitzkyGolayWeights> savitzky_golay_polynomial(const SavitzkyGolay& filter, int derivative) {
   if (auto ok = check(filter, derivative); !ok) return tl::unexpected(ok.error());
   const Index half = filter.half_window(), window = filter.window;
   const double scale = half > 0 ? 1.0 / static_cast<double>(half) : 1.0;
   const Vector t = Vector::LinSpaced(window, -static_cast<double>(half), static_cast<double>(half)) * scale;
 
-  Vector weights = Vector::Zero(window);
+  SavitzkyGolayWeights result{Vector::Zero(window), Vector::Zero(filter.order + 1)};
+  if (derivative > filter.order) return result;
+  const double unit = std::tgamma(derivative + 1.0) * std::pow(scale, derivative);
   Vector p = Vector::Ones(window), p_before = Vector::Zero(window);
-  // at_centre[j] is the j-th derivative of p_k at t = 0.
-  Vector at_centre = Vector::Zero(derivative + 1), at_centre_before = Vector::Zero(derivative + 1);
-  at_centre[0] = 1.0;
+  Vector powers = Vector::Unit(filter.order + 2, 0), powers_before = Vector::Zero(filter.order + 2);  // of p_k, by tᵐ
   double norm = static_cast<double>(window), norm_before = 1.0;
   for (int k = 0; k <= filter.order; ++k) {
-    weights += p * (at_centre[derivative] / norm);
+    const double share = unit * powers[derivative] / norm;
+    result.samples += share * p;
+    result.powers += share * powers.head(filter.order + 1);
     const double beta = k > 0 ? norm / norm_before : 0.0;
     const Vector p_next = t.cwiseProduct(p) - beta * p_before;
-    Vector at_centre_next = -beta * at_centre_before;  // d^j/dt^j (t p) = t p^(j) + j p^(j−1), at t = 0
-    for (int j = 1; j <= derivative; ++j) at_centre_next[j] += j * at_centre[j - 1];
+    Vector powers_next = -beta * powers_before;
+    powers_next.tail(filter.order + 1) += powers.head(filter.order + 1);
     p_before = p;
     p = p_next;
-    at_centre_before = at_centre;
-    at_centre = at_centre_next;
+    powers_before = powers;
+    powers = powers_next;
     norm_before = norm;
     norm = p.squaredNorm();
   }
-  return Vector(weights * std::pow(scale, derivative));
+  for (int m = 1; m <= filter.order; ++m) result.powers[m] *= std::pow(scale, m);
+  return result;
+}
+
+Result<Vector> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative) {
+  auto weights = savitzky_golay_polynomial(filter, derivative);
+  if (!weights) return tl::unexpected(weights.error());
+  return std::move(weights->samples);
 }
 
 Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const Matrix& signals, Hertz sample_rate) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "mbk/analyse/ellipses.h"
@@ -63,6 +64,17 @@ Result<result::Measured> measure(std::span<const Recording> recordings, const Op
       return tl::unexpected(recording.sources.empty() ? trial.error() : trial.error().in(recording.sources[0].path));
     }
     trials.push_back(std::move(*trial));
+  }
+  // Pooled rows must weigh alike: where each trial by itself would be thinned differently, the finest will do for all.
+  Index finest = std::numeric_limits<Index>::max();
+  for (const PreparedTrial& trial : trials) finest = std::min(finest, trial.preparation.every);
+  Options again = options;
+  again.preprocess.every = finest;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (trials[k].preparation.every == finest) continue;
+    auto trial = prepare_one(recordings[k], again);
+    if (!trial) return tl::unexpected(trial.error());
+    trials[k] = std::move(*trial);
   }
   auto identification = identify::identify_impedance(trials, options.identify);
   if (!identification) {

@@ -42,6 +42,11 @@ bool is_matrix(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) > 1;
 }
 
+/// NaN throughout; most rows say otherwise at once.
+bool not_recorded(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row) {
+  return std::all_of(row.begin(), row.end(), [](double value) { return std::isnan(value); });
+}
+
 Line vector_of(const Array& array) {
   return {&array, 0, array.values.rows() == 1 && array.values.cols() > 1};
 }
@@ -165,7 +170,7 @@ class Assembler {
     for (const ChannelKind& kind : channel_kinds()) {
       if (kind.logs_row == 0) continue;
       const Line line{&logs, kind.logs_row - 1, true};
-      if (kind.name != "time" && logs.values.row(line.index).array().isNaN().all()) {
+      if (kind.name != "time" && not_recorded(logs.values.row(line.index))) {
         absent.emplace_back(kind.name);
       } else {
         signals_.push_back({&kind, line, nullptr, false, fmt::format("row {}", kind.logs_row)});

@@ -46,13 +46,16 @@ struct Preparation {
   Hertz band_low, band_high;      ///< excited band that the filters let through
   bool acceleration_from_sensor = false;
   bool cut_before_filter = true;
+  Index every = 1;  ///< of the filtered samples, the first of so many is kept
 };
 
-/// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame.
+/// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame. Where the low-pass leaves
+/// nothing between them, only every so many samples of the recording are here.
 struct PreparedTrial {
   int axes = 2;  ///< n, 1 or 2
   Motion motion = Motion::translation;
-  double sample_time = 0;          ///< T [s]
+  double sample_time = 0;          ///< T [s], between rows
+  double recording_rate = 0;       ///< [Hz]
   Vector time;                     ///< N, [s] from the recording's first sample
   Matrix position;                 ///< N×n, x [m]
   Matrix velocity;                 ///< N×n, ẋ [m/s]
