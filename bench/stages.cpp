@@ -57,7 +57,8 @@ const PreparedTrial& trial(Mode mode) {
 struct File {
   std::filesystem::path path = std::filesystem::temp_directory_path() / "mbk_bench_stages.mat";
   File() {
-    if (const auto ok = recording::write(recording_of_a_minute(), path, recording::Format::mat5, true); !ok) std::exit(1);
+    if (const auto ok = recording::write(recording_of_a_minute(), path, recording::Format::mat5, true); !ok)
+      std::exit(1);
   }
   ~File() {
     std::error_code ignored;
@@ -122,7 +123,8 @@ BENCHMARK_CAPTURE(measure, improved, Mode::improved)->Unit(benchmark::kMilliseco
 
 void write_mat(benchmark::State& state) {
   for (auto _ : state) {
-    if (const auto ok = recording::write(recording_of_a_minute(), file(), recording::Format::mat5, true); !ok) std::exit(1);
+    if (const auto ok = recording::write(recording_of_a_minute(), file(), recording::Format::mat5, true); !ok)
+      std::exit(1);
   }
 }
 BENCHMARK(write_mat)->Unit(benchmark::kMillisecond);

@@ -24,4 +24,8 @@ Action add_springs(CLI::App& app);
 Action add_validate(CLI::App& app);
 Action add_robot(CLI::App& app);
 
+/// These two speak of the whole tree below `app`, as it is when they run.
+Action add_completion(CLI::App& app);
+Action add_manual(CLI::App& app);
+
 }  // namespace mbk::app

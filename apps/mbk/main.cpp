@@ -70,6 +70,8 @@ int main(int argc, char** argv) {
       {"springs", mbk::app::add_springs(app)},
       {"robot", mbk::app::add_robot(app)},
       {"validate", mbk::app::add_validate(app)},
+      {"completion", mbk::app::add_completion(app)},
+      {"manual", mbk::app::add_manual(app)},
   };
   try {
     app.parse(argc, argv);

@@ -85,7 +85,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   return kFine;
 }
 
-Action add(CLI::App& app, const char* name, const char* summary, const char* footer, const std::string& typed,
+Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
            bool with_findings) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* command = app.add_subcommand(name, summary);
@@ -112,7 +112,8 @@ Action add_measure(CLI::App& app, const std::string& typed) {
              "      several trials: one result each, their mean and the standard error between them\n"
              "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"
              "      one file for the browser or the printer: the result in plain words, ellipses, plots, glossary\n\n"
-             "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable.",
+             "Exit codes: " +
+                 std::string(kExitCodes),
              typed, true);
 }
 

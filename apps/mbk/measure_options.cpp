@@ -16,14 +16,7 @@ CLI::Option* add_choice(CLI::App& command, const char* name, std::string& target
                         const std::vector<std::string>& choices, const std::string& help) {
   std::string joined;
   for (const std::string& choice : choices) joined += (joined.empty() ? "" : "|") + choice;
-  return command.add_option(name, target, help)
-      ->type_name(joined)
-      ->check([choices, joined](const std::string& given) -> std::string {
-        for (const std::string& choice : choices) {
-          if (choice == given) return "";
-        }
-        return fmt::format("{} is none of {}", quoted(given), joined);
-      });
+  return command.add_option(name, target, help)->type_name(joined)->check(one_of(choices));
 }
 
 /// Limits of time must be in order; whether they lie in the recording is seen when it is read.

@@ -12,6 +12,9 @@ namespace mbk::app {
 
 inline constexpr int kFine = 0, kWrongUsage = 2, kBadData = 3, kNotUsable = 4;
 
+/// What they mean, as help and manual say it; a command with other codes has a line "Exit codes: …" in its footer.
+inline constexpr const char* kExitCodes = "0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable.";
+
 /// Prints "mbk: where: what; what to do" on stderr and gives the exit code of that kind of error.
 int report_error(const Error& error);
 

@@ -185,7 +185,8 @@ Action add_simulate(CLI::App& app) {
       "The recording holds the truth (truth_M, truth_B, truth_K, …) as metadata, which 'mbk info' shows and\n"
       "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
       "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
-  command->add_option("SCENARIO", arguments->scenario, "a TOML file, or the name of a ready scenario");
+  command->add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a ready scenario")
+      ->check(suggests(ready_scenario_names()));
   command
       ->add_option("--out", arguments->out,
                    "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
@@ -207,7 +208,9 @@ Action add_simulate(CLI::App& app) {
   command->add_flag("--list", arguments->list, "the ready scenarios");
   command->add_flag("--facts", arguments->facts,
                     "what the perturbation demands: peaks, speed, band; simulates nothing");
-  command->add_option("--show", *shown, "print a ready scenario")->type_name("NAME");
+  command->add_option("--show", *shown, "print a ready scenario")
+      ->type_name("NAME")
+      ->check(suggests(ready_scenario_names()));
   command->add_flag("--quiet", arguments->quiet, "no progress and no summary");
   return [arguments, shown] {
     if (arguments->list) return list();
