@@ -13,12 +13,22 @@
 namespace mbk::app {
 namespace {
 
+using measurement::Examined;
 using result::Measured;
 
+/// A result, with the diagnostics where a report will show them.
+Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
+                             bool with_diagnostics) {
+  if (with_diagnostics) return measurement::examine(recordings, options);
+  auto measured = measurement::measure(recordings, options);
+  if (!measured) return tl::unexpected(measured.error());
+  return Examined{std::move(*measured), std::nullopt};
+}
+
 /// One result per recording, several at a time; the order is that of the recordings.
-std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordings,
+std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordings,
                                            const measurement::Options& options, const MeasureArguments& arguments) {
-  std::vector<Result<Measured>> results(recordings.size(), bad_data("not measured"));
+  std::vector<Result<Examined>> results(recordings.size(), bad_data("not measured"));
   const int count = static_cast<int>(recordings.size());
   Progress progress(arguments.quiet);
   int done = 0;
@@ -26,7 +36,7 @@ std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordi
       count, arguments.threads,
       [&](int i) -> Result<void> {
         const auto k = static_cast<std::size_t>(i);
-        results[k] = measurement::measure({&recordings[k], 1}, options);
+        results[k] = measure_one({&recordings[k], 1}, options, arguments.report.has_value());
         return {};
       },
       [&](int i) {
@@ -44,17 +54,19 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   const auto recordings = read_recordings(arguments);
   if (!recordings) return report_error(recordings.error());
 
-  std::vector<Result<Measured>> results;
+  std::vector<Result<Examined>> results;
   if (arguments.pool) {
-    results.push_back(measurement::measure(*recordings, *options));
+    results.push_back(measure_one(*recordings, *options, arguments.report.has_value()));
   } else {
     results = measure_each(*recordings, *options, arguments);
   }
   std::vector<Measured> measured;
-  for (Result<Measured>& one : results) {
+  std::vector<std::optional<Diagnostics>> diagnostics;
+  for (Result<Examined>& one : results) {
     if (!one) return report_error(one.error());
-    if (!with_findings) one->findings.reset();
-    measured.push_back(std::move(*one));
+    if (!with_findings) one->measured.findings.reset();
+    measured.push_back(std::move(one->measured));
+    diagnostics.push_back(std::move(one->diagnostics));
   }
   std::optional<Summary> summary;
   if (measured.size() > 1) {
@@ -76,7 +88,8 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
     if (summary) text += "\n" + report::summary_text(*summary);
   }
   if (arguments.report) {
-    if (auto ok = write_report(arguments, typed, *recordings, measured, summary); !ok) return report_error(ok.error());
+    if (auto ok = write_report(arguments, typed, *recordings, measured, diagnostics, summary); !ok)
+      return report_error(ok.error());
   }
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   for (const Measured& one : measured) {

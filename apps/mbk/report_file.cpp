@@ -32,11 +32,13 @@ std::string command_line(int argc, char** argv) {
 
 Result<void> write_report(const MeasureArguments& arguments, const std::string& typed,
                           const std::vector<Recording>& recordings, const std::vector<result::Measured>& measured,
+                          const std::vector<std::optional<Diagnostics>>& diagnostics,
                           const std::optional<Summary>& summary) {
   result::Report report{{}, summary, typed, arguments.report_note};
   auto recording = recordings.begin();
-  for (const result::Measured& one : measured) {
-    result::ReportedResult reported{one, {}, std::nullopt};
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const result::Measured& one = measured[k];
+    result::ReportedResult reported{one, {}, diagnostics[k]};
     for (const Preparation& how : one.identification.preparations) {
       reported.recordings.push_back(facts_of(*recording++, how));
     }

@@ -112,6 +112,14 @@ function bandOf(trial: Trial): { from: number; to: number; name: string } | unde
   return from === null || to === null || !(from < to) ? undefined : { from, to, name: "excited band" };
 }
 
+/** Whole powers of ten around the values, eight of them at most: what lies deeper is of no interest. */
+function decades(series: (number | null)[][]): [number, number] {
+  const powers = series.flat().filter((v): v is number => v !== null && v > 0).map(Math.log10);
+  const top = Math.ceil(powers.reduce((a, b) => Math.max(a, b), -Infinity));
+  const bottom = Math.floor(powers.reduce((a, b) => Math.min(a, b), Infinity));
+  return Number.isFinite(top) ? [10 ** Math.max(bottom, top - 8), 10 ** Math.max(top, bottom + 1)] : [1e-3, 1];
+}
+
 function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
   const { spectra: s } = d;
   const { axes } = trial.result;
@@ -125,6 +133,7 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
     title,
     unit: squared(unit),
     log: true,
+    range: decades(columns(matrix)),
     ...(band ? { band } : {}),
     series: columns(matrix).map((y, axis) => ({
       name: axes === 1 ? "spectrum" : `along ${axisNames(axes)[axis]}`,
@@ -248,6 +257,15 @@ function recordingSection(d: Diagnostics, trial: Trial, id: string): Section {
       style: axis === 0 ? styles.first : styles.second,
     })),
   });
+  // Each axis of a place has a scale of its own: the limb moves millimetres, decimetres from the origin.
+  const places = (title: string, unit: string, matrix: Columns): Panel[] => {
+    const whole = panel(title, unit, matrix);
+    return whole.series.map((one, axis) => ({
+      ...whole,
+      title: axes === 1 ? title : `${title} ${axisNames(axes)[axis]}`,
+      series: [one],
+    }));
+  };
   // The reference may be a place or a force; the recording's own unit is not part of the values.
   return {
     title: "The recording",
@@ -257,8 +275,8 @@ function recordingSection(d: Diagnostics, trial: Trial, id: string): Section {
       howToRead: "Everything as it was recorded, before any filter; look for jumps, drifts, pauses and signals that rest at a limit.",
       description: "Position, force and reference over the whole recording.",
       x: { name: "time", unit: "s" },
-      panels: [panel("Position", units.x0, r.position), panel("Force", units.force, r.force), panel("Reference", "", r.reference)].filter((one) => one.series.length > 0),
-      panelHeight: 120,
+      panels: [...places("Position", units.x0, r.position), panel("Force", units.force, r.force), ...places("Reference", "", r.reference)].filter((one) => one.series.length > 0),
+      panelHeight: 110,
     }].filter((chart) => chart.panels.length > 0),
   };
 }
