@@ -21,8 +21,11 @@ struct Line {
   const Array* array = nullptr;
   Index index = 0;
   bool row = false;
+  Index step = 1;  ///< every step-th sample, from the first on
 
-  [[nodiscard]] Index size() const { return row ? array->values.cols() : array->values.rows(); }
+  [[nodiscard]] Index size() const { return ((row ? array->values.cols() : array->values.rows()) + step - 1) / step; }
+  /// [Hz]; 0 where the file does not say it
+  [[nodiscard]] double rate_hz() const { return array->rate_hz / static_cast<double>(step); }
 };
 
 /// A channel and where it stands in the file.
@@ -33,6 +36,18 @@ struct Signal {
   bool negate = false;
   std::string source;  ///< for messages
 };
+
+bool same_rate(double a_hz, double b_hz) {
+  return std::abs(a_hz - b_hz) <= kRateTolerance * b_hz;
+}
+
+/// How many times `slow` goes into `fast`; 0 where it is no whole number.
+Index whole_ratio(double fast_hz, double slow_hz) {
+  const double ratio = slow_hz > 0.0 ? fast_hz / slow_hz : 0.0;
+  return ratio >= 0.5 && ratio < 1e6 && same_rate(std::round(ratio) * slow_hz, fast_hz)
+             ? static_cast<Index>(std::round(ratio))
+             : 0;
+}
 
 bool is_vector(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) == 1 && array.values.size() > 1;
@@ -191,6 +206,9 @@ class Assembler {
     for (const Array& array : contents_.arrays) {
       const auto leaf = std::string_view(array.name).substr(array.name.rfind('.') + 1);
       ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf);
+      if (const Unit* unit = find_unit(array.unit); name.unit == nullptr && unit != nullptr) {
+        std::erase_if(name.kinds, [&](const ChannelKind* kind) { return !kind->accepts(*unit); });
+      }
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -204,7 +222,9 @@ class Assembler {
       if (kind == nullptr) {
         aside.push_back(candidate.array->name);
       } else {
-        signals_.push_back({kind, vector_of(*candidate.array), candidate.name.unit, false, candidate.array->name});
+        const Unit* unit = candidate.name.unit;
+        if (unit == nullptr) unit = unit_in_file(*kind, *candidate.array);
+        signals_.push_back({kind, vector_of(*candidate.array), unit, false, candidate.array->name});
       }
     }
     std::erase(aside, "");
@@ -240,11 +260,28 @@ class Assembler {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
+      } else if (signal.unit = unit_in_file(*kind, *line->array); signal.unit && !kind->accepts(*signal.unit)) {
+        return bad_data(fmt::format("channel {} cannot be in '{}', as the file says of '{}'", kind->name,
+                                    line->array->unit, line->array->name),
+                        fmt::format("name another source, or say the unit yourself: {}={}:UNIT (possible are {})",
+                                    entry.channel, entry.source, unit_names(kind->measures)));
       }
       signals_.push_back(std::move(signal));
     }
     find_time();
     return {};
+  }
+
+  /// The unit that the file says of the array; nullptr where it says none, or one that is not known.
+  const Unit* unit_in_file(const ChannelKind& kind, const Array& array) {
+    const Unit* unit = find_unit(array.unit);
+    if (unit == nullptr && !array.unit.empty()) {
+      const std::string_view taken = kind.default_unit();
+      recording_.notes.push_back(
+          fmt::format("the file says that '{}' is in '{}', which is no unit that mbk knows; {} is taken {}", array.name,
+                      array.unit, kind.name, taken.empty() ? "without unit" : fmt::format("in {}", taken)));
+    }
+    return unit;
   }
 
   /// A map that does not name the time leaves it to its own name, or to row 1 of a logs matrix.
@@ -271,7 +308,10 @@ class Assembler {
   /// Whether the array's name is that of this one line.
   [[nodiscard]] bool is_named(const Line& line) const { return contents_.table || !is_matrix(*line.array); }
 
-  Result<Line> source(const ChannelSource& entry) const {
+  Result<Line> source(const ChannelSource& entry) {
+    if (const auto at = entry.source.rfind('@'); at != entry.source.npos && find(contents_, entry.source) == nullptr) {
+      return thinned(entry, at);
+    }
     if (const Array* array = find(contents_, entry.source)) {
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
@@ -306,6 +346,30 @@ class Assembler {
                       "they are counted from 1", fmt::format("variable '{}'", array.name));
     }
     return Line{&array, number - 1, wide};
+  }
+
+  /// SOURCE@RATE: every k-th sample of a source that runs at k times that rate.
+  Result<Line> thinned(const ChannelSource& entry, std::size_t at) {
+    auto line = source({entry.channel, entry.source.substr(0, at), entry.unit, entry.negate});
+    if (!line) return line;
+    double rate = 0.0;
+    const char* const end = entry.source.data() + entry.source.size();
+    const auto [stop, error] = std::from_chars(entry.source.data() + at + 1, end, rate);
+    line->step = error == std::errc() && stop == end ? whole_ratio(line->array->rate_hz, rate) : 0;
+    if (line->step == 0) {
+      return bad_usage(
+          line->array->rate_hz > 0.0
+              ? fmt::format("channel {}: '{}' runs at {} Hz, of which '{}' is no whole part", entry.channel,
+                            line->array->name, line->array->rate_hz, entry.source.substr(at + 1))
+              : fmt::format("channel {}: the file does not say the rate of '{}'", entry.channel, line->array->name),
+          line->array->rate_hz > 0.0 ? fmt::format("{}={}@{} takes every second sample", entry.channel,
+                                                   line->array->name, line->array->rate_hz / 2)
+                                     : "leave @ out");
+    }
+    recording_.notes.push_back(
+        fmt::format("{} is every {}th sample of '{}', as asked; what '{}' holds above {:.6g} Hz folds down into it",
+                    entry.channel, line->step, line->array->name, line->array->name, line->rate_hz() / 2));
+    return line;
   }
 
   /// The MAT variable whose rows or columns the numbers of the map count.
@@ -351,6 +415,7 @@ class Assembler {
         return bad_data(fmt::format("'{}' and '{}' both are {}", signals_[j].source, signal.source, signal.kind->name),
                         fmt::format("say which with --channels {}=NAME,…", signal.kind->name));
       }
+      if (auto ok = check_rates(first, signal); !ok) return ok;
       if (signal.line.size() != first.line.size()) {
         return bad_data(fmt::format("{} ('{}') has {} samples, {} ('{}') has {}", first.kind->name, first.source,
                                     first.line.size(), signal.kind->name, signal.source, signal.line.size()),
@@ -359,6 +424,20 @@ class Assembler {
     }
     if (first.line.size() == 0) return bad_data("the recording has no samples", "nothing was recorded");
     return {};
+  }
+
+  static Result<void> check_rates(const Signal& a, const Signal& b) {
+    if (a.line.rate_hz() == 0.0 || b.line.rate_hz() == 0.0 || same_rate(a.line.rate_hz(), b.line.rate_hz())) return {};
+    const bool a_is_faster = a.line.rate_hz() > b.line.rate_hz();
+    const Signal& fast = a_is_faster ? a : b;
+    const double slow_hz = (a_is_faster ? b : a).line.rate_hz();
+    const Index ratio = whole_ratio(fast.line.rate_hz(), slow_hz);
+    return bad_data(fmt::format("{} ('{}') runs at {} Hz, {} ('{}') at {} Hz", a.kind->name, a.source, a.line.rate_hz(),
+                                b.kind->name, b.source, b.line.rate_hz()),
+                    ratio > 1
+                        ? fmt::format("name channels of one rate, or take every {}th sample of the faster: {}={}@{}",
+                                      ratio, fast.kind->name, fast.source, slow_hz)
+                        : "name channels of one rate; they are not resampled");
   }
 
   /// Units that the metadata say, where nothing nearer says another.
@@ -386,10 +465,11 @@ class Assembler {
       const Index count = std::min(kBlock, samples - begin);
       for (std::size_t s = 0; s < signals_.size(); ++s) {
         const Line& line = signals_[s].line;
+        const auto samples_of_block = Eigen::seqN(begin * line.step, count, line.step);
         if (line.row) {
-          values[s].segment(begin, count) = line.array->values.row(line.index).segment(begin, count).transpose();
+          values[s].segment(begin, count) = line.array->values.row(line.index)(samples_of_block).transpose();
         } else {
-          values[s].segment(begin, count) = line.array->values.col(line.index).segment(begin, count);
+          values[s].segment(begin, count) = line.array->values.col(line.index)(samples_of_block);
         }
       }
     }
@@ -416,18 +496,24 @@ class Assembler {
                        "pass the sample rate: --rate 1000");
     }
     if (recording_.time.size() == 0) {
-      if (!options_.rate) {
+      const double own = signals_.front().line.rate_hz();
+      if (own == 0.0 && !options_.rate) {
         return bad_data("the file holds no time that is recognised",
                         "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
       }
+      if (own > 0.0 && options_.rate && !same_rate(own, options_.rate->value)) {
+        return bad_usage(fmt::format("rate {} Hz contradicts the file, which says {} Hz", options_.rate->value, own),
+                         "leave --rate out");
+      }
       recording_.time_from_rate = true;
       const Index samples = recording_.channels.front().values.size();
-      recording_.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / options_.rate->value;
+      recording_.time =
+          Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / (own > 0.0 ? own : options_.rate->value);
       return {};
     }
     if (!options_.rate || recording_.time.size() < 2) return {};
     const double own = inspect(recording_).rate_hz;
-    if (std::abs(own - options_.rate->value) <= kRateTolerance * options_.rate->value) return {};
+    if (same_rate(own, options_.rate->value)) return {};
     return bad_usage(
         fmt::format("rate {} Hz contradicts the file's own time, which runs at {:.6g} Hz", options_.rate->value, own),
         "leave --rate out, or correct the unit of time (--channels time=…:ms)");

@@ -377,11 +377,14 @@ std::string to_json(const FileContents& contents, const Error& unrecognised) {
   json["kind"] = contents.table ? "table" : "variables";
   json["arrays"] = Json::array();
   for (const StoredArray& array : contents.arrays) {
-    json["arrays"].push_back({{"name", array.name},
-                              {"rows", array.rows},
-                              {"columns", array.columns},
-                              {"minimum", number(array.minimum)},
-                              {"maximum", number(array.maximum)}});
+    Json one = {{"name", array.name},
+                {"rows", array.rows},
+                {"columns", array.columns},
+                {"minimum", number(array.minimum)},
+                {"maximum", number(array.maximum)}};
+    if (!array.unit.empty()) one["unit"] = array.unit;
+    if (array.rate_hz > 0) one["rate_hz"] = array.rate_hz;
+    json["arrays"].push_back(std::move(one));
   }
   json["notes"] = contents.notes;
   json["unrecognised"] = {{"message", unrecognised.message}, {"try", unrecognised.remedy}};

@@ -39,17 +39,17 @@ struct Spectra {
 
 /// Gain of what the position passes through, filters and derivatives together, against the ideal (fig. 3.5).
 struct FilterResponse {
-  Vector frequency;             ///< [Hz]
-  Vector smoothing;             ///< gain of x
-  Vector first, second;         ///< of ẋ [1/s] and ẍ [1/s²]
+  Vector frequency;                  ///< [Hz]
+  Vector smoothing;                  ///< gain of x
+  Vector first, second;              ///< of ẋ [1/s] and ẍ [1/s²]
   Vector first_ideal, second_ideal;  ///< 2πf, (2πf)²
 };
 
 /// The acceleration from the position beside that of the accelerometer, both through the same filters (fig. 3.6).
 struct AccelerationAgreement {
-  Vector time;        ///< [s] from the recording's first sample, thinned
-  Matrix derivative;  ///< N×n [m/s²]
-  Matrix sensor;      ///< N×n [m/s²]
+  Vector time;            ///< [s] from the recording's first sample, thinned
+  Matrix derivative;      ///< N×n [m/s²]
+  Matrix sensor;          ///< N×n [m/s²]
   Vector rms_difference;  ///< n [m/s²], over every sample that counts, means removed
   Vector vaf;             ///< n [%], of the sensor's by the derivative
 };
@@ -61,10 +61,10 @@ struct Diagnostics {
   Spectra spectra;
   FilterResponse filters;
   std::optional<AccelerationAgreement> acceleration;  ///< only where the recording holds an accelerometer
-  Vector time;      ///< [s], thinned: the whole recording
-  Matrix position;  ///< N×n [m], as recorded, thinned
-  Matrix force;     ///< N×n [N], as recorded, thinned
-  Matrix reference;  ///< N×n, thinned; empty where none was recorded
+  Vector time;                                        ///< [s], thinned: the whole recording
+  Matrix position;                                    ///< N×n [m], as recorded, thinned
+  Matrix force;                                       ///< N×n [N], as recorded, thinned
+  Matrix reference;                                   ///< N×n, thinned; empty where none was recorded
 };
 
 }  // namespace mbk
