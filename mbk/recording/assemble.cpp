@@ -49,6 +49,15 @@ Index whole_ratio(double fast_hz, double slow_hz) {
              : 0;
 }
 
+std::string ordinal(Index n) {
+  const bool teen = n % 100 / 10 == 1;
+  return fmt::format("{}{}", n,
+                     teen || n % 10 > 3 || n % 10 == 0 ? "th"
+                     : n % 10 == 1                     ? "st"
+                     : n % 10 == 2                     ? "nd"
+                                                       : "rd");
+}
+
 bool is_vector(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) == 1 && array.values.size() > 1;
 }
@@ -239,7 +248,12 @@ class Assembler {
     for (const ChannelSource& entry : options_.channels) meanings.push_back(kinds_called(entry.channel));
     const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
     for (std::size_t i = 0; i < options_.channels.size(); ++i) {
-      const ChannelSource& entry = options_.channels[i];
+      ChannelSource entry = options_.channels[i];
+      // "Arm:m" is a name where the file has it, and else Arm in metres.
+      if (const std::string whole = entry.source + ":" + entry.unit; find(contents_, whole) != nullptr) {
+        entry.source = whole;
+        entry.unit.clear();
+      }
       // A name that means one thing only is taken as it stands, whatever the number of axes.
       const ChannelKind* kind = meanings[i].size() == 1 ? meanings[i].front() : kind_for_axes(meanings[i], axes);
       if (kind == nullptr) {
@@ -324,6 +338,10 @@ class Assembler {
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
         error != std::errc() || stop != end) {
+      if (const auto colon = entry.source.rfind(':'); colon != entry.source.npos) {
+        const auto line = source({entry.channel, entry.source.substr(0, colon), "", false});
+        if (line) return unknown_unit(entry, entry.source.substr(colon + 1));
+      }
       return bad_data(
           fmt::format("channel {}: there is no '{}'; {}", entry.channel, entry.source, inventory(contents_)));
     }
@@ -348,6 +366,15 @@ class Assembler {
     return Line{&array, number - 1, wide};
   }
 
+  static tl::unexpected<Error> unknown_unit(const ChannelSource& entry, std::string_view unit) {
+    std::vector<Dimension> possible;
+    for (const ChannelKind* kind : kinds_called(entry.channel)) {
+      possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
+    }
+    return bad_data(fmt::format("unknown unit '{}' of channel {}", unit, entry.channel),
+                    fmt::format("possible are {}", unit_names(possible)));
+  }
+
   /// SOURCE@RATE: every k-th sample of a source that runs at k times that rate.
   Result<Line> thinned(const ChannelSource& entry, std::size_t at) {
     auto line = source({entry.channel, entry.source.substr(0, at), entry.unit, entry.negate});
@@ -367,8 +394,8 @@ class Assembler {
                                      : "leave @ out");
     }
     recording_.notes.push_back(
-        fmt::format("{} is every {}th sample of '{}', as asked; what '{}' holds above {:.6g} Hz folds down into it",
-                    entry.channel, line->step, line->array->name, line->array->name, line->rate_hz() / 2));
+        fmt::format("{} is every {} sample of '{}', as asked; what '{}' holds above {:.6g} Hz folds down into it",
+                    entry.channel, ordinal(line->step), line->array->name, line->array->name, line->rate_hz() / 2));
     return line;
   }
 
@@ -435,8 +462,8 @@ class Assembler {
     return bad_data(fmt::format("{} ('{}') runs at {} Hz, {} ('{}') at {} Hz", a.kind->name, a.source, a.line.rate_hz(),
                                 b.kind->name, b.source, b.line.rate_hz()),
                     ratio > 1
-                        ? fmt::format("name channels of one rate, or take every {}th sample of the faster: {}={}@{}",
-                                      ratio, fast.kind->name, fast.source, slow_hz)
+                        ? fmt::format("name channels of one rate, or take every {} sample of the faster: {}={}@{}",
+                                      ordinal(ratio), fast.kind->name, fast.source, slow_hz)
                         : "name channels of one rate; they are not resampled");
   }
 
