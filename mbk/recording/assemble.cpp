@@ -24,6 +24,13 @@ struct Line {
   Index step = 1;  ///< every step-th sample, from the first on
 
   [[nodiscard]] Index size() const { return ((row ? array->values.cols() : array->values.rows()) + step - 1) / step; }
+  [[nodiscard]] auto samples(Index begin, Index count) const {
+    const Index rows = array->values.rows();
+    const Index stride = (row ? rows : 1) * step;
+    const double* const first = array->values.data() + (row ? index : index * rows);
+    return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(first + begin * stride, count,
+                                                             Eigen::InnerStride<>(stride));
+  }
   /// [Hz]; 0 where the file does not say it
   [[nodiscard]] double rate_hz() const { return array->rate_hz / static_cast<double>(step); }
 };
@@ -145,8 +152,10 @@ class Assembler {
     const bool time = !signals_.empty();
     return bad_data(
         fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
-        contents_.table ? "say which is which, as in --channels time=1,x=2,Fx=3"
-                        : "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)");
+        !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
+        : contents_.arrays.front().rate_hz > 0.0
+            ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
+            : "say which is which, as in --channels time=1,x=2,Fx=3");
   }
 
   static tl::unexpected<Error> tall(const Array& array) {
@@ -492,12 +501,7 @@ class Assembler {
       const Index count = std::min(kBlock, samples - begin);
       for (std::size_t s = 0; s < signals_.size(); ++s) {
         const Line& line = signals_[s].line;
-        const auto samples_of_block = Eigen::seqN(begin * line.step, count, line.step);
-        if (line.row) {
-          values[s].segment(begin, count) = line.array->values.row(line.index)(samples_of_block).transpose();
-        } else {
-          values[s].segment(begin, count) = line.array->values.col(line.index)(samples_of_block);
-        }
+        values[s].segment(begin, count) = line.samples(begin, count);
       }
     }
     for (std::size_t s = 0; s < signals_.size(); ++s) {

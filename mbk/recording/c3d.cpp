@@ -178,17 +178,18 @@ class Decoder {
     }
     if (const std::uint64_t room = left / layout_.frame_size() - layout_.frames;
         room > 0 && room * layout_.frame_size() >= kC3dBlock) {
-      note(fmt::format("the file has the bytes of {} frames more than it counts; they were left aside", room));
+      note(fmt::format("it has more bytes than its {} frames need, enough for {} more; they were left aside",
+                       layout_.frames, room));
     }
     return {};
   }
 
   void say_what_there_is() {
     const auto rate = [](double hz) { return hz > 0.0 ? fmt::format("at {:.6g} Hz", hz) : std::string("of no rate"); };
-    std::string text = fmt::format("{} frames", layout_.frames);
-    if (layout_.points > 0) text += fmt::format(", {} points {}", layout_.points, rate(layout_.point_rate));
+    std::string text = fmt::format("frames: {}", layout_.frames);
+    if (layout_.points > 0) text += fmt::format("; points: {} {}", layout_.points, rate(layout_.point_rate));
     if (layout_.channels > 0)
-      text += fmt::format(", {} analog channels {}", layout_.channels, rate(layout_.analog_rate));
+      text += fmt::format("; analog channels: {} {}", layout_.channels, rate(layout_.analog_rate));
     note(std::move(text));
   }
 

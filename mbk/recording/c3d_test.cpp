@@ -261,7 +261,7 @@ TEST(DecodeC3d, MoreFramesThan65535) {
   file.records.clear();  // nothing says that there are more
   const Contents cut = good(file.bytes());
   EXPECT_EQ(cut.arrays[0].values.rows(), 65535);
-  EXPECT_THAT(cut.notes, Contains(HasSubstr("has the bytes of")));
+  EXPECT_THAT(cut.notes, Contains(HasSubstr("more bytes than its 65535 frames need")));
 }
 
 TEST(DecodeC3d, SaysWhereHeaderAndParametersCountDifferentFrames) {

@@ -85,7 +85,7 @@ class C3d(Case):
                          ("mm", 100.0, 2000))
         self.assertEqual((arrays["Torque"]["unit"], arrays["Torque"]["rate_hz"]), ("Nm", 1000.0))
         text = self.fine("info", path).out
-        self.assertIn("2000 frames, 1 points at 100 Hz, 2 analog channels at 1000 Hz", text)
+        self.assertIn("frames: 2000; points: 1 at 100 Hz; analog channels: 2 at 1000 Hz", text)
 
     def test_channels_make_a_recording_with_time_from_the_rate(self):
         facts = self.fine("info", "--json", "--axes", "1", "--channels", "x=Knee angle,F=Torque", self.limb_file()).json
