@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "mbk/core/printable.h"
 #include "mbk/recording/annotations.h"
 #include "mbk/recording/assemble.h"
-#include "mbk/recording/byte_view.h"
 #include "mbk/recording/file_bytes.h"
 #include "mbk/recording/inspection.h"
 
@@ -36,7 +36,7 @@ void require(bool holds, std::string_view what) {
 }
 
 void require_line(std::string_view line, std::string_view what) {
-  if (!line.empty() && recording::printable(std::string(line)) == line) return;
+  if (!line.empty() && printable(std::string(line)) == line) return;
   std::fprintf(stderr, "is not one line of text: %.*s: '%.*s'\n", static_cast<int>(what.size()), what.data(),
                static_cast<int>(line.size()), line.data());
   std::abort();
@@ -52,8 +52,8 @@ void check_decoded(Result<recording::Contents> decoded, std::size_t input_size) 
   std::uint64_t claimed = 0;
   for (const recording::Array& array : decoded->arrays) {
     claimed += static_cast<std::uint64_t>(array.values.size()) * sizeof(double) + array.name.size();
-    require(array.name.empty() || recording::printable(array.name) == array.name, "a name is one line of text");
-    require(recording::printable(array.unit) == array.unit, "a unit is one line of text");
+    require(array.name.empty() || printable(array.name) == array.name, "a name is one line of text");
+    require(printable(array.unit) == array.unit, "a unit is one line of text");
     require(array.rate_hz >= 0.0 && array.rate_hz < 1e300, "a rate is finite");
   }
   require(claimed <= recording::largest_claim(input_size), "contents are bounded by the input");

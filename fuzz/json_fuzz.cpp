@@ -13,7 +13,12 @@ result::Measured measured(int axes) {
   const Index parameters = 3 * axes * axes + axes;
   id.covariance = Matrix::Identity(parameters, parameters);
   id.fit = {Vector::Constant(axes, 98.0), Vector::Constant(axes, 0.5), Vector::Constant(axes, 99.0), true};
+  id.parameters.assign(static_cast<std::size_t>(parameters), "p");
+  id.parameters_from = "identification";
+  id.preparations.emplace_back();
   id.sources = {{"log.mat", "MAT v7", "abc"}};
+  id.durations = {62.0};
+  id.rates = {1000.0};
   id.notes = {"a note"};
   id.usable = true;
   id.warnings.push_back({WarningCode::fit_poor, "a message", "a remedy"});
@@ -42,7 +47,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::require(one.axes == 1 || one.axes == 2, "a result has one or two axes");
     fuzz::require(one.model.M.rows() == one.axes && one.model.K.cols() == one.axes, "matrices fit the axes");
     const auto again = result::identifications_from_json(result::to_json(result::Measured{one, std::nullopt}));
-    fuzz::require(again.has_value(), "what was read can be written and read again");
+    fuzz::require(again.has_value(),
+                  again ? "" : "what was read can be written and read again: " + again.error().line());
   }
   return 0;
 }

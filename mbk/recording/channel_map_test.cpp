@@ -49,6 +49,11 @@ TEST(ParseChannelMap, NamesTheNearestChannel) {
   EXPECT_EQ(error.line(), "unknown channel 'hnad_x'; did you mean 'hand_x'?");
 }
 
+TEST(ParseChannelMap, QuotesWhatItRefusesOnOnePrintableLine) {
+  EXPECT_EQ(error_of("x\n\xE9=2").message, "unknown channel 'x?é'");
+  EXPECT_EQ(error_of("\x01").message, "channel entry '?' has no '='");
+}
+
 TEST(ParseChannelMap, RefusesAChannelTwice) {
   EXPECT_EQ(error_of("Fx=2,force_x=3").kind, ErrorKind::usage);
 }

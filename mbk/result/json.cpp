@@ -310,6 +310,8 @@ Identification identification_from(const Json& json) {
   const Index n = id.axes, count = 3 * n * n + n;
   id.model = model_from(json, "model", n);
   id.covariance = Matrix::Constant(count, count, kUnknown);
+  const Matrix none = Matrix::Constant(n, n, kUnknown);
+  id.standard_error = {none, none, none, Vector::Constant(n, kUnknown)};
   if (json.contains("standard_error")) {
     id.standard_error = model_from(json, "standard_error", n);
     id.covariance = impedance::stacked(id.standard_error).cwiseAbs2().asDiagonal();
