@@ -9,8 +9,7 @@ find_package(ZLIB REQUIRED)
 find_path(MBK_TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 add_library(mbk_tomlplusplus INTERFACE)
 target_include_directories(mbk_tomlplusplus SYSTEM INTERFACE ${MBK_TOMLPLUSPLUS_INCLUDE_DIR})
-pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
-pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 
 # Settings that every target of this project shares.
 add_library(mbk_settings INTERFACE)
@@ -32,6 +31,9 @@ endif()
 if(MBK_BUILD_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)
+  # Readers of their own, against which files that are written are held.
+  pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
+  pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
   # An engine of its own for tests/physics. Debian's mujocoConfig.cmake names a folder that its package does not have.
   find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h REQUIRED)
   find_library(MUJOCO_LIBRARY mujoco REQUIRED)

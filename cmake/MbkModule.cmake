@@ -1,31 +1,57 @@
+# Nothing of it is linked: an interface without libraries.
+function(mbk_is_header_only library result)
+  get_target_property(type ${library} TYPE)
+  get_target_property(linked ${library} INTERFACE_LINK_LIBRARIES)
+  if(type STREQUAL INTERFACE_LIBRARY AND NOT linked)
+    set(${result} TRUE PARENT_SCOPE)
+  else()
+    set(${result} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+
 # One module = one small library in mbk/<name>: name.h, name.cpp and name_test.cpp side by side.
 #
 #   mbk_module(identify DEPENDS core numeric trial [LIBRARIES PkgConfig::MATIO])
 #
 # DEPENDS lists every module whose headers this one includes; tests/layering.py reads the includes and fails
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
-# libraries that only the implementation uses; PUBLIC_LIBRARIES are those that stand in its headers, TEST_LIBRARIES
+# libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES are those that stand in its headers, TEST_LIBRARIES
 # those that only its tests link.
+#
+# An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
+# nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
   list(APPEND sources ${ARG_SOURCES})
 
+  set(private_libraries "")
+  foreach(library IN LISTS ARG_LIBRARIES)
+    mbk_is_header_only(${library} header_only)
+    if(header_only)
+      list(APPEND private_libraries $<BUILD_INTERFACE:${library}>)
+    else()
+      list(APPEND private_libraries ${library})
+    endif()
+  endforeach()
+
   list(TRANSFORM ARG_DEPENDS PREPEND mbk:: OUTPUT_VARIABLE dependencies)
   if(sources)
     add_library(mbk_${name} STATIC ${sources})
-    target_include_directories(mbk_${name} PUBLIC ${PROJECT_SOURCE_DIR})
-    target_link_libraries(mbk_${name} PUBLIC ${dependencies} ${ARG_PUBLIC_LIBRARIES}
-                          PRIVATE mbk_settings ${ARG_LIBRARIES})
+    set(public PUBLIC)
+    target_link_libraries(mbk_${name} PRIVATE $<BUILD_INTERFACE:mbk_settings> ${private_libraries})
   else()
     add_library(mbk_${name} INTERFACE)
-    target_include_directories(mbk_${name} INTERFACE ${PROJECT_SOURCE_DIR})
-    target_link_libraries(mbk_${name} INTERFACE ${dependencies} ${ARG_PUBLIC_LIBRARIES})
+    set(public INTERFACE)
   endif()
+  target_compile_features(mbk_${name} ${public} cxx_std_20)
+  target_include_directories(mbk_${name} ${public} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_link_libraries(mbk_${name} ${public} ${dependencies} ${ARG_PUBLIC_LIBRARIES})
   add_library(mbk::${name} ALIAS mbk_${name})
+  mbk_install_module(${name} ${ARG_PRIVATE_HEADERS})
 
   if(MBK_BUILD_TESTS AND tests)
     mbk_test(${name}_test SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})

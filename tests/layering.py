@@ -11,7 +11,7 @@ import re
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
-KEYWORDS = {"DEPENDS", "SOURCES", "LIBRARIES", "PUBLIC_LIBRARIES", "TEST_LIBRARIES"}
+KEYWORDS = {"DEPENDS", "SOURCES", "PRIVATE_HEADERS", "LIBRARIES", "PUBLIC_LIBRARIES", "TEST_LIBRARIES"}
 FOLDERS = ("mbk", "apps", "bindings", "tests", "bench", "fuzz", "examples")
 
 

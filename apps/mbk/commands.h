@@ -2,20 +2,30 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 
 namespace mbk::app {
 
 /// What a command does once its options are parsed; returns the exit code.
 using Action = std::function<int()>;
 
+/// The command line as it was typed, for whoever wants to run it again: quoted for a shell where it has to be.
+std::string command_line(int argc, char** argv);
+
 /// Each adds one subcommand to `app` and gives the action to run when it was chosen.
-Action add_measure(CLI::App& app);
+/// @param typed the command line, which a report repeats
+Action add_measure(CLI::App& app, const std::string& typed);
 Action add_identify(CLI::App& app);
 Action add_ellipse(CLI::App& app);
 Action add_info(CLI::App& app);
+Action add_convert(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_springs(CLI::App& app);
 Action add_validate(CLI::App& app);
 Action add_robot(CLI::App& app);
+
+/// These two speak of the whole tree below `app`, as it is when they run.
+Action add_completion(CLI::App& app);
+Action add_manual(CLI::App& app);
 
 }  // namespace mbk::app

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/memory.h"
 #include "mbk/core/version.h"
 #include "mbk/report/text.h"
 
@@ -45,6 +46,7 @@ std::string one_line(const CLI::App* app, const CLI::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  mbk::app::prefer_large_pages();
   CLI::App app{
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"
@@ -59,10 +61,17 @@ int main(int argc, char** argv) {
   app.failure_message(one_line);
 
   const std::vector<std::pair<const char*, mbk::app::Action>> commands = {
-      {"measure", mbk::app::add_measure(app)},   {"identify", mbk::app::add_identify(app)},
-      {"ellipse", mbk::app::add_ellipse(app)},   {"info", mbk::app::add_info(app)},
-      {"simulate", mbk::app::add_simulate(app)}, {"springs", mbk::app::add_springs(app)},
-      {"robot", mbk::app::add_robot(app)},       {"validate", mbk::app::add_validate(app)},
+      {"measure", mbk::app::add_measure(app, mbk::app::command_line(argc, argv))},
+      {"identify", mbk::app::add_identify(app)},
+      {"ellipse", mbk::app::add_ellipse(app)},
+      {"info", mbk::app::add_info(app)},
+      {"convert", mbk::app::add_convert(app)},
+      {"simulate", mbk::app::add_simulate(app)},
+      {"springs", mbk::app::add_springs(app)},
+      {"robot", mbk::app::add_robot(app)},
+      {"validate", mbk::app::add_validate(app)},
+      {"completion", mbk::app::add_completion(app)},
+      {"manual", mbk::app::add_manual(app)},
   };
   try {
     app.parse(argc, argv);

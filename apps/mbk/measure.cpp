@@ -4,6 +4,7 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/progress.h"
+#include "apps/mbk/report_file.h"
 #include "mbk/analyse/summary.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/report/text.h"
@@ -12,12 +13,22 @@
 namespace mbk::app {
 namespace {
 
+using measurement::Examined;
 using result::Measured;
 
+/// A result, with the diagnostics where a report will show them.
+Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
+                             bool with_diagnostics) {
+  if (with_diagnostics) return measurement::examine(recordings, options);
+  auto measured = measurement::measure(recordings, options);
+  if (!measured) return tl::unexpected(measured.error());
+  return Examined{std::move(*measured), std::nullopt};
+}
+
 /// One result per recording, several at a time; the order is that of the recordings.
-std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordings,
+std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordings,
                                            const measurement::Options& options, const MeasureArguments& arguments) {
-  std::vector<Result<Measured>> results(recordings.size(), bad_data("not measured"));
+  std::vector<Result<Examined>> results(recordings.size(), bad_data("not measured"));
   const int count = static_cast<int>(recordings.size());
   Progress progress(arguments.quiet);
   int done = 0;
@@ -25,7 +36,7 @@ std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordi
       count, arguments.threads,
       [&](int i) -> Result<void> {
         const auto k = static_cast<std::size_t>(i);
-        results[k] = measurement::measure({&recordings[k], 1}, options);
+        results[k] = measure_one({&recordings[k], 1}, options, arguments.report.has_value());
         return {};
       },
       [&](int i) {
@@ -36,24 +47,26 @@ std::vector<Result<Measured>> measure_each(const std::vector<Recording>& recordi
 }
 
 /// The work of `measure` and `identify`, which differ only in whether the ellipses are shown.
-int run(const MeasureArguments& arguments, bool with_findings) {
+int run(const MeasureArguments& arguments, const std::string& typed, bool with_findings) {
   const auto options = measurement_options(arguments);
   if (!options) return report_error(options.error());
-  if (auto ok = arguments.output.check(arguments.files); !ok) return report_error(ok.error());
+  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
   const auto recordings = read_recordings(arguments);
   if (!recordings) return report_error(recordings.error());
 
-  std::vector<Result<Measured>> results;
+  std::vector<Result<Examined>> results;
   if (arguments.pool) {
-    results.push_back(measurement::measure(*recordings, *options));
+    results.push_back(measure_one(*recordings, *options, arguments.report.has_value()));
   } else {
     results = measure_each(*recordings, *options, arguments);
   }
   std::vector<Measured> measured;
-  for (Result<Measured>& one : results) {
+  std::vector<std::optional<Diagnostics>> diagnostics;
+  for (Result<Examined>& one : results) {
     if (!one) return report_error(one.error());
-    if (!with_findings) one->findings.reset();
-    measured.push_back(std::move(*one));
+    if (!with_findings) one->measured.findings.reset();
+    measured.push_back(std::move(one->measured));
+    diagnostics.push_back(std::move(one->diagnostics));
   }
   std::optional<Summary> summary;
   if (measured.size() > 1) {
@@ -74,6 +87,10 @@ int run(const MeasureArguments& arguments, bool with_findings) {
     }
     if (summary) text += "\n" + report::summary_text(*summary);
   }
+  if (arguments.report) {
+    if (auto ok = write_report(arguments, typed, *recordings, measured, diagnostics, summary); !ok)
+      return report_error(ok.error());
+  }
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   for (const Measured& one : measured) {
     if (!one.identification.usable) return kNotUsable;
@@ -81,19 +98,21 @@ int run(const MeasureArguments& arguments, bool with_findings) {
   return kFine;
 }
 
-Action add(CLI::App& app, const char* name, const char* summary, const char* footer, bool with_findings) {
+Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
+           bool with_findings) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* command = app.add_subcommand(name, summary);
   command->footer(footer);
   add_reading_options(*command, *arguments);
   add_measuring_options(*command, *arguments);
   add_output_options(*command, *arguments, "mbk.result/1");
-  return [arguments, with_findings] { return run(*arguments, with_findings); };
+  if (with_findings) add_report_options(*command, *arguments);
+  return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
 }
 
 }  // namespace
 
-Action add_measure(CLI::App& app) {
+Action add_measure(CLI::App& app, const std::string& typed) {
   return add(app, "measure", "recording → M, B, K, x0 with intervals, ellipses, warnings",
              "Examples:\n"
              "  mbk measure log.mat\n"
@@ -103,9 +122,12 @@ Action add_measure(CLI::App& app) {
              "  mbk measure --axes 1 --channels x=position_rad,F=torque_Nm --split 40 ankle.csv\n"
              "      one joint from a CSV file, the first 40 s to identify, the rest held back\n"
              "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
-             "      several trials: one result each, their mean and the standard error between them\n\n"
-             "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable.",
-             true);
+             "      several trials: one result each, their mean and the standard error between them\n"
+             "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"
+             "      one file for the browser or the printer: the result in plain words, ellipses, plots, glossary\n\n"
+             "Exit codes: " +
+                 std::string(kExitCodes),
+             typed, true);
 }
 
 Action add_identify(CLI::App& app) {
@@ -114,7 +136,7 @@ Action add_identify(CLI::App& app) {
              "  mbk identify log.mat --json\n"
              "  mbk identify --structure mass-spring rig.mat\n"
              "      a payload on springs: one mass, no damping, symmetric stiffness",
-             false);
+             "", false);
 }
 
 }  // namespace mbk::app

@@ -6,6 +6,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "mbk/recording/channel_map.h"
+#include "mbk/report/html.h"
 
 namespace mbk::app {
 namespace {
@@ -15,14 +16,7 @@ CLI::Option* add_choice(CLI::App& command, const char* name, std::string& target
                         const std::vector<std::string>& choices, const std::string& help) {
   std::string joined;
   for (const std::string& choice : choices) joined += (joined.empty() ? "" : "|") + choice;
-  return command.add_option(name, target, help)
-      ->type_name(joined)
-      ->check([choices, joined](const std::string& given) -> std::string {
-        for (const std::string& choice : choices) {
-          if (choice == given) return "";
-        }
-        return fmt::format("{} is none of {}", quoted(given), joined);
-      });
+  return command.add_option(name, target, help)->type_name(joined)->check(one_of(choices));
 }
 
 /// Limits of time must be in order; whether they lie in the recording is seen when it is read.
@@ -40,7 +34,7 @@ Result<void> check_order(const MeasureArguments& a) {
 }  // namespace
 
 void add_reading_options(CLI::App& command, MeasureArguments& arguments) {
-  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3) or .csv")->required();
+  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5 or .csv")->required();
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
@@ -108,6 +102,14 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
       ->type_name("N")
       ->check(whole_number(0, 1'000'000))
       ->group(filters);
+  command
+      .add_option(
+          "--every", a.every,
+          "the fit takes every so many of the filtered samples; otherwise ten for each period of the cutoff, and "
+          "all in reference mode")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000))
+      ->group(filters);
   add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")->group(filters);
   command
       .add_option("--resample", a.resample_hz, "put an uneven clock right first, by straight lines; never done unasked")
@@ -142,6 +144,41 @@ void add_output_options(CLI::App& command, MeasureArguments& arguments, const st
   command.add_flag("--json", arguments.json, fmt::format("for machines: schema {}, SI units, every digit", schema));
   arguments.output.add_options(command);
   command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
+}
+
+void add_report_options(CLI::App& command, MeasureArguments& arguments) {
+  CLI::Option* const report =
+      command
+          .add_option("--report", arguments.report,
+                      "also write everything, with plots, as one HTML file to read, print or pass on")
+          ->type_name("FILE")
+          ->check(not_empty());
+  command
+      .add_option(
+          "--report-note", arguments.report_note,
+          "a line below the report's title, such as a date and a name; mbk adds no date of its own, so that the "
+          "same inputs give the same report")
+      ->type_name("TEXT")
+      ->check(not_empty())
+      ->needs(report);
+  CLI::Option* const overwrite = command.get_option("--overwrite");
+  overwrite->remove_needs(command.get_option("--out"));
+  overwrite->description("replace the files of --out and --report where they are there");
+}
+
+Result<void> check_files(const MeasureArguments& arguments) {
+  const Output& output = arguments.output;
+  if (output.overwrite && !output.file && !arguments.report) {
+    return bad_usage("--overwrite requires --out or --report", "name a file to write");
+  }
+  if (auto ok = output.check(arguments.files); !ok || !arguments.report) return ok;
+  if (auto page = report::page(""); !page) return tl::unexpected(page.error());
+  std::error_code error;
+  if (output.file && std::filesystem::weakly_canonical(*output.file, error) ==
+                         std::filesystem::weakly_canonical(*arguments.report, error)) {
+    return bad_usage("--out and --report name the same file", "choose another name for one of them");
+  }
+  return check_new_file(*arguments.report, "--report", output.overwrite, arguments.files);
 }
 
 Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {
@@ -183,6 +220,7 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
   if (a.acceleration == "derivative") p.acceleration = preprocess::AccelerationSource::derivative;
   p.window = {a.from_s, a.split_s, a.to_s};
   p.padding.samples = a.padding;
+  p.every = a.every;
   p.padding.extension = a.extension == "even"       ? dsp::Extension::even
                         : a.extension == "constant" ? dsp::Extension::constant
                                                     : dsp::Extension::odd;

@@ -23,6 +23,7 @@ struct MeasureArguments {
   std::optional<int> sg_window, sg_order;
   std::string cutoff, acceleration, parameters_from, structure = "full", extension = "odd";
   long padding = 15;
+  std::optional<long> every;
   double handle_mass = 0.0;
   std::optional<double> from_s, split_s, to_s;
   double hac_lag_s = 1.0;
@@ -30,6 +31,8 @@ struct MeasureArguments {
   unsigned threads = 0;
   bool json = false, quiet = false;
   Output output;
+  std::optional<std::filesystem::path> report;
+  std::string report_note;
 };
 
 /// Adds FILE… and how to read it: --channels, --variable, --rate, --parts.
@@ -40,6 +43,12 @@ void add_measuring_options(CLI::App& command, MeasureArguments& arguments);
 
 /// Adds --json, --out, --overwrite, --quiet.
 void add_output_options(CLI::App& command, MeasureArguments& arguments, const std::string& schema);
+
+/// Adds --report and --report-note; --overwrite then speaks of the report too.
+void add_report_options(CLI::App& command, MeasureArguments& arguments);
+
+/// What can be said of --out, --report and --overwrite before the work begins.
+[[nodiscard]] Result<void> check_files(const MeasureArguments& arguments);
 
 [[nodiscard]] Result<recording::ReadOptions> read_options(const MeasureArguments& arguments);
 [[nodiscard]] Result<measurement::Options> measurement_options(const MeasureArguments& arguments);

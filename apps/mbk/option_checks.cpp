@@ -1,14 +1,19 @@
 #include "apps/mbk/option_checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
+#include <sstream>
+#include <string_view>
 
 namespace mbk::app {
 namespace {
 
 constexpr double kLargest = 1e12;
+constexpr std::string_view kSuggestions = "suggestions";  ///< the name of a validator begins so where words follow
 
 /// The number that the whole text is; nothing where it is none.
 template <class Number>
@@ -17,6 +22,10 @@ std::optional<Number> number(const std::string& given) {
   const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), value);
   if (error != std::errc() || end != given.data() + given.size()) return std::nullopt;
   return value;
+}
+
+std::string name_with(const std::vector<std::string>& words) {
+  return fmt::format("{} {}", kSuggestions, fmt::join(words, " "));
 }
 
 }  // namespace
@@ -68,6 +77,32 @@ CLI::Validator odd_number(long least, long most) {
 
 CLI::Validator not_empty() {
   return {[](const std::string& given) -> std::string { return given.empty() ? "'' is empty" : ""; }, ""};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  return {[words](const std::string& given) -> std::string {
+            if (std::ranges::find(words, given) != words.end()) return "";
+            return fmt::format("{} is none of {}", quoted(given), fmt::join(words, "|"));
+          },
+          "", name_with(words)};
+}
+
+CLI::Validator suggests(const std::vector<std::string>& words) {
+  return CLI::Validator().name(name_with(words));
+}
+
+std::vector<std::string> suggestions(CLI::Option& option) {
+  std::vector<std::string> words;
+  for (int i = 0;; ++i) {
+    try {
+      std::istringstream name(option.get_validator(i)->get_name());
+      std::string word;
+      if (!(name >> word) || word != kSuggestions) continue;
+      while (name >> word) words.push_back(word);
+    } catch (const CLI::OptionNotFound&) {
+      return words;  // that was the last one
+    }
+  }
 }
 
 }  // namespace mbk::app

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace mbk::app {
 
@@ -12,6 +13,15 @@ namespace mbk::app {
 [[nodiscard]] CLI::Validator whole_number(long least, long most);
 [[nodiscard]] CLI::Validator odd_number(long least, long most);
 [[nodiscard]] CLI::Validator not_empty();
+
+/// One of a few words, which a shell offers too.
+[[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
+
+/// Words that the value can be, for a shell to offer; anything is let through.
+[[nodiscard]] CLI::Validator suggests(const std::vector<std::string>& words);
+
+/// The words of every one_of() and suggests() that `option` has.
+[[nodiscard]] std::vector<std::string> suggestions(CLI::Option& option);
 
 /// What was given, as it stands in a message: 'abc', cut where it is long.
 [[nodiscard]] std::string quoted(const std::string& given);

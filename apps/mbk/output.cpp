@@ -33,17 +33,22 @@ void Output::add_options(CLI::App& command) {
   command.add_flag("--overwrite", overwrite, "replace that file where it is there")->needs(out);
 }
 
-Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) const {
+Result<void> check_new_file(const std::filesystem::path& file, const char* option, bool overwrite,
+                            const std::vector<std::filesystem::path>& inputs) {
   std::error_code error;
-  if (!file || !std::filesystem::exists(*file, error)) return {};
+  if (!std::filesystem::exists(file, error)) return {};
   for (const std::filesystem::path& input : inputs) {
-    if (std::filesystem::equivalent(*file, input, error)) {
-      return fail(ErrorKind::usage, "is what is read, and would be lost", "choose another name for --out",
-                  file->string());
+    if (std::filesystem::equivalent(file, input, error)) {
+      return fail(ErrorKind::usage, "is what is read, and would be lost",
+                  fmt::format("choose another name for {}", option), file.string());
     }
   }
   if (overwrite) return {};
-  return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file->string());
+  return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
+}
+
+Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) const {
+  return file ? check_new_file(*file, "--out", overwrite, inputs) : Result<void>{};
 }
 
 Result<void> Output::write(const std::string& text) const {

@@ -12,6 +12,9 @@ namespace mbk::app {
 
 inline constexpr int kFine = 0, kWrongUsage = 2, kBadData = 3, kNotUsable = 4;
 
+/// What they mean, as help and manual say it; a command with other codes has a line "Exit codes: …" in its footer.
+inline constexpr const char* kExitCodes = "0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable.";
+
 /// Prints "mbk: where: what; what to do" on stderr and gives the exit code of that kind of error.
 int report_error(const Error& error);
 
@@ -24,12 +27,16 @@ struct Output {
   /// Adds --out and --overwrite.
   void add_options(CLI::App& command);
 
-  /// What can be said before the work begins.
-  /// @fails  usage: the file is there and may not be overwritten, or is one of `inputs`.
+  /// What can be said before the work begins, as `check_new_file`.
   [[nodiscard]] Result<void> check(const std::vector<std::filesystem::path>& inputs) const;
 
   [[nodiscard]] Result<void> write(const std::string& text) const;
 };
+
+/// What can be said of a file that an option names, before the work begins.
+/// @fails  usage: the file is there and may not be overwritten, or is one of `inputs`.
+[[nodiscard]] Result<void> check_new_file(const std::filesystem::path& file, const char* option, bool overwrite,
+                                          const std::vector<std::filesystem::path>& inputs);
 
 /// The whole of a text file, at most 256 MB.
 [[nodiscard]] Result<std::string> read_text(const std::filesystem::path& file);

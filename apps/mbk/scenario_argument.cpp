@@ -23,6 +23,12 @@ Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::stri
   return laboratory::read_scenarios(*text, argument);
 }
 
+std::vector<std::string> ready_scenario_names() {
+  std::vector<std::string> names;
+  for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) names.emplace_back(one.name);
+  return names;
+}
+
 Result<laboratory::Scenario> find_trial(const std::vector<laboratory::Scenario>& scenarios, const std::string& name) {
   const auto found = std::ranges::find(scenarios, name, &laboratory::Scenario::trial_name);
   if (found != scenarios.end()) return *found;

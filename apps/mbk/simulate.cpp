@@ -12,7 +12,7 @@
 #include "apps/mbk/scenario_argument.h"
 #include "mbk/laboratory/scenario.h"
 #include "mbk/numeric/parallel.h"
-#include "mbk/recording/mat_writer.h"
+#include "mbk/recording/write.h"
 #include "mbk/report/schedule_text.h"
 
 namespace mbk::app {
@@ -133,7 +133,7 @@ int show_facts(const Arguments& arguments) {
   return kFine;
 }
 
-int run(const Arguments& arguments) {
+int run(const Arguments& arguments, recording::Format format) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
   if (auto ok = check_files(*jobs, arguments); !ok) return report_error(ok.error());
@@ -151,7 +151,7 @@ int run(const Arguments& arguments) {
         if (!performance) return tl::unexpected(performance.error().in(place_of(arguments, job)));
         lines[static_cast<std::size_t>(i)] = summary_line(job, *performance);
         if (arguments.blind) performance->recording = laboratory::without_truth(std::move(performance->recording));
-        return recording::write_mat(performance->recording, job.file, arguments.overwrite);
+        return recording::write(performance->recording, job.file, format, arguments.overwrite);
       },
       [&](int i) { progress.count(++done, count, (*jobs)[static_cast<std::size_t>(i)].file.string()); });
   if (!made) return report_error(made.error());
@@ -174,6 +174,7 @@ Action add_simulate(CLI::App& app) {
       "  mbk simulate --list\n"
       "      the ready scenarios, one for each experiment of the thesis\n"
       "  mbk simulate relaxed_sinusoidal --out relaxed.mat\n"
+      "      the end of the name says the format: .h5, .mat (v5) or .csv\n"
       "  mbk simulate --show relaxed_sinusoidal > mine.toml\n"
       "      a commented file to begin your own with; every key carries its unit\n"
       "  mbk simulate mine.toml --out mine.mat --seeds 20\n"
@@ -184,9 +185,12 @@ Action add_simulate(CLI::App& app) {
       "The recording holds the truth (truth_M, truth_B, truth_K, …) as metadata, which 'mbk info' shows and\n"
       "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
       "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
-  command->add_option("SCENARIO", arguments->scenario, "a TOML file, or the name of a ready scenario");
-  command->add_option("--out", arguments->out, "the recording to write (MAT v5); several trials or seeds get suffixes")
-      ->type_name("REC.mat")
+  command->add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a ready scenario")
+      ->check(suggests(ready_scenario_names()));
+  command
+      ->add_option("--out", arguments->out,
+                   "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
+      ->type_name("REC")
       ->check(not_empty());
   command->add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
       ->type_name("NAME");
@@ -204,7 +208,9 @@ Action add_simulate(CLI::App& app) {
   command->add_flag("--list", arguments->list, "the ready scenarios");
   command->add_flag("--facts", arguments->facts,
                     "what the perturbation demands: peaks, speed, band; simulates nothing");
-  command->add_option("--show", *shown, "print a ready scenario")->type_name("NAME");
+  command->add_option("--show", *shown, "print a ready scenario")
+      ->type_name("NAME")
+      ->check(suggests(ready_scenario_names()));
   command->add_flag("--quiet", arguments->quiet, "no progress and no summary");
   return [arguments, shown] {
     if (arguments->list) return list();
@@ -216,12 +222,9 @@ Action add_simulate(CLI::App& app) {
     if (arguments->out.empty()) {
       return report_error({ErrorKind::usage, "no --out", "name the recording to write: --out recording.mat", ""});
     }
-    if (arguments->out.extension() != ".mat") {
-      return report_error({ErrorKind::usage,
-                           fmt::format("'{}' is not a format that is written", arguments->out.extension().string()),
-                           "let --out end with .mat", ""});
-    }
-    return run(*arguments);
+    const auto format = recording::format_of(arguments->out);
+    if (!format) return report_error(format.error());
+    return run(*arguments, *format);
   };
 }
 

@@ -201,8 +201,9 @@ Action add_field(CLI::App& springs) {
       "      --spring k=150,l=80,anchor=215:0 --grid-step 0.15\n\n"
       "Places are x:y in mm in the robot's base frame; a hole is where the spring hangs in the disc, from\n"
       "the hand. K is minus the gradient of the force at the place where the force is zero.");
-  CLI::Option* const scenario = command->add_option("SCENARIO.toml", arguments->scenario,
-                                                    "a scenario with [[rig.spring]], or a ready one's name");
+  CLI::Option* const scenario =
+      command->add_option("SCENARIO.toml", arguments->scenario, "a scenario with [[rig.spring]], or a ready one's name")
+          ->check(suggests(ready_scenario_names()));
   command->add_option("--trial", arguments->trial, "which [[trial]] of it")->type_name("NAME")->needs(scenario);
   command->add_option("--spring", arguments->springs, "k in N/m, rest length l in mm, anchor, and hole; once for each")
       ->type_name("k=K,l=L,anchor=X:Y[,hole=X:Y]")

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
@@ -36,11 +38,9 @@ const validation::Study* find_study(const std::string& name) {
   return nullptr;
 }
 
-std::string study_names() {
-  std::string names;
-  for (const validation::Study& study : validation::studies()) {
-    names += (names.empty() ? "" : ", ") + std::string(study.name);
-  }
+std::vector<std::string> study_names() {
+  std::vector<std::string> names;
+  for (const validation::Study& study : validation::studies()) names.emplace_back(study.name);
   return names;
 }
 
@@ -97,10 +97,12 @@ Action add_validate(CLI::App& app) {
                   "  mbk validate participant --charts charts\n"
                   "      charts/participant-1.svg: energy against the amplitude of the pulses\n\n"
                   "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage.");
-  command->add_option("STUDY", arguments->study, study_names())->check([](const std::string& study) {
-    if (find_study(study) != nullptr) return std::string();
-    return fmt::format("'{}' is no study; there are: {}", study, study_names());
-  });
+  const std::string names = fmt::format("{}", fmt::join(study_names(), ", "));
+  command->add_option("STUDY", arguments->study, names)
+      ->check([names](const std::string& study) {
+        return find_study(study) != nullptr ? "" : fmt::format("'{}' is no study; there are: {}", study, names);
+      })
+      ->check(suggests(study_names()));
   command->add_option("--runs", arguments->runs, "how many seeds (see the studies)")
       ->type_name("N")
       ->check(whole_number(1, 1'000'000));

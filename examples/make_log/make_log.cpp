@@ -1,4 +1,4 @@
-// make_log --out FILE.mat: a recording whose M, B, K and x0 are known, to try mbk on.
+// make_log --out FILE: a recording whose M, B, K and x0 are known, to try mbk on.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mbk/laboratory/prescribed_motion.h"
-#include "mbk/recording/mat_writer.h"
+#include "mbk/recording/write.h"
 
 namespace {
 
@@ -15,9 +15,10 @@ using namespace mbk;
 
 constexpr Hertz kRate{1000.0};  // of the published logs
 constexpr char kHelp[] =
-    "Writes a synthetic trial at 1 kHz as a MAT file and prints the truth behind it.\n"
-    "Two axes: the 19-row matrix 'logs' (row 1 time, 2-3 hand, 10-11 force of the hand on the robot, 12-13 reference,\n"
-    "18-19 acceleration; every other row is NaN). One axis: variables time, position, reaction, reference, "
+    "Writes a synthetic trial at 1 kHz as .mat, .h5 or .csv, and prints the truth behind it.\n"
+    "A MAT file of two axes holds the 19-row matrix 'logs': row 1 time, 2-3 hand, 10-11 force of the hand on the "
+    "robot,\n"
+    "12-13 reference, 18-19 acceleration; every other row is NaN. One axis: time, position, reaction, reference, "
     "acceleration.\n"
     "Example: make_log --protocol underdamped --seed 3 --out trial.mat";
 
@@ -64,8 +65,8 @@ int main(int argc, char** argv) {
   app.add_option("--position-quantum", options.sensors.position_quantum, "resolution of the position")
       ->option_text("M [2e-6]");
   app.add_flag("--one-axis", one_axis, "one axis instead of two");
-  app.add_option("--out", path, "MAT file to write")->option_text("FILE.mat")->required();
-  app.add_flag("--overwrite", overwrite, "replace FILE.mat if it exists");
+  app.add_option("--out", path, "recording to write: .mat, .h5 or .csv")->option_text("FILE")->required();
+  app.add_flag("--overwrite", overwrite, "replace FILE if it exists");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -76,9 +77,11 @@ int main(int argc, char** argv) {
     options.home = Vector(options.home.tail(1));
   }
 
+  const auto format = recording::format_of(path);
+  if (!format) return report(format.error());
   const auto made = laboratory::record_prescribed_motion(options, kRate);
   if (!made) return report(made.error());
-  if (const auto saved = recording::write_mat(*made, path, overwrite); !saved) return report(saved.error());
+  if (const auto saved = recording::write(*made, path, *format, overwrite); !saved) return report(saved.error());
   fmt::print("{}: {}, seed {}, {:.3f} s; the truth:\n", path, made->metadata.at("protocol"), options.seed,
              made->time[made->samples() - 1]);
   print_truth(options.limb);

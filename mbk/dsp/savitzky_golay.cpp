@@ -42,32 +42,41 @@ void correlate(const Vector& weights, double sign, const double* x, double* out,
 
 }  // namespace
 
-Result<Vector> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative) {
+Result<SavitzkyGolayWeights> savitzky_golay_polynomial(const SavitzkyGolay& filter, int derivative) {
   if (auto ok = check(filter, derivative); !ok) return tl::unexpected(ok.error());
   const Index half = filter.half_window(), window = filter.window;
   const double scale = half > 0 ? 1.0 / static_cast<double>(half) : 1.0;
   const Vector t = Vector::LinSpaced(window, -static_cast<double>(half), static_cast<double>(half)) * scale;
 
-  Vector weights = Vector::Zero(window);
+  SavitzkyGolayWeights result{Vector::Zero(window), Vector::Zero(filter.order + 1)};
+  if (derivative > filter.order) return result;
+  const double unit = std::tgamma(derivative + 1.0) * std::pow(scale, derivative);
   Vector p = Vector::Ones(window), p_before = Vector::Zero(window);
-  // at_centre[j] is the j-th derivative of p_k at t = 0.
-  Vector at_centre = Vector::Zero(derivative + 1), at_centre_before = Vector::Zero(derivative + 1);
-  at_centre[0] = 1.0;
+  Vector powers = Vector::Unit(filter.order + 2, 0), powers_before = Vector::Zero(filter.order + 2);  // of p_k, by tᵐ
   double norm = static_cast<double>(window), norm_before = 1.0;
   for (int k = 0; k <= filter.order; ++k) {
-    weights += p * (at_centre[derivative] / norm);
+    const double share = unit * powers[derivative] / norm;
+    result.samples += share * p;
+    result.powers += share * powers.head(filter.order + 1);
     const double beta = k > 0 ? norm / norm_before : 0.0;
     const Vector p_next = t.cwiseProduct(p) - beta * p_before;
-    Vector at_centre_next = -beta * at_centre_before;  // d^j/dt^j (t p) = t p^(j) + j p^(j−1), at t = 0
-    for (int j = 1; j <= derivative; ++j) at_centre_next[j] += j * at_centre[j - 1];
+    Vector powers_next = -beta * powers_before;
+    powers_next.tail(filter.order + 1) += powers.head(filter.order + 1);
     p_before = p;
     p = p_next;
-    at_centre_before = at_centre;
-    at_centre = at_centre_next;
+    powers_before = powers;
+    powers = powers_next;
     norm_before = norm;
     norm = p.squaredNorm();
   }
-  return Vector(weights * std::pow(scale, derivative));
+  for (int m = 1; m <= filter.order; ++m) result.powers[m] *= std::pow(scale, m);
+  return result;
+}
+
+Result<Vector> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative) {
+  auto weights = savitzky_golay_polynomial(filter, derivative);
+  if (!weights) return tl::unexpected(weights.error());
+  return std::move(weights->samples);
 }
 
 Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const Matrix& signals, Hertz sample_rate) {
@@ -88,15 +97,26 @@ Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const
   return filtered;
 }
 
-Result<double> savitzky_golay_gain(const SavitzkyGolay& filter, int derivative, Hertz frequency, Hertz sample_rate) {
+Result<Vector> savitzky_golay_response(const SavitzkyGolay& filter, int derivative, const Vector& frequency_hz,
+                                       Hertz sample_rate) {
   const auto weights = savitzky_golay_weights(filter, derivative);
   if (!weights) return tl::unexpected(weights.error());
-  const double omega = 2.0 * std::numbers::pi * frequency.value / sample_rate.value;  // per sample
-  std::complex<double> response = 0.0;
-  for (Index i = 0; i < weights->size(); ++i) {
-    response += (*weights)[i] * std::polar(1.0, omega * static_cast<double>(i - filter.half_window()));
+  Vector response(frequency_hz.size());
+  for (Index k = 0; k < response.size(); ++k) {
+    const double omega = 2.0 * std::numbers::pi * frequency_hz[k] / sample_rate.value;  // per sample
+    std::complex<double> sum = 0.0;
+    for (Index i = 0; i < weights->size(); ++i) {
+      sum += (*weights)[i] * std::polar(1.0, omega * static_cast<double>(i - filter.half_window()));
+    }
+    response[k] = std::abs(sum) * std::pow(sample_rate.value, derivative);
   }
-  return std::abs(response) / std::pow(omega, derivative);
+  return response;
+}
+
+Result<double> savitzky_golay_gain(const SavitzkyGolay& filter, int derivative, Hertz frequency, Hertz sample_rate) {
+  const auto response = savitzky_golay_response(filter, derivative, Vector::Constant(1, frequency.value), sample_rate);
+  if (!response) return tl::unexpected(response.error());
+  return (*response)[0] / std::pow(2.0 * std::numbers::pi * frequency.value, derivative);
 }
 
 Result<Hertz> savitzky_golay_cutoff(const SavitzkyGolay& filter, Hertz sample_rate) {

@@ -16,12 +16,21 @@ struct SavitzkyGolay {
   [[nodiscard]] Index half_window() const { return (window - 1) / 2; }
 };
 
+/// The weights of one filter, twice.
+struct SavitzkyGolayWeights {
+  Vector samples;  ///< W of them, oldest sample first
+  Vector powers;   ///< c, N + 1: the weight of sample j from the centre is Σ_m c_m jᵐ
+};
+
 /// Weights w, so that Σ_i w_i x_i is the derivative of order `derivative` at the centre, in units of x per sampleᵈ.
 ///   w_i = Σ_k p_k(t_i) p_k^(d)(0) / ‖p_k‖²
 /// with the monic polynomials p_k that are orthogonal on the window (Gram polynomials), by their three-term
 /// recursion on an abscissa scaled to [−1, 1]: no matrix is inverted, and the weights are exact to rounding at any
 /// usable window.
-/// @returns W weights, oldest sample first.   @fails W even, W ≤ N, N < 0, derivative < 0.
+/// @fails W even, W ≤ N, N < 0, derivative < 0.
+[[nodiscard]] Result<SavitzkyGolayWeights> savitzky_golay_polynomial(const SavitzkyGolay& filter, int derivative);
+
+/// Their samples alone.
 [[nodiscard]] Result<Vector> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative);
 
 /// Applies the filter where the whole window lies inside the signal.
@@ -29,6 +38,10 @@ struct SavitzkyGolay {
 /// the signal per second^derivative.   @fails as the weights; fewer samples than the window.
 [[nodiscard]] Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const Matrix& signals,
                                             Hertz sample_rate);
+
+/// |H(f)| at each frequency, in 1/s^derivative.
+[[nodiscard]] Result<Vector> savitzky_golay_response(const SavitzkyGolay& filter, int derivative,
+                                                     const Vector& frequency_hz, Hertz sample_rate);
 
 /// |H(f)| of the smoothing filter (derivative 0), or that of the derivative divided by (2πf)ᵈ, the ideal one.
 [[nodiscard]] Result<double> savitzky_golay_gain(const SavitzkyGolay& filter, int derivative, Hertz frequency,

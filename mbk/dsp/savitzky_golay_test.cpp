@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <random>
+
+#include "mbk/dsp/test_twins.h"
 
 namespace mbk::dsp {
 namespace {
@@ -12,28 +13,14 @@ namespace {
 constexpr double kEps = 2.3e-16;
 const Hertz kRate(1000.0);
 
-/// The slow plain twin: the polynomial's least squares by QR of the Vandermonde matrix on [−1, 1], in long double.
-Vector twin_weights(const SavitzkyGolay& filter, int derivative) {
-  using MatrixL = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-  const Index half = filter.half_window();
-  MatrixL V(filter.window, filter.order + 1);
-  for (Index i = 0; i < filter.window; ++i) {
-    const long double t = static_cast<long double>(i - half) / static_cast<long double>(half);
-    long double power = 1.0L;
-    for (int k = 0; k <= filter.order; ++k, power *= t) V(i, k) = power;
-  }
-  const MatrixL pinv = V.householderQr().solve(MatrixL::Identity(filter.window, filter.window));
-  long double factor = 1.0L;
-  for (int k = 1; k <= derivative; ++k) factor *= static_cast<long double>(k) / static_cast<long double>(half);
-  return (factor * pinv.row(derivative)).transpose().cast<double>();
-}
-
 TEST(SavitzkyGolay, HasTheWeightsOfAPolynomialFitToRounding) {
   for (const SavitzkyGolay filter : {SavitzkyGolay{2, 5}, {4, 31}, {6, 31}, {6, 101}, {6, 151}, {9, 151}, {3, 1001}}) {
     for (int derivative = 0; derivative <= 3; ++derivative) {
       const auto weights = savitzky_golay_weights(filter, derivative);
       ASSERT_TRUE(weights);
-      const Vector twin = twin_weights(filter, derivative);
+      const twin::Signal wide = twin::weights_of(filter, derivative);
+      Vector twin(filter.window);
+      for (Index i = 0; i < twin.size(); ++i) twin[i] = static_cast<double>(wide[static_cast<std::size_t>(i)]);
       const double scale = twin.cwiseAbs().maxCoeff();
       if (derivative > filter.order) continue;
       EXPECT_LT((*weights - twin).cwiseAbs().maxCoeff(), 64 * kEps * std::max(scale, 1e-300))

@@ -19,19 +19,28 @@ Index fast_length_below(Index n) {
   return n;
 }
 
+Index segment_length(Hertz sample_rate, Hertz resolution, Index longest) {
+  const auto wanted = static_cast<Index>(std::min(sample_rate.value / resolution.value, 1e9));
+  const Index length = fast_length_below(std::min(std::max<Index>(wanted, 8), longest));
+  return length - length % 2;
+}
+
+Vector hann_window(Index length) {
+  Vector window(length);
+  for (Index i = 0; i < length; ++i) {
+    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length));
+  }
+  return window;
+}
+
 Result<Spectrum> welch(const Vector& signal, Hertz sample_rate, Hertz resolution) {
   if (!(sample_rate.value > 0.0 && resolution.value > 0.0)) {
     return bad_usage(fmt::format("sample rate {:g} Hz and resolution {:g} Hz must be positive", sample_rate.value,
                                  resolution.value));
   }
   if (signal.size() < 8) return bad_data(fmt::format("{} samples are too few for a spectrum", signal.size()));
-  const auto wanted = static_cast<Index>(std::min(sample_rate.value / resolution.value, 1e9));
-  Index length = fast_length_below(std::min(std::max<Index>(wanted, 8), signal.size()));
-  length -= length % 2;
-  Vector window(length);
-  for (Index i = 0; i < length; ++i) {
-    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length));
-  }
+  const Index length = segment_length(sample_rate, resolution, signal.size());
+  const Vector window = hann_window(length);
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   const Index lines = length / 2 + 1;

@@ -21,6 +21,12 @@ struct Spectrum {
 /// The frequency below which that fraction of the power lies, looking only at lines up to `limit`.
 [[nodiscard]] Hertz power_quantile(const Spectrum& spectrum, double fraction, Hertz limit);
 
+/// How many samples a segment has: about rate/resolution, at most `longest` ≥ 8, even, and made of 2, 3 and 5.
+[[nodiscard]] Index segment_length(Hertz sample_rate, Hertz resolution, Index longest);
+
+/// ½ − ½ cos(2πi/length), i = 0 … length − 1.
+[[nodiscard]] Vector hann_window(Index length);
+
 /// The largest integer ≤ n that is made of the factors 2, 3 and 5 only: lengths at which the transform is fast.
 [[nodiscard]] Index fast_length_below(Index n);
 

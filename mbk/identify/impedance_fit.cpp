@@ -228,9 +228,9 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
                       "measure it by itself", trial.sources.empty() ? "" : trial.sources.front().path);
     }
     if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
-      return bad_data(fmt::format("trials of {:g} Hz and {:g} Hz cannot be pooled", 1.0 / first.sample_time,
-                                  1.0 / trial.sample_time),
-                      "put them on one clock with --resample HZ");
+      return bad_data(
+          fmt::format("trials of {:g} Hz and {:g} Hz cannot be pooled", first.recording_rate, trial.recording_rate),
+          "put them on one clock with --resample HZ");
     }
   }
   Regression r = stack(trials);
@@ -289,7 +289,7 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
     result.preparations.push_back(trial.preparation);
     result.sources.insert(result.sources.end(), trial.sources.begin(), trial.sources.end());
     result.durations.insert(result.durations.end(), trial.sources.size(), trial.recording_duration);
-    result.rates.insert(result.rates.end(), trial.sources.size(), 1.0 / trial.sample_time);
+    result.rates.insert(result.rates.end(), trial.sources.size(), trial.recording_rate);
     result.notes.insert(result.notes.end(), trial.notes.begin(), trial.notes.end());
     result.warnings.insert(result.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   }
@@ -297,7 +297,8 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   result.excitation.duration = static_cast<double>(result.samples) * r.sample_time;
 
   if (options.decimate_check) {
-    const auto step = std::max<Index>(1, static_cast<Index>(std::llround(1.0 / (100.0 * r.sample_time))));
+    // At least every other one: the rows may be thinned already.
+    const auto step = std::max<Index>(2, static_cast<Index>(std::llround(1.0 / (100.0 * r.sample_time))));
     const auto coarse = fit_rows(ranges, step);
     if (!coarse) return tl::unexpected(coarse.error());
     DecimationCheck decimation;

@@ -42,6 +42,7 @@ inline PreparedTrial trial(const impedance::Model& model, const Making& making =
   PreparedTrial out;
   out.axes = making.axes;
   out.sample_time = making.sample_time;
+  out.recording_rate = 1.0 / making.sample_time;
   out.time.resize(n);
   out.position.setZero(n, axes);
   out.velocity.setZero(n, axes);

@@ -126,7 +126,9 @@ struct SimulateOptions {
   std::function<void(const TrueState&)> watch;    ///< of a planar trial
 };
 
-/// Runs a scenario. The same scenario and seed give the same recording, to the bit.
+/// Runs a scenario. The same scenario and seed give the same recording, to the bit. To what `perform` writes into the
+/// metadata come the scenario's name, trial, condition and seed (truth_…), and for an arm of two links where its
+/// shoulder is and how long it is: shoulder_x_m, shoulder_y_m, upper_arm_m, forearm_m, elbow.
 /// @fails  usage: control and perturbation speak of different quantities; as make_schedule and both `perform`.
 [[nodiscard]] Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options = {});
 

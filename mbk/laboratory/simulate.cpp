@@ -1,7 +1,10 @@
+#include <map>
 #include <memory>
+#include <string>
 
 #include "mbk/laboratory/scenario.h"
 #include "mbk/laboratory/spring_rig.h"
+#include "mbk/laboratory/truth_text.h"
 
 namespace mbk::laboratory {
 namespace {
@@ -73,10 +76,26 @@ Result<Performance> run(const OneAxisTrial& trial, const Scenario& scenario, con
                  *joint);
 }
 
+/// The arm at the handle, where there is one.
+const participant::ArmOptions* arm_of(const Scenario& scenario) {
+  const auto* planar = std::get_if<PlanarTrial>(&scenario.trial);
+  return planar == nullptr ? nullptr : std::get_if<participant::ArmOptions>(&planar->load);
+}
+
+/// Lengths and place of an arm of two links: anyone in the room could measure them, so they are no part of the truth.
+void add_geometry(const participant::ArmOptions& arm, std::map<std::string, std::string>& metadata) {
+  const auto* limb = std::get_if<participant::TwoLinkArm::Options>(&arm.limb);
+  if (limb == nullptr) return;
+  metadata["shoulder_x_m"] = exact_text(limb->geometry.shoulder.x());
+  metadata["shoulder_y_m"] = exact_text(limb->geometry.shoulder.y());
+  metadata["upper_arm_m"] = exact_text(limb->geometry.upper_arm);
+  metadata["forearm_m"] = exact_text(limb->geometry.forearm);
+  metadata["elbow"] = "right";
+}
+
 /// Whether somebody in the scenario acts by will.
 bool has_will(const Scenario& scenario) {
-  const auto* planar = std::get_if<PlanarTrial>(&scenario.trial);
-  const auto* arm = planar == nullptr ? nullptr : std::get_if<participant::ArmOptions>(&planar->load);
+  const auto* arm = arm_of(scenario);
   return arm != nullptr && (arm->controller.position_gain > 0.0 || arm->controller.force_gain > 0.0);
 }
 
@@ -89,6 +108,7 @@ Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& op
                                 scenario.trial);
   if (!performance) return performance;
   auto& metadata = performance->recording.metadata;
+  if (const auto* arm = arm_of(scenario)) add_geometry(*arm, metadata);
   metadata["truth_scenario"] = scenario.file_name;
   if (!scenario.trial_name.empty()) metadata["truth_trial"] = scenario.trial_name;
   if (!scenario.condition.empty()) metadata["truth_condition"] = scenario.condition;

@@ -89,6 +89,20 @@ TEST(Simulate, WithoutTruthNothingElseIsLost) {
   }
 }
 
+TEST(Simulate, AnArmOfTwoLinksTellsItsLengthsAndWhereItsShoulderIs) {
+  Scenario scenario = ready("relaxed_sinusoidal").front();
+  shorten(scenario);
+  const auto metadata = simulate(scenario)->recording.metadata;
+  EXPECT_EQ(metadata.at("shoulder_x_m"), "0.3");
+  EXPECT_EQ(metadata.at("shoulder_y_m"), "-0.57");
+  EXPECT_EQ(metadata.at("upper_arm_m"), "0.31");
+  EXPECT_EQ(metadata.at("forearm_m"), "0.34");
+  EXPECT_EQ(metadata.at("elbow"), "right");
+  Scenario rig = ready("rig_table_3_1").front();
+  shorten(rig);
+  EXPECT_FALSE(simulate(rig)->recording.metadata.contains("upper_arm_m"));
+}
+
 TEST(Simulate, ArmsThatAreToldSomethingCarryTheNoteOnTheirGains) {
   for (const auto& [name, noted] : {std::pair{"relaxed_sinusoidal", false}, {"rigid_underdamped_2N", true}}) {
     Scenario scenario = ready(name).front();

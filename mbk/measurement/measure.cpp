@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <vector>
 
+#include "mbk/analyse/diagnostics.h"
 #include "mbk/analyse/ellipses.h"
 #include "mbk/preprocess/resample.h"
 #include "mbk/recording/inspection.h"
@@ -53,9 +56,8 @@ Result<PreparedTrial> prepare_one(const Recording& recording, const Options& opt
   return trial;
 }
 
-}  // namespace
-
-Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options) {
+/// Each recording prepared; where several are pooled, their rows weigh alike.
+Result<std::vector<PreparedTrial>> prepare_all(std::span<const Recording> recordings, const Options& options) {
   std::vector<PreparedTrial> trials;
   for (const Recording& recording : recordings) {
     auto trial = prepare_one(recording, options);
@@ -64,6 +66,22 @@ Result<result::Measured> measure(std::span<const Recording> recordings, const Op
     }
     trials.push_back(std::move(*trial));
   }
+  // Where each trial by itself would be thinned differently, the finest will do for all.
+  Index finest = std::numeric_limits<Index>::max();
+  for (const PreparedTrial& trial : trials) finest = std::min(finest, trial.preparation.every);
+  Options again = options;
+  again.preprocess.every = finest;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (trials[k].preparation.every == finest) continue;
+    auto trial = prepare_one(recordings[k], again);
+    if (!trial) return tl::unexpected(trial.error());
+    trials[k] = std::move(*trial);
+  }
+  return trials;
+}
+
+Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
+                                          const std::vector<PreparedTrial>& trials, const Options& options) {
   auto identification = identify::identify_impedance(trials, options.identify);
   if (!identification) {
     const bool one_file = recordings.size() == 1 && !recordings[0].sources.empty();
@@ -76,6 +94,46 @@ Result<result::Measured> measure(std::span<const Recording> recordings, const Op
     measured.findings = std::move(*findings);
   }
   return measured;
+}
+
+/// The same trial with ẍ from the other source; absent where the recording holds no accelerometer that could be used.
+std::optional<PreparedTrial> with_other_acceleration(const Recording& recording, const PreparedTrial& trial,
+                                                     Options options) {
+  using preprocess::AccelerationSource;
+  const bool sensor = trial.preparation.acceleration_from_sensor;
+  if (!sensor && recording.find(trial.axes == 1 ? "acceleration" : "acceleration_x") == nullptr) return std::nullopt;
+  options.preprocess.acceleration = sensor ? AccelerationSource::derivative : AccelerationSource::sensor;
+  options.preprocess.every = trial.preparation.every;
+  auto other = prepare_one(recording, options);
+  if (!other || other->time.size() != trial.time.size()) return std::nullopt;
+  return std::move(*other);
+}
+
+}  // namespace
+
+Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options) {
+  const auto trials = prepare_all(recordings, options);
+  if (!trials) return tl::unexpected(trials.error());
+  return measure_prepared(recordings, *trials, options);
+}
+
+Result<Examined> examine(std::span<const Recording> recordings, const Options& options) {
+  const auto trials = prepare_all(recordings, options);
+  if (!trials) return tl::unexpected(trials.error());
+  auto measured = measure_prepared(recordings, *trials, options);
+  if (!measured) return tl::unexpected(measured.error());
+  Examined examined{std::move(*measured), std::nullopt};
+  if (recordings.size() != 1) return examined;
+  const Recording& recording = recordings.front();
+  const auto other = with_other_acceleration(recording, trials->front(), options);
+  auto diagnostics =
+      analyse::diagnose(recording, trials->front(), examined.measured.identification, other ? &*other : nullptr);
+  if (!diagnostics) {
+    return tl::unexpected(recording.sources.empty() ? diagnostics.error()
+                                                    : diagnostics.error().in(recording.sources[0].path));
+  }
+  examined.diagnostics = std::move(*diagnostics);
+  return examined;
 }
 
 }  // namespace mbk::measurement

@@ -8,6 +8,7 @@
 #include "mbk/identify/impedance_fit.h"
 #include "mbk/preprocess/prepare.h"
 #include "mbk/result/json.h"
+#include "mbk/trial/diagnostics.h"
 #include "mbk/trial/recording.h"
 
 namespace mbk::measurement {
@@ -22,5 +23,16 @@ struct Options {
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
 /// @fails as its steps; where a recording has a source, the message names its file.
 [[nodiscard]] Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options);
+
+/// A result, and what shows how good it is.
+struct Examined {
+  result::Measured measured;
+  std::optional<Diagnostics> diagnostics;  ///< absent where several recordings were pooled
+};
+
+/// `measure` with the diagnostics, from the same prepared trial. Where the recording holds an accelerometer, the trial
+/// is prepared a second time, with ẍ from the source that was not used.
+/// @fails as measure and analyse::diagnose
+[[nodiscard]] Result<Examined> examine(std::span<const Recording> recordings, const Options& options);
 
 }  // namespace mbk::measurement

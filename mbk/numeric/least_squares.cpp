@@ -2,12 +2,88 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
+#include <vector>
+
+#include "mbk/core/vector4.h"
 
 namespace mbk::numeric {
+
+namespace {
+
+/// Dot products of columns, block by block, so that a block stays in the first cache while all pairs are taken.
+[[gnu::always_inline]] inline void gram_body(const double* const* columns, Index count, Index rows, double* gram) {
+  constexpr Index kBlock = 256;
+  for (Index begin = 0; begin < rows; begin += kBlock) {
+    const Index end = std::min(rows, begin + kBlock), fours = begin + (end - begin) / 4 * 4;
+    for (Index j = 0; j < count; ++j) {
+      for (Index i = 0; i <= j; ++i) {
+        const double *a = columns[i], *b = columns[j];
+        Vector4 sum = {};
+        for (Index t = begin; t < fours; t += 4) sum += four(a + t) * four(b + t);
+        double rest = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+        for (Index t = fours; t < end; ++t) rest += a[t] * b[t];
+        gram[j * count + i] += rest;
+      }
+    }
+  }
+}
+void gram_any(const double* const* columns, Index count, Index rows, double* gram) {
+  gram_body(columns, count, rows, gram);
+}
+MBK_X86_64_V3 void gram_v3(const double* const* columns, Index count, Index rows, double* gram) {
+  gram_body(columns, count, rows, gram);
+}
+
+/// [Z Y]ᵀ[Z Y].
+Matrix gram_matrix(const Matrix& Z, const Matrix& Y) {
+  std::vector<const double*> columns;
+  for (Index j = 0; j < Z.cols(); ++j) columns.push_back(Z.col(j).data());
+  for (Index j = 0; j < Y.cols(); ++j) columns.push_back(Y.col(j).data());
+  const auto count = static_cast<Index>(columns.size());
+  Matrix gram = Matrix::Zero(count, count);
+  (has_x86_64_v3() ? gram_v3 : gram_any)(columns.data(), count, Z.rows(), gram.data());
+  return gram.selfadjointView<Eigen::Upper>();
+}
+
+/// What a QR decomposition of Z Λ⁻¹ leaves of the problem: R, p×p, and Qᵀ Y, p×q.
+struct Triangle {
+  Matrix R, Qty;
+};
+
+Triangle reduce_by_householder(const Matrix& Z, const Matrix& Y, const Vector& length) {
+  const Index p = Z.cols(), q = Y.cols();
+  Matrix work(Z.rows(), p + q);
+  work << Z * length.cwiseInverse().asDiagonal(), Y;
+  const Eigen::HouseholderQR<Eigen::Ref<Matrix>> qr(work);
+  Triangle triangle{Matrix::Zero(p, p), work.topRightCorner(p, q)};
+  triangle.R.triangularView<Eigen::Upper>() = work.topLeftCorner(p, p).triangularView<Eigen::Upper>();
+  return triangle;
+}
+
+/// By the Cholesky factor of the scaled ZᵀZ, with one step of refinement from the residuals (corrected seminormal
+/// equations, Björck 1987): as exact as Householder's while the condition is moderate, in a third of the time.
+Triangle reduce(const Matrix& Z, const Matrix& Y, const Matrix& gram, const Vector& length) {
+  constexpr double kModerate = 1e-6;  // squared reciprocal of a condition of 1000
+  const Index p = Z.cols(), q = Y.cols();
+  const Vector inverse = length.cwiseInverse();
+  const Matrix G = inverse.asDiagonal() * gram.topLeftCorner(p, p) * inverse.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(G, Eigen::EigenvaluesOnly);
+  if (!(eigen.eigenvalues()[0] > kModerate * eigen.eigenvalues()[p - 1])) return reduce_by_householder(Z, Y, length);
+  const Eigen::LLT<Matrix> cholesky(G);
+  Matrix scaled = cholesky.solve(inverse.asDiagonal() * gram.topRightCorner(p, q));
+  const Matrix residual = Y - Z * (inverse.asDiagonal() * scaled);
+  scaled += cholesky.solve(inverse.asDiagonal() * (Z.transpose() * residual));
+  const Matrix R = cholesky.matrixU();
+  return {R, R * scaled};
+}
+
+}  // namespace
 
 Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matrix& S) {
   const Index n = Z.rows(), p = Z.cols(), q = Y.cols();
@@ -16,22 +92,18 @@ Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matr
         fmt::format("regression shapes differ: Z is {}×{}, Y {}×{}, S {}×{}", n, p, Y.rows(), q, S.rows(), S.cols()));
   }
   if (n < p) return bad_data(fmt::format("{} samples cannot determine {} parameters per axis", n, p), "record longer");
-  Vector length(p);
-  for (Index j = 0; j < p; ++j) {
-    const double norm = Z.col(j).norm();
-    length[j] = norm > 0.0 ? norm : 1.0;
+  const auto gram = gram_matrix(Z, Y);
+  if (!gram.allFinite()) {
+    for (Index row = 0; row < n; ++row) {
+      if (Z.row(row).allFinite() && Y.row(row).allFinite()) continue;
+      return bad_data(fmt::format("a value is not finite in row {} of the regression", row));
+    }
+    return bad_data("the values of the regression are too large to be squared", "use SI units");
   }
-  Matrix work(n, p + q);
-  work << Z * length.cwiseInverse().asDiagonal(), Y;
-  if (!work.allFinite()) {
-    Index bad = 0;
-    while (work.row(bad).allFinite()) ++bad;
-    return bad_data(fmt::format("a value is not finite in row {} of the regression", bad));
-  }
-  const Eigen::HouseholderQR<Eigen::Ref<Matrix>> qr(work);
-  Matrix R = Matrix::Zero(p, p);
-  R.triangularView<Eigen::Upper>() = work.topLeftCorner(p, p).triangularView<Eigen::Upper>();
-  const Matrix Qty = work.topRightCorner(p, q);
+  Vector length = gram.diagonal().head(p).cwiseSqrt();
+  length = (length.array() > 0.0).select(length, 1.0);
+  const Triangle triangle = reduce(Z, Y, gram, length);
+  const auto& [R, Qty] = triangle;
 
   LinearFit fit;
   const Eigen::JacobiSVD<Matrix> svd(R);

@@ -24,8 +24,9 @@ struct LinearFit {
   double condition = 0;  ///< largest over smallest singular value of the scaled regressors; ∞ where rank < p
 };
 
-/// Ordinary least squares by one Householder QR of [Z | Y], each column of Z scaled to unit length; the structure is
-/// then imposed on the small triangle, so that tied and free fits pass through the same code.
+/// Ordinary least squares, each column of Z scaled to unit length: by Cholesky with refinement up to a condition of
+/// 1000, beyond it by one Householder QR of [Z | Y]. The structure is then imposed on the small triangle, so that tied
+/// and free fits pass through the same code.
 /// @param Z N×p    @param Y N×q    @param S pq×k, full column rank; empty = nothing tied
 /// @returns the fit; where rank < p (singular values below p·ε of the largest) the coefficients are those of
 /// smallest norm and must not be used.   @fails N < p; shapes differ; a value is not finite (first bad row named).

@@ -24,6 +24,9 @@ Result<void> check_choices(const Options& options) {
   if (options.cutoff && !(options.cutoff->value > 0.0 && std::isfinite(options.cutoff->value))) {
     return bad_usage(fmt::format("a cutoff of {:g} Hz is not above 0", options.cutoff->value));
   }
+  if (options.every && *options.every < 1) {
+    return bad_usage(fmt::format("every {}-th sample is none", *options.every), "choose 1 or more for --every");
+  }
   if (options.padding.samples < 0) return bad_usage(fmt::format("a padding of {} samples", options.padding.samples));
   return {};
 }

@@ -3,19 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
+#include <vector>
 
 #include "mbk/dsp/butterworth.h"
+#include "mbk/dsp/filter_chain.h"
 
 namespace mbk::preprocess {
 namespace {
 
-constexpr int kButterworthOrder = 5;
 /// Forward and backward, the filter passes 0.6 of its cutoff with a gain of 0.994.
 constexpr double kCutoffOverBand = 1.0 / 0.6;
 /// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
 constexpr double kSmoothingOverCutoff = 4.6;
+/// At ten samples for each period of the cutoff the low-pass leaves 1e-7 above half of their rate.
+constexpr double kRateOverCutoff = 10.0;
+/// Rows of the shortest cut that are kept at least, so that its ends stay where they are.
+constexpr Index kFewestRows = 1000;
 
 FilterPlan with_choices(FilterPlan plan, const Options& options) {
   if (options.smoothing_order) plan.smoothing.order = *options.smoothing_order;
@@ -28,6 +32,7 @@ FilterPlan with_choices(FilterPlan plan, const Options& options) {
     plan.cutoff.reset();
     plan.rule = "none, as asked";
   }
+  if (options.every) plan.every = *options.every;
   return plan;
 }
 
@@ -57,6 +62,10 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   // A short pulse must keep most of its samples.
   const Index longest = std::max<Index>(shortest_cut / 4, order + 3) | 1;
   plan.smoothing.window = static_cast<int>(std::min<Index>(plan.smoothing.window, longest));
+  if (!options.no_lowpass) {
+    const auto enough = static_cast<Index>(rate.value / (kRateOverCutoff * cutoff));
+    plan.every = std::max<Index>(1, std::min(enough, shortest_cut / kFewestRows));
+  }
   return with_choices(std::move(plan), options);
 }
 
@@ -69,23 +78,31 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
                                 filters.cutoff ? fmt::format(" and a padding of {}", padding.samples) : ""),
                     "record longer, or choose a smaller --sg-window or --padding");
   }
-  const auto smooth = [&](const Matrix& columns, int derivative) {
-    return dsp::savitzky_golay(filters.smoothing, derivative, columns.middleRows(cut.begin, length), rate);
-  };
-  const bool sensor = signals.acceleration.size() > 0;
-  Matrix all(length - filters.smoothing.window + 1 - 2 * trim, 4 * n);
-  const std::array<Result<Matrix>, 4> parts = {smooth(signals.position, 0), smooth(signals.position, 1),
-                                               sensor ? smooth(signals.acceleration, 0) : smooth(signals.position, 2),
-                                               smooth(signals.force_hand_on_robot, 0)};
-  for (Index k = 0; k < 4; ++k) {
-    const Result<Matrix>& part = parts[static_cast<std::size_t>(k)];
-    if (!part) return tl::unexpected(part.error());
-    all.middleCols(k * n, n) = part->middleRows(trim, all.rows());
+  dsp::FilterChain chain{filters.smoothing, {}, padding};
+  if (filters.cutoff) {
+    auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, *filters.cutoff, rate);
+    if (!lowpass) return tl::unexpected(lowpass.error());
+    chain.lowpass = std::move(*lowpass);
   }
-  if (!filters.cutoff) return all;
-  auto lowpass = dsp::butterworth_lowpass(kButterworthOrder, *filters.cutoff, rate);
-  if (!lowpass) return tl::unexpected(lowpass.error());
-  return dsp::filter_zero_phase(*lowpass, all, padding);
+  std::vector<dsp::Column> columns;
+  for (const Matrix* quantity : {&signals.position, &signals.force_hand_on_robot, &signals.acceleration}) {
+    for (Index k = 0; k < quantity->cols(); ++k) {
+      columns.emplace_back(quantity->col(k).data() + cut.begin + trim, length - 2 * trim);
+    }
+  }
+  std::vector<dsp::Wanted> wanted;
+  const auto want = [&](Index first, int derivative) {
+    for (Index k = 0; k < n; ++k) wanted.push_back({first + k, derivative});
+  };
+  want(0, 0);
+  want(0, 1);
+  if (signals.acceleration.size() > 0) {
+    want(2 * n, 0);
+  } else {
+    want(0, 2);
+  }
+  want(n, 0);
+  return dsp::smooth_then_lowpass(chain, columns, wanted, rate, filters.every);
 }
 
 }  // namespace mbk::preprocess

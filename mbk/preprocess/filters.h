@@ -20,6 +20,7 @@ struct FilterPlan {
   dsp::SavitzkyGolay smoothing;
   std::optional<Hertz> cutoff;  ///< of the zero-phase Butterworth filter of order five; none: it is not applied
   std::string rule;
+  Index every = 1;  ///< of the filtered samples, the first of so many is kept
 };
 
 /// Those of the published procedure: (6, 101) and 5 Hz, or in chapter 5 (6, 151) and 4.5 Hz.
@@ -30,7 +31,8 @@ struct FilterPlan {
 /// @param shortest_cut [samples]; the window takes at most a quarter of it
 [[nodiscard]] FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut);
 
-/// One cut through both filters: [x ẋ ẍ F], each n columns; row i belongs to sample cut.begin + half window + trim + i.
+/// One cut through both filters: [x ẋ ẍ F], each n columns; row i belongs to sample
+/// cut.begin + half window + trim + i·every.
 /// @fails the cut is shorter than the filters need; the settings are none that a filter can have.
 [[nodiscard]] Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,
                                         Hertz rate, const dsp::Padding& padding);

@@ -27,7 +27,8 @@ struct Options {
   bool no_lowpass = false;  ///< smoothing only, no Butterworth filter
   std::optional<AccelerationSource> acceleration;
   WindowLimits window;
-  dsp::Padding padding;  ///< of the zero-phase filter
+  dsp::Padding padding;        ///< of the zero-phase filter
+  std::optional<Index> every;  ///< rows that the fit takes; absent: all in reference mode, else what the cutoff needs
 };
 
 }  // namespace mbk::preprocess

@@ -87,7 +87,9 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   }
 
   const Index n = trial.axes, lost = filters.smoothing.half_window() + plan->trim;
-  trial.sample_time = 1.0 / rate.value;
+  const Index every = filters.every;
+  trial.recording_rate = rate.value;
+  trial.sample_time = static_cast<double>(every) / rate.value;
   trial.time.resize(total);
   for (Matrix* signal : {&trial.position, &trial.velocity, &trial.acceleration, &trial.force_hand_on_robot}) {
     signal->resize(total, n);
@@ -98,15 +100,19 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     const Cut& cut = plan->cuts[k];
     const Matrix& piece = filtered[k];
     const Index rows = piece.rows(), first = cut.begin + lost;
-    trial.time.segment(row, rows) = recording.time.segment(first, rows).array() - recording.time[0];
+    const auto kept = Eigen::seqN(first, rows, every);
+    trial.time.segment(row, rows) = recording.time(kept).array() - recording.time[0];
     trial.position.middleRows(row, rows) = piece.leftCols(n);
     trial.velocity.middleRows(row, rows) = piece.middleCols(n, n);
     trial.acceleration.middleRows(row, rows) = piece.middleCols(2 * n, n);
     trial.force_hand_on_robot.middleRows(row, rows) = piece.rightCols(n);
-    if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference.middleRows(first, rows);
+    if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference(kept, Eigen::all);
     for (const Stretch& keep : cut.keep) {
-      const Index begin = std::max(keep.begin, first), end = std::min(keep.end, first + rows);
-      if (begin < end) trial.stretches.push_back({begin - first + row, end - first + row, keep.purpose});
+      const auto row_at = [&](Index sample) {
+        return std::clamp<Index>((sample - first + every - 1) / every, 0, rows);
+      };
+      const Index begin = row_at(keep.begin), end = row_at(keep.end);
+      if (begin < end) trial.stretches.push_back({row + begin, row + end, keep.purpose});
     }
     row += rows;
   }
@@ -121,6 +127,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   how.smoothing_window = filters.smoothing.window;
   how.cutoff = filters.cutoff;
   how.cutoff_rule = filters.rule;
+  how.every = every;
   how.band_low = band->low;
   how.band_high = band->high;
   return trial;

@@ -155,13 +155,13 @@ TEST(Prepare, SinesKeepTheirVelocityAndAccelerationUpToTheFilters) {
   const PreparedTrial trial = prepared(truth.recording).value();
   // In the top line the smoothing's first derivative falls short by less than 0.1 %, the low-pass by 0.6 %.
   const double kFilters = 0.01;
-  const Index middle = trial.time.size() / 2;
-  const Index sample = std::llround(trial.time[middle] * kRate);
   const double largest_v = truth.velocity.cwiseAbs().maxCoeff(), largest_a = truth.acceleration.cwiseAbs().maxCoeff();
-  for (Index i = -2000; i <= 2000; i += 50) {
-    EXPECT_NEAR((trial.velocity.row(middle + i) - truth.velocity.row(sample + i)).norm(), 0.0, kFilters * largest_v);
-    EXPECT_NEAR((trial.acceleration.row(middle + i) - truth.acceleration.row(sample + i)).norm(), 0.0,
-                kFilters * largest_a);
+  EXPECT_GT(trial.preparation.every, 1);
+  for (Index i = 0; i < trial.time.size(); ++i) {
+    if (std::abs(trial.time[i] - 10.0) > 2.0) continue;  // away from the ends
+    const Index sample = std::llround(trial.time[i] * kRate);
+    EXPECT_NEAR((trial.velocity.row(i) - truth.velocity.row(sample)).norm(), 0.0, kFilters * largest_v);
+    EXPECT_NEAR((trial.acceleration.row(i) - truth.acceleration.row(sample)).norm(), 0.0, kFilters * largest_a);
   }
 }
 

@@ -11,7 +11,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::string_view kMetadataPrefix = "metadata.";
-constexpr std::size_t kLongestFieldName = 63;  ///< of MATLAB
+constexpr std::size_t kLongestName = 63;  ///< of MATLAB
 
 template <class Named>
 const Named* find(const std::vector<Named>& all, std::string_view name) {
@@ -29,9 +29,11 @@ void take_events(Contents& contents) {
     return array.values.size() == count && std::min(array.values.rows(), array.values.cols()) == 1;
   };
   if (!fits(*time) || !fits(*value)) return;
+  const Unit* const unit = find_unit(time->unit.empty() ? "s" : time->unit);
+  if (unit == nullptr || unit->dimension != Dimension::time) return;
   for (Index k = 0; k < count; ++k) {
-    contents.events.push_back(
-        {time->values.reshaped()[k], name->lines[static_cast<std::size_t>(k)], value->values.reshaped()[k]});
+    contents.events.push_back({unit->to_si(time->values.reshaped()[k]), name->lines[static_cast<std::size_t>(k)],
+                               value->values.reshaped()[k]});
   }
   std::erase_if(contents.arrays,
                 [](const Array& array) { return array.name == "events.time" || array.name == "events.value"; });
@@ -42,15 +44,15 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-bool is_field_name(std::string_view key) {
-  const auto inner = [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  return !key.empty() && key.size() <= kLongestFieldName && is_letter(key.front()) && std::ranges::all_of(key, inner);
-}
-
 }  // namespace
 
 std::string unit_key(std::string_view channel) {
   return fmt::format("unit_{}", channel);
+}
+
+bool is_matlab_name(std::string_view name) {
+  const auto inner = [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  return !name.empty() && name.size() <= kLongestName && is_letter(name.front()) && std::ranges::all_of(name, inner);
 }
 
 void take_annotations(Contents& contents) {
@@ -79,19 +81,10 @@ Result<std::map<std::string, std::string>> metadata_to_write(const Recording& re
     }
   }
   for (const auto& [key, value] : metadata) {
-    if (!is_field_name(key)) {
+    if (!is_matlab_name(key)) {
       return bad_data(fmt::format("metadata '{}' cannot be the name of a MATLAB field", printable(key)),
-                      fmt::format("use a letter, then letters, digits and _, at most {}", kLongestFieldName));
+                      fmt::format("use a letter, then letters, digits and _, at most {}", kLongestName));
     }
-    if (printable(value) != value) {
-      return bad_data(fmt::format("metadata '{}' is not one line of UTF-8", key),
-                      "write it without control characters");
-    }
-  }
-  for (const Event& event : recording.events) {
-    if (printable(event.name) == event.name) continue;
-    return bad_data(fmt::format("the event name '{}' is not one line of UTF-8", printable(event.name)),
-                    "write it without control characters");
   }
   return metadata;
 }

@@ -20,9 +20,11 @@ namespace mbk::recording {
 /// numbers, N texts, N numbers; an `events` of another shape stays as it is. Every other text becomes a note.
 void take_annotations(Contents& contents);
 
-/// What `write_mat` writes as `metadata`: that of the recording, and the units of channels.
-/// @fails  data: a key that cannot be the name of a MATLAB field (a letter, then letters, digits and _; 63 at most); a
-///         value, or the name of an event, that is not one line of UTF-8; a unit that another entry contradicts.
+/// A letter, then letters, digits and _; 63 at most.
+[[nodiscard]] bool is_matlab_name(std::string_view name);
+
+/// What stands as `metadata` in a MAT file: that of the recording, and the units of channels.
+/// @fails  data: a key that cannot be the name of a MATLAB field; a unit that another entry contradicts.
 [[nodiscard]] Result<std::map<std::string, std::string>> metadata_to_write(const Recording& recording);
 
 }  // namespace mbk::recording

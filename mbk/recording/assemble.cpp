@@ -66,11 +66,16 @@ std::string ordinal(Index n) {
 }
 
 bool is_vector(const Array& array) {
-  return std::min(array.values.rows(), array.values.cols()) == 1 && array.values.size() > 1;
+  return std::min(array.values.rows(), array.values.cols()) == 1 && (array.values.size() > 1 || array.signal);
 }
 
 bool is_matrix(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) > 1;
+}
+
+/// NaN throughout; most rows say otherwise at once.
+bool not_recorded(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row) {
+  return std::all_of(row.begin(), row.end(), [](double value) { return std::isnan(value); });
 }
 
 Line vector_of(const Array& array) {
@@ -108,9 +113,27 @@ std::string inventory(const Contents& contents) {
   return names.empty() ? count + " without names" : count + ": " + quoted(names);
 }
 
+/// "trial.force", "trial/force" and "/trial/force" name the same: fields in MAT files, paths in HDF5.
+std::string with_dots(std::string_view name) {
+  std::string dotted(name.substr(name.starts_with('/') ? 1 : 0));
+  std::ranges::replace(dotted, '/', '.');
+  return dotted;
+}
+
+/// The array of that name or, where there is none, the only one whose name differs in dots and slashes alone.
 const Array* find(const Contents& contents, std::string_view name) {
-  const auto array = std::ranges::find(contents.arrays, name, &Array::name);
-  return array == contents.arrays.end() ? nullptr : &*array;
+  const auto exact = std::ranges::find(contents.arrays, name, &Array::name);
+  if (exact != contents.arrays.end()) return &*exact;
+  if (contents.table) return nullptr;
+  const auto dotted = [](const Array& array) { return with_dots(array.name); };
+  const std::string wanted = with_dots(name);
+  if (std::ranges::count(contents.arrays, wanted, dotted) != 1) return nullptr;
+  return &*std::ranges::find(contents.arrays, wanted, dotted);
+}
+
+/// The last part of a variable's name: "force" of "trial.force" and of "trial/force".
+std::string_view leaf(std::string_view name) {
+  return name.substr(name.find_last_of("./") + 1);
 }
 
 class Assembler {
@@ -144,7 +167,7 @@ class Assembler {
     const auto logs = find_logs();
     if (!logs) return tl::unexpected(logs.error());
     if (*logs != nullptr) return take_logs(**logs);
-    take_names();
+    if (auto ok = take_names(); !ok) return ok;
     if (std::ranges::any_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) return {};
     for (const Array& array : contents_.arrays) {
       if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
@@ -198,7 +221,7 @@ class Assembler {
     for (const ChannelKind& kind : channel_kinds()) {
       if (kind.logs_row == 0) continue;
       const Line line{&logs, kind.logs_row - 1, true};
-      if (kind.name != "time" && logs.values.row(line.index).array().isNaN().all()) {
+      if (kind.name != "time" && not_recorded(logs.values.row(line.index))) {
         absent.emplace_back(kind.name);
       } else {
         signals_.push_back({&kind, line, nullptr, false, fmt::format("row {}", kind.logs_row)});
@@ -213,7 +236,7 @@ class Assembler {
     return {};
   }
 
-  void take_names() {
+  Result<void> take_names() {
     struct Candidate {
       const Array* array;
       ColumnName name;
@@ -222,11 +245,7 @@ class Assembler {
     std::vector<std::vector<const ChannelKind*>> meanings;
     std::vector<std::string> aside;
     for (const Array& array : contents_.arrays) {
-      const auto leaf = std::string_view(array.name).substr(array.name.rfind('.') + 1);
-      ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf);
-      if (const Unit* unit = find_unit(array.unit); name.unit == nullptr && unit != nullptr) {
-        std::erase_if(name.kinds, [&](const ChannelKind* kind) { return !kind->accepts(*unit); });
-      }
+      ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name));
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -240,9 +259,9 @@ class Assembler {
       if (kind == nullptr) {
         aside.push_back(candidate.array->name);
       } else {
-        const Unit* unit = candidate.name.unit;
-        if (unit == nullptr) unit = unit_in_file(*kind, *candidate.array);
-        signals_.push_back({kind, vector_of(*candidate.array), unit, false, candidate.array->name});
+        const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
+        if (!unit) return tl::unexpected(unit.error());
+        signals_.push_back({kind, vector_of(*candidate.array), *unit, false, candidate.array->name});
       }
     }
     std::erase(aside, "");
@@ -250,6 +269,18 @@ class Assembler {
       recording_.notes.push_back(
           fmt::format("left aside, as their names are not those of channels: {}", quoted(aside)));
     }
+    return {};
+  }
+
+  /// The unit that the file says beside the name of an array, or else the one that its name says.
+  static Result<const Unit*> unit_said(const ChannelKind& kind, const Array& array, const Unit* in_name) {
+    if (array.unit.empty()) return in_name;
+    const Unit* const unit = find_unit(array.unit);
+    if (unit != nullptr && kind.accepts(*unit)) return unit;
+    return bad_data(fmt::format("the file says that '{}' is in '{}', which channel {} cannot be in", array.name,
+                                array.unit, kind.name),
+                    fmt::format("say the unit with --channels {}={}:UNIT; possible are {}", kind.name, array.name,
+                                unit_names(kind.measures)));
   }
 
   Result<void> follow_map() {
@@ -278,54 +309,43 @@ class Assembler {
           return bad_data(fmt::format("channel {} cannot be in '{}'", kind->name, entry.unit),
                           fmt::format("possible are {}", unit_names(kind->measures)));
         }
+      } else if (!line->array->unit.empty()) {
+        const auto unit = unit_said(*kind, *line->array, nullptr);
+        if (!unit) return tl::unexpected(unit.error());
+        signal.unit = *unit;
       } else if (const ColumnName name = parse_column_name(line->array->name);
                  is_named(*line) && name.unit != nullptr && kind->accepts(*name.unit)) {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
-      } else if (signal.unit = unit_in_file(*kind, *line->array); signal.unit && !kind->accepts(*signal.unit)) {
-        return bad_data(fmt::format("channel {} cannot be in '{}', as the file says of '{}'", kind->name,
-                                    line->array->unit, line->array->name),
-                        fmt::format("name another source, or say the unit yourself: {}={}:UNIT (possible are {})",
-                                    entry.channel, entry.source, unit_names(kind->measures)));
       }
       signals_.push_back(std::move(signal));
     }
-    find_time();
-    return {};
-  }
-
-  /// The unit that the file says of the array; nullptr where it says none, or one that is not known.
-  const Unit* unit_in_file(const ChannelKind& kind, const Array& array) {
-    const Unit* unit = find_unit(array.unit);
-    if (unit == nullptr && !array.unit.empty()) {
-      const std::string_view taken = kind.default_unit();
-      recording_.notes.push_back(
-          fmt::format("the file says that '{}' is in '{}', which is no unit that mbk knows; {} is taken {}", array.name,
-                      array.unit, kind.name, taken.empty() ? "without unit" : fmt::format("in {}", taken)));
-    }
-    return unit;
+    return find_time();
   }
 
   /// A map that does not name the time leaves it to its own name, or to row 1 of a logs matrix.
-  void find_time() {
+  Result<void> find_time() {
     const auto is_time = [](const ChannelKind* kind) { return kind->name == "time"; };
-    if (std::ranges::any_of(signals_, [&](const Signal& s) { return is_time(s.kind); })) return;
+    if (std::ranges::any_of(signals_, [&](const Signal& s) { return is_time(s.kind); })) return {};
     const ChannelKind* const time = kinds_called("time").front();
     const Line& first = signals_.front().line;
     if (!contents_.table && first.row && first.array->values.rows() == kLogsRows) {
       signals_.push_back({time, {first.array, time->logs_row - 1, true}, nullptr, false, "row 1"});
       recording_.notes.push_back("time is row 1, as in a logs matrix");
-      return;
+      return {};
     }
     for (const Array& array : contents_.arrays) {
       const ColumnName name = parse_column_name(array.name);
       const Line line = vector_of(array);
       if (std::ranges::none_of(name.kinds, is_time) || is_matrix(array) || line.size() != first.size()) continue;
-      signals_.push_back({time, line, name.unit, false, array.name});
+      const auto unit = unit_said(*time, array, name.unit);
+      if (!unit) return tl::unexpected(unit.error());
+      signals_.push_back({time, line, *unit, false, array.name});
       recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
-      return;
+      return {};
     }
+    return {};
   }
 
   /// Whether the array's name is that of this one line.
@@ -430,8 +450,9 @@ class Assembler {
   }
 
   [[nodiscard]] bool within_variable(const Array& array) const {
-    return options_.variable.empty() || array.name == options_.variable ||
-           array.name.starts_with(options_.variable + ".");
+    const std::string name = with_dots(array.name);
+    const std::string wanted = with_dots(options_.variable);
+    return wanted.empty() || name == wanted || name.starts_with(wanted + ".");
   }
   [[nodiscard]] bool names_structure() const {
     return std::ranges::any_of(contents_.arrays, [&](const Array& array) { return within_variable(array); });

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "mbk/recording/byte_view.h"
+#include "mbk/recording/encode.h"
 
 namespace mbk::recording {
 namespace {
@@ -118,6 +119,35 @@ tl::unexpected<Error> not_a_number(const Line& line, std::size_t column, std::st
                   "the table must hold numbers, separated by commas, semicolons or tabs", where);
 }
 
+/// "0.05 3 onset": time, value and name of an event.
+std::optional<Event> event(std::string_view text) {
+  const auto first = text.find(' ');
+  const auto second = first == text.npos ? text.npos : text.find(' ', first + 1);
+  if (first == text.npos) return std::nullopt;
+  const auto time = number(text.substr(0, first));
+  const auto value = number(text.substr(first + 1, second - first - 1));
+  if (!time || !value) return std::nullopt;
+  return Event{*time, std::string(second == text.npos ? "" : text.substr(second + 1)), *value};
+}
+
+/// What our own writer says in the comments before the header (encode.h); of other files they are only comments.
+void take_comments(std::string_view text, Contents& contents) {
+  constexpr std::string_view kMark = "# ", kEvent = "event ";
+  if (!text.starts_with(fmt::format("{}{}", kMark, kLayout))) return;
+  for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
+    text.remove_prefix(end + 1);
+    if (!text.starts_with(kMark)) return;
+    std::string_view line = text.substr(kMark.size(), std::min(text.find('\n'), text.size()) - kMark.size());
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const auto colon = line.find(": ");
+    if (line.starts_with(kEvent)) {
+      if (const auto one = event(line.substr(kEvent.size()))) contents.events.push_back(*one);
+    } else if (colon != line.npos) {
+      contents.metadata[printable(std::string(line.substr(0, colon)))] = printable(std::string(line.substr(colon + 2)));
+    }
+  }
+}
+
 class Table {
  public:
   Contents contents;
@@ -125,6 +155,7 @@ class Table {
   Result<void> read(std::string_view text) {
     contents.format = "CSV";
     contents.table = true;
+    take_comments(text, contents);
     separator_ = separator_of(text);
     Lines lines(text);
     std::optional<Line> line = lines.next();

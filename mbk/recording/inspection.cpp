@@ -24,8 +24,8 @@ double median(std::vector<double> values) {
 }
 
 void find_non_finite(const std::string& name, const Vector& values, std::vector<NonFinite>& found) {
+  if (values.allFinite()) return;
   const Index first = first_non_finite(values);
-  if (first < 0) return;
   found.push_back({name, values.size() - values.array().isFinite().cast<Index>().sum(), first});
 }
 
@@ -88,15 +88,19 @@ void inspect_clipping(const Vector& values, ChannelFacts& facts) {
 
 ChannelFacts inspect_channel(const Channel& channel) {
   ChannelFacts facts{channel.name, channel.unit, kNaN, kNaN};
-  Index finite = 0;
-  for (const double value : channel.values) {
-    if (!std::isfinite(value)) continue;
-    ++finite;
-    facts.min = std::fmin(facts.min, value);
-    facts.max = std::fmax(facts.max, value);
+  const Vector& values = channel.values;
+  if (values.size() > 0 && values.allFinite()) {
+    facts.min = values.minCoeff();
+    facts.max = values.maxCoeff();
+    facts.constant = facts.min == facts.max;
+  } else {
+    for (const double value : values) {
+      if (!std::isfinite(value)) continue;
+      facts.min = std::fmin(facts.min, value);
+      facts.max = std::fmax(facts.max, value);
+    }
   }
-  facts.constant = finite > 0 && finite == channel.values.size() && facts.min == facts.max;
-  if (can_clip(channel.name) && finite > 0 && facts.min < facts.max) inspect_clipping(channel.values, facts);
+  if (can_clip(channel.name) && facts.min < facts.max) inspect_clipping(values, facts);
   return facts;
 }
 

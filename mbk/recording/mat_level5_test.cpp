@@ -165,7 +165,7 @@ TEST(DecodeMatLevel5, RefusesStructuresNestedTooDeeply) {
 TEST(DecodeMatLevel5, RefusesCompressedDataWhoseChecksumIsWrong) {
   std::string file = header5() + compressed5(double5("z", kValues));
   file.back() = static_cast<char>(file.back() ^ 1);
-  EXPECT_THAT(error_of(file), HasSubstr("compressed data is damaged (incorrect data check)"));
+  EXPECT_THAT(error_of(file), HasSubstr("compressed data is damaged (its stream or its checksum is broken)"));
 }
 
 TEST(DecodeMatLevel5, RefusesCompressedDataThatHoldsMoreOrLessThanClaimed) {

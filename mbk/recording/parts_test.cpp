@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "mbk/recording/inspection.h"
-#include "mbk/recording/mat_writer.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/test_c3d.h"
 #include "mbk/recording/test_files.h"
+#include "mbk/recording/write.h"
 
 namespace mbk::recording {
 namespace {
@@ -80,7 +80,7 @@ TEST_F(ReadParts, JoinsMetadataAndEventsAndSaysWhereTheyDiffer) {
     recording.channels = {{"hand_x", "m", "base", Vector::Zero(10)}};
     recording.metadata = {{"participant", "7"}, {"part", std::to_string(part)}};
     recording.events = {{part + 0.5, "onset", 1.0 * part}};
-    ASSERT_TRUE(write_mat(recording, folder_ / fmt::format("log_{}.mat", part), false));
+    ASSERT_TRUE(write(recording, folder_ / fmt::format("log_{}.mat", part), Format::mat5, false));
   }
   const auto recording = read_parts({folder_ / "log_1.mat", folder_ / "log_2.mat"}, {});
   ASSERT_TRUE(recording) << recording.error().line();

@@ -7,12 +7,13 @@
 #include <new>
 #include <string_view>
 
+#include "mbk/hdf5/read.h"
 #include "mbk/recording/annotations.h"
 #include "mbk/recording/assemble.h"
 #include "mbk/recording/c3d.h"
 #include "mbk/recording/csv.h"
 #include "mbk/recording/file_bytes.h"
-#include "mbk/recording/mat_hdf5.h"
+#include "mbk/recording/hdf5_recording.h"
 #include "mbk/recording/mat_level4.h"
 #include "mbk/recording/mat_level5.h"
 #include "mbk/recording/sha256.h"
@@ -20,8 +21,7 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::string_view kFormats = "MAT (v4 to v7.3), CSV and C3D are read";
-constexpr std::string_view kHdf5Signature = "\x89HDF\r\n\x1a\n";
+constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV and C3D are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -30,17 +30,16 @@ bool is_text(std::string_view bytes) {
   });
 }
 
-Result<Contents> decode(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+Result<Contents> decode(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const bool mat_header = bytes.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
-  if (looks_like_mat_hdf5(bytes)) return decode_mat_hdf5(file, bytes);
+  if (hdf5::looks_like_hdf5(bytes)) return decode_hdf5(bytes);
   if (text.starts_with("MATLAB 7.3")) {
     return bad_data("the MAT v7.3 header is not followed by HDF5 data",
                     "copy the file again from where it was recorded");
   }
   if (mat_header || text.starts_with("MATLAB 5.0")) return decode_mat_level5(bytes);
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
-  if (text.starts_with(kHdf5Signature)) return bad_data("HDF5 files are not read yet", std::string(kFormats));
   if (is_text(text)) return decode_csv(bytes);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
   return bad_data("the content is of no known format", std::string(kFormats));
@@ -55,7 +54,7 @@ struct Decoded {
 Result<Decoded> decode_file(const std::filesystem::path& file) {
   const auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
-  auto contents = decode(file, bytes->bytes());
+  auto contents = decode(bytes->bytes());
   if (!contents) return tl::unexpected(contents.error());
   take_annotations(*contents);
   SourceFile source{file.string(), contents->format, sha256(bytes->bytes())};

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "mbk/core/result.h"
 #include "mbk/trial/recording.h"
@@ -17,9 +18,15 @@ enum class Format {
   csv,    ///< .csv
 };
 
+/// "MAT v5", "MAT v7.3", "HDF5", "CSV".
+[[nodiscard]] std::string_view text(Format format);
+
 /// The format that the end of a file's name says, or that `name` says ("mat", "mat5", "mat73", "hdf5", "csv").
 /// @fails  usage: neither says one that is known; those that are known are named.
 [[nodiscard]] Result<Format> format_of(const std::filesystem::path& file, std::string_view name = "");
+
+/// What such a file has no place for, in words; nothing where everything comes back.
+[[nodiscard]] std::vector<std::string> lost_in(const Recording& recording, Format format);
 
 /// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes.
 /// @fails  usage: the file is there and `overwrite` is false. data: the recording cannot be written in this format (the

@@ -61,6 +61,7 @@ std::string how_made(const Identification& id) {
   std::string filters = fmt::format("Savitzky–Golay N {} W {}", how.smoothing_order, how.smoothing_window);
   filters += how.cutoff ? fmt::format(", then zero-phase Butterworth {:.3g} Hz: {}", how.cutoff->value, how.cutoff_rule)
                         : ", no low-pass";
+  if (how.every > 1) filters += fmt::format("; every {}th sample", how.every);
   rows.push_back({"filters", filters});
   rows.push_back(
       {"acceleration", how.acceleration_from_sensor ? "from the accelerometer" : "second derivative of position"});

@@ -43,6 +43,7 @@ Json preparation_json(const Preparation& how) {
                {"savitzky_golay", {{"order", how.smoothing_order}, {"window", how.smoothing_window}}},
                {"cutoff_hz", how.cutoff ? Json(how.cutoff->value) : Json(nullptr)},
                {"cutoff_rule", how.cutoff_rule},
+               {"every", how.every},
                {"excited_band_hz", {how.band_low.value, how.band_high.value}},
                {"acceleration", how.acceleration_from_sensor ? "sensor" : "derivative"},
                {"cut_before_filter", how.cut_before_filter}};

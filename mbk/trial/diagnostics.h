@@ -1,29 +1,26 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "mbk/core/linear_algebra.h"
-#include "mbk/trial/prepared_trial.h"
 
 namespace mbk {
 
 /// Measured force beside that of the model, over the stretches on which the fit was judged. Thinned for display; a row
-/// of NaN stands between two stretches.
+/// of NaN stands between two stretches. Empty where there is no model.
 struct ForcePrediction {
   bool held_back = true;  ///< false: nothing was held back, and these samples made the parameters
   Vector time;            ///< [s] from the recording's first sample
   Matrix measured;        ///< N×n, F_h [N]: what the hand exerts on the robot, as filtered
-  Matrix predicted;       ///< N×n, −(M ẍ + B ẋ + K (x − x₀)) [N]; M with the handle's mass
+  Matrix predicted;       ///< N×n, −((M + Λ I) ẍ + B ẋ + K (x − x₀)) [N], Λ the handle's mass
   Matrix residual;        ///< N×n, measured − predicted [N]
 };
 
-/// How far the residual remembers itself: its autocorrelation, from 1 at lag 0.
+/// How far the residual remembers itself: its autocorrelation, from 1 at lag 0. Empty where there is no model.
 struct Autocorrelation {
   Vector lag;            ///< [s], from 0
   Matrix value;          ///< L×n, of each axis
-  double white95 = 0;    ///< ±: 95 % of the values of white noise of this length lie within
+  double white95 = 0;    ///< ±1.96/√N: 95 % of the values of white noise of this length lie within
   Vector time_constant;  ///< n, where it first falls below 1/e [s]; NaN where it does not within the lags
 };
 
@@ -32,12 +29,13 @@ struct Spectra {
   Vector frequency;  ///< [Hz]
   Matrix position;   ///< F×n [m²/Hz], as recorded
   Matrix force;      ///< F×n [N²/Hz], as recorded
-  Matrix residual;   ///< F×n [N²/Hz], of the fit, after the filters
-  Matrix coherence;  ///< F×n, 0…1: of each force with all axes of the position together (multiple coherence)
+  Matrix residual;   ///< F×n [N²/Hz], of the fit, after the filters; NaN beyond half the rate of its rows
+  Matrix coherence;  ///< F×n, 0…1: of each force with all axes of the position (multiple coherence)
   double coherence_significant = 0;  ///< coherence above it is not chance (95 %)
+  Index segments = 0;                ///< that were averaged, overlapping by half
 };
 
-/// Gain of what the position passes through, filters and derivatives together, against the ideal (fig. 3.5).
+/// Gain of what the position passes through, filters and derivatives together, against the ideal (Dyck 2013, fig. 3.5).
 struct FilterResponse {
   Vector frequency;                  ///< [Hz]
   Vector smoothing;                  ///< gain of x
@@ -50,7 +48,7 @@ struct AccelerationAgreement {
   Vector time;            ///< [s] from the recording's first sample, thinned
   Matrix derivative;      ///< N×n [m/s²]
   Matrix sensor;          ///< N×n [m/s²]
-  Vector rms_difference;  ///< n [m/s²], over every sample that counts, means removed
+  Vector rms_difference;  ///< n [m/s²], over every row that counts, means removed
   Vector vaf;             ///< n [%], of the sensor's by the derivative
 };
 

@@ -48,7 +48,7 @@ struct Excitation {
   double duration = 0;       ///< [s] of data behind the parameters
 };
 
-/// §3.5.4 of Dyck 2013: the same fit on every n-th sample.
+/// §3.5.4 of Dyck 2013: the same fit on every n-th row, at 100 Hz or half the rate of the rows, whichever is less.
 struct DecimationCheck {
   double rate_hz = 0;  ///< after decimation
   impedance::Model model;

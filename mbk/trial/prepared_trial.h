@@ -29,6 +29,9 @@ struct Stretch {
   [[nodiscard]] Index size() const { return end - begin; }
 };
 
+/// Order of the zero-phase low-pass (Dyck 2013 §3.5.1).
+inline constexpr int kLowpassOrder = 5;
+
 /// How the signals of a PreparedTrial were made, so that any number can be traced and made again.
 struct Preparation {
   Mode mode = Mode::improved;
@@ -41,18 +44,21 @@ struct Preparation {
   int perturbations = 1;          ///< stretches that were cut out
   int smoothing_order = 6;        ///< Savitzky–Golay N
   int smoothing_window = 101;     ///< Savitzky–Golay W [samples]
-  std::optional<Hertz> cutoff;    ///< zero-phase Butterworth low-pass of order 5; none = not applied
+  std::optional<Hertz> cutoff;    ///< zero-phase Butterworth low-pass of kLowpassOrder; none = not applied
   std::string cutoff_rule;        ///< how the cutoff came about, in words
   Hertz band_low, band_high;      ///< excited band that the filters let through
   bool acceleration_from_sensor = false;
   bool cut_before_filter = true;
+  Index every = 1;  ///< of the filtered samples, the first of so many is kept
 };
 
-/// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame.
+/// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame. Where the low-pass leaves
+/// nothing between them, only every so many samples of the recording are here.
 struct PreparedTrial {
   int axes = 2;  ///< n, 1 or 2
   Motion motion = Motion::translation;
-  double sample_time = 0;          ///< T [s]
+  double sample_time = 0;          ///< T [s], between rows
+  double recording_rate = 0;       ///< [Hz]
   Vector time;                     ///< N, [s] from the recording's first sample
   Matrix position;                 ///< N×n, x [m]
   Matrix velocity;                 ///< N×n, ẋ [m/s]

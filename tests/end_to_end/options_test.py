@@ -9,7 +9,8 @@ import unittest
 from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
                      write_csv)
 
-COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "robot", "validate")
+COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "robot", "validate",
+            "completion", "manual")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "robot": ("workspace",)}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
 NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
@@ -114,8 +115,8 @@ class Commands(Case):
         for command in COMMANDS:
             if command in SUBCOMMANDS:
                 continue  # their commands have tests of their own
-            file = [] if command == "validate" else [make_log().path]
-            self.refused(WRONG_USAGE, command, *file, "--cutof=5", says=["--cutof", f"mbk {command} --help"])
+            arguments = {"validate": [], "completion": ["bash"]}.get(command, [make_log().path])
+            self.refused(WRONG_USAGE, command, *arguments, "--cutof=5", says=["--cutof", f"mbk {command} --help"])
 
     def test_unknown_commands_are_named(self):
         self.refused(WRONG_USAGE, "mesure", make_log().path, says=["'mesure'", "mbk --help"])
@@ -142,7 +143,7 @@ class Effects(Case):
     def test_each_option_of_the_help_is_known_to_these_tests(self):
         options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
         elsewhere = {"--help", "--channels", "--variable", "--parts", "--json", "--out", "--overwrite", "--quiet",
-                     "--pool", "--decimate-check"}
+                     "--pool", "--decimate-check", "--report", "--report-note"}
         self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
 
     def test_mode_and_procedure(self):

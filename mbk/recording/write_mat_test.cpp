@@ -1,5 +1,3 @@
-#include "mbk/recording/mat_writer.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <matio.h>
@@ -9,6 +7,7 @@
 
 #include "mbk/recording/read.h"
 #include "mbk/recording/test_files.h"
+#include "mbk/recording/write.h"
 
 namespace mbk::recording {
 namespace {
@@ -17,6 +16,11 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
+
+/// As MAT v5.
+Result<void> write_mat(const Recording& recording, const std::filesystem::path& file, bool overwrite) {
+  return write(recording, file, Format::mat5, overwrite);
+}
 
 Recording example() {
   Recording recording;

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/manual_page.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
+#include "mbk/core/version.h"
+#include "mbk/recording/write_file.h"
+
+namespace mbk::app {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> command;
+  std::optional<std::filesystem::path> pages;
+  bool overwrite = false;
+};
+
+/// The command that the words lead to, from `root` down; nullptr where there is none.
+const CommandText* find_command(const CommandText& root, const std::vector<std::string>& words) {
+  const CommandText* at = &root;
+  for (const std::string& word : words) {
+    const auto below = std::ranges::find(at->commands, word, &CommandText::name);
+    if (below == at->commands.end()) return nullptr;
+    at = &*below;
+  }
+  return at;
+}
+
+/// Every page as a file of its own.
+int write_pages(const CommandText& root, const std::filesystem::path& folder, bool overwrite) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return report_error({ErrorKind::usage, error.message(), "name a folder that can be made", folder.string()});
+  }
+  Result<void> written;
+  for_each_command(root, [&](const CommandText& command) {
+    if (!written) return;
+    written = recording::write_file(folder / manual_file(command), overwrite,
+                                    manual_page(command, root, std::string(version())));
+  });
+  return written ? kFine : report_error(written.error());
+}
+
+int run(const Arguments& arguments, CLI::App& app) {
+  const CommandText root = describe(app);
+  if (arguments.pages) {
+    if (arguments.command.empty()) return write_pages(root, *arguments.pages, arguments.overwrite);
+    return report_error({ErrorKind::usage, "--pages writes every page", "leave COMMAND or --pages away", ""});
+  }
+  const CommandText* const command = find_command(root, arguments.command);
+  if (command == nullptr) {
+    return report_error(
+        {ErrorKind::usage,
+         fmt::format("there is no command {}", quoted(fmt::format("{}", fmt::join(arguments.command, " ")))),
+         "'mbk --help' names them", ""});
+  }
+  if (auto ok = Output().write(manual_page(*command, root, std::string(version()))); !ok)
+    return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_manual(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("manual", "the manual page of a command, for man");
+  command->footer(
+      "Examples:\n"
+      "  mbk manual measure | man -l -\n"
+      "  mbk manual springs field | man -l -\n"
+      "  mbk manual --pages ~/.local/share/man/man1\n"
+      "      all of them, where man finds them: man mbk-measure\n\n"
+      "Where mbk came as a package, or by 'cmake --install', the pages are in place.");
+  std::vector<std::string> names;
+  for_each_command(describe(app), [&](const CommandText& one) {
+    if (one.path.size() > 1) names.push_back(one.name());
+  });
+  command->add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
+      ->check(suggests(names));
+  CLI::Option* const pages =
+      command->add_option("--pages", arguments->pages, "write every page into this folder, as mbk-measure.1")
+          ->type_name("FOLDER")
+          ->check(not_empty());
+  command->add_flag("--overwrite", arguments->overwrite, "replace pages that are there")->needs(pages);
+  return [arguments, &app] { return run(*arguments, app); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,52 @@
+#include "apps/mbk/report_file.h"
+
+#include "apps/mbk/commands.h"
+#include "mbk/analyse/posture.h"
+#include "mbk/recording/write_file.h"
+#include "mbk/report/html.h"
+#include "mbk/result/report_json.h"
+
+namespace mbk::app {
+namespace {
+
+/// What a shell takes as one word, as it is or quoted.
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+result::RecordingFacts facts_of(const Recording& recording, const Preparation& how) {
+  return {recording.metadata, analyse::posture(recording, how.from_s, how.to_s)};
+}
+
+}  // namespace
+
+std::string command_line(int argc, char** argv) {
+  std::string line = "mbk";
+  for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
+  return line;
+}
+
+Result<void> write_report(const MeasureArguments& arguments, const std::string& typed,
+                          const std::vector<Recording>& recordings, const std::vector<result::Measured>& measured,
+                          const std::vector<std::optional<Diagnostics>>& diagnostics,
+                          const std::optional<Summary>& summary) {
+  result::Report report{{}, summary, typed, arguments.report_note};
+  auto recording = recordings.begin();
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const result::Measured& one = measured[k];
+    result::ReportedResult reported{one, {}, diagnostics[k]};
+    for (const Preparation& how : one.identification.preparations) {
+      reported.recordings.push_back(facts_of(*recording++, how));
+    }
+    report.results.push_back(std::move(reported));
+  }
+  const auto page = report::page(result::to_json(report));
+  if (!page) return tl::unexpected(page.error());
+  return recording::write_file(*arguments.report, arguments.output.overwrite, *page);
+}
+
+}  // namespace mbk::app

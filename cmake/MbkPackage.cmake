@@ -1,0 +1,56 @@
+# Two Debian packages from the two components of MbkInstall: mbk, which a laboratory installs, and libmbk-dev, which
+# only those need who write programs: it brings compiler packages along. tools/package makes them.
+set(MBK_MAINTAINER "The mbk authors <maintainers@mbk.example>" CACHE STRING "Maintainer of the Debian packages")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME mbk)
+set(CPACK_PACKAGE_VENDOR "the mbk authors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "measurement of the mechanical impedance of the human arm")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+    WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${MBK_MAINTAINER})
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME mbk)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "A rehabilitation robot perturbs the hand; from the recorded motion and force
+mbk finds inertia, damping, stiffness and equilibrium of the arm, each with
+its interval, the ellipses that they form, and warnings where an answer must
+not be trusted. A simulated robot with a simulated arm makes recordings whose
+truth is known.")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmbk-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries for C++20 with headers and a CMake package (mbk::mbk):
+reading of recordings, preparation of signals, identification of inertia,
+damping and stiffness with their covariance, ellipses, and a simulated robot
+and arm.")
+
+# The packages that hold what the libraries link, asked of dpkg.
+find_program(MBK_DPKG_QUERY dpkg-query)
+mark_as_advanced(MBK_DPKG_QUERY)
+if(MBK_DPKG_QUERY)
+  get_property(files GLOBAL PROPERTY MBK_OUTSIDE_FILES)
+  execute_process(COMMAND ${MBK_DPKG_QUERY} --search ${files} OUTPUT_VARIABLE owners ERROR_QUIET)
+  string(REGEX MATCHALL "[^\n]+" owners "${owners}")
+  list(TRANSFORM owners REPLACE "[:,].*" "")
+  list(SORT owners)
+  list(REMOVE_DUPLICATES owners)
+  list(JOIN owners ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+endif()
+
+string(TIMESTAMP MBK_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
+set(CPACK_MBK_CHANGELOG ${PROJECT_BINARY_DIR}/packaging/changelog.Debian)
+set(CPACK_DEBIAN_PACKAGE_VERSION_FULL ${version})
+configure_file(packaging/changelog.Debian.in ${CPACK_MBK_CHANGELOG} @ONLY)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/packaging/debian_files.cmake)
+include(CPack)

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""What `cmake --install` leaves is a program with its texts, and libraries that another project finds and uses."""
+
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+PUBLIC = {"Eigen", "tl", "fmt"}  # outside libraries that may stand in headers
+LONGEST_S = 600
+
+
+def program(variable):
+    return os.environ.get(variable) or sys.exit(f"set {variable}; ctest does so by itself")
+
+
+def ran(*command, code=0):
+    process = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=LONGEST_S, check=False)
+    if (process.returncode == 0) != (code == 0):
+        raise AssertionError(f"{command}\nexit {process.returncode}\n{process.stdout}\n{process.stderr}")
+    return process.stdout + (process.stderr if code else "")
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="mbk-install-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.prefix = cls.folder / "prefix"
+        ran(program("CMAKE"), "--install", program("BUILD"), "--prefix", cls.prefix)
+        cls.include = cls.prefix / "include"
+        cls.headers = sorted(cls.include.rglob("*.h"))
+
+    def configured(self, name, project, code=0, *options):
+        """A project that stands in the folder `project`, configured against the installed mbk."""
+        return ran(program("CMAKE"), "-S", project, "-B", self.folder / name, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+                   f"-DCMAKE_CXX_COMPILER={program('CXX')}", "-DCMAKE_BUILD_TYPE=Release", *options, code=code)
+
+    def test_another_project_measures_what_mbk_measures(self):
+        recording = self.folder / "recording.mat"
+        ran(program("MAKE_LOG"), "--protocol", "sinusoidal", "--out", recording)
+        wanted = json.loads(ran(self.prefix / "bin/mbk", "measure", "--json", recording))["model"]
+        self.configured("example", self.prefix / "share/doc/mbk/examples/use_the_library")
+        ran(program("CMAKE"), "--build", self.folder / "example", "--parallel", "2")
+        for name in ("measure_recording", "measure_with_two_modules"):  # mbk::mbk, and single modules
+            said = dict(line.split(" ", 1) for line in ran(self.folder / "example" / name, recording).splitlines())
+            for matrix in "MBK":
+                numbers = [float(one) for one in said[matrix].split()]
+                # The same code on the same bytes, each printed with every digit.
+                self.assertEqual(numbers, [one for row in wanted[matrix] for one in row], (name, matrix))
+
+    def found(self, arguments, code=0):
+        project = self.folder / "finding"
+        project.mkdir(exist_ok=True)
+        (project / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(finding LANGUAGES CXX)\n"
+                                                f"find_package(mbk {arguments})\n")
+        return self.configured("finding/build", project, code, "--fresh")
+
+    def test_only_a_fitting_version_is_found(self):
+        for version in ("0.2", "1.0"):
+            self.assertIn("mbkConfig.cmake, version: 0.1", self.found(f"{version} REQUIRED", code=1))
+
+    def test_modules_are_components(self):
+        self.found("0.1 REQUIRED COMPONENTS measurement recording")
+        self.assertIn("no module nonsense", self.found("0.1 REQUIRED COMPONENTS nonsense", code=1))
+
+    def test_no_path_of_the_tree_stands_in_what_is_installed(self):
+        paths = [str(SOURCE), str(pathlib.Path(program("BUILD")).resolve()), str(self.prefix)]
+        for file in (*self.prefix.rglob("*.cmake"), *self.headers):
+            text = file.read_text()
+            for path in paths:
+                self.assertNotIn(path, text, file)
+
+    def test_headers_include_only_what_is_installed_or_public(self):
+        self.assertGreater(len(self.headers), 50)
+        for header in self.headers:
+            for left, name in re.findall(r'(?m)^#include ([<"])([^>"]+)', header.read_text()):
+                with self.subTest(header=header.name, include=name):
+                    if left == '"':
+                        self.assertTrue((self.include / name).exists())
+                    elif "/" in name or "." in name:  # the rest is the standard library's
+                        self.assertIn(name.split("/")[0], PUBLIC)
+
+    def test_every_header_compiles_by_itself(self):
+        """A header that its own source file includes first has been compiled so by the build."""
+        def is_proved(header):
+            name = header.relative_to(self.include)
+            source = SOURCE / name.with_suffix(".cpp")
+            return source.exists() and re.search(r"#include .*", source.read_text()).group() == f'#include "{name}"'
+
+        remaining = [header for header in self.headers if not is_proved(header)]
+        eigen = subprocess.run(["pkg-config", "--cflags", "eigen3"], capture_output=True, text=True, check=True).stdout
+
+        def compiled(header):
+            ran(program("CXX"), "-std=c++20", "-Wall", "-Werror", "-fsyntax-only", f"-I{self.include}", *eigen.split(),
+                "-include", header, "-x", "c++", os.devnull)
+
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(compiled, remaining))
+
+    def test_headers_of_tests_stay_behind(self):
+        self.assertEqual([one.name for one in self.headers if one.name.startswith("test_")], [])
+
+    def test_pages_completion_and_documents_are_in_their_places(self):
+        share = self.prefix / "share"
+        for name in ("man/man1/mbk.1", "man/man1/mbk-springs-field.1", "bash-completion/completions/mbk",
+                     "zsh/site-functions/_mbk", "fish/vendor_completions.d/mbk.fish", "doc/mbk/LICENSE",
+                     "doc/mbk/THIRD_PARTY_NOTICES.md", "doc/mbk/copyright", "doc/mbk/docs/guide/install.md",
+                     "doc/mbk/examples/scenarios/relaxed_sinusoidal.toml"):
+            self.assertTrue((share / name).is_file(), name)
+        mbk = self.prefix / "bin/mbk"
+        self.assertEqual((share / "man/man1/mbk-measure.1").read_text(), ran(mbk, "manual", "measure"))
+        self.assertEqual((share / "bash-completion/completions/mbk").read_text(), ran(mbk, "completion", "bash"))
+
+
+if __name__ == "__main__":
+    unittest.main()

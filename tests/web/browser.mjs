@@ -1,0 +1,134 @@
+// What the tests of the report share: the programs, a browser without a network, and reading numbers off a page.
+//
+// Run in the build folder of the page, where the packages are: cd build/test/web/report, then
+//   MBK=../../bin/mbk MAKE_LOG=../../bin/make_log node ../../../../tests/web/report_test.mjs
+import { execFileSync, spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const skipped = 77;
+const packages = createRequire(join(process.cwd(), "package.json"));
+const skip = (why) => {
+  console.log(`skipped: ${why}`);
+  process.exit(skipped);
+};
+
+const found = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+const executablePath = found.find((path) => path && existsSync(path)) ?? skip("no Chromium; its Debian package is chromium");
+const library = (name) => {
+  try {
+    return packages(name);
+  } catch {
+    return skip(`npm's ${name} is not installed in ${process.cwd()}`);
+  }
+};
+const { chromium } = library("playwright-core");
+const axeSource = readFileSync((library("axe-core"), packages.resolve("axe-core/axe.min.js")), "utf8");
+
+export const folder = mkdtempSync(join(tmpdir(), "mbk-web-"));
+process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+export const pictures = join(process.cwd(), "screenshots");
+mkdirSync(pictures, { recursive: true });
+
+const program = (name) => process.env[name] ?? skip(`the environment does not name ${name}`);
+
+/** mbk with these arguments: exit code and both outputs. */
+export function mbk(...args) {
+  const { status, stdout, stderr } = spawnSync(program("MBK"), args, { cwd: folder, encoding: "utf8", maxBuffer: 1 << 28 });
+  return { code: status, out: stdout, err: stderr };
+}
+
+/** A recording of an arm with known impedance. */
+export function makeLog(name, ...args) {
+  execFileSync(program("MAKE_LOG"), [...args, "--out", join(folder, name)]);
+  return name;
+}
+
+/** A recording of a simulated participant. */
+export function simulate(name, ...args) {
+  const { code, err } = mbk("simulate", ...args, "--out", name, "--quiet");
+  if (code !== 0) throw new Error(err);
+  return name;
+}
+
+/** The report of `mbk measure`, and what --json says of the same. */
+export function measure(name, ...args) {
+  const ran = mbk("measure", ...args, "--json", "--report", `${name}.html`);
+  if (ran.code !== 0 && ran.code !== 4) throw new Error(ran.err);
+  return { code: ran.code, json: JSON.parse(ran.out), file: join(folder, `${name}.html`) };
+}
+
+const holder = /(<script type="application\/json" id="report-data">)([^]*?)(<\/script>)/;
+export const documentOf = (file) => JSON.parse(holder.exec(readFileSync(file, "utf8"))[2]);
+
+/** The report again with its document changed. */
+export function changed(file, name, change) {
+  const html = readFileSync(file, "utf8");
+  const document = documentOf(file);
+  change(document);
+  const path = join(folder, `${name}.html`);
+  const text = JSON.stringify(document).replaceAll("<", "\\u003c");
+  writeFileSync(path, html.replace(holder, (_, open, _old, close) => open + text + close));
+  return path;
+}
+
+const browser = await chromium.launch({
+  executablePath,
+  args: [
+    ...(process.getuid?.() === 0 ? ["--no-sandbox"] : []),
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+  ],
+});
+export const closeBrowser = () => browser.close();
+
+/** A page on a report. What it says on the console, which errors it meets and what it asks a network for is kept. */
+export async function open(file, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, reducedMotion: "reduce", ...options });
+  const page = await context.newPage();
+  const said = [];
+  const requests = [];
+  page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => said.push(String(error)));
+  page.on("request", (request) => requests.push(request.url()));
+  await page.goto(pathToFileURL(file).href);
+  await page.waitForSelector("main");
+  const outside = () => requests.filter((url) => !/^(data|blob):/.test(url)).slice(1);
+  return { page, said, outside, close: () => context.close() };
+}
+
+/** Brings everything into view once, so that every chart is drawn. */
+export async function scrollThrough(page) {
+  const height = await page.evaluate(() => document.documentElement.scrollHeight);
+  for (let y = 0; y < height; y += 600) {
+    await page.evaluate((top) => scrollTo({ top, behavior: "instant" }), y);
+    await page.waitForTimeout(20);
+  }
+  await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
+}
+
+/** The numbers of a part of the page by name, each with every digit and as it is shown. */
+export async function numbers(page, selector) {
+  const all = await page.$$eval(`${selector} data[data-name]`, (elements) =>
+    elements.map((e) => [e.dataset.name, { value: e.value === "null" ? null : Number(e.value), shown: e.textContent }]));
+  return Object.fromEntries(all);
+}
+
+export const violations = async (page) => {
+  await page.evaluate(axeSource);
+  const { violations: list } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ["violations"] }));
+  return list.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join("; ")}`);
+};
+
+/** Screenshot at 1440 px and an A4 PDF, to be looked at. */
+export async function picture(page, name) {
+  await scrollThrough(page);
+  await page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true });
+  return page.pdf({ path: join(pictures, `${name}.pdf`), preferCSSPageSize: true, printBackground: true });
+}

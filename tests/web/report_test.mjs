@@ -1,0 +1,362 @@
+// The HTML report in a browser: its numbers are those of --json, it is quiet, offline, accessible and printable.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, test } from "node:test";
+import { changed, closeBrowser, documentOf, folder, makeLog, mbk, measure, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
+import { withDiagnostics } from "./diagnostics.mjs";
+
+after(closeBrowser);
+
+const normal95 = 1.959963984540054;
+const exact = 1e-12; // relative: a product of two numbers of which --json has every digit
+const axisPairs = (n) => Array.from({ length: n * n }, (_, k) => [Math.floor(k / n), k % n]);
+
+const person = makeLog("person.mat", "--protocol", "sinusoidal", "--seed", "4", "--coloured-force-noise", "0.3");
+const joint = makeLog("joint.mat", "--protocol", "sinusoidal", "--one-axis");
+const pulses = makeLog("pulses.mat", "--protocol", "underdamped", "--seed", "2");
+const relaxed = simulate("relaxed.mat", "relaxed_sinusoidal");
+
+const withPlots = (report, name) =>
+  documentOf(report.file).trials.every((trial) => trial.diagnostics) ? report.file : changed(report.file, name, withDiagnostics);
+
+const one = measure("one", person);
+const onePage = withPlots(one, "one-plots");
+const oneAxis = measure("joint", joint);
+const unusable = measure("unusable", person, "--handle-mass", "5");
+const several = measure("several", person, pulses, relaxed);
+
+function close(got, want, what) {
+  if (want === null) return assert.equal(got, null, what);
+  return assert.ok(Math.abs(got - want) <= exact * Math.abs(want), `${what}: ${got} is not ${want}`);
+}
+
+/** What is shown is the number, rounded to the digits that are shown. */
+function assertShown({ value, shown }, what) {
+  const text = shown.replaceAll("−", "-");
+  if (!/^-?\d+(\.\d+)?[ %°]*$/.test(text)) return;
+  const half = 0.5 * 10 ** -((/\.(\d+)/.exec(text)?.[1] ?? "").length) * (1 + 1e-9);
+  assert.ok(Math.abs(parseFloat(text) - value) <= half, `${what}: ${value} is shown as ${shown}`);
+}
+
+function assertModel(read, result) {
+  const n = result.axes;
+  for (const symbol of ["M", "B", "K"]) {
+    for (const [j, i] of axisPairs(n)) {
+      close(read[`${symbol}${j}${i}`].value, result.model[symbol][j][i], symbol);
+      close(read[`${symbol}${j}${i}-half`].value, normal95 * result.standard_error[symbol][j][i], `± ${symbol}`);
+    }
+  }
+  const scale = result.units.x0 === "m" ? 1000 : 1;
+  for (let j = 0; j < n; ++j) {
+    close(read[`x0${j}`].value, scale * result.model.x0[j], "x0");
+    for (const name of ["VAF", "VAF_in_sample", "RMSE"]) close(read[`${name}${j}`].value, result.fit[name][j], name);
+  }
+  for (const [name, number] of Object.entries(read)) assertShown(number, name);
+}
+
+test("the model, its intervals and the fit are those of --json", async () => {
+  const { page, close: done } = await open(one.file);
+  assertModel(await numbers(page, "#trial-1-model"), one.json);
+  await done();
+});
+
+test("the ellipses and their intervals are those of --json", async () => {
+  const { page, close: done } = await open(one.file);
+  const read = await numbers(page, "#trial-1-ellipses");
+  for (const [name, ellipse] of Object.entries(one.json.ellipses)) {
+    for (const [key, field] of [["area", "area"], ["shape", "shape"], ["orientation", "orientation_deg"]]) {
+      close(read[`${name}-${key}`].value, ellipse[field], `${name} ${key}`);
+      close(read[`${name}-${key}-low`].value, ellipse.interval95[field][0], `${name} ${key}`);
+      close(read[`${name}-${key}-high`].value, ellipse.interval95[field][1], `${name} ${key}`);
+    }
+    close(read[`${name}-small`].value, ellipse.eigenvalues[0], name);
+    close(read[`${name}-large`].value, ellipse.eigenvalues[1], name);
+  }
+  for (const [name, finding] of Object.entries(one.json.antisymmetry)) close(read[`${name}-zmean`].value, finding.zmean_percent, name);
+  await done();
+});
+
+test("an ellipse is drawn to scale: its axes and circle are in the ratio of the numbers", async () => {
+  const { page, close: done } = await open(one.file);
+  const drawn = await page.$$eval("#trial-1-ellipses .ellipse-drawing", (drawings) => drawings.map((svg) => ({
+    rx: Number(svg.querySelector(".ellipse").getAttribute("rx")),
+    ry: Number(svg.querySelector(".ellipse").getAttribute("ry")),
+    turn: svg.querySelector(".ellipse").getAttribute("transform"),
+    circle: Number(svg.querySelector(".reference").getAttribute("r")),
+    value: parseFloat(svg.querySelector(".reference-value").textContent),
+  })));
+  const pixel = 0.02; // coordinates have two decimals
+  ["inertia", "damping", "stiffness"].forEach((name, k) => {
+    const [small, large] = one.json.ellipses[name].eigenvalues;
+    const { rx, ry, turn, circle, value } = drawn[k];
+    assert.ok(Math.abs(ry - (rx * small) / large) < pixel, name);
+    assert.ok(Math.abs(circle - (rx * value) / large) < pixel, name);
+    assert.ok(Math.abs(parseFloat(/-?[\d.]+/.exec(turn)[0]) + one.json.ellipses[name].orientation_deg) < 1e-3, name);
+  });
+  await done();
+});
+
+test("the arm of a simulated participant lies under the ellipses, its links in the ratio of their lengths", async () => {
+  const report = measure("relaxed", relaxed);
+  const { page, close: done } = await open(report.file);
+  const points = await page.$eval("#trial-1-ellipses .posture.arm .links", (line) =>
+    line.getAttribute("points").split(" ").map((point) => point.split(",").map(Number)));
+  const length = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+  assert.equal(points.length, 3);
+  assert.ok(Math.abs(length(points[0], points[1]) / length(points[1], points[2]) - 0.31 / 0.34) < 0.005);
+  assert.deepEqual(points[2].map(Math.abs), [0, 0]);
+  assert.ok(points[0][1] > 100, "the shoulder is nearer to the person than the hand");
+  assert.match(await page.textContent("header"), /Simulated/);
+  await done();
+});
+
+test("the page is quiet, asks no network for anything and holds its licences", async () => {
+  const { page, said, outside, close: done } = await open(onePage);
+  await scrollThrough(page);
+  assert.deepEqual(said, []);
+  assert.deepEqual(outside(), []);
+  const licences = await page.$eval(".licences", (element) => element.textContent);
+  for (const words of ["Apache License", "Copyright 2017-2026 The Apache Software Foundation", "Baidu Inc.", "Microsoft Corporation", "Mike Bostock"]) {
+    assert.ok(licences.includes(words), words);
+  }
+  await done();
+});
+
+for (const [what, file, prepare] of [
+  ["one recording with every data table open", onePage, (page) => page.$$eval("details", (all) => all.forEach((d) => (d.open = true)))],
+  ["one axis", withPlots(oneAxis, "joint-plots"), undefined],
+  ["a result that is not usable", withPlots(unusable, "unusable-plots"), undefined],
+  ["several recordings, all open", withPlots(several, "several-plots"), (page) => page.$$eval("details.trial", (all) => all.forEach((d) => (d.open = true)))],
+]) {
+  test(`axe finds no violation: ${what}`, async () => {
+    const { page, said, close: done } = await open(file);
+    await prepare?.(page);
+    await scrollThrough(page);
+    assert.deepEqual(await violations(page), []);
+    assert.deepEqual(said, []);
+    await done();
+  });
+}
+
+test("the keyboard reaches the content first, zooms a chart and shows all again", async () => {
+  const { page, close: done } = await open(onePage);
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.className), "skip");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "content");
+  await page.keyboard.press("Tab");
+  assert.ok(await page.evaluate(() => document.querySelector("main").contains(document.activeElement)), "after the skip link the contents are skipped");
+  const figure = page.locator("figure.chart-figure").first();
+  const ticks = () => figure.locator(".chart svg text").allTextContents();
+  await figure.scrollIntoViewIfNeeded();
+  await figure.locator(".chart svg").waitFor();
+  const whole = await ticks();
+  await figure.getByRole("button", { name: /^Zoom in/ }).focus();
+  await page.keyboard.press("Enter");
+  await page.waitForTimeout(100);
+  assert.notDeepEqual(await ticks(), whole);
+  assert.equal(await figure.locator(".zoom").textContent(), "25–75 %");
+  for (let k = 0; k < 4; ++k) await page.keyboard.press("Tab");
+  assert.match(await page.evaluate(() => document.activeElement.ariaLabel ?? document.activeElement.getAttribute("aria-label")), /^Show all/);
+  await page.keyboard.press("Enter");
+  await page.waitForTimeout(100);
+  assert.deepEqual(await ticks(), whole);
+  await done();
+});
+
+test("a data table opens by keyboard and has the numbers of the chart", async () => {
+  const { page, close: done } = await open(onePage);
+  await page.locator("details.data-table summary").first().focus();
+  await page.keyboard.press("Enter");
+  const rows = page.locator("details.data-table table.values").first().locator("tbody tr");
+  await rows.first().waitFor();
+  const { prediction } = documentOf(onePage).trials[0].diagnostics;
+  const cells = (await rows.first().locator("td").allTextContents()).map((text) => Number(text.replaceAll("−", "-")));
+  const want = [prediction.time_s[0], prediction.measured[0][0], prediction.predicted[0][0]];
+  want.forEach((value, k) => assert.ok(Math.abs(cells[k] - value) <= 1e-4 * Math.abs(value), `${cells} ${want}`));
+  await done();
+});
+
+test("a CSV file holds every value of its chart", async () => {
+  const { page, close: done } = await open(onePage);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /^Save CSV/ }).first().click()]);
+  const lines = readFileSync(await download.path(), "utf8").trim().split("\n");
+  const { prediction } = documentOf(onePage).trials[0].diagnostics;
+  assert.match(lines[0], /^"time \[s\]","Force along x, measured \[N\]"/);
+  assert.equal(lines.length - 1, prediction.time_s.filter((t, i) => t !== null || prediction.measured[0][i] !== null).length);
+  assert.equal(Number(lines[1].split(",")[1]), prediction.measured[0][0]);
+  await done();
+});
+
+test("each chart has a description, one sentence on how to read it, and lines that differ without colour", async () => {
+  const { page, close: done } = await open(onePage);
+  const figures = await page.$$eval("figure.chart-figure", (all) => all.map((figure) => ({
+    description: figure.querySelector("[role=img]").getAttribute("aria-label"),
+    caption: figure.querySelector("figcaption").textContent,
+    dashes: [...figure.querySelectorAll(".legend line")].map((line) => `${line.getAttribute("stroke-dasharray")} ${line.getAttribute("stroke-width") > 1.7}`),
+  })));
+  assert.ok(figures.length >= 7, String(figures.length));
+  for (const { description, caption, dashes } of figures) {
+    assert.ok(description.length > 40, description);
+    assert.match(caption, /^How to read this\. \S/);
+    if (dashes.length === 2) assert.equal(new Set(dashes).size, 2, caption);
+  }
+  await done();
+});
+
+test("one axis has no ellipses and the units of what moves", async () => {
+  const { page, close: done } = await open(oneAxis.file);
+  assertModel(await numbers(page, "#trial-1-model"), oneAxis.json);
+  assert.equal(await page.locator(".ellipse-drawing").count(), 0);
+  const text = await page.textContent("#trial-1-model");
+  for (const unit of Object.values(oneAxis.json.units)) assert.ok(text.includes(unit === "m" ? "mm" : unit), unit);
+  await done();
+});
+
+test("a result that is not usable says so first, with every warning in plain and in exact words", async () => {
+  assert.equal(unusable.code, 4);
+  const { page, close: done } = await open(unusable.file);
+  assert.match(await page.textContent(".verdict"), /Not usable\. Do not report these numbers/);
+  const read = await page.$$eval(".warning", (all) => all.map((item) => ({
+    code: item.dataset.code,
+    message: item.querySelector("[data-name=message]").textContent,
+    try: item.querySelector("[data-name=try]").textContent,
+    title: item.querySelector("strong").textContent,
+  })));
+  assert.deepEqual(read.map(({ title, ...warning }) => warning), unusable.json.warnings);
+  for (const { title, code } of read) assert.notEqual(title, code);
+  assert.equal(await page.locator(".ellipse-drawing .none").count(), 1, "inertia has no ellipse");
+  await done();
+});
+
+test("every warning that mbk knows has plain words", async () => {
+  const header = readFileSync(new URL("../../mbk/trial/warning.h", import.meta.url), "utf8");
+  const codes = [...header.matchAll(/\{WarningCode::\w+, "([\w-]+)"\}/g)].map((match) => match[1]);
+  assert.ok(codes.length >= 16, String(codes.length));
+  const file = changed(one.file, "all-warnings", (document) => {
+    document.result.warnings = codes.map((code) => ({ code, message: "m", try: "t" }));
+  });
+  const { page, close: done } = await open(file);
+  const titles = await page.$$eval(".warning", (all) => all.map((item) => [item.dataset.code, item.querySelector("strong").textContent]));
+  assert.equal(titles.length, codes.length);
+  for (const [code, title] of titles) assert.notEqual(title, code);
+  await done();
+});
+
+test("several recordings stand side by side at one scale, and a link opens each", async () => {
+  const { page, close: done } = await open(withPlots(several, "several-plots"));
+  const results = several.json.results;
+  const rows = await page.$$eval("table.overview:first-of-type tbody tr", (all) => all.map((row) => ({
+    link: row.querySelector("a")?.getAttribute("href"),
+    name: row.querySelector("th").textContent,
+    values: Object.fromEntries([...row.querySelectorAll("data")].map((d) => [d.dataset.name, Number(d.value)])),
+  })));
+  const models = rows.filter((row) => row.link);
+  assert.equal(models.length, 3);
+  for (const { link, values } of models) {
+    const result = results[Number(link.slice("#trial-".length)) - 1];
+    for (const symbol of ["M", "B", "K"]) for (const [j, i] of axisPairs(2)) close(values[`${symbol}${j}${i}`], result.model[symbol][j][i], symbol);
+    result.fit.VAF.forEach((vaf, axis) => close(values[`VAF${axis}`], vaf, "VAF"));
+  }
+  const mean = rows.find((row) => row.name.startsWith("mean"));
+  close(mean.values["mean-K00"], several.json.summary.model.K[0][0], "mean");
+
+  const scales = await page.$$eval(".comparison:last-of-type .ellipse-drawing", (all) => all.map((svg) => ({
+    rx: Number(svg.querySelector(".ellipse").getAttribute("rx")),
+    circle: svg.querySelector(".reference").getAttribute("r"),
+  })));
+  assert.equal(new Set(scales.map((scale) => scale.circle)).size, 1);
+  const largest = models.map(({ link }) => results[Number(link.slice(7)) - 1].ellipses.stiffness.eigenvalues[1]);
+  scales.forEach(({ rx }, k) => assert.ok(Math.abs(rx / scales[0].rx - largest[k] / largest[0]) < 1e-3));
+
+  assert.equal(await page.$eval("#trial-2", (details) => details.open), false);
+  await page.click('table.overview a[href="#trial-2"]');
+  await page.waitForFunction(() => document.querySelector("#trial-2").open);
+  assertModel(await numbers(page, "#trial-2-model"), results[1]);
+  await page.locator("#trial-2 .chart").first().scrollIntoViewIfNeeded();
+  await page.locator("#trial-2 .chart svg").first().waitFor();
+  await done();
+});
+
+test("on paper everything is open, every chart is drawn and none is wider than the page", async () => {
+  const { page, said, close: done } = await open(withPlots(several, "several-plots"));
+  await page.emulateMedia({ media: "print" });
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  const a4 = 794 - 2 * 60; // between the margins [px]
+  const state = await page.evaluate(() => ({
+    closed: document.querySelectorAll("details[data-print]:not([open])").length,
+    widths: [...document.querySelectorAll(".chart svg")].map((svg) => svg.getBoundingClientRect().width),
+    charts: document.querySelectorAll(".chart").length,
+  }));
+  assert.equal(state.closed, 0);
+  assert.equal(state.widths.length, state.charts);
+  assert.ok(state.charts >= 21 && Math.max(...state.widths) <= a4, JSON.stringify(state.widths));
+  await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+  assert.equal(await page.locator("details.trial[open]").count(), 0, "closed again");
+  assert.deepEqual(said, []);
+  await done();
+});
+
+test("undefined numbers are said to be undefined", async () => {
+  const file = changed(onePage, "undefined", (document) => {
+    const { result } = document;
+    const none = (value) => (Array.isArray(value) ? value.map(none) : value && typeof value === "object" ? Object.fromEntries(Object.entries(value).map(([k, v]) => [k, none(v)])) : typeof value === "number" ? null : value);
+    for (const key of ["model", "standard_error", "fit", "ellipses", "antisymmetry", "excitation"]) result[key] = none(result[key]);
+    result.excitation.rank = 3;
+    document.trials[0].diagnostics = none(document.trials[0].diagnostics);
+    result.usable = false;
+  });
+  const { page, said, close: done } = await open(file);
+  await scrollThrough(page);
+  assert.deepEqual(said, []);
+  const read = await numbers(page, "#trial-1-model");
+  assert.equal(read.K00.shown, "undefined");
+  assert.doesNotMatch(await page.textContent("main"), /NaN(?! throughout)|null|Infinity|\[object/);
+  assert.deepEqual(await violations(page), []);
+  await done();
+});
+
+test("a report without diagnostics, and a pooled one, are whole", async () => {
+  const file = changed(one.file, "bare", (document) => delete document.trials[0].diagnostics);
+  const { page, said, close: done } = await open(file);
+  assert.match(await page.textContent("main"), /no plots|There are none/);
+  assert.deepEqual(said, []);
+  await done();
+  const pooled = measure("pooled", "--pool", person, relaxed);
+  const second = await open(pooled.file);
+  assertModel(await numbers(second.page, "#trial-1-model"), pooled.json);
+  assert.equal(await second.page.locator("#trial-1-provenance table.files tbody tr").count(), 2);
+  assert.deepEqual(second.said, []);
+  await second.close();
+});
+
+test("what stands in a recording or an option stays text", async () => {
+  const hostile = "</script><!--<script><img src=x onerror=\"document.title='owned'\"> & 'quoted'";
+  const report = measure("hostile", person, "--report-note", hostile);
+  const { page, said, outside, close: done } = await open(report.file);
+  assert.equal(await page.textContent(".note"), hostile);
+  assert.ok((await page.textContent(".command")).includes("--report-note '</script>"));
+  assert.notEqual(await page.title(), "owned");
+  assert.deepEqual(said, []);
+  assert.deepEqual(outside(), []);
+  await done();
+});
+
+test("the same inputs and options give the same bytes", () => {
+  const first = readFileSync(one.file);
+  const again = mbk("measure", person, "--json", "--report", "one.html", "--overwrite");
+  assert.equal(again.code, 0);
+  const strip = (bytes) => bytes.toString().replace(" --overwrite", "");
+  assert.equal(strip(readFileSync(`${folder}/one.html`)), strip(first));
+});
+
+test("pictures of each kind of report, to be looked at", async () => {
+  for (const [name, file] of [["one", onePage], ["relaxed", withPlots(measure("relaxed2", relaxed), "relaxed-plots")], ["one-axis", withPlots(oneAxis, "joint-plots")], ["unusable", withPlots(unusable, "unusable-plots")], ["several", withPlots(several, "several-plots")]]) {
+    const { page, said, close: done } = await open(file);
+    const pdf = await picture(page, name);
+    const pages = pdf.toString("latin1").match(/\/Type \/Page\b/g).length;
+    assert.ok(pages >= 4 && pages <= 30, `${name}: ${pages} pages`);
+    assert.deepEqual(said, []);
+    await done();
+  }
+});

@@ -1,0 +1,77 @@
+// Elements in one call. Text is always text: nothing of a recording is ever read as HTML.
+
+type Attributes = Record<string, string | number | boolean | undefined>;
+type Child = Node | string | undefined | false;
+
+function filled<E extends Element>(element: E, attributes: Attributes, children: Child[]): E {
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === undefined || value === false) continue;
+    element.setAttribute(key, value === true ? "" : String(value));
+  }
+  for (const child of children) if (child !== undefined && child !== false) element.append(child);
+  return element;
+}
+
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  return filled(document.createElement(tag), attributes, children);
+}
+
+export function svg<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): SVGElementTagNameMap[K] {
+  return filled(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
+}
+
+export type HeadingLevel = 2 | 3 | 4;
+export const heading = (level: HeadingLevel, ...children: Child[]): HTMLHeadingElement =>
+  h(`h${level}`, {}, ...children);
+
+/** Room to scroll in for what is too wide or too long; the keyboard stops there only where there is something to scroll. */
+export function scrolling(name: string, content: HTMLElement): HTMLElement {
+  const room = h("div", { class: "table-scroll" }, content);
+  new ResizeObserver(() => {
+    const needed = room.scrollWidth > room.clientWidth || room.scrollHeight > room.clientHeight;
+    for (const [key, value] of [["tabindex", "0"], ["role", "group"], ["aria-label", name]] as const) {
+      if (needed) room.setAttribute(key, value);
+      else room.removeAttribute(key);
+    }
+  }).observe(room);
+  return room;
+}
+
+/** A table with a header row; the first cell of each row is its header. */
+export function table(caption: string, head: Child[], rows: Child[][], className = ""): HTMLElement {
+  return scrolling(
+    caption,
+    h(
+      "table",
+      { class: className },
+      h("caption", {}, caption),
+      h("thead", {}, h("tr", {}, ...head.map((cell) => (cell === "" ? h("td") : h("th", { scope: "col" }, cell))))),
+      h(
+        "tbody",
+        {},
+        ...rows.map((row) =>
+          h("tr", {}, ...row.map((cell, k) => (k === 0 ? h("th", { scope: "row" }, cell) : h("td", {}, cell)))),
+        ),
+      ),
+    ),
+  );
+}
+
+/** Names and what belongs to them. */
+export function facts(rows: [string, Child][]): HTMLElement {
+  return h(
+    "dl",
+    { class: "facts" },
+    ...rows.filter(([, value]) => value !== undefined && value !== "").map(([name, value]) =>
+      h("div", {}, h("dt", {}, name), h("dd", {}, value)),
+    ),
+  );
+}

@@ -1,0 +1,109 @@
+// Turns the document in the page into the report.
+import apache from "echarts/LICENSE?raw";
+import apacheNotice from "echarts/NOTICE?raw";
+import d3 from "echarts/licenses/LICENSE-d3?raw";
+import tslib from "tslib/CopyrightNotice.txt?raw";
+import zrender from "zrender/LICENSE?raw";
+import { followPageAndPrinter } from "./charts";
+import { type Report, type Trial, conditionOf, fileOf, participantOf, readReport } from "./data";
+import { diagnosticElements } from "./diagnostics";
+import { type HeadingLevel, facts, h, heading } from "./dom";
+import { inOrder, nameOf, overviewSection } from "./overview";
+import { ellipsesSection, identityFacts, modelSection, provenanceSection, simulatedNote } from "./sections";
+import "./style.css";
+import { summarySection, verdict, warningsSection } from "./summary";
+import { glossary } from "./words";
+
+function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLElement[] {
+  const sections = [
+    summarySection(trial, id, level),
+    warningsSection(trial, id, level),
+    modelSection(trial, id, level),
+    ellipsesSection(trial, id, level),
+    ...diagnosticElements(trial, id, level),
+    provenanceSection(trial, id, level),
+  ];
+  return sections.filter((section): section is HTMLElement => section !== undefined);
+}
+
+function recordingsSection(report: Report): HTMLElement {
+  return h("section", { id: "recordings" },
+    heading(2, "Each recording"),
+    ...inOrder(report.trials).map(({ trial, id }) => {
+      const said = verdict(trial);
+      const details = h("details", { class: "trial", id, "data-print": true },
+        h("summary", {}, h("h3", {}, nameOf(trial, report.trials)), h("span", { class: `badge ${said.kind}` }, `${said.sign} ${said.word}`)),
+        identityFacts(trial),
+        ...trialSections(trial, id, 4));
+      return details;
+    }));
+}
+
+function contents(report: Report, sections: HTMLElement[]): HTMLElement {
+  const several = report.trials.length > 1;
+  const entries = sections.filter((section) => section.id).flatMap((section) => {
+    const entry = { id: section.id, name: section.querySelector("h2")?.textContent ?? "", inner: false };
+    if (!several || section.id !== "recordings") return [entry];
+    return [entry, ...inOrder(report.trials).map(({ trial, id }) => ({ id, name: nameOf(trial, report.trials), inner: true }))];
+  });
+  return h("nav", { "aria-label": "Contents" }, h("p", { class: "nav-title" }, "Contents"),
+    h("ul", {}, ...entries.map(({ id, name, inner }) => h("li", inner ? { class: "inner" } : {}, h("a", { href: `#${id}` }, name)))));
+}
+
+/** A link to a recording opens it. */
+function openTargets(): void {
+  const open = () => {
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    const details = target?.closest<HTMLDetailsElement>("details.trial");
+    if (details) details.open = true;
+  };
+  addEventListener("hashchange", open);
+  open();
+}
+
+function head(report: Report): HTMLElement {
+  const first = report.trials[0] as Trial;
+  const several = report.trials.length > 1;
+  const said = [participantOf(first), conditionOf(first)].filter(Boolean).join(" · ");
+  const title = several ? `${report.trials.length} recordings` : said || fileOf(first);
+  document.title = `${title} – mechanical impedance`;
+  return h("header", { class: "page-head" },
+    h("p", { class: "kicker" }, first.result.axes === 1 ? "Mechanical impedance of a limb" : "Mechanical impedance of the arm"),
+    h("h1", {}, title),
+    report.note ? h("p", { class: "note" }, report.note) : "",
+    simulatedNote(report.trials),
+    several ? "" : identityFacts(first));
+}
+
+function foot(): HTMLElement {
+  return h("footer", {},
+    h("details", { class: "licences" }, h("summary", {}, "Software inside this file, and its licences"),
+      h("p", {}, "This page draws with Apache ECharts, zrender and tslib."),
+      ...[["Apache ECharts: notice", apacheNotice], ["Apache ECharts: licence", apache], ["d3, parts of which are in ECharts", d3], ["zrender", zrender], ["tslib", tslib]].map(([name, text]) =>
+        h("div", {}, h("p", {}, h("strong", {}, name)), h("pre", { tabindex: 0, role: "group", "aria-label": name }, text)))));
+}
+
+function draw(report: Report): void {
+  const several = report.trials.length > 1;
+  const sections = several
+    ? [overviewSection(report), recordingsSection(report)]
+    : trialSections(report.trials[0] as Trial, "trial-1", 2);
+  sections.push(
+    h("section", { id: "reproduce" }, heading(2, "How to make it again"),
+      h("p", {}, "The same files, options and version give the same numbers, digit for digit, and this same page."),
+      h("pre", { class: "command" }, report.command),
+      h("p", {}, "Made with ", h("strong", {}, report.software), ".")),
+    h("section", { id: "glossary" }, heading(2, "Glossary"), facts(glossary)),
+  );
+  document.getElementById("report")?.replaceWith(
+    h("div", { class: "page" }, head(report), contents(report, sections), h("main", { id: "content", tabindex: -1 }, ...sections), foot()));
+  openTargets();
+  followPageAndPrinter();
+}
+
+try {
+  draw(readReport(document.getElementById("report-data")?.textContent ?? ""));
+} catch (error) {
+  document.getElementById("report")?.replaceWith(
+    h("main", { id: "content", class: "page" }, h("h1", {}, "This report cannot be shown"), h("p", {}, `The numbers in this file cannot be read: ${String(error)}`)));
+}

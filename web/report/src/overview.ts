@@ -1,0 +1,91 @@
+// Several recordings side by side.
+import { type Report, type Trial, type Value, axisNames, conditionOf, fileOf, matrices, participantOf, unitsOf } from "./data";
+import { h, heading, table } from "./dom";
+import { ellipsesSideBySide } from "./ellipses";
+import { data, decimalsFor, fixed, normal95, significant, withInterval } from "./format";
+import { verdict } from "./summary";
+
+/** "P1, relaxed", or the name of the file where nothing else tells it apart. */
+export function nameOf(trial: Trial, all: Trial[]): string {
+  const said = (one: Trial) => [participantOf(one), conditionOf(one)].filter(Boolean).join(", ");
+  const name = said(trial);
+  return name && all.filter((one) => said(one) === name).length === 1 ? name : fileOf(trial);
+}
+
+/** The rows in the order of participant, then condition, then file. */
+export function inOrder(trials: Trial[]): { trial: Trial; id: string }[] {
+  const key = (trial: Trial) => [participantOf(trial) ?? "", conditionOf(trial) ?? "", fileOf(trial)];
+  const compare = new Intl.Collator("en", { numeric: true }).compare;
+  return trials
+    .map((trial, k) => ({ trial, id: `trial-${k + 1}` }))
+    .sort((a, b) => {
+      const [first, second] = [key(a.trial), key(b.trial)];
+      return first.map((word, k) => compare(word, second[k] ?? "")).find((order) => order !== 0) ?? 0;
+    });
+}
+
+/** Rows of a matrix under each other, each value with its half width; no more digits than fit side by side. */
+function matrix(values: Value[][], halves: Value[][], name: string): HTMLElement {
+  const largest = Math.max(...values.flat().map((value) => Math.abs(value ?? 0)));
+  const most = largest > 0 ? Math.max(3 - Math.floor(Math.log10(largest)), 0) : 0;
+  return h("div", { class: "matrix", style: `grid-template-columns: repeat(${values.length}, auto)` },
+    ...values.flatMap((row, j) => row.map((value, i) => {
+      const half = halves[j]?.[i] ?? null;
+      const decimals = Math.min(decimalsFor(half), most);
+      return h("span", { class: "number" }, data(value, half === null ? significant(value) : fixed(value, decimals), `${name}${j}${i}`),
+        half === null ? "" : h("span", { class: "half" }, ` ± ${fixed(half, decimals)}`));
+    })));
+}
+
+const scaled = (values: Value[][], factor: number): Value[][] => values.map((row) => row.map((value) => (value === null ? null : factor * value)));
+
+export function overviewSection(report: Report): HTMLElement {
+  const { trials, summary } = report;
+  const rows = inOrder(trials);
+  const first = trials[0] as Trial;
+  const sameUnits = trials.every((trial) => unitsOf(trial.result).M === unitsOf(first.result).M);
+  const unit = (trial: Trial, symbol: "M" | "B" | "K") => (sameUnits ? "" : ` ${unitsOf(trial.result)[symbol]}`);
+  const told = [
+    { name: "participant", of: participantOf },
+    { name: "condition", of: conditionOf },
+  ].filter(({ of }) => trials.some((trial) => of(trial) !== undefined));
+  const head = ["recording", ...told.map(({ name }) => name), "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
+  const body: (Node | string)[][] = rows.map(({ trial, id }) => {
+    const { result } = trial;
+    const said = verdict(trial);
+    return [
+      h("a", { href: `#${id}` }, fileOf(trial)),
+      ...told.map(({ of }) => of(trial) ?? "–"),
+      h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "yes") : "no"}`),
+      ...matrices.map(({ symbol }) => h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol))),
+      h("div", {}, ...result.fit.VAF.map((vaf, axis) =>
+        h("div", { class: "number" }, result.axes === 1 ? "" : `${"xy"[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
+    ];
+  });
+  if (summary) {
+    body.push([`mean of ${summary.trials}`, ...told.map(() => ""), "", ...matrices.map(({ symbol }) => matrix(summary.model[symbol], summary.between_trial_standard_error[symbol], `mean-${symbol}`)), ""]);
+  }
+  const two = trials.some((trial) => trial.result.ellipses);
+  const ellipseRows: (Node | string)[][] = rows.filter(({ trial }) => trial.result.ellipses).map(({ trial }) => [
+    nameOf(trial, trials),
+    ...matrices.flatMap(({ name }) => {
+      const e = trial.result.ellipses?.[name];
+      if (!e) return ["", "", ""];
+      return [
+        e.area === null ? "none" : data(e.area, significant(e.area), `${name}-area`),
+        e.shape === null ? "none" : data(e.shape, fixed(e.shape, 2), `${name}-shape`),
+        withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 0),
+      ];
+    }),
+  ]);
+  const order = axisNames(first.result.axes).length === 2 ? " A matrix stands as xx, xy over yx, yy." : "";
+  return h(
+    "section",
+    { id: "overview" },
+    heading(2, "Side by side"),
+    table("Model of each recording, by participant and condition", head, body, "numbers overview"),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval within one recording; in the row of the mean it is the standard error between recordings.${order}`),
+    two ? table("Ellipses: area in the square of the matrix's unit, shape, orientation in degrees with its 95 % interval", ["recording", ...matrices.flatMap(({ symbol }) => [`${symbol} area`, `${symbol} shape`, `${symbol} angle`])], ellipseRows, "numbers overview") : "",
+    ellipsesSideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
+  );
+}

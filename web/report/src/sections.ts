@@ -1,0 +1,145 @@
+// What was measured, the numbers, and where they come from.
+import { type Trial, axisNames, conditionOf, fileOf, isSimulated, matrices, metadataOf, participantOf, unitsOf } from "./data";
+import { type HeadingLevel, facts, h, heading, table } from "./dom";
+import { ellipsesOf } from "./ellipses";
+import { data, fixed, listed, perAxis, plain, significant, withHalfWidth, withInterval } from "./format";
+
+const onlyOne = (values: string[]): string => [...new Set(values)].join(", ");
+
+/** Numbers as they follow a name: window, filters, mode. */
+export function identityFacts(trial: Trial): HTMLElement {
+  const { result } = trial;
+  const how = result.preparation[0];
+  const filters = how
+    ? `Savitzky–Golay of order ${how.savitzky_golay.order} over ${how.savitzky_golay.window} samples${how.cutoff_hz === null ? ", no low-pass" : `, then zero-phase Butterworth at ${plain(how.cutoff_hz, 3)} Hz`}`
+    : undefined;
+  return facts([
+    ["File", fileOf(trial)],
+    ["Participant", participantOf(trial)],
+    ["Condition", conditionOf(trial)],
+    ["Posture", metadataOf(trial, "posture")],
+    ["Protocol", how ? `${how.protocol} (${how.protocol_rule})` : result.protocol],
+    ["Duration", `${listed(result.inputs.map((input) => plain(input.duration_s, 4)))} s at ${onlyOne(result.inputs.map((input) => plain(input.rate_hz, 5)))} Hz`],
+    ["Window", how?.window_rule],
+    ["Filters", filters],
+    ["Mode", result.mode === "reference" ? `reference: the published procedure, ${how?.procedure ?? ""}` : result.mode],
+  ]);
+}
+
+export const simulatedNote = (trials: Trial[]): HTMLElement | undefined =>
+  trials.some(isSimulated)
+    ? h("p", { class: "simulated" }, h("strong", {}, "Simulated. "), trials.every(isSimulated)
+      ? "No person was measured: the metadata hold the truth behind a simulation."
+      : "Some of these recordings hold the truth behind a simulation in their metadata; those are of no person.")
+    : undefined;
+
+export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement {
+  const { result } = trial;
+  const { axes, model, standard_error: error, fit } = result;
+  const units = unitsOf(result);
+  const names = axisNames(axes);
+  const pairs = names.flatMap((row, j) => names.map((column, i) => ({ name: row + column, i, j })));
+  const head = axes === 1 ? ["", "value ± 95 %", "unit"] : ["", ...pairs.map((pair) => pair.name), "unit"];
+  const rows: (Node | string)[][] = matrices.map(({ symbol, name }) => [
+    `${name} ${symbol}`,
+    ...pairs.map(({ i, j }) => withHalfWidth(model[symbol][j]?.[i] ?? null, error[symbol][j]?.[i] ?? null, `${symbol}${j}${i}`)),
+    units[symbol],
+  ]);
+  const millimetres = units.x0 === "m";
+  const equilibrium = names.map((name, j) =>
+    h("span", {}, name ? `${name} ` : "", withHalfWidth(model.x0[j] ?? null, error.x0[j] ?? null, `x0${j}`, millimetres ? 1000 : 1)));
+  rows.push(["equilibrium x₀", ...equilibrium, ...(axes === 1 ? [] : ["", ""]), millimetres ? "mm" : units.x0]);
+  const fitRows: (Node | string)[][] = [
+    [`VAF on ${fit.validated_on === "held-back" ? "held-back data" : "the same data"}`, perAxis(fit.VAF, 2, "%", "VAF")],
+    ["VAF in sample", perAxis(fit.VAF_in_sample, 2, "%", "VAF_in_sample")],
+    [`RMSE on ${fit.validated_on === "held-back" ? "held-back data" : "the same data"}`, perAxis(fit.RMSE, 3, units.force, "RMSE")],
+  ];
+  return h(
+    "section",
+    { id: `${id}-model` },
+    heading(level, "The model"),
+    h("p", { class: "equation" }, "M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."),
+    table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval", head, rows, "numbers"),
+    axes === 2
+      ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "“xy” is the force along x that comes from motion along y.")
+      : "",
+    table("How well the model explains the force", ["", "value"], fitRows, "numbers narrow"),
+  );
+}
+
+export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
+  const { ellipses, antisymmetry } = trial.result;
+  if (!ellipses) return undefined;
+  const units = unitsOf(trial.result);
+  const rows = matrices.map(({ symbol, name }) => {
+    const e = ellipses[name];
+    const unit = units[symbol];
+    const anti = name === "damping" ? undefined : antisymmetry?.[name];
+    const areaDecimals = e.area !== null && e.area < 100 ? 2 : 0;
+    return [
+      `${name} ${symbol}`,
+      e.area === null ? "none" : h("span", { class: "number" }, withInterval(e.area, e.interval95.area, `${name}-area`, areaDecimals), ` ${unit.includes("·") || unit.includes("/") ? `(${unit})` : unit}²`),
+      e.shape === null ? "none" : withInterval(e.shape, e.interval95.shape, `${name}-shape`, 2),
+      h("span", { class: "number" }, withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 1), e.orientation_deg === null ? "" : "°"),
+      h("span", { class: "number" }, data(e.eigenvalues[1], significant(e.eigenvalues[1]), `${name}-large`), " and ", data(e.eigenvalues[0], significant(e.eigenvalues[0]), `${name}-small`), ` ${unit}`),
+      anti === undefined ? "" : anti.zmean_percent === null ? "undefined" : h("span", { class: "number" }, withInterval(anti.zmean_percent, anti.interval95, `${name}-zmean`, 1), " %"),
+    ];
+  });
+  return h(
+    "section",
+    { id: `${id}-ellipses` },
+    heading(level, "Ellipses"),
+    ellipsesOf(trial),
+    table("Ellipses in numbers; brackets are 95 % intervals", ["", "area", "shape", "orientation", "half axes", "antisymmetry"], rows, "numbers"),
+  );
+}
+
+function preparationFacts(trial: Trial): HTMLElement[] {
+  return trial.result.preparation.map((how, k) =>
+    h("div", { class: "preparation" },
+      trial.result.preparation.length > 1 ? h("p", {}, h("strong", {}, `Recording ${k + 1}`)) : "",
+      facts([
+        ["Protocol", `${how.protocol}: ${how.protocol_rule}`],
+        ["Window", `${plain(how.from_s, 6)} s to ${plain(how.to_s, 6)} s: ${how.window_rule}`],
+        ["Held back from", how.split_s === undefined ? undefined : `${plain(how.split_s, 6)} s`],
+        ["Perturbations", how.perturbations === undefined ? undefined : String(how.perturbations)],
+        ["Smoothing", `Savitzky–Golay, order ${how.savitzky_golay.order}, window ${how.savitzky_golay.window} samples`],
+        ["Low-pass", how.cutoff_hz === null ? "none" : `zero-phase Butterworth of order 5, ${plain(how.cutoff_hz, 4)} Hz: ${how.cutoff_rule}`],
+        ["Excited band", `${plain(how.excited_band_hz[0], 3)} to ${plain(how.excited_band_hz[1], 3)} Hz`],
+        ["Acceleration", how.acceleration === "sensor" ? "from the accelerometer" : "second derivative of the position"],
+        ["Order", how.cut_before_filter ? "cut into windows, then filtered" : "filtered, then cut into windows"],
+      ])));
+}
+
+export function provenanceSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement {
+  const { result } = trial;
+  const { estimation: e, excitation: x } = result;
+  const units = unitsOf(result);
+  const inputs = result.inputs.map((input) => [
+    h("span", { class: "path" }, input.file),
+    input.format,
+    h("code", { class: "hash" }, input.sha256),
+  ]);
+  const metadata = trial.recordings.flatMap((one, k) =>
+    Object.entries(one.metadata).map(([key, value]): [string, string] => [trial.recordings.length > 1 ? `${k + 1}: ${key}` : key, value]));
+  return h(
+    "section",
+    { id: `${id}-provenance` },
+    heading(level, "Where the numbers come from"),
+    table("Files", ["file", "format", "SHA-256"], inputs, "files"),
+    ...preparationFacts(trial),
+    facts([
+      ["Estimator", `${result.method === "ls" ? "least squares" : result.method}, structure ${result.structure}`],
+      ["Data behind the parameters", `${plain(e.duration_s, 4)} s, ${e.samples} samples (${e.parameters_from})`],
+      ["Reach of the noise's memory", `${plain(e.hac_lag_s, 3)} s in the standard errors`],
+      ["Handle taken off the inertia", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "nothing"],
+      ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes === 2 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it across the main direction` : ""}`],
+      ["Condition of the regressors", `${significant(x.condition, 2)}, rank ${x.rank}`],
+      ["Fitted again at a lower rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(100 * result.decimate_check.largest_relative_change, 2)} %` : undefined],
+    ]),
+    result.notes?.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted when the file was read")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "",
+    metadata.length
+      ? h("details", { class: "metadata", "data-print": true }, h("summary", {}, "Metadata of the recording"), facts(metadata))
+      : "",
+  );
+}

@@ -1,0 +1,127 @@
+// The measurement in plain words.
+import { type Trial, type Value, fileOf, matrices, unitsOf } from "./data";
+import { type HeadingLevel, h, heading, svg } from "./dom";
+import { data, fixed, listed, significant, withHalfWidth } from "./format";
+import { angleBetween, direction, meanings, plainWarnings } from "./words";
+
+export const warningTitle = (code: string): string => plainWarnings[code]?.title ?? code;
+
+/** Usable, usable with care, or not: a sign, a word and a reason. */
+export function verdict(trial: Trial): { kind: "good" | "care" | "bad"; sign: string; word: string; reason: string } {
+  const { usable, warnings } = trial.result;
+  const titles = listed(warnings.map((warning) => warningTitle(warning.code).replace(/^./, (c) => c.toLowerCase())));
+  if (!usable) {
+    return { kind: "bad", sign: "✕", word: "Not usable", reason: `Do not report these numbers: ${titles || "see the warnings"}.` };
+  }
+  if (warnings.length > 0) return { kind: "care", sign: "!", word: "Usable with care", reason: `There is something to know first: ${titles}.` };
+  return { kind: "good", sign: "✓", word: "Usable", reason: "Nothing about the recording or the fit speaks against it." };
+}
+
+function fitSentence(trial: Trial): HTMLElement {
+  const { fit, axes } = trial.result;
+  const heldBack = fit.validated_on === "held-back";
+  const parts: (Node | string)[] = ["The model explains "];
+  fit.VAF.forEach((value, axis) => {
+    if (axis > 0) parts.push(" and ");
+    parts.push(data(value, value === null ? "an undefined share" : `${fixed(value, value > 99 ? 1 : 0)} %`), axes === 1 ? " of the force" : ` of the force along ${"xy"[axis]}`);
+  });
+  parts.push(heldBack ? ", on data that had no share in making it" : ", on the very data that made it, which flatters it");
+  const worst = fit.VAF.reduce<number>((least, value) => Math.min(least, value ?? -Infinity), Infinity);
+  const judgement = worst >= 90 ? "That is a very good fit." : worst >= 80 ? "That is a good fit." : worst >= 70 ? "That is a fair fit." : "That is a poor fit.";
+  parts.push(`. ${trial.result.usable ? `${judgement} ` : ""}100 % would be everything.`);
+  return h("p", {}, ...parts);
+}
+
+/** What a stiffness of that size means to a hand. */
+function everyday(symbol: "M" | "B" | "K", value: number, unit: string): string {
+  if (symbol === "K" && unit === "N/m") return `Held 1 cm from rest, it pushes back with ${significant(value / 100, 2)} N.`;
+  if (symbol === "K" && unit === "N·m/rad") return `Held 1° from rest, it pushes back with ${significant((value * Math.PI) / 180, 2)} N·m.`;
+  if (symbol === "B" && unit === "N·s/m") return `Moved at 10 cm/s, it resists with ${significant(value / 10, 2)} N.`;
+  if (symbol === "B" && unit === "N·m·s/rad") return `Turned at 1 rad/s, it resists with ${significant(value, 2)} N·m.`;
+  if (symbol === "M" && unit === "kg") return `It feels like a mass of ${significant(value, 2)} kg.`;
+  return "";
+}
+
+const arrow = (degrees: number): SVGElement =>
+  svg(
+    "svg",
+    { viewBox: "-12 -12 24 24", class: "arrow", "aria-hidden": "true" },
+    svg("circle", { r: 11, class: "dial" }),
+    svg("line", { x1: -9, y1: 0, x2: 9, y2: 0, transform: `rotate(${-degrees})` }),
+  );
+
+function card(trial: Trial, symbol: "M" | "B" | "K", name: "inertia" | "damping" | "stiffness", title: string): HTMLElement {
+  const { result } = trial;
+  const unit = unitsOf(result)[symbol];
+  const parts: (Node | string)[] = [];
+  const ellipse = result.ellipses?.[name];
+  if (result.axes === 1) {
+    const value = result.model[symbol][0]?.[0] ?? null;
+    const error = result.standard_error[symbol][0]?.[0] ?? null;
+    parts.push(h("p", { class: "headline" }, withHalfWidth(value, error, `card-${symbol}`), ` ${unit}`));
+    if (value !== null) parts.push(h("p", {}, everyday(symbol, value, unit)));
+  } else if (ellipse && ellipse.eigenvalues[0] !== null && ellipse.eigenvalues[1] !== null) {
+    const [small, large] = ellipse.eigenvalues as [number, number];
+    const angle = ellipse.orientation_deg ?? 0;
+    const [low, high] = ellipse.interval95.orientation_deg;
+    parts.push(
+      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, h("span", { class: "half" }, " at most")),
+      h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
+        h("span", { class: "half" }, low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : ""), ` from x, ${direction(angle)}`),
+      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), ` ${unit} across that`),
+    );
+    if (small > 0) parts.push(h("p", {}, everyday(symbol, large, unit)));
+  } else {
+    parts.push(h("p", { class: "headline" }, "undefined"));
+  }
+  return h("div", { class: "card" }, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts);
+}
+
+/** Where the stiffest direction points, as seen from the shoulder. */
+function towardsShoulder(trial: Trial): string {
+  const posture = trial.recordings[0]?.posture;
+  const ellipse = trial.result.ellipses?.stiffness;
+  const angle: Value | undefined = ellipse?.orientation_deg;
+  if (!trial.result.usable || posture?.of !== "arm" || angle === null || angle === undefined) return "";
+  const [shoulder, , hand] = posture.points_m as [[number, number], [number, number], [number, number]];
+  const line = (Math.atan2(hand[1] - shoulder[1], hand[0] - shoulder[0]) * 180) / Math.PI;
+  return ` The stiffest direction is ${fixed(angleBetween(angle, line), 0)}° from the line between hand and shoulder.`;
+}
+
+export function summarySection(trial: Trial, id: string, level: HeadingLevel): HTMLElement {
+  const { result } = trial;
+  const duration = result.inputs.reduce((sum, input) => sum + (input.duration_s ?? 0), 0);
+  const said = verdict(trial);
+  const how = result.axes === 1
+    ? "From force and position while the machine perturbed the limb, three properties of the limb were estimated."
+    : "From force and position while the robot perturbed the hand, three properties of the arm were estimated, as they are felt at the hand.";
+  return h(
+    "section",
+    { id: `${id}-summary` },
+    heading(level, "In short"),
+    h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
+      h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
+      h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
+    h("p", {}, `${fileOf(trial)} holds ${significant(duration, 3)} s. ${how}${towardsShoulder(trial)}`),
+    h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, symbol, name, title))),
+    fitSentence(trial),
+  );
+}
+
+export function warningsSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement {
+  const { warnings } = trial.result;
+  return h(
+    "section",
+    { id: `${id}-warnings` },
+    heading(level, "Warnings"),
+    warnings.length === 0 ? h("p", {}, "There are none.") : "",
+    h("ul", { class: "warnings" },
+      ...warnings.map((warning) => {
+        const plainly = plainWarnings[warning.code];
+        return h("li", { class: "warning", "data-code": warning.code },
+          h("p", {}, h("strong", {}, warningTitle(warning.code)), plainly ? `. ${plainly.meaning}` : ""),
+          h("p", { class: "exact" }, h("code", {}, warning.code), ": ", h("span", { "data-name": "message" }, warning.message), "."),
+          h("p", {}, h("strong", {}, "Try: "), h("span", { "data-name": "try" }, warning.try), "."));
+      })),
+  );
+}

@@ -1,0 +1,111 @@
+// What is said in plain words: warnings, terms, directions.
+
+/** For each warning a title that needs no training, and what it means for whoever reads the numbers. */
+export const plainWarnings: Record<string, { title: string; meaning: string }> = {
+  "force-sign-reversed": {
+    title: "The force was recorded with the opposite sign",
+    meaning: "Everything comes out negative, which no limb can be. The recording itself is probably fine.",
+  },
+  "inertia-not-positive": {
+    title: "The inertia is impossible",
+    meaning: "In some direction the limb would have no mass or less than none. The numbers are not those of a limb.",
+  },
+  "damping-not-positive": {
+    title: "The damping is negative in some direction",
+    meaning: "The limb seems to feed energy into the robot. It may have acted or responded by reflex, or force and position were not recorded at the same time.",
+  },
+  "stiffness-not-positive": {
+    title: "The stiffness is impossible for a limb at rest",
+    meaning: "In some direction the limb would push itself away from where it rests. The numbers are not those of a passive limb.",
+  },
+  "band-too-narrow": {
+    title: "The motion was too slow, or the filter too strong, to see the inertia",
+    meaning: "Stiffness may be right while the inertia is not.",
+  },
+  "motion-on-one-line": {
+    title: "The hand moved along one line only",
+    meaning: "Nothing can be said about the direction in which it hardly moved.",
+  },
+  "motion-too-small": {
+    title: "The hand hardly moved",
+    meaning: "The motion is close to the smallest step that the sensor can tell, so the numbers are coarse.",
+  },
+  "poorly-conditioned": {
+    title: "The motion was too simple to tell inertia, damping and stiffness apart",
+    meaning: "Each of the three could stand in for another.",
+  },
+  "held-back-fit-poor": {
+    title: "The model does worse on the part of the recording that was held back",
+    meaning: "The limb probably changed during the trial, or there is too little data.",
+  },
+  "fit-poor": {
+    title: "Much of the force is not explained",
+    meaning: "The limb may have acted by will or by reflex. Do not read the numbers as those of a relaxed limb.",
+  },
+  "no-held-back-data": {
+    title: "The fit was judged on the data that made it",
+    meaning: "It looks better than it would on new data.",
+  },
+  "clock-jitter": {
+    title: "The clock of the recording was not steady",
+    meaning: "The samples were taken as evenly spaced all the same.",
+  },
+  resampled: {
+    title: "The recording was put on an even clock first",
+    meaning: "Between the samples there are straight lines, which nobody measured.",
+  },
+  clipping: {
+    title: "A sensor was at its limit",
+    meaning: "Parts of the signal are cut off, and the numbers suffer from it.",
+  },
+  "too-little-data": {
+    title: "The recording is short",
+    meaning: "The ± intervals cannot be trusted.",
+  },
+  "decimation-changes-model": {
+    title: "The result depends on the sample rate",
+    meaning: "There is something fast in the signals that does not belong to the limb.",
+  },
+};
+
+export const meanings = {
+  K: "how hard the limb pushes back when it is held away from its resting place, as a spring does",
+  B: "how hard it resists being moved fast, as if through honey",
+  M: "how hard it resists being speeded up: how heavy it feels",
+} as const;
+
+/** The direction of an axis that has no arrow, from its angle against x. */
+export function direction(degrees: number): string {
+  const angle = ((degrees % 180) + 180) % 180;
+  if (angle < 22.5 || angle >= 157.5) return "nearly along x";
+  if (angle < 67.5) return "between +x and +y";
+  if (angle < 112.5) return "nearly along y";
+  return "between −x and +y";
+}
+
+/** Smallest angle between two axes without arrows [°]. */
+export function angleBetween(first: number, second: number): number {
+  const difference = (((first - second) % 180) + 180) % 180;
+  return Math.min(difference, 180 - difference);
+}
+
+export const glossary: [string, string][] = [
+  ["Impedance", "The relation between motion and force: here M, B and K together. M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."],
+  ["Inertia M", "Force per acceleration. One number for each pair of directions: xy is the force along x that comes from acceleration along y."],
+  ["Damping B", "Force per velocity."],
+  ["Stiffness K", "Force per displacement from the equilibrium."],
+  ["Equilibrium x₀", "Where the limb would come to rest without force."],
+  ["± and brackets", "95 % intervals: of a hundred such intervals, about 95 hold the true value. They know of noise and of its slow changes, but of no error in the model itself."],
+  ["VAF", "Variance accounted for: the share of the force's variation that the model explains, in per cent. 100 % is everything; 0 % is no better than a constant."],
+  ["RMSE", "Root mean square error: the typical size of what the model does not explain, in the unit of the force."],
+  ["Held-back data", "A part of the recording that had no share in making the model, on which it is then tested."],
+  ["Residual", "Measured minus predicted force. If it is noise without memory, nothing is left to explain."],
+  ["Autocorrelation", "How much the residual resembles itself some time later. White noise stays within the shaded band."],
+  ["Coherence", "At each frequency, how much of the force a linear relation with the motion could explain at best: from 0, nothing, to 1, everything."],
+  ["Excited band", "The range of frequencies in which the robot moved the limb, as far as the filters let it through. The model holds within it, and not beyond."],
+  ["Ellipse", "Move the hand once around a unit circle: the force traces the ellipse. Its long axis is the direction of the largest stiffness, damping or inertia."],
+  ["Shape", "Long axis over short axis of an ellipse: 1 is a circle."],
+  ["Orientation", "Angle of the long axis from x, counter-clockwise. An axis has no arrow, so 10° and 190° are the same."],
+  ["Antisymmetry (z_mean)", "How far a matrix is from symmetric, relative to its size. Springs alone make symmetric stiffness; an interval that begins at 0 shows no antisymmetry."],
+  ["Reference circle", "The ellipse of something equally stiff (damped, heavy) in all directions, of the value that is written on it."],
+];
