@@ -500,7 +500,7 @@ Error Section::error_at(std::string_view key, int line, std::string message, std
   std::string where = reading_->file;
   if (line > 0) where += fmt::format(", line {}", line);
   if (!key.empty()) where += ", " + full_name(key);
-  return {ErrorKind::data, std::move(message), std::move(remedy), std::move(where)};
+  return fail(ErrorKind::data, std::move(message), std::move(remedy), std::move(where)).value();
 }
 
 Error Section::error(std::string_view key, std::string message, std::string remedy) const {

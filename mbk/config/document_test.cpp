@@ -457,5 +457,11 @@ TEST(Document, RefusesFilesThatCannotBeRead) {
   }
 }
 
+TEST(Document, QuotesADamagedTextOnOneLine) {
+  const auto document = Document::parse("a = 1\non = t\nue\n", "file.toml");
+  ASSERT_FALSE(document);
+  EXPECT_EQ(document.error().line().find('\n'), std::string::npos) << document.error().line();
+}
+
 }  // namespace
 }  // namespace mbk::config

@@ -5,6 +5,8 @@
 #include <tl/expected.hpp>
 #include <utility>
 
+#include "mbk/core/printable.h"
+
 namespace mbk {
 
 /// Why a call could not give what was asked. The command line turns the kind into its exit code.
@@ -24,7 +26,7 @@ struct Error {
   /// The same error with an outer place put before the inner one.
   [[nodiscard]] Error in(std::string_view place) const {
     Error outer = *this;
-    outer.where = where.empty() ? std::string(place) : std::string(place) + ", " + where;
+    outer.where = printable(where.empty() ? std::string(place) : std::string(place) + ", " + where);
     return outer;
   }
 
@@ -40,10 +42,12 @@ struct Error {
 template <class Value>
 using Result = tl::expected<Value, Error>;
 
-/// An Error ready to be returned from a function that returns Result<…>.
+/// An Error ready to be returned from a function that returns Result<…>. Whatever it quotes becomes printable, so that
+/// an error is one line.
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorKind kind, std::string message, std::string remedy = "",
                                                 std::string where = "") {
-  return tl::unexpected<Error>(Error{kind, std::move(message), std::move(remedy), std::move(where)});
+  return tl::unexpected<Error>(
+      Error{kind, printable(std::move(message)), printable(std::move(remedy)), printable(std::move(where))});
 }
 
 [[nodiscard]] inline tl::unexpected<Error> bad_data(std::string message, std::string remedy = "",

@@ -21,8 +21,18 @@ struct Line {
   const Array* array = nullptr;
   Index index = 0;
   bool row = false;
+  Index step = 1;  ///< every step-th sample, from the first on
 
-  [[nodiscard]] Index size() const { return row ? array->values.cols() : array->values.rows(); }
+  [[nodiscard]] Index size() const { return ((row ? array->values.cols() : array->values.rows()) + step - 1) / step; }
+  [[nodiscard]] auto samples(Index begin, Index count) const {
+    const Index rows = array->values.rows();
+    const Index stride = (row ? rows : 1) * step;
+    const double* const first = array->values.data() + (row ? index : index * rows);
+    return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(first + begin * stride, count,
+                                                             Eigen::InnerStride<>(stride));
+  }
+  /// [Hz]; 0 where the file does not say it
+  [[nodiscard]] double rate_hz() const { return array->rate_hz / static_cast<double>(step); }
 };
 
 /// A channel and where it stands in the file.
@@ -33,6 +43,27 @@ struct Signal {
   bool negate = false;
   std::string source;  ///< for messages
 };
+
+bool same_rate(double a_hz, double b_hz) {
+  return std::abs(a_hz - b_hz) <= kRateTolerance * b_hz;
+}
+
+/// How many times `slow` goes into `fast`; 0 where it is no whole number.
+Index whole_ratio(double fast_hz, double slow_hz) {
+  const double ratio = slow_hz > 0.0 ? fast_hz / slow_hz : 0.0;
+  return ratio >= 0.5 && ratio < 1e6 && same_rate(std::round(ratio) * slow_hz, fast_hz)
+             ? static_cast<Index>(std::round(ratio))
+             : 0;
+}
+
+std::string ordinal(Index n) {
+  const bool teen = n % 100 / 10 == 1;
+  return fmt::format("{}{}", n,
+                     teen || n % 10 > 3 || n % 10 == 0 ? "th"
+                     : n % 10 == 1                     ? "st"
+                     : n % 10 == 2                     ? "nd"
+                                                       : "rd");
+}
 
 bool is_vector(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) == 1 && (array.values.size() > 1 || array.signal);
@@ -144,8 +175,10 @@ class Assembler {
     const bool time = !signals_.empty();
     return bad_data(
         fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
-        contents_.table ? "say which is which, as in --channels time=1,x=2,Fx=3"
-                        : "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)");
+        !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
+        : contents_.arrays.front().rate_hz > 0.0
+            ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
+            : "say which is which, as in --channels time=1,x=2,Fx=3");
   }
 
   static tl::unexpected<Error> tall(const Array& array) {
@@ -255,7 +288,12 @@ class Assembler {
     for (const ChannelSource& entry : options_.channels) meanings.push_back(kinds_called(entry.channel));
     const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
     for (std::size_t i = 0; i < options_.channels.size(); ++i) {
-      const ChannelSource& entry = options_.channels[i];
+      ChannelSource entry = options_.channels[i];
+      // "Arm:m" is a name where the file has it, and else Arm in metres.
+      if (const std::string whole = entry.source + ":" + entry.unit; find(contents_, whole) != nullptr) {
+        entry.source = whole;
+        entry.unit.clear();
+      }
       // A name that means one thing only is taken as it stands, whatever the number of axes.
       const ChannelKind* kind = meanings[i].size() == 1 ? meanings[i].front() : kind_for_axes(meanings[i], axes);
       if (kind == nullptr) {
@@ -313,7 +351,10 @@ class Assembler {
   /// Whether the array's name is that of this one line.
   [[nodiscard]] bool is_named(const Line& line) const { return contents_.table || !is_matrix(*line.array); }
 
-  Result<Line> source(const ChannelSource& entry) const {
+  Result<Line> source(const ChannelSource& entry) {
+    if (const auto at = entry.source.rfind('@'); at != entry.source.npos && find(contents_, entry.source) == nullptr) {
+      return thinned(entry, at);
+    }
     if (const Array* array = find(contents_, entry.source)) {
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
@@ -326,6 +367,10 @@ class Assembler {
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
         error != std::errc() || stop != end) {
+      if (const auto colon = entry.source.rfind(':'); colon != entry.source.npos) {
+        const auto line = source({entry.channel, entry.source.substr(0, colon), "", false});
+        if (line) return unknown_unit(entry, entry.source.substr(colon + 1));
+      }
       return bad_data(
           fmt::format("channel {}: there is no '{}'; {}", entry.channel, entry.source, inventory(contents_)));
     }
@@ -348,6 +393,39 @@ class Assembler {
                       "they are counted from 1", fmt::format("variable '{}'", array.name));
     }
     return Line{&array, number - 1, wide};
+  }
+
+  static tl::unexpected<Error> unknown_unit(const ChannelSource& entry, std::string_view unit) {
+    std::vector<Dimension> possible;
+    for (const ChannelKind* kind : kinds_called(entry.channel)) {
+      possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
+    }
+    return bad_data(fmt::format("unknown unit '{}' of channel {}", unit, entry.channel),
+                    fmt::format("possible are {}", unit_names(possible)));
+  }
+
+  /// SOURCE@RATE: every k-th sample of a source that runs at k times that rate.
+  Result<Line> thinned(const ChannelSource& entry, std::size_t at) {
+    auto line = source({entry.channel, entry.source.substr(0, at), entry.unit, entry.negate});
+    if (!line) return line;
+    double rate = 0.0;
+    const char* const end = entry.source.data() + entry.source.size();
+    const auto [stop, error] = std::from_chars(entry.source.data() + at + 1, end, rate);
+    line->step = error == std::errc() && stop == end ? whole_ratio(line->array->rate_hz, rate) : 0;
+    if (line->step == 0) {
+      return bad_usage(
+          line->array->rate_hz > 0.0
+              ? fmt::format("channel {}: '{}' runs at {} Hz, of which '{}' is no whole part", entry.channel,
+                            line->array->name, line->array->rate_hz, entry.source.substr(at + 1))
+              : fmt::format("channel {}: the file does not say the rate of '{}'", entry.channel, line->array->name),
+          line->array->rate_hz > 0.0 ? fmt::format("{}={}@{} takes every second sample", entry.channel,
+                                                   line->array->name, line->array->rate_hz / 2)
+                                     : "leave @ out");
+    }
+    recording_.notes.push_back(
+        fmt::format("{} is every {} sample of '{}', as asked; what '{}' holds above {:.6g} Hz folds down into it",
+                    entry.channel, ordinal(line->step), line->array->name, line->array->name, line->rate_hz() / 2));
+    return line;
   }
 
   /// The MAT variable whose rows or columns the numbers of the map count.
@@ -394,6 +472,7 @@ class Assembler {
         return bad_data(fmt::format("'{}' and '{}' both are {}", signals_[j].source, signal.source, signal.kind->name),
                         fmt::format("say which with --channels {}=NAME,…", signal.kind->name));
       }
+      if (auto ok = check_rates(first, signal); !ok) return ok;
       if (signal.line.size() != first.line.size()) {
         return bad_data(fmt::format("{} ('{}') has {} samples, {} ('{}') has {}", first.kind->name, first.source,
                                     first.line.size(), signal.kind->name, signal.source, signal.line.size()),
@@ -402,6 +481,20 @@ class Assembler {
     }
     if (first.line.size() == 0) return bad_data("the recording has no samples", "nothing was recorded");
     return {};
+  }
+
+  static Result<void> check_rates(const Signal& a, const Signal& b) {
+    if (a.line.rate_hz() == 0.0 || b.line.rate_hz() == 0.0 || same_rate(a.line.rate_hz(), b.line.rate_hz())) return {};
+    const bool a_is_faster = a.line.rate_hz() > b.line.rate_hz();
+    const Signal& fast = a_is_faster ? a : b;
+    const double slow_hz = (a_is_faster ? b : a).line.rate_hz();
+    const Index ratio = whole_ratio(fast.line.rate_hz(), slow_hz);
+    return bad_data(fmt::format("{} ('{}') runs at {} Hz, {} ('{}') at {} Hz", a.kind->name, a.source, a.line.rate_hz(),
+                                b.kind->name, b.source, b.line.rate_hz()),
+                    ratio > 1
+                        ? fmt::format("name channels of one rate, or take every {} sample of the faster: {}={}@{}",
+                                      ordinal(ratio), fast.kind->name, fast.source, slow_hz)
+                        : "name channels of one rate; they are not resampled");
   }
 
   /// Units that the metadata say, where nothing nearer says another.
@@ -429,11 +522,7 @@ class Assembler {
       const Index count = std::min(kBlock, samples - begin);
       for (std::size_t s = 0; s < signals_.size(); ++s) {
         const Line& line = signals_[s].line;
-        if (line.row) {
-          values[s].segment(begin, count) = line.array->values.row(line.index).segment(begin, count).transpose();
-        } else {
-          values[s].segment(begin, count) = line.array->values.col(line.index).segment(begin, count);
-        }
+        values[s].segment(begin, count) = line.samples(begin, count);
       }
     }
     for (std::size_t s = 0; s < signals_.size(); ++s) {
@@ -459,18 +548,24 @@ class Assembler {
                        "pass the sample rate: --rate 1000");
     }
     if (recording_.time.size() == 0) {
-      if (!options_.rate) {
+      const double own = signals_.front().line.rate_hz();
+      if (own == 0.0 && !options_.rate) {
         return bad_data("the file holds no time that is recognised",
                         "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
       }
+      if (own > 0.0 && options_.rate && !same_rate(own, options_.rate->value)) {
+        return bad_usage(fmt::format("rate {} Hz contradicts the file, which says {} Hz", options_.rate->value, own),
+                         "leave --rate out");
+      }
       recording_.time_from_rate = true;
       const Index samples = recording_.channels.front().values.size();
-      recording_.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / options_.rate->value;
+      recording_.time =
+          Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / (own > 0.0 ? own : options_.rate->value);
       return {};
     }
     if (!options_.rate || recording_.time.size() < 2) return {};
     const double own = inspect(recording_).rate_hz;
-    if (std::abs(own - options_.rate->value) <= kRateTolerance * options_.rate->value) return {};
+    if (same_rate(own, options_.rate->value)) return {};
     return bad_usage(
         fmt::format("rate {} Hz contradicts the file's own time, which runs at {:.6g} Hz", options_.rate->value, own),
         "leave --rate out, or correct the unit of time (--channels time=…:ms)");

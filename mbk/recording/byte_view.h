@@ -8,11 +8,9 @@
 #include <string>
 #include <utility>
 
-namespace mbk::recording {
+#include "mbk/core/printable.h"
 
-/// The text up to its first NUL as UTF-8 of one line: control characters are replaced, and what is not UTF-8 is taken
-/// as Latin-1, which recorders write.
-[[nodiscard]] std::string printable(std::string text);
+namespace mbk::recording {
 
 /// Bytes of a file with their byte order. Offsets are the caller's to check with `holds`.
 struct ByteView {

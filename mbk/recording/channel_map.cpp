@@ -37,15 +37,14 @@ Result<ChannelSource> parse_entry(std::string_view entry) {
     result.negate = true;
     source = trimmed(source.substr(1));
   }
-  if (const auto colon = source.rfind(':'); colon != source.npos) {
+  // What is no unit may belong to a name, as in "Arm:Hand.x"; `assemble` knows the names.
+  if (const auto colon = source.rfind(':'); colon != source.npos && find_unit(trimmed(source.substr(colon + 1)))) {
     result.unit = trimmed(source.substr(colon + 1));
     source = trimmed(source.substr(0, colon));
     std::vector<Dimension> possible;
     for (const ChannelKind* kind : kinds) possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
-    const Unit* unit = find_unit(result.unit);
-    if (unit == nullptr || std::ranges::find(possible, unit->dimension) == possible.end()) {
-      return bad_data(unit == nullptr ? fmt::format("unknown unit '{}' of channel {}", result.unit, name)
-                                      : fmt::format("channel {} cannot be in {}", name, result.unit),
+    if (std::ranges::find(possible, find_unit(result.unit)->dimension) == possible.end()) {
+      return bad_data(fmt::format("channel {} cannot be in {}", name, result.unit),
                       fmt::format("possible are {}", unit_names(possible)));
     }
   }

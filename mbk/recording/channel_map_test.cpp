@@ -49,6 +49,11 @@ TEST(ParseChannelMap, NamesTheNearestChannel) {
   EXPECT_EQ(error.line(), "unknown channel 'hnad_x'; did you mean 'hand_x'?");
 }
 
+TEST(ParseChannelMap, QuotesWhatItRefusesOnOnePrintableLine) {
+  EXPECT_EQ(error_of("x\n\xE9=2").message, "unknown channel 'x?é'");
+  EXPECT_EQ(error_of("\x01").message, "channel entry '?' has no '='");
+}
+
 TEST(ParseChannelMap, RefusesAChannelTwice) {
   EXPECT_EQ(error_of("Fx=2,force_x=3").kind, ErrorKind::usage);
 }
@@ -59,10 +64,14 @@ TEST(ParseChannelMap, RefusesUnitsOfTheWrongDimension) {
   EXPECT_EQ(error.line(), "channel y cannot be in N; possible are m, cm, mm, um, in");
 }
 
-TEST(ParseChannelMap, RefusesUnknownUnits) {
-  const Error error = error_of("y=2:counts");
-  EXPECT_EQ(error.kind, ErrorKind::data);
-  EXPECT_EQ(error.message, "unknown unit 'counts' of channel y");
+TEST(ParseChannelMap, LeavesAColonWithTheNameWhereNoUnitFollows) {
+  const auto map = parse_channel_map("x=Arm:Hand.x,y=Arm:Hand.y:mm,Fx=-A:b:c").value();
+  EXPECT_EQ(map[0].source, "Arm:Hand.x");
+  EXPECT_EQ(map[0].unit, "");
+  EXPECT_EQ(map[1].source, "Arm:Hand.y");
+  EXPECT_EQ(map[1].unit, "mm");
+  EXPECT_EQ(map[2].source, "A:b:c");
+  EXPECT_EQ(error_of("x=2,y=:counts,y=3").kind, ErrorKind::usage);
 }
 
 }  // namespace

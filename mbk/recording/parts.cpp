@@ -110,6 +110,24 @@ void append(Recording& joined, Recording&& part) {
   }
 }
 
+/// [Hz], of recordings whose time was made from a rate.
+Result<double> common_rate(const Recording& before, const Recording& part, const ReadOptions& options) {
+  if (options.rate) return options.rate->value;
+  const auto rate = [](const Recording& recording) {
+    const Index last = recording.samples() - 1;
+    return last > 0 ? static_cast<double>(last) / (recording.time[last] - recording.time[0]) : 0.0;
+  };
+  const double earlier = rate(before), later = rate(part);
+  if (earlier == 0.0 && later == 0.0) {
+    return bad_data("parts of one sample each have no rate", "pass the sample rate (--rate 1000)");
+  }
+  if (earlier > 0.0 && later > 0.0 && std::abs(earlier - later) > 1e-6 * earlier) {
+    return bad_data(fmt::format("it runs at {:.6g} Hz, the parts before it at {:.6g} Hz", later, earlier),
+                    "name the parts of one recording only");
+  }
+  return earlier > 0.0 ? earlier : later;
+}
+
 }  // namespace
 
 Result<Recording> read_parts(std::vector<std::filesystem::path> files, const ReadOptions& options) {
@@ -125,10 +143,12 @@ Result<Recording> read_parts(std::vector<std::filesystem::path> files, const Rea
     if (!part) return part;
     if (auto ok = check_same_channels(*joined, *part); !ok) return tl::unexpected(ok.error().in(name));
     if (part->time_from_rate) {
+      const auto rate = common_rate(*joined, *part, options);
+      if (!rate) return tl::unexpected(rate.error().in(name));
       const auto offset = static_cast<double>(joined->samples());
       const auto last = static_cast<double>(part->samples() - 1);
-      part->time = Vector::LinSpaced(part->samples(), offset, offset + last) / options.rate->value;
-      for (Event& event : part->events) event.time += offset / options.rate->value;
+      part->time = Vector::LinSpaced(part->samples(), offset, offset + last) / *rate;
+      for (Event& event : part->events) event.time += offset / *rate;
     }
     if (auto ok = check_time_runs_on(*joined, *part); !ok) return tl::unexpected(ok.error().in(name));
     append(*joined, std::move(*part));

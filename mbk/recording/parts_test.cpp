@@ -4,6 +4,7 @@
 
 #include "mbk/recording/inspection.h"
 #include "mbk/recording/read.h"
+#include "mbk/recording/test_c3d.h"
 #include "mbk/recording/test_files.h"
 #include "mbk/recording/write.h"
 
@@ -54,6 +55,22 @@ TEST_F(ReadParts, CountsTimeOnWhereTheRateGivesIt) {
       read_parts({folder_.write("a1.csv", "x\n1\n2\n"), folder_.write("a2.csv", "x\n3\n4\n")}, options);
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->time, (Vector(4) << 0, 0.01, 0.02, 0.03).finished());
+}
+
+TEST_F(ReadParts, CountsTimeOnWhereTheFilesSayTheRate) {
+  ReadOptions options;
+  options.channels = parse_channel_map("Fx=Force X").value();
+  test::C3d file = test::small_c3d();
+  const auto first = folder_.write("a1.c3d", file.bytes());
+  const auto recording = read_parts({first, folder_.write("a2.c3d", file.bytes())}, options);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->samples(), 24);
+  for (Index k = 0; k < 24; ++k) EXPECT_NEAR(recording->time[k], static_cast<double>(k) / 200.0, 1e-12);
+  ASSERT_EQ(recording->events.size(), 4u);
+  EXPECT_NEAR(recording->events[2].time, 0.02 + 12 / 200.0, 1e-8);  // a 32-bit real
+  file.rate = 50.0;
+  EXPECT_THAT(bad({first, folder_.write("a2.c3d", file.bytes())}, options).message,
+              HasSubstr("it runs at 100 Hz, the parts before it at 200 Hz"));
 }
 
 TEST_F(ReadParts, JoinsMetadataAndEventsAndSaysWhereTheyDiffer) {

@@ -10,6 +10,7 @@
 #include "mbk/hdf5/read.h"
 #include "mbk/recording/annotations.h"
 #include "mbk/recording/assemble.h"
+#include "mbk/recording/c3d.h"
 #include "mbk/recording/csv.h"
 #include "mbk/recording/file_bytes.h"
 #include "mbk/recording/hdf5_recording.h"
@@ -20,7 +21,7 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5 and CSV are read";
+constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV and C3D are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -40,9 +41,7 @@ Result<Contents> decode(std::span<const std::byte> bytes) {
   if (mat_header || text.starts_with("MATLAB 5.0")) return decode_mat_level5(bytes);
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
   if (is_text(text)) return decode_csv(bytes);
-  if (bytes.size() >= 512 && bytes[0] < std::byte{0x20} && bytes[1] == std::byte{0x50}) {
-    return bad_data("C3D files are not read yet", std::string(kFormats));
-  }
+  if (looks_like_c3d(bytes)) return decode_c3d(bytes);
   return bad_data("the content is of no known format", std::string(kFormats));
 }
 
@@ -71,7 +70,8 @@ Result<Recording> assemble_file(Decoded decoded, const ReadOptions& options) {
 FileContents listed(Decoded decoded) {
   FileContents listing{std::move(decoded.source), decoded.contents.table, {}, std::move(decoded.contents.notes)};
   for (const Array& array : decoded.contents.arrays) {
-    StoredArray stored{array.name, array.values.rows(), array.values.cols(), std::nan(""), std::nan("")};
+    StoredArray stored{array.name,   array.values.rows(), array.values.cols(), std::nan(""),
+                       std::nan(""), array.unit,          array.rate_hz};
     for (const double value : array.values.reshaped()) {
       if (!std::isfinite(value)) continue;
       stored.minimum = std::fmin(stored.minimum, value);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mbk/recording/inspection.h"
+#include "mbk/recording/test_c3d.h"
 #include "mbk/recording/test_files.h"
 
 namespace mbk::recording {
@@ -263,6 +264,93 @@ TEST_F(Read, KeepsTimeAsItWasRecorded) {
   EXPECT_EQ(inspect(recording).non_finite.at(0).first, 2);
 }
 
+// ---- rates and units that the file says ----
+
+/// Two points at 100 Hz, channels at 200 Hz.
+TEST_F(Read, MakesTheTimeFromTheRateThatTheFileSays) {
+  const std::string file = test::small_c3d().bytes();
+  const Recording points = good(file, with_channels("x=HAND.x,y=HAND.y"));
+  EXPECT_TRUE(points.time_from_rate);
+  EXPECT_EQ(points.samples(), 6);
+  EXPECT_EQ(points.time[5], 0.05);
+  const Recording channels = good(file, with_channels("Fx=Force X,q1=Angle"));
+  EXPECT_EQ(channels.samples(), 12);
+  EXPECT_EQ(channels.time[10], 0.05);
+  EXPECT_EQ(channels.events.size(), 2u);
+}
+
+TEST_F(Read, RefusesARateThatContradictsTheFilesOwn) {
+  ReadOptions options = with_channels("Fx=Force X");
+  options.rate = Hertz(100);
+  EXPECT_EQ(bad(test::small_c3d().bytes(), options).line().substr((folder_ / "file").string().size()),
+            ": rate 100 Hz contradicts the file, which says 200 Hz; leave --rate out");
+  options.rate = Hertz(200);
+  EXPECT_EQ(good(test::small_c3d().bytes(), options).time[1], 0.005);
+}
+
+TEST_F(Read, RefusesChannelsOfDifferentRatesAndSaysWhatToDo) {
+  const Error error = bad(test::small_c3d().bytes(), with_channels("x=HAND.x,Fx=Force X"));
+  EXPECT_EQ(error.message, "hand_x ('HAND.x') runs at 100 Hz, force_x ('Force X') at 200 Hz");
+  EXPECT_THAT(error.remedy, HasSubstr("every 2nd sample of the faster: force_x=Force X@100"));
+}
+
+TEST_F(Read, TakesEveryKthSampleWhereItIsAsked) {
+  const Recording recording = good(test::small_c3d().bytes(), with_channels("x=HAND.x,Fx=-Force X@100:kN"));
+  const Recording whole = good(test::small_c3d().bytes(), with_channels("Fx=Force X"));
+  ASSERT_EQ(recording.samples(), 6);
+  for (Index k = 0; k < 6; ++k) {
+    EXPECT_EQ(recording.find("force_x")->values[k], -1e3 * whole.find("force_x")->values[2 * k]);
+  }
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("force_x is every 2nd sample of 'Force X', as asked")));
+}
+
+TEST_F(Read, ThinsOnlyByWholeNumbersAndWhereTheFileSaysTheRate) {
+  const std::string file = test::small_c3d().bytes();
+  EXPECT_THAT(bad(file, with_channels("Fx=Force X@60")).message, HasSubstr("of which '60' is no whole part"));
+  EXPECT_THAT(bad(file, with_channels("Fx=Force X@400")).message, HasSubstr("of which '400' is no whole part"));
+  EXPECT_THAT(bad(file, with_channels("Fx=Force X@")).message, HasSubstr("of which '' is no whole part"));
+  EXPECT_THAT(bad(file, with_channels("Fx=none@100")).message, HasSubstr("there is no 'none'"));
+  EXPECT_THAT(bad("t,Fx\n0,1\n1,2\n", with_channels("Fx=Fx@1")).message, HasSubstr("does not say the rate"));
+  EXPECT_EQ(good("t,Fx@1\n0,1\n1,2\n", with_channels("Fx=Fx@1")).samples(), 2);  // a name goes before
+}
+
+TEST_F(Read, TheMapsUnitGoesBeforeTheFilesAndThatBeforeTheNames) {
+  test::C3d file = test::small_c3d();
+  file.channels = {"F_kN", "Angle", "EMG"};
+  const auto force = [&](std::string_view map) {
+    return good(file.bytes(), with_channels(map)).find("force_x")->values[11];
+  };
+  const double stored = (121 - 2048) * 0.25;
+  EXPECT_EQ(force("Fx=F_kN:mN"), stored / 1e3);
+  EXPECT_EQ(force("Fx=F_kN"), stored);
+  file.analog_units[0] = "";
+  EXPECT_EQ(force("Fx=F_kN"), stored * 1e3);
+  const Recording angle = good(file.bytes(), with_channels("q1=Angle"));
+  EXPECT_DOUBLE_EQ(angle.find("joint_1")->values[1], (100.0 + 1.0) * 0.5 * M_PI / 180.0);
+}
+
+TEST_F(Read, RefusesAUnitOfTheFileThatIsUnknownOrOfAnotherDimensionUntilTheMapSaysOne) {
+  const std::string file = test::small_c3d().bytes();
+  for (const char* source : {"EMG", "Angle"}) {
+    const Error error = bad(file, with_channels(std::string("Fx=") + source));
+    EXPECT_THAT(error.message, HasSubstr("which channel force_x cannot be in"));
+    EXPECT_THAT(error.remedy, HasSubstr(std::string("force_x=") + source + ":UNIT"));
+    EXPECT_EQ(good(file, with_channels(std::string("Fx=") + source + ":N")).find("force_x")->unit, "N");
+  }
+}
+
+TEST_F(Read, NamesMayHoldColons) {
+  test::C3d file = test::small_c3d();
+  file.points = {"Arm:HAND", "Arm:m"};
+  const Recording recording = good(file.bytes(), with_channels("x=Arm:HAND.x,y=Arm:HAND.y:cm"));
+  EXPECT_EQ(recording.find("hand_x")->values[1], 0.5 / 1e3);
+  EXPECT_EQ(recording.find("hand_y")->values[1], (1.0 - 7.0) * 0.5 / 1e2);
+  file.channels[0] = "Arm:N";
+  EXPECT_EQ(good(file.bytes(), with_channels("Fx=Arm:N")).samples(), 12);
+  EXPECT_EQ(bad("t,y\n0,1\n", with_channels("y=2:counts")).message, "unknown unit 'counts' of channel hand_y");
+  EXPECT_THAT(bad("t,y\n0,1\n", with_channels("y=z:counts")).message, HasSubstr("there is no 'z:counts'"));
+}
+
 // ---- files ----
 
 TEST_F(Read, DecidesByContentNotByName) {
@@ -273,7 +361,7 @@ TEST_F(Read, DecidesByContentNotByName) {
 TEST_F(Read, RefusesWhatIsNotARecording) {
   EXPECT_THAT(bad("").message, HasSubstr("empty"));
   EXPECT_THAT(bad(std::string("\x7f\x45LF\x02\x01\x01\0\0\0", 10)).line(),
-              HasSubstr("no known format; MAT (v4 to v7.3), HDF5 and CSV are read"));
+              HasSubstr("no known format; MAT (v4 to v7.3), HDF5, CSV and C3D are read"));
   EXPECT_THAT(bad("\x89HDF\r\n\x1a\n....").message, HasSubstr("HDF5"));
   EXPECT_THAT(bad(std::string("\x02\x50") + std::string(600, '\0')).message, HasSubstr("C3D"));
   EXPECT_THAT(bad(header5()).message, HasSubstr("no channel is recognised; it has no numeric variable"));

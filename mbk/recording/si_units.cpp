@@ -23,6 +23,7 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"rad", angle, 1, 1},
     {"mrad", angle, 1, 1e3},
     {"deg", angle, kPi, 180},
+    {"°", angle, kPi, 180},
     {"N", force, 1, 1},
     {"kN", force, 1e3, 1},
     {"mN", force, 1, 1e3},

@@ -230,7 +230,7 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
   rows.push_back({"samples", fmt::format("{}, {:.3f} s", inspection.samples, inspection.duration)});
   if (std::isfinite(inspection.rate_hz)) {
     rows.push_back({"rate", fmt::format("{:.6g} Hz{}", inspection.rate_hz,
-                                        recording.time_from_rate ? " (as given; the file holds no time)" : "")});
+                                        recording.time_from_rate ? " (from the rate; the file holds no time)" : "")});
     rows.push_back({"clock", fmt::format("intervals {:.4g} to {:.4g} ms, standard deviation {:.2g} ms",
                                          1e3 * inspection.interval_min, 1e3 * inspection.interval_max,
                                          1e3 * inspection.interval_standard_deviation)});
@@ -290,13 +290,15 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
 
 std::string contents_text(const FileContents& contents, const Error& unrecognised) {
   std::string text = source_line(contents.source);
-  std::vector<std::vector<std::string>> rows = {
-      {contents.table ? "column" : "", contents.table ? "name" : "variable", "size", "from", "to"}};
+  const bool units = std::ranges::any_of(contents.arrays, [](const StoredArray& array) { return !array.unit.empty(); });
+  std::vector<std::vector<std::string>> rows = {{contents.table ? "column" : "", contents.table ? "name" : "variable",
+                                                 "size", "from", "to", units ? "unit" : ""}};
   for (std::size_t k = 0; k < contents.arrays.size(); ++k) {
     const StoredArray& array = contents.arrays[k];
     const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "none"; };
     rows.push_back({contents.table ? std::to_string(k + 1) : "", array.name,
-                    fmt::format("{}×{}", array.rows, array.columns), number(array.minimum), number(array.maximum)});
+                    fmt::format("{}×{}", array.rows, array.columns), number(array.minimum), number(array.maximum),
+                    array.unit});
   }
   text += table(rows) + "\n" + paragraph("  ! ", unrecognised.message.substr(0, unrecognised.message.find(';')));
   if (!unrecognised.remedy.empty()) text += paragraph("    try: ", unrecognised.remedy);

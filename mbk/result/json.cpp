@@ -311,6 +311,8 @@ Identification identification_from(const Json& json) {
   const Index n = id.axes, count = 3 * n * n + n;
   id.model = model_from(json, "model", n);
   id.covariance = Matrix::Constant(count, count, kUnknown);
+  const Matrix none = Matrix::Constant(n, n, kUnknown);
+  id.standard_error = {none, none, none, Vector::Constant(n, kUnknown)};
   if (json.contains("standard_error")) {
     id.standard_error = model_from(json, "standard_error", n);
     id.covariance = impedance::stacked(id.standard_error).cwiseAbs2().asDiagonal();
@@ -378,11 +380,14 @@ std::string to_json(const FileContents& contents, const Error& unrecognised) {
   json["kind"] = contents.table ? "table" : "variables";
   json["arrays"] = Json::array();
   for (const StoredArray& array : contents.arrays) {
-    json["arrays"].push_back({{"name", array.name},
-                              {"rows", array.rows},
-                              {"columns", array.columns},
-                              {"minimum", number(array.minimum)},
-                              {"maximum", number(array.maximum)}});
+    Json one = {{"name", array.name},
+                {"rows", array.rows},
+                {"columns", array.columns},
+                {"minimum", number(array.minimum)},
+                {"maximum", number(array.maximum)}};
+    if (!array.unit.empty()) one["unit"] = array.unit;
+    if (array.rate_hz > 0) one["rate_hz"] = array.rate_hz;
+    json["arrays"].push_back(std::move(one));
   }
   json["notes"] = contents.notes;
   json["unrecognised"] = {{"message", unrecognised.message}, {"try", unrecognised.remedy}};

@@ -212,6 +212,13 @@ TEST(FromJson, WhatWasReadCanBeWrittenAgain) {
   }
 }
 
+TEST(FromJson, AModelAloneCanBeWrittenAgain) {
+  const Identification id = read_back(R"({"schema": "mbk.result/1", "model": {"M": [[1]], "B": [[2]], "K": [[3]]}})");
+  const Identification again = read_back(to_json(Measured{id, std::nullopt}));
+  EXPECT_EQ(again.model.K(0, 0), 3.0);
+  EXPECT_TRUE(std::isnan(again.standard_error.K(0, 0)));
+}
+
 TEST(FromJson, AModelAloneIsEnough) {
   const Identification back = read_back(R"({"schema": "mbk.result/1", "model": {"M": [[1]], "B": [[2]], "K": [[3]]}})");
   EXPECT_EQ(back.axes, 1);

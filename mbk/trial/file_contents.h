@@ -13,6 +13,8 @@ struct StoredArray {
   std::string name;  ///< "" for a column without a heading
   Index rows = 0, columns = 0;
   double minimum = 0, maximum = 0;  ///< of the finite values; NaN where there is none
+  std::string unit;                 ///< as the file says it; "" where it does not
+  double rate_hz = 0;               ///< as the file says it; 0 where it does not
 };
 
 /// What a file holds, before anything is said about channels.

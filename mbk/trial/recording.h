@@ -35,7 +35,7 @@ struct SourceFile {
 /// Gaps, jitter, backward time and non-finite values stay in it; recording::inspect reports them.
 struct Recording {
   Vector time;                    ///< [s], as recorded; not necessarily even or increasing
-  bool time_from_rate = false;    ///< true where the file holds no time and the user gave the rate
+  bool time_from_rate = false;    ///< true where the file holds no time, but it or the user gave the rate
   std::vector<Channel> channels;  ///< each as long as `time`
   std::vector<Event> events;
   std::map<std::string, std::string> metadata;  ///< participant number, posture, protocol, robot, …

@@ -1,6 +1,8 @@
-#include "mbk/recording/byte_view.h"
+#include "mbk/core/printable.h"
 
-namespace mbk::recording {
+#include <algorithm>
+
+namespace mbk {
 namespace {
 
 unsigned char code(char c) {
@@ -54,4 +56,4 @@ std::string printable(std::string text) {
   return converted;
 }
 
-}  // namespace mbk::recording
+}  // namespace mbk

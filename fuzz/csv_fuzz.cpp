@@ -1,0 +1,20 @@
+#include "fuzz/fuzz.h"
+#include "mbk/recording/csv.h"
+
+namespace mbk::fuzz {
+
+std::vector<std::string> seeds() {
+  return {"time,x,Fx\n0,1,2\n0.001,1.5,2.5\n0.002,1e-3,-7\n",
+          "# a comment\nt;position [mm];reaction (N)\n0;1;2\n1;;nan\n",
+          "time_ms\tx_mm\tF\n0\t1\t2\n1\t+2\t3\n",
+          "0,1,2,\n1,2,3,\n2,3,4,\n",
+          "\xEF\xBB\xBF\"t\",\"hand_x\"\r\n0,1\r\n0.5,2\r\n1,3",
+          "a,b\n0,1\n1,\"0,1\"\n"};
+}
+
+}  // namespace mbk::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  mbk::fuzz::check_decoded(mbk::recording::decode_csv(mbk::fuzz::bytes_of(data, size)), size);
+  return 0;
+}
