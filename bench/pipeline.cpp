@@ -6,6 +6,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "apps/mbk/memory.h"
 #include "mbk/dsp/butterworth.h"
 #include "mbk/dsp/filter_chain.h"
 #include "mbk/numeric/least_squares.h"
@@ -54,6 +55,7 @@ nlohmann::json run(const std::vector<dsp::Column>& columns, Index every) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::prefer_large_pages();  // as the program does
   if (argc != 2) {
     std::fputs("usage: bench_pipeline LOG.mat; see pipeline.py\n", stderr);
     return 2;

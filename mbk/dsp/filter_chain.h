@@ -40,7 +40,7 @@ using Column = Eigen::Map<const Vector>;
 /// @fails as savitzky_golay and filter_zero_phase; every < 1.
 [[nodiscard]] Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                                  std::span<const Wanted> wanted, Hertz sample_rate, Index every = 1);
-inline constexpr double kForgotten = 1e-9;
+inline constexpr double kForgotten = 1e-7;
 
 /// Samples after which the response of a filter to what was before is below a fraction of it: log(fraction)/log|p| of
 /// its slowest pole p, and 0 without one.

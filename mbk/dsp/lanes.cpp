@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "mbk/core/vector4.h"
@@ -42,6 +43,29 @@ namespace {
 }
 MBK_X86_64_V3 void interleave_v3(const double* const* columns, Index count, const double* less, double* to) {
   interleave_body(columns, count, less, to);
+}
+
+[[gnu::always_inline]] inline void separate_body(const double* from, Index count, const double* plus,
+                                                 double* const* columns) {
+  const Vector4 add = four(plus);
+  Index i = 0;
+  for (; i + 4 <= count; i += 4, from += 16) {
+    Vector4 a = four(from) + add, b = four(from + 4) + add, c = four(from + 8) + add, d = four(from + 12) + add;
+    transpose(a, b, c, d);
+    four(columns[0] + i) = a;
+    four(columns[1] + i) = b;
+    four(columns[2] + i) = c;
+    four(columns[3] + i) = d;
+  }
+  for (; i < count; ++i, from += 4) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) columns[lane][i] = from[lane] + plus[lane];
+  }
+}
+void separate_any(const double* from, Index count, const double* plus, double* const* columns) {
+  separate_body(from, count, plus, columns);
+}
+MBK_X86_64_V3 void separate_v3(const double* from, Index count, const double* plus, double* const* columns) {
+  separate_body(from, count, plus, columns);
 }
 
 // ---- the low-pass, both ways ----
@@ -117,25 +141,117 @@ void run_sections(std::span<const Section> sections, double* at, Index count, In
 
 // ---- Savitzky–Golay by running sums ----
 
+/// Sums M_k over the window that begins at `row`, from nothing.
+template <std::size_t Sums>
+[[gnu::always_inline]] inline void start_sums(const RunningSums& f, const double* row, Vector4 (&sum)[Sums]) {
+  for (Vector4& one : sum) one = Vector4{};
+  const double* weight = f.binomial.data();
+  for (Index j = 0; j <= 2 * f.half; ++j, weight += Sums, row += kLanes) {
+    const Vector4 x = four(row);
+    for (std::size_t k = 0; k < Sums; ++k) sum[k] += weight[k] * x;
+  }
+}
+
+/// The same one sample later; `row` begins the window so far.
+template <std::size_t Sums>
+[[gnu::always_inline]] inline void move_sums(const double* enter, const double* leave, const double* row, Index window,
+                                             Vector4 (&sum)[Sums]) {
+  const Vector4 old = four(row), young = four(row + 4 * window);
+  sum[0] += young - old;
+  for (std::size_t k = 1; k < Sums; ++k) sum[k] += enter[k] * young - leave[k] * old - sum[k - 1];
+}
+
+/// Two lanes of one derivative beside two of another: the halves of a row that most outputs are made of.
+struct Pairs {
+  double* to;
+  int halves;                                    ///< 2·(half of the sums for the first pair) + that for the second
+  std::array<double, kLanes * kMostSums> share;  ///< of each sum, four values: what it contributes to each lane
+};
+
+template <std::size_t Sums>
+[[gnu::always_inline]] inline Vector4 combined(const double* share, const Vector4 (&sum)[Sums], int halves) {
+  Vector4 value = {};
+  switch (halves) {
+    case 0:
+      for (std::size_t k = 0; k < Sums; ++k) {
+        value += four(share + kLanes * k) * __builtin_shufflevector(sum[k], sum[k], 0, 1, 0, 1);
+      }
+      break;
+    case 1:
+      for (std::size_t k = 0; k < Sums; ++k) value += four(share + kLanes * k) * sum[k];
+      break;
+    case 2:
+      for (std::size_t k = 0; k < Sums; ++k) {
+        value += four(share + kLanes * k) * __builtin_shufflevector(sum[k], sum[k], 2, 3, 0, 1);
+      }
+      break;
+    default:
+      for (std::size_t k = 0; k < Sums; ++k) {
+        value += four(share + kLanes * k) * __builtin_shufflevector(sum[k], sum[k], 2, 3, 2, 3);
+      }
+  }
+  return value;
+}
+
+template <std::size_t Sums>
+[[gnu::always_inline]] inline void smooth_pairs_body(const RunningSums& f, const double* rows, Index count,
+                                                     const Pairs* outputs, std::size_t groups) {
+  const Index window = 2 * f.half + 1;
+  const double* const leave = f.binomial.data();                                // C(−h, k)
+  const double* const enter = leave + Sums * static_cast<std::size_t>(window);  // C(h + 1, k)
+  for (Index begin = 0; begin < count; begin += f.half) {
+    const Index end = std::min(count, begin + f.half);
+    Vector4 sum[Sums];
+    start_sums<Sums>(f, rows + 4 * begin, sum);
+    for (Index i = begin;; ++i) {
+      for (std::size_t g = 0; g < groups; ++g) {
+        four(outputs[g].to + 4 * i) = combined<Sums>(outputs[g].share.data(), sum, outputs[g].halves);
+      }
+      if (i + 1 == end) break;
+      move_sums<Sums>(enter, leave, rows + 4 * i, window, sum);
+    }
+  }
+}
+template <std::size_t Sums>
+void smooth_pairs(const RunningSums& f, const double* rows, Index count, const Pairs* outputs, std::size_t groups) {
+  smooth_pairs_body<Sums>(f, rows, count, outputs, groups);
+}
+template <std::size_t Sums>
+MBK_X86_64_V3 void smooth_pairs_v3(const RunningSums& f, const double* rows, Index count, const Pairs* outputs,
+                                   std::size_t groups) {
+  smooth_pairs_body<Sums>(f, rows, count, outputs, groups);
+}
+
+/// The destinations as pairs, or nothing where one of them is made of other lanes.
+std::optional<std::vector<Pairs>> as_pairs(const RunningSums& f, std::span<const Destination> destinations) {
+  std::vector<Pairs> all;
+  for (const auto& [to, from] : destinations) {
+    const bool paired = from[0] % 2 == 0 && from[1] == from[0] + 1 && from[2] % 2 == 0 && from[3] == from[2] + 1;
+    if (!paired) return std::nullopt;
+    const auto half = [](std::size_t place) { return static_cast<int>(place % kLanes / 2); };
+    Pairs& one = all.emplace_back(Pairs{to, 2 * half(from[0]) + half(from[2]), {}});
+    for (std::size_t k = 0; k < f.sums; ++k) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        one.share[kLanes * k + lane] = f.shares[from[lane] / kLanes * f.sums + k];
+      }
+    }
+  }
+  return all;
+}
+
 template <std::size_t Sums, std::size_t Derivatives>
 [[gnu::always_inline]] inline void smooth_body(const RunningSums& f, const double* rows, Index count,
                                                const Destination* destinations, std::size_t groups) {
   const Index window = 2 * f.half + 1;
   const double* const leaving = f.binomial.data();                                   // C(−h, k)
   const double* const entering = leaving + Sums * static_cast<std::size_t>(window);  // C(h + 1, k)
-  double enter[Sums], leave[Sums], share[Derivatives][Sums];
-  std::copy_n(entering, Sums, enter);
-  std::copy_n(leaving, Sums, leave);
+  double share[Derivatives][Sums];
   for (std::size_t d = 0; d < Derivatives; ++d) std::copy_n(f.shares.data() + d * Sums, Sums, share[d]);
 
   for (Index begin = 0; begin < count; begin += f.half) {
     const Index end = std::min(count, begin + f.half);
-    Vector4 sum[Sums] = {};
-    const double* weight = leaving;
-    for (Index j = 0; j < window; ++j, weight += Sums) {
-      const Vector4 x = four(rows + 4 * (begin + j));
-      for (std::size_t k = 0; k < Sums; ++k) sum[k] += weight[k] * x;
-    }
+    Vector4 sum[Sums];
+    start_sums<Sums>(f, rows + 4 * begin, sum);
     for (Index i = begin; i < end; ++i) {
       alignas(32) double result[Derivatives * kLanes];
       for (std::size_t d = 0; d < Derivatives; ++d) {
@@ -148,9 +264,7 @@ template <std::size_t Sums, std::size_t Derivatives>
         four(destinations[g].to + 4 * i) = Vector4{result[from[0]], result[from[1]], result[from[2]], result[from[3]]};
       }
       if (i + 1 == end) break;
-      const Vector4 old = four(rows + 4 * i), young = four(rows + 4 * (i + window));
-      sum[0] += young - old;
-      for (std::size_t k = 1; k < Sums; ++k) sum[k] += enter[k] * young - leave[k] * old - sum[k - 1];
+      move_sums<Sums>(entering, leaving, rows + 4 * i, window, sum);
     }
   }
 }
@@ -215,13 +329,13 @@ void interleave(const std::array<const double*, kLanes>& columns, Index count, c
 }
 
 void separate(const double* from, Index count, const FourValues& plus, const std::array<double*, kLanes>& columns) {
-  constexpr Index kBlock = 512;  // rows that stay in the first cache while each column takes its share
-  for (Index begin = 0; begin < count; begin += kBlock) {
-    const Index end = std::min(count, begin + kBlock);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if (columns[lane] == nullptr) continue;
-      for (Index i = begin; i < end; ++i) columns[lane][i] = from[4 * i + static_cast<Index>(lane)] + plus[lane];
-    }
+  if (std::ranges::find(columns, nullptr) == columns.end()) {
+    (has_x86_64_v3() ? separate_v3 : separate_any)(from, count, plus.data(), columns.data());
+    return;
+  }
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if (columns[lane] == nullptr) continue;
+    for (Index i = 0; i < count; ++i) columns[lane][i] = from[4 * i + static_cast<Index>(lane)] + plus[lane];
   }
 }
 
@@ -267,6 +381,13 @@ Result<RunningSums> running_sums(const SavitzkyGolay& filter, std::span<const in
 }
 
 void smooth(const RunningSums& f, const double* rows, Index count, std::span<const Destination> destinations) {
+  const std::size_t order = f.sums / 2 - 1;
+  if (const auto pairs = as_pairs(f, destinations)) {
+    using SmoothPairs = void (*)(const RunningSums&, const double*, Index, const Pairs*, std::size_t);
+    static constexpr SmoothPairs kPairs[2][3] = {{smooth_pairs<3>, smooth_pairs<5>, smooth_pairs<7>},
+                                                 {smooth_pairs_v3<3>, smooth_pairs_v3<5>, smooth_pairs_v3<7>}};
+    return kPairs[has_x86_64_v3() ? 1 : 0][order](f, rows, count, pairs->data(), pairs->size());
+  }
   using Smooth = void (*)(const RunningSums&, const double*, Index, const Destination*, std::size_t);
   static constexpr Smooth kSmooth[2][3][kMostDerivatives] = {{{smooth_any<3, 1>, smooth_any<3, 2>, smooth_any<3, 3>},
                                                               {smooth_any<5, 1>, smooth_any<5, 2>, smooth_any<5, 3>},
@@ -275,8 +396,7 @@ void smooth(const RunningSums& f, const double* rows, Index count, std::span<con
                                                               {smooth_v3<5, 1>, smooth_v3<5, 2>, smooth_v3<5, 3>},
                                                               {smooth_v3<7, 1>, smooth_v3<7, 2>, smooth_v3<7, 3>}}};
   const std::size_t derivatives = f.shares.size() / f.sums;
-  kSmooth[has_x86_64_v3() ? 1 : 0][f.sums / 2 - 1][derivatives - 1](f, rows, count, destinations.data(),
-                                                                    destinations.size());
+  kSmooth[has_x86_64_v3() ? 1 : 0][order][derivatives - 1](f, rows, count, destinations.data(), destinations.size());
 }
 
 void correlate_every(std::span<const double> weights, std::size_t derivatives, const double* rows, Index step,

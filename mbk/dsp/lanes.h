@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,14 +17,16 @@ using FourValues = std::array<double, kLanes>;
 /// Rows of four values, one after the other in memory.
 class Interleaved {
  public:
-  explicit Interleaved(Index rows) : rows_(rows), values_(kLanes * static_cast<std::size_t>(rows)) {}
+  /// Not set to anything.
+  explicit Interleaved(Index rows)
+      : rows_(rows), values_(std::make_unique_for_overwrite<double[]>(kLanes * static_cast<std::size_t>(rows))) {}
   [[nodiscard]] Index rows() const { return rows_; }
-  [[nodiscard]] double* row(Index i) { return values_.data() + kLanes * static_cast<std::size_t>(i); }
-  [[nodiscard]] const double* row(Index i) const { return values_.data() + kLanes * static_cast<std::size_t>(i); }
+  [[nodiscard]] double* row(Index i) { return values_.get() + kLanes * static_cast<std::size_t>(i); }
+  [[nodiscard]] const double* row(Index i) const { return values_.get() + kLanes * static_cast<std::size_t>(i); }
 
  private:
   Index rows_;
-  std::vector<double> values_;
+  std::unique_ptr<double[]> values_;
 };
 
 /// Four columns of equal length, less a constant each, into the rows from `first` on.
@@ -35,6 +38,8 @@ void separate(const double* from, Index count, const FourValues& plus, const std
 /// Runs a cascade over the rows in place, forward and then backward, each time from the steady state for a constant
 /// input: `settled` forward, and the last output backward.
 void filter_both_ways(const SectionCascade& filter, double* rows, Index count, const FourValues& settled);
+
+inline constexpr std::size_t kMostSums = 7;
 
 /// Savitzky–Golay filters of one window by running sums M_k[i] = Σ_j C(j, k) x[i + j], j = −h … h.
 struct RunningSums {
