@@ -20,6 +20,7 @@ tl::unexpected<Error> damaged(std::string what) {
 Budget::Budget(const ReadLimits& limits)
     : limit_(limits.bytes),
       memory_(limits.bytes),
+      available_(limits.available),
       work_(limits.bytes > kUndefined / kWorkPerByte ? kUndefined : limits.bytes * kWorkPerByte),
       objects_(limits.objects),
       most_objects_(limits.objects) {}
@@ -27,7 +28,14 @@ Budget::Budget(const ReadLimits& limits)
 Result<void> Budget::keep(std::uint64_t count, std::uint64_t each) {
   std::uint64_t bytes = 0;
   if (!multiply(count, each, bytes) || bytes > memory_) return damaged("it claims more than the file can hold");
+  if (bytes > available_) {
+    const auto gigabytes = [](std::uint64_t n) { return static_cast<double>(n) / static_cast<double>(1u << 30u); };
+    return bad_data(fmt::format("{:.2f} GiB of memory are needed for it, and {:.2f} GiB are available",
+                                gigabytes(bytes), gigabytes(available_)),
+                    "close other programs, or split the recording into numbered parts");
+  }
   memory_ -= bytes;
+  available_ -= bytes;
   return {};
 }
 

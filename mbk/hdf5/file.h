@@ -23,7 +23,7 @@ class Budget {
 
  private:
   std::uint64_t limit_;
-  std::uint64_t memory_;
+  std::uint64_t memory_, available_;
   std::uint64_t work_;
   int objects_;
   int most_objects_;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "mbk/core/result.h"
@@ -12,8 +13,9 @@ namespace mbk::hdf5 {
 /// What reading a file may cost.
 struct ReadLimits {
   std::uint64_t bytes = 0;  ///< of memory for the tree, and of one buffer beside it; work is bounded by a multiple
-  int objects = 100'000;    ///< groups, datasets and attributes
-  int depth = 16;           ///< groups within groups
+  std::uint64_t available = std::numeric_limits<std::uint64_t>::max();  ///< memory that there is; beyond it is refused
+  int objects = 100'000;                                                ///< groups, datasets and attributes
+  int depth = 16;                                                       ///< groups within groups
 };
 
 /// Whether an HDF5 signature stands where one may: at byte 0, 512, 1024, 2048, …

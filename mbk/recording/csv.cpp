@@ -166,12 +166,13 @@ class Table {
     }
     if (!line) return bad_data("the file holds no line of numbers", "nothing was recorded, or it is not a table");
     if (auto ok = find_columns(*line); !ok) return ok;
+    make_room(text);
 
     for (; line; line = next_) {
       next_ = lines.next();
       if (auto ok = add(*line, !next_); !ok) return ok;
     }
-    if (values_.empty()) {
+    if (rows_ == 0) {
       return bad_data(fmt::format("the only line of numbers, line {}, is incomplete", last_line_),
                       "nothing complete was recorded");
     }
@@ -213,7 +214,6 @@ class Table {
 
   Result<void> add(const Line& line, bool last) {
     last_line_ = line.number;
-    const std::size_t before = values_.size();
     std::size_t count = 0;
     std::string_view wrong;
     std::size_t wrong_column = 0;
@@ -224,14 +224,13 @@ class Table {
       if (count > columns_) return count <= columns_ + 64;
       const auto value = number(cell);
       if (!value && wrong.data() == nullptr) wrong = cell, wrong_column = count;
-      values_.push_back(value.value_or(0.0));
+      contents.arrays[count - 1].values(rows_, 0) = value.value_or(0.0);
       return true;
     });
     const bool trailing = trailing_ && count == columns_ + 1 && last_is_empty;
     const bool complete = count == columns_ || trailing;
     if (last && (count < columns_ || (!line.terminated && count == columns_ && last_is_empty) ||
                  (!line.terminated && wrong.data() != nullptr && wrong_column == count))) {
-      values_.resize(before);
       contents.notes.push_back(
           fmt::format("line {} is incomplete (the recording was cut off there) and was left aside", line.number));
       return {};
@@ -245,6 +244,7 @@ class Table {
       contents.notes.push_back(fmt::format(
           "line {} has no line end: if the recording was cut off there, its last number may be cut too", line.number));
     }
+    ++rows_;
     return {};
   }
 
@@ -254,25 +254,26 @@ class Table {
                             fmt::format("columns are separated by {}", separator_ == ';' ? "semicolons" : "tabs"));
     }
     if (trailing_) contents.notes.emplace_back("every line ends with a separator, which was not taken as a column");
-    const auto rows = static_cast<Index>(values_.size() / columns_);
-    contents.arrays.resize(columns_);
     for (std::size_t c = 0; c < columns_; ++c) {
       if (!header_.empty()) contents.arrays[c].name = printable(std::string(header_[c]));
-      contents.arrays[c].values.resize(rows, 1);
+      contents.arrays[c].values.conservativeResize(rows_, 1);
     }
-    for (Index r = 0; r < rows; ++r) {
-      for (std::size_t c = 0; c < columns_; ++c) {
-        contents.arrays[c].values(r, 0) = values_[static_cast<std::size_t>(r) * columns_ + c];
-      }
-    }
+  }
+
+  /// Columns long enough for every line that can come: one for each line end, and no line is shorter than its cells.
+  void make_room(std::string_view text) {
+    const auto ends = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+    const auto rows = static_cast<Index>(std::min(ends, text.size() / columns_) + 1);
+    contents.arrays.resize(columns_);
+    for (Array& array : contents.arrays) array.values.resize(rows, 1);
   }
 
   char separator_ = ',';
   std::vector<std::string_view> header_;
   std::size_t header_line_ = 0;
   std::size_t columns_ = 0;
-  bool trailing_ = false;       ///< every line ends with a separator
-  std::vector<double> values_;  ///< line by line
+  bool trailing_ = false;  ///< every line ends with a separator
+  Index rows_ = 0;         ///< complete ones so far
   std::size_t last_line_ = 0;
   std::optional<Line> next_;
 };

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "mbk/recording/memory.h"
+
 namespace mbk::recording {
 namespace {
 
@@ -40,6 +42,8 @@ Result<Buffer> read_file(const std::filesystem::path& file) {
     return bad_data(fmt::format("file size {} bytes is above the limit of {}", status.st_size, kLargestFile),
                     "split the recording into numbered parts");
   }
+  // The numbers in it take at least as much again, before its bytes can go.
+  if (auto ok = check_memory(2 * static_cast<std::uint64_t>(status.st_size)); !ok) return tl::unexpected(ok.error());
 
   Buffer buffer(static_cast<std::size_t>(status.st_size));
   for (std::size_t done = 0; done < buffer.size;) {

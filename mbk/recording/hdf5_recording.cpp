@@ -13,6 +13,7 @@
 #include "mbk/recording/file_bytes.h"
 #include "mbk/recording/hdf5_tree.h"
 #include "mbk/recording/mat_hdf5.h"
+#include "mbk/recording/memory.h"
 
 namespace mbk::recording {
 namespace {
@@ -127,7 +128,7 @@ Contents contents_of_hdf5(hdf5::Group root) {
 }
 
 Result<Contents> decode_hdf5(std::span<const std::byte> file) {
-  auto root = hdf5::read(file, {.bytes = largest_claim(file.size())});
+  auto root = hdf5::read(file, {.bytes = largest_claim(file.size()), .available = available_memory()});
   if (!root) {
     Error error = root.error();
     error.where = printable(std::move(error.where));  // names of a damaged file can be anything

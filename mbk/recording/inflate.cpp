@@ -9,6 +9,8 @@
 #include <memory>
 #include <new>
 
+#include "mbk/recording/memory.h"
+
 namespace mbk::recording {
 namespace {
 
@@ -103,6 +105,8 @@ Result<Buffer> inflate_exactly(
   }
 
   const auto size = static_cast<std::size_t>(*claimed);
+  // What comes out and the numbers that are made of it stand side by side.
+  if (auto ok = check_memory(2 * *claimed); !ok) return tl::unexpected(ok.error());
   if (size <= kFirstGuess + kUsualRatio * stream.size()) return inflate_at_once(stream, size);
   Buffer buffer(std::min(size, std::max(kFirstGuess, 4 * stream.size())));
   std::memcpy(buffer.data.get(), first, sizeof first);

@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""How much memory a measurement takes, and what happens where it would not fit."""
+
+import array
+import math
+import os
+import resource
+import struct
+import subprocess
+import sys
+import zlib
+
+from command import BAD_DATA, Case, Ran, main, program
+
+ROWS = 19
+MIB = 1 << 20
+
+
+def element(kind, data):
+    return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
+
+
+def matrix(columns, data):
+    """A variable `logs` of 19 rows, MAT v5."""
+    body = element(6, struct.pack("<II", 6, 0)) + element(5, struct.pack("<ii", ROWS, columns)) + element(1, b"logs")
+    return struct.pack("<II", 14, len(body) + 8 + len(data)) + body + struct.pack("<II", 9, len(data)) + data
+
+
+def header():
+    return b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H2s", 0x0100, b"IM")
+
+
+def log(columns):
+    """A motion of two axes against springs, with noise that does not shrink when it is packed."""
+    values = array.array("d", bytes(8 * ROWS * columns))
+    state = 1
+    for i in range(columns):
+        t = i / 1000.0
+        x, y = 0.01 * math.sin(7.0 * t) + 0.004 * math.sin(17.0 * t), 0.01 * math.sin(5.0 * t + 1.0)
+        state = (state * 6364136223846793005 + 1442695040888963407) % (1 << 64)
+        noise = state / (1 << 64) - 0.5
+        row = ROWS * i
+        values[row], values[row + 1], values[row + 2] = t, x + 1e-7 * noise, y - 1e-7 * noise
+        values[row + 9], values[row + 10] = -100.0 * x + 0.01 * noise, -80.0 * y + 0.01 * noise
+        values[row + 11], values[row + 12] = x, y
+    return values.tobytes()
+
+
+class Memory(Case):
+    def test_at_most_three_times_the_numbers_and_32_MiB(self):
+        data = log(200_000)
+        for name, content in (("plain.mat", matrix(200_000, data)),
+                              ("packed.mat", element(15, zlib.compress(matrix(200_000, data), 1)))):
+            path = self.file(name, header() + content)
+            process = subprocess.Popen([program("MBK"), "measure", path, "--json"], stdout=subprocess.DEVNULL)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertIn(process.returncode, (0, 4))
+            self.assertLessEqual(usage.ru_maxrss * 1024, 3 * len(data) + 32 * MIB, name)
+
+    def test_what_would_not_fit_is_refused_with_what_it_needs(self):
+        columns = 4_000_000  # 0.57 GiB, packed into some hundred kilobytes
+        packer = zlib.compressobj(1)
+        size = 8 * ROWS * columns
+        start = matrix(columns, b"\0" * 8)[:-8]
+        start = start[:4] + struct.pack("<I", len(start) - 8 + size) + start[8:-4] + struct.pack("<I", size)
+        packed = packer.compress(start) + b"".join(packer.compress(b"\0" * MIB) for _ in range(size // MIB))
+        packed += packer.compress(b"\0" * (size % MIB)) + packer.flush()
+        path = self.file("large.mat", header() + struct.pack("<II", 15, len(packed)) + packed)
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (700 * MIB, 700 * MIB))
+
+        process = subprocess.run([program("MBK"), "info", path], capture_output=True, preexec_fn=limit, check=False)
+        ran = Ran(process, "mbk info large.mat")
+        self.assertEqual(ran.code, BAD_DATA, ran)
+        self.assertRegex(ran.err, r"\Ambk: .*large\.mat.*: 1\.13 GiB of memory are needed for it, and 0\.\d\d GiB are "
+                                  r"available; [^\n]+\n\Z", ran)
+
+
+if __name__ == "__main__":
+    if sys.platform != "linux":
+        sys.exit(77)
+    main()
