@@ -15,9 +15,9 @@ std::vector<recording::Contents> files() {
     table.arrays.push_back({name, Vector::LinSpaced(6, 0.0, 5.0)});
     variables.arrays.push_back({name, Vector::LinSpaced(6, 0.0, 5.0).transpose()});
   }
-  table.arrays.push_back({"HAND.x", Vector::Ones(6), "mm", 100.0});
-  table.arrays.push_back({"Force X", Vector::Ones(12), "N", 200.0});
-  table.arrays.push_back({"S:H.x", Vector::Ones(6), "furlong", 100.0});
+  table.arrays.push_back({"HAND.x", Vector::Ones(6), "mm", true, 100.0});
+  table.arrays.push_back({"Force X", Vector::Ones(12), "N", true, 200.0});
+  table.arrays.push_back({"S:H.x", Vector::Ones(6), "furlong", true, 100.0});
   variables.arrays.push_back({"logs", Matrix::Ones(19, 6)});
   return {table, variables};
 }

@@ -1,10 +1,12 @@
 #include "fuzz/fuzz.h"
 #include "mbk/recording/csv.h"
+#include "mbk/recording/encode.h"
 
 namespace mbk::fuzz {
 
 std::vector<std::string> seeds() {
-  return {"time,x,Fx\n0,1,2\n0.001,1.5,2.5\n0.002,1e-3,-7\n",
+  return {recording::encode_csv(small_recording()).value(),
+          "time,x,Fx\n0,1,2\n0.001,1.5,2.5\n0.002,1e-3,-7\n",
           "# a comment\nt;position [mm];reaction (N)\n0;1;2\n1;;nan\n",
           "time_ms\tx_mm\tF\n0\t1\t2\n1\t+2\t3\n",
           "0,1,2,\n1,2,3,\n2,3,4,\n",

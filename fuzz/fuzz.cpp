@@ -29,6 +29,17 @@ void check_recording(const Result<Recording>& recording) {
 
 }  // namespace
 
+Recording small_recording() {
+  Recording recording;
+  recording.time = Vector::LinSpaced(6, 0.0, 0.005);
+  for (const auto& [name, unit] : {std::pair{"hand_x", "m"}, {"hand_y", "m"}, {"force_x", "N"}, {"force_y", "N"}}) {
+    recording.channels.push_back({name, unit, "base", Vector::LinSpaced(6, -1.0, 1.0)});
+  }
+  recording.metadata = {{"participant", "P01"}};
+  recording.events = {{0.002, "onset", 1.0}};
+  return recording;
+}
+
 void require(bool holds, std::string_view what) {
   if (holds) return;
   std::fprintf(stderr, "does not hold: %.*s\n", static_cast<int>(what.size()), what.data());

@@ -11,11 +11,15 @@
 
 #include "mbk/core/result.h"
 #include "mbk/recording/contents.h"
+#include "mbk/trial/recording.h"
 
 namespace mbk::fuzz {
 
 /// Valid small inputs to begin from. A target without a definition of its own begins from nothing.
 std::vector<std::string> seeds();
+
+/// A recording of two axes with metadata and an event, to be written in any format.
+Recording small_recording();
 
 /// Says what does not hold, and aborts.
 void require(bool holds, std::string_view what);

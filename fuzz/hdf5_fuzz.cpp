@@ -1,17 +1,23 @@
 // Any bytes whatever are read as HDF5 or refused: within the memory that was allowed, and in one line.
 
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <span>
-
+#include "fuzz/fuzz.h"
 #include "mbk/hdf5/read.h"
+#include "mbk/recording/encode.h"
 #include "mbk/recording/file_bytes.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+namespace mbk::fuzz {
+
+std::vector<std::string> seeds() {
+  return {recording::encode_hdf5(small_recording()).value(), recording::encode_mat_hdf5(small_recording()).value()};
+}
+
+}  // namespace mbk::fuzz
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto file = std::as_bytes(std::span(data, size));
-  const auto root = mbk::hdf5::read(file, {.bytes = mbk::recording::largest_claim(size)});
-  if (!root && (root.error().message.empty() || root.error().kind != mbk::ErrorKind::data)) std::abort();
+  const auto root = mbk::hdf5::read(mbk::fuzz::bytes_of(data, size), {.bytes = mbk::recording::largest_claim(size)});
+  if (!root) {
+    mbk::fuzz::require_error(root.error());
+    mbk::fuzz::require(root.error().kind == mbk::ErrorKind::data, "the file is to blame");
+  }
   return 0;
 }
