@@ -41,7 +41,7 @@ TEST(Diagnostics, PredictTheForceAsTheFitSays) {
     options.identify.handle_mass = 0.2;
     options.preprocess.every = protocol == Protocol::underdamped ? 10 : 20;
     const Examined one = examined(generated(making), options);
-    const ForcePrediction& shown = one.diagnostics->prediction;
+    const ForcePrediction& shown = one.diagnostics[0].prediction;
     EXPECT_TRUE(shown.held_back);
     for (Index axis = 0; axis < 2; ++axis) {
       const double vaf =
@@ -56,7 +56,7 @@ TEST(Diagnostics, PredictTheForceAsTheFitSays) {
 TEST(Diagnostics, AreThinnedToWhatCanBeSeen) {
   measurement::Options options;
   options.preprocess.every = 1;
-  const Diagnostics shown = *examined(sines(), options).diagnostics;
+  const Diagnostics shown = examined(sines(), options).diagnostics[0];
   EXPECT_LE(shown.prediction.time.size(), 2001);
   EXPECT_GT(shown.prediction.time.size(), 1000);
   EXPECT_LE(shown.time.size(), 2001);
@@ -70,14 +70,14 @@ TEST(Diagnostics, LoseNoSpikeOfTheRecording) {
   for (Channel& channel : recording.channels) {
     if (channel.name == "force_x") channel.values[31234] = 77.0;
   }
-  const Diagnostics shown = *examined(recording).diagnostics;
+  const Diagnostics shown = examined(recording).diagnostics[0];
   EXPECT_EQ(shown.force.col(0).maxCoeff(), 77.0);
 }
 
 TEST(Diagnostics, SeeThatTheForceFollowsTheMotionInTheExcitedBand) {
   laboratory::PrescribedMotionOptions making;
   making.sensors.force_noise = 0.1;
-  const Spectra spectra = examined(generated(making)).diagnostics->spectra;
+  const Spectra spectra = examined(generated(making)).diagnostics[0].spectra;
   double in_band = 0.0, far_above = 0.0;
   Index lines_in = 0, lines_above = 0;
   for (Index i = 0; i < spectra.frequency.size(); ++i) {
@@ -101,7 +101,7 @@ TEST(Diagnostics, KnowTheColourOfTheResidual) {
   making.sensors.force_noise = 0.0;
   making.sensors.coloured_force_noise = 0.3;  // first order, 0.5 Hz: e^(−t/τ) with τ = 0.32 s
   making.sensors.coloured_force_bandwidth = Hertz(0.5);
-  const Autocorrelation residual = examined(generated(making)).diagnostics->autocorrelation;
+  const Autocorrelation residual = examined(generated(making)).diagnostics[0].autocorrelation;
   EXPECT_NEAR(residual.value(0, 0), 1.0, 1e-12);
   for (Index axis = 0; axis < 2; ++axis) EXPECT_NEAR(residual.time_constant[axis], 0.32, 0.2);
   EXPECT_LE(residual.lag[residual.lag.size() - 1], 2.0 + 1e-9);
@@ -110,7 +110,7 @@ TEST(Diagnostics, KnowTheColourOfTheResidual) {
 
 TEST(Diagnostics, ShowFiltersThatAreIdealInTheBandAndFallBeyondIt) {
   const Examined one = examined(sines());
-  const FilterResponse& filters = one.diagnostics->filters;
+  const FilterResponse& filters = one.diagnostics[0].filters;
   const double band = one.measured.identification.preparations[0].band_high.value;
   for (Index k = 0; k < filters.frequency.size(); ++k) {
     const double f = filters.frequency[k];
@@ -128,7 +128,7 @@ TEST(Diagnostics, ShowFiltersThatAreIdealInTheBandAndFallBeyondIt) {
 TEST(Diagnostics, CompareTheDerivativeWithTheAccelerometer) {
   laboratory::PrescribedMotionOptions making;
   making.sensors.acceleration_noise = 0.02;
-  const auto agreement = examined(generated(making)).diagnostics->acceleration;
+  const auto agreement = examined(generated(making)).diagnostics[0].acceleration;
   ASSERT_TRUE(agreement);
   for (Index axis = 0; axis < 2; ++axis) {
     EXPECT_GT(agreement->vaf[axis], 99.9);
@@ -137,11 +137,11 @@ TEST(Diagnostics, CompareTheDerivativeWithTheAccelerometer) {
   // The same whichever of the two the fit took.
   measurement::Options options;
   options.preprocess.acceleration = preprocess::AccelerationSource::sensor;
-  const auto other = examined(generated(making), options).diagnostics->acceleration;
+  const auto other = examined(generated(making), options).diagnostics[0].acceleration;
   EXPECT_TRUE(other->sensor.isApprox(agreement->sensor, 1e-12));
   Recording without = generated(making);
   std::erase_if(without.channels, [](const Channel& channel) { return channel.name.starts_with("acceleration"); });
-  EXPECT_FALSE(examined(without).diagnostics->acceleration);
+  EXPECT_FALSE(examined(without).diagnostics[0].acceleration);
 }
 
 TEST(Diagnostics, HoldForOneAxisAndWithoutAModel) {
@@ -149,7 +149,7 @@ TEST(Diagnostics, HoldForOneAxisAndWithoutAModel) {
   making.limb = laboratory::relaxed_arm_one_axis();
   making.home = Vector(making.home.tail(1));
   const Examined one = examined(generated(making));
-  EXPECT_EQ(one.diagnostics->spectra.coherence.cols(), 1);
+  EXPECT_EQ(one.diagnostics[0].spectra.coherence.cols(), 1);
   EXPECT_FALSE(one.measured.findings);
 
   Recording line = sines();  // y follows x: nothing can be told apart
@@ -159,7 +159,7 @@ TEST(Diagnostics, HoldForOneAxisAndWithoutAModel) {
       if (channel.name == to) channel.values = values;
     }
   }
-  const Diagnostics unknown = *examined(line).diagnostics;
+  const Diagnostics unknown = examined(line).diagnostics[0];
   EXPECT_EQ(unknown.prediction.time.size(), 0);
   EXPECT_EQ(unknown.autocorrelation.lag.size(), 0);
   EXPECT_TRUE(unknown.spectra.coherence.array().isNaN().all());
@@ -181,13 +181,13 @@ TEST(Diagnostics, OfARealAnkle) {
   options.preprocess.window.split_s = 40.0;
   const Examined one = examined(ankle, options);
   EXPECT_NEAR(one.measured.identification.fit.vaf[0], 86.1, 0.2);
-  const Spectra& spectra = one.diagnostics->spectra;
+  const Spectra& spectra = one.diagnostics[0].spectra;
   double sum = 0.0, lines = 0.0;
   for (Index i = 1; i < spectra.frequency.size() && spectra.frequency[i] < 20.0; ++i, ++lines) {
     sum += spectra.coherence(i, 0);
   }
   EXPECT_GT(sum / lines, 0.7);
-  EXPECT_GT(one.diagnostics->autocorrelation.time_constant[0], 0.0);
+  EXPECT_GT(one.diagnostics[0].autocorrelation.time_constant[0], 0.0);
 }
 
 }  // namespace
