@@ -11,6 +11,7 @@
 #include "mbk/analyse/frequencies.h"
 #include "mbk/analyse/thinning.h"
 #include "mbk/dsp/autocorrelation.h"
+#include "mbk/dsp/integral.h"
 #include "mbk/numeric/statistics.h"
 
 namespace mbk::analyse {
@@ -98,6 +99,33 @@ AccelerationAgreement agreement_of(const PreparedTrial& trial, const PreparedTri
   return result;
 }
 
+/// Less the straight line that fits best.
+Vector without_line(const Vector& values) {
+  const Index count = values.size();
+  const Vector t = Vector::LinSpaced(count, -1.0, 1.0);
+  const Vector centred = values.array() - values.mean();
+  return count < 2 ? centred : Vector(centred - t * (t.dot(centred) / t.squaredNorm()));
+}
+
+DoubleIntegral double_integral_of(const PreparedTrial& trial, const std::vector<Rows>& rows) {
+  Rows inner = *std::ranges::max_element(rows, {}, &Rows::size);
+  const auto& cutoff = trial.preparation.cutoff;
+  const Index end = cutoff ? std::llround(1.0 / (cutoff->value * trial.sample_time)) : 0;
+  const Index trim = std::min(end, inner.size() / 4);
+  inner.begin += trim;
+  inner.end -= trim;
+  DoubleIntegral result{Vector(trial.axes), Vector(trial.axes)};
+  for (Index axis = 0; axis < trial.axes; ++axis) {
+    const auto of = [&](const Matrix& signal) { return Vector(signal.col(axis).segment(inner.begin, inner.size())); };
+    const Vector velocity = dsp::cumulative_integral(of(trial.acceleration), trial.sample_time);
+    const Vector position = without_line(of(trial.position));
+    const Vector difference = position - without_line(dsp::cumulative_integral(velocity, trial.sample_time));
+    result.rms_difference[axis] = numeric::root_mean_square(difference);
+    result.vaf[axis] = numeric::variance_accounted_for(position, difference);
+  }
+  return result;
+}
+
 using Names = std::array<const char*, 3>;  // of one axis, of x, of y
 
 /// Recorded channels side by side, or nothing where one is missing.
@@ -131,6 +159,7 @@ Result<void> check_origin(const Matrix& position, const Matrix& force, const Pre
   if (position.size() == 0 || force.size() == 0) {
     return bad_data("the recording lacks the channels that the trial was prepared from");
   }
+  if (rows.empty()) return bad_data("the trial has no row that counts");
   const Index every = trial.preparation.every;
   for (const Rows& one : rows) {
     if (one.first_sample + (one.size() - 1) * every >= position.rows()) {
@@ -168,6 +197,7 @@ Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& tr
   if (!filters) return tl::unexpected(filters.error());
   result.filters = std::move(*filters);
   if (other_acceleration != nullptr) result.acceleration = agreement_of(trial, *other_acceleration, all);
+  result.double_integral = double_integral_of(trial, all);
   add_recording(recording, position, force, result);
   return result;
 }

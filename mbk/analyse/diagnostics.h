@@ -15,7 +15,8 @@ namespace mbk::analyse {
 /// @param recording which the trial was prepared from: put on an even clock first where that was asked
 /// @param identification may stem from other trials too (a pooled fit)
 /// @param other_acceleration the same trial with ẍ from the other source (sensor or derivative), or nullptr
-/// @fails  data: the recording is not the one of the trial: a channel is missing, or samples are.
+/// @fails  data: the recording is not the one of the trial: a channel is missing, or samples are; no row of the trial
+/// counts.
 [[nodiscard]] Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& trial,
                                            const Identification& identification,
                                            const PreparedTrial* other_acceleration);

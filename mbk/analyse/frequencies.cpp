@@ -16,7 +16,7 @@ namespace mbk::analyse {
 namespace {
 
 constexpr double kSegmentsAcross = 6.0;  ///< segments of a spectrum, end to end; eleven with the overlap
-constexpr double kLinesInBand = 24.0;
+constexpr double kLinesInBand = 96.0;
 constexpr double kBeyondBand = 5.0;  ///< spectra reach so many times the excited band
 constexpr Index kFewestRows = 9;     ///< of a piece: a segment of eight, and the part of a row at its end
 constexpr Index kFilterPoints = 240;
@@ -37,9 +37,9 @@ Index segment_of(const PreparedTrial& trial, const std::vector<Rows>& rows) {
   const Index longest = longest_segment(rows);
   if (longest == 0) return 0;
   Index total = 0;
-  for (const Rows& one : rows) total += one.size();
+  for (const Rows& one : rows) total += one.size() - 1;  // whole rows: behind the last there is one sample of it
   const Hertz rate(1.0 / trial.sample_time);
-  const double finest = kSegmentsAcross * rate.value / static_cast<double>(total);
+  const double finest = kSegmentsAcross * rate.value / static_cast<double>(std::max<Index>(total, 1));
   return dsp::segment_length(rate, Hertz(std::max(finest, trial.preparation.band_high.value / kLinesInBand)), longest);
 }
 

@@ -60,6 +60,14 @@ struct AccelerationAgreement {
   Vector vaf;             ///< n [%], of the sensor's by the derivative
 };
 
+/// x beside the double integral of the ẍ that the fit took, over the longest stretch (Dyck 2013, fig. 3.6). Where the
+/// integral starts and how fast is not in ẍ, so that a straight line is taken off both. One period of the cutoff is
+/// left out at each end, where the low-pass knows the signals by their continuation only.
+struct DoubleIntegral {
+  Vector rms_difference;  ///< n [m]
+  Vector vaf;             ///< n [%], of the position by the integral
+};
+
 /// Everything that shows how good one measurement is, ready to be drawn.
 struct Diagnostics {
   ForcePrediction prediction;
@@ -67,6 +75,7 @@ struct Diagnostics {
   Spectra spectra;
   FilterResponse filters;
   std::optional<AccelerationAgreement> acceleration;  ///< only where the recording holds an accelerometer
+  DoubleIntegral double_integral;
   /// The whole recording: the smallest and the largest value of each so many samples in their order, so that no spike
   /// is lost. A row of NaN stands where its clock has a gap that can be seen.
   Vector time;       ///< [s] from the recording's first sample
