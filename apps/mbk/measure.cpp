@@ -16,13 +16,13 @@ namespace {
 using measurement::Examined;
 using result::Measured;
 
-/// A result, with the diagnostics where a report will show them.
+/// A result, with the diagnostics where a report will show them: those of one recording.
 Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
                              bool with_diagnostics) {
-  if (with_diagnostics) return measurement::examine(recordings, options);
+  if (with_diagnostics && recordings.size() == 1) return measurement::examine(recordings, options);
   auto measured = measurement::measure(recordings, options);
   if (!measured) return tl::unexpected(measured.error());
-  return Examined{std::move(*measured), std::nullopt};
+  return Examined{std::move(*measured), {}};
 }
 
 /// One result per recording, several at a time; the order is that of the recordings.
@@ -66,7 +66,8 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
     if (!one) return report_error(one.error());
     if (!with_findings) one->measured.findings.reset();
     measured.push_back(std::move(one->measured));
-    diagnostics.push_back(std::move(one->diagnostics));
+    diagnostics.emplace_back();
+    if (!one->diagnostics.empty()) diagnostics.back() = std::move(one->diagnostics.front());
   }
   std::optional<Summary> summary;
   if (measured.size() > 1) {

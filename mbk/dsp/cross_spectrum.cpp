@@ -6,42 +6,49 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <unsupported/Eigen/FFT>
 
 #include "mbk/dsp/spectrum.h"
 
 namespace mbk::dsp {
+namespace {
 
-Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate, Hertz resolution) {
-  if (!(sample_rate.value > 0.0 && resolution.value > 0.0)) {
-    return bad_usage(fmt::format("sample rate {:g} Hz and resolution {:g} Hz must be positive", sample_rate.value,
-                                 resolution.value));
+/// Below this 1 − γ² between two inputs of unit power is rounding.
+constexpr double kToldApart = 1e-12;
+
+}  // namespace
+
+Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate, Index segment) {
+  if (!(sample_rate.value > 0.0)) {
+    return bad_usage(fmt::format("a sample rate of {:g} Hz is not positive", sample_rate.value));
   }
-  if (pieces.empty()) return bad_data("there is no signal for a spectrum");
-  Index shortest = std::numeric_limits<Index>::max();
+  if (segment < 8 || segment % 2 != 0) {
+    return bad_usage(fmt::format("a segment of {} samples is odd or too short for a spectrum", segment));
+  }
+  Index longest = 0;
   for (const Matrix& piece : pieces) {
     if (piece.cols() != pieces.front().cols()) return bad_data("pieces of different signals have no common spectrum");
-    shortest = std::min(shortest, piece.rows());
+    longest = std::max(longest, piece.rows());
   }
-  if (shortest < 8) return bad_data(fmt::format("{} samples are too few for a spectrum", shortest));
+  if (longest < segment) return bad_data(fmt::format("{} samples are too few for a segment of {}", longest, segment));
 
-  const Index length = segment_length(sample_rate, resolution, shortest);
-  const Vector window = hann_window(length);
-  const Index lines = length / 2 + 1, signals = pieces.front().cols();
+  const Vector window = hann_window(segment);
+  const Index lines = segment / 2 + 1, signals = pieces.front().cols();
   CrossSpectra spectra;
   spectra.frequency =
-      Vector::LinSpaced(lines, 0.0, sample_rate.value * static_cast<double>(lines - 1) / static_cast<double>(length));
+      Vector::LinSpaced(lines, 0.0, sample_rate.value * static_cast<double>(lines - 1) / static_cast<double>(segment));
   spectra.density.assign(static_cast<std::size_t>(lines), Eigen::MatrixXcd::Zero(signals, signals));
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  Vector tapered(length);
+  Vector tapered(segment);
   Eigen::VectorXcd transform(lines);
   Eigen::MatrixXcd transforms(signals, lines);
+  Index overlaps = 0;
   for (const Matrix& piece : pieces) {
-    for (Index start = 0; start + length <= piece.rows(); start += length / 2, ++spectra.segments) {
+    for (Index start = 0; start + segment <= piece.rows(); start += segment / 2, ++spectra.segments) {
+      if (start > 0) ++overlaps;
       for (Index k = 0; k < signals; ++k) {
-        tapered = piece.col(k).segment(start, length);
+        tapered = piece.col(k).segment(start, segment);
         tapered = (tapered.array() - tapered.mean()) * window.array();
         fft.fwd(transform, tapered);
         transforms.row(k) = transform.head(lines).transpose();
@@ -56,7 +63,7 @@ Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz samp
     spectra.density[static_cast<std::size_t>(line)] *= line == 0 || line == lines - 1 ? scale : 2.0 * scale;
   }
   const auto count = static_cast<double>(spectra.segments);
-  spectra.independent_segments = count / (1.0 + 2.0 / 36.0 * (1.0 - 1.0 / count));
+  spectra.independent_segments = count / (1.0 + 2.0 / 36.0 * static_cast<double>(overlaps) / count);
   return spectra;
 }
 
@@ -65,15 +72,19 @@ Matrix multiple_coherence(const CrossSpectra& spectra, Index inputs) {
   const Index outputs = lines > 0 ? spectra.density.front().rows() - inputs : 0;
   Matrix coherence(lines, outputs);
   for (Index line = 0; line < lines; ++line) {
-    const Eigen::MatrixXcd& S = spectra.density[static_cast<std::size_t>(line)];
+    Eigen::MatrixXcd S = spectra.density[static_cast<std::size_t>(line)];
+    const Vector size = S.diagonal().real().cwiseSqrt();
+    if (!(size.minCoeff() > 0.0)) {
+      coherence.row(line).setConstant(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    S = size.cwiseInverse().asDiagonal() * S * size.cwiseInverse().asDiagonal();  // of signals of unit power
     const Eigen::LDLT<Eigen::MatrixXcd> Sxx(S.topLeftCorner(inputs, inputs));
-    const Eigen::VectorXd pivots = Sxx.vectorD().real();
-    const bool apart = pivots.minCoeff() > 1e-12 * pivots.maxCoeff();
+    const bool apart = Sxx.vectorD().real().minCoeff() > kToldApart;
     for (Index j = 0; j < outputs; ++j) {
       const Eigen::VectorXcd Sxy = S.col(inputs + j).head(inputs);
-      const double power = S(inputs + j, inputs + j).real();
-      coherence(line, j) = apart && power > 0.0 ? std::clamp(Sxy.dot(Sxx.solve(Sxy)).real() / power, 0.0, 1.0)
-                                                : std::numeric_limits<double>::quiet_NaN();
+      coherence(line, j) =
+          apart ? std::clamp(Sxy.dot(Sxx.solve(Sxy)).real(), 0.0, 1.0) : std::numeric_limits<double>::quiet_NaN();
     }
   }
   return coherence;
@@ -98,22 +109,6 @@ double significant_coherence(double independent_segments, Index inputs) {
     (exceeded(middle) > kChance ? low : high) = middle;
   }
   return 0.5 * (low + high);
-}
-
-Vector autocorrelation(const std::vector<Vector>& pieces, const std::vector<Index>& lags) {
-  double power = 0.0;
-  for (const Vector& piece : pieces) power += piece.squaredNorm();
-  Vector correlation(static_cast<Index>(lags.size()));
-  for (Index k = 0; k < correlation.size(); ++k) {
-    const Index lag = lags[static_cast<std::size_t>(k)];
-    double sum = 0.0;
-    for (const Vector& piece : pieces) {
-      const Index pairs = piece.size() - lag;
-      if (pairs > 0) sum += piece.head(pairs).dot(piece.tail(pairs));
-    }
-    correlation[k] = power > 0.0 ? sum / power : std::numeric_limits<double>::quiet_NaN();
-  }
-  return correlation;
 }
 
 }  // namespace mbk::dsp

@@ -17,20 +17,22 @@ struct CrossSpectra {
   double independent_segments = 0;        ///< as many that do not overlap would vary as much
 };
 
-/// Welch's estimate as in spectrum.h, averaged over pieces of a recording; no segment reaches across a break.
-/// Hann windows that overlap by half share 1/36 of their variance with a neighbour (Harris 1978, table I), so that K of
-/// them are worth K/(1 + 2/36 (1 − 1/K)) independent ones (Welch 1967, eq. 12).
-/// @param pieces N_i×n, evenly sampled    @param resolution wanted spacing of lines; segments are as long as the
-/// shortest piece allows at most
-/// @fails no piece; a piece of fewer than 8 samples or another number of signals; rate or resolution not positive.
-[[nodiscard]] Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate,
-                                                 Hertz resolution);
+/// Welch's estimate as in spectrum.h, averaged over pieces of a recording; no segment reaches across a break, and a
+/// piece shorter than a segment does not count.
+/// Two Hann windows that overlap by half are correlated by 1/6 (Harris 1978, table I), so that K segments of which P
+/// overlap their predecessor vary as much as K/(1 + 2/36 P/K) independent ones (Welch 1967).
+/// @param pieces N_i×n, evenly sampled    @param segment samples of a segment, even, ≥ 8; rate/segment is the spacing
+/// of the lines. The transform is fast where it is made of small factors.
+/// @fails no piece is as long as a segment; pieces of different numbers of signals; segment odd or below 8; rate not
+/// positive.
+[[nodiscard]] Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate, Index segment);
 
 /// Multiple coherence of each output with all inputs together, γ² = S_yx S_xx⁻¹ S_xy/S_yy in [0, 1]: the share of the
-/// output's power that linear responses to the inputs can explain (Bendat & Piersol 2010, eq. 7.35). With as many
-/// segments as inputs or fewer it is 1 whatever the signals are.
+/// output's power that linear responses to the inputs can explain (Bendat & Piersol 2010, ch. 7); of one input it is
+/// the ordinary coherence. With as many segments as inputs or fewer it is 1 whatever the signals are.
 /// @param inputs the first so many signals are inputs, the others outputs
-/// @returns lines×outputs; NaN where the inputs cannot be told apart or the output has no power.
+/// @returns lines×outputs; NaN where the inputs cannot be told apart (whatever their units: judged by the coherence
+/// between them) or where a signal has no power.
 [[nodiscard]] Matrix multiple_coherence(const CrossSpectra& spectra, Index inputs);
 
 /// The coherence that signals without any relation stay below in 95 % of cases. For n independent segments and q
@@ -38,10 +40,5 @@ struct CrossSpectra {
 /// (Goodman 1963; n need not be whole).
 /// @returns 1 where n ≤ q
 [[nodiscard]] double significant_coherence(double independent_segments, Index inputs);
-
-/// Autocorrelation r[l] = Σ_t e_t e_{t+l}/Σ_t e_t² over pieces, biased towards zero by the missing pairs; products
-/// never cross a break. The mean is not taken off.
-/// @param pieces of one signal    @param lags which, in samples, each ≥ 0    @returns NaN throughout for a zero signal
-[[nodiscard]] Vector autocorrelation(const std::vector<Vector>& pieces, const std::vector<Index>& lags);
 
 }  // namespace mbk::dsp

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
@@ -17,6 +18,12 @@ Index fast_length_below(Index n) {
     if (rest == 1) break;
   }
   return n;
+}
+
+Index fast_length_above(Index n) {
+  Index length = std::max<Index>(2, n + n % 2);
+  while (fast_length_below(length) != length) length += 2;
+  return length;
 }
 
 Index segment_length(Hertz sample_rate, Hertz resolution, Index longest) {

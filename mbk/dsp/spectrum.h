@@ -30,4 +30,7 @@ struct Spectrum {
 /// The largest integer ≤ n that is made of the factors 2, 3 and 5 only: lengths at which the transform is fast.
 [[nodiscard]] Index fast_length_below(Index n);
 
+/// The smallest even such integer ≥ n.
+[[nodiscard]] Index fast_length_above(Index n);
+
 }  // namespace mbk::dsp

@@ -37,6 +37,10 @@ TEST(Spectrum, TransformsOnlyLengthsOfSmallFactors) {
   EXPECT_EQ(fast_length_below(49999), 49152);
   EXPECT_EQ(fast_length_below(7), 6);
   EXPECT_EQ(fast_length_below(1), 1);
+  EXPECT_EQ(fast_length_above(1000), 1000);
+  EXPECT_EQ(fast_length_above(1001), 1024);
+  EXPECT_EQ(fast_length_above(1025), 1080);  // the transform of real numbers wants an even length: 1125 is not
+  EXPECT_EQ(fast_length_above(0), 2);
 }
 
 TEST(Spectrum, RefusesTooLittle) {

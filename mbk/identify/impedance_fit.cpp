@@ -270,18 +270,23 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   }
   const auto lags = static_cast<Index>(std::llround(options.hac_lag_s / r.sample_time));
   result.hac_lag_s = static_cast<double>(lags) * r.sample_time;
+  // The coefficients of smallest norm explain the force too, but they are not the limb's.
+  const auto model_from = [&](const numeric::LinearFit& one) {
+    const Vector undefined = Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN());
+    return one.rank == r.Z.cols() ? model_of(one.coefficients, r.centre, options.handle_mass)
+                                  : impedance::unstacked(undefined, n);
+  };
+  result.model = model_from(*fit);
+  result.judged = model_from(*check);
   if (fit->rank == r.Z.cols()) {
-    result.model = model_of(fit->coefficients, r.centre, options.handle_mass);
     const Matrix residual = r.Y - r.Z * fit->coefficients;
     const double widening =
         numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(result.samples));
     const Matrix V = widening * widening * numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags);
     result.covariance = model_covariance(*fit, V, result.model, r.centre);
-  } else {  // the coefficients of smallest norm explain the force, but they are not the limb's
+  } else {
     const auto count = static_cast<Index>(result.parameters.size());
-    const double undefined = std::numeric_limits<double>::quiet_NaN();
-    result.model = impedance::unstacked(Vector::Constant(count, undefined), n);
-    result.covariance.setConstant(count, count, undefined);
+    result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
   }
   result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
 

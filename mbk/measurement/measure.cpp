@@ -41,15 +41,20 @@ void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& t
                                                   : "choose a window without long gaps with --from and --to"});
 }
 
+/// A recording as it is prepared: on an even clock where that was asked, otherwise as it is (and then nothing here).
+Result<std::optional<Recording>> on_even_clock(const Recording& recording, const Options& options) {
+  if (!options.resample) return std::nullopt;
+  auto even = preprocess::resample(recording, *options.resample);
+  if (!even) return tl::unexpected(even.error());
+  return std::move(*even);
+}
+
 Result<PreparedTrial> prepare_one(const Recording& recording, const Options& options) {
+  const auto even = on_even_clock(recording, options);
+  if (!even) return tl::unexpected(even.error());
   const Inspection recorded = recording::inspect(recording);
-  const auto prepare = [&]() -> Result<PreparedTrial> {
-    if (!options.resample) return preprocess::prepare(recording, recorded, options.preprocess);
-    const auto even = preprocess::resample(recording, *options.resample);
-    if (!even) return tl::unexpected(even.error());
-    return preprocess::prepare(*even, recording::inspect(*even), options.preprocess);
-  };
-  auto trial = prepare();
+  auto trial = *even ? preprocess::prepare(**even, recording::inspect(**even), options.preprocess)
+                     : preprocess::prepare(recording, recorded, options.preprocess);
   if (!trial) return trial;
   warn_of_clipping(recorded, *trial);
   if (options.resample) warn_of_resampling(recorded, *options.resample, *trial);
@@ -109,6 +114,14 @@ std::optional<PreparedTrial> with_other_acceleration(const Recording& recording,
   return std::move(*other);
 }
 
+Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& trial,
+                             const Identification& identification, const Options& options) {
+  const auto even = on_even_clock(recording, options);
+  if (!even) return tl::unexpected(even.error());
+  const auto other = with_other_acceleration(recording, trial, options);
+  return analyse::diagnose(*even ? **even : recording, trial, identification, other ? &*other : nullptr);
+}
+
 }  // namespace
 
 Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options) {
@@ -122,17 +135,15 @@ Result<Examined> examine(std::span<const Recording> recordings, const Options& o
   if (!trials) return tl::unexpected(trials.error());
   auto measured = measure_prepared(recordings, *trials, options);
   if (!measured) return tl::unexpected(measured.error());
-  Examined examined{std::move(*measured), std::nullopt};
-  if (recordings.size() != 1) return examined;
-  const Recording& recording = recordings.front();
-  const auto other = with_other_acceleration(recording, trials->front(), options);
-  auto diagnostics =
-      analyse::diagnose(recording, trials->front(), examined.measured.identification, other ? &*other : nullptr);
-  if (!diagnostics) {
-    return tl::unexpected(recording.sources.empty() ? diagnostics.error()
-                                                    : diagnostics.error().in(recording.sources[0].path));
+  Examined examined{std::move(*measured), {}};
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    auto diagnostics = diagnose(recordings[k], (*trials)[k], examined.measured.identification, options);
+    if (!diagnostics) {
+      return tl::unexpected(recordings[k].sources.empty() ? diagnostics.error()
+                                                          : diagnostics.error().in(recordings[k].sources[0].path));
+    }
+    examined.diagnostics.push_back(std::move(*diagnostics));
   }
-  examined.diagnostics = std::move(*diagnostics);
   return examined;
 }
 

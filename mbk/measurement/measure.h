@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "mbk/core/result.h"
 #include "mbk/core/units.h"
@@ -27,11 +28,12 @@ struct Options {
 /// A result, and what shows how good it is.
 struct Examined {
   result::Measured measured;
-  std::optional<Diagnostics> diagnostics;  ///< absent where several recordings were pooled
+  std::vector<Diagnostics> diagnostics;  ///< one for each recording; where they were pooled, against the common model
 };
 
-/// `measure` with the diagnostics, from the same prepared trial. Where the recording holds an accelerometer, the trial
-/// is prepared a second time, with ẍ from the source that was not used.
+/// `measure` with the diagnostics, from the same prepared trials. Where a recording holds an accelerometer, it is
+/// prepared a second time, with ẍ from the source that was not used; an accelerometer that cannot be (values that are
+/// no numbers) is left out.
 /// @fails as measure and analyse::diagnose
 [[nodiscard]] Result<Examined> examine(std::span<const Recording> recordings, const Options& options);
 

@@ -112,7 +112,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
         return std::clamp<Index>((sample - first + every - 1) / every, 0, rows);
       };
       const Index begin = row_at(keep.begin), end = row_at(keep.end);
-      if (begin < end) trial.stretches.push_back({row + begin, row + end, keep.purpose});
+      if (begin < end) trial.stretches.push_back({row + begin, row + end, keep.purpose, first + begin * every});
     }
     row += rows;
   }

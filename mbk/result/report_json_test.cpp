@@ -33,6 +33,8 @@ Diagnostics diagnostics() {
   d.prediction.time = (Vector(3) << 1.0, kNaN, 1234.567891).finished();
   d.prediction.measured = (Matrix(3, 1) << 1.23456789, kNaN, 1e-9).finished();
   d.prediction.predicted = d.prediction.residual = Matrix::Zero(3, 1);
+  d.spectra.segments = 11;
+  d.double_integral = {Vector::Constant(1, 2e-5), Vector::Constant(1, 99.97654321)};
   d.spectra.position = (Matrix(2, 2) << 1, 2, 3, 4).finished();
   return d;
 }
@@ -63,6 +65,8 @@ TEST(ReportJson, WritesSignalsByAxisWithSixDigitsAndUndefinedNumbersAsNull) {
   EXPECT_EQ(d["prediction"]["measured"], Json::parse("[[1.23457, null, 1e-9]]"));
   EXPECT_EQ(d["prediction"]["time_s"], Json::parse("[1, null, 1234.56789]"));
   EXPECT_EQ(d["spectra"]["position"], Json::parse("[[1, 3], [2, 4]]"));
+  EXPECT_EQ(d["spectra"]["segments"], 11);
+  EXPECT_EQ(d["double_integral"], Json::parse("{\"rms_difference\": [2e-5], \"VAF\": [99.9765]}"));
   EXPECT_EQ(d["recording"]["reference"], Json::array());
   EXPECT_FALSE(d.contains("acceleration"));
 }

@@ -77,6 +77,7 @@ struct Identification {
   impedance::Model model;
   Matrix covariance;                    ///< of `parameters`, 3n²+n square
   std::vector<std::string> parameters;  ///< m_xx m_xy m_yx m_yy b_… k_… x0 y0; one axis: m b k x0
+  impedance::Model judged;              ///< behind `fit`: from the data that are there to identify, and nothing else
   impedance::Model standard_error;      ///< √ of its diagonal, in the model's shape
   std::string method = "ls";
   Structure structure = Structure::full;

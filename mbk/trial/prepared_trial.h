@@ -26,6 +26,7 @@ enum class Purpose { identification, validation };
 struct Stretch {
   Index begin = 0, end = 0;
   Purpose purpose = Purpose::identification;
+  Index first_sample = 0;  ///< of the recording: what row `begin` was made around
   [[nodiscard]] Index size() const { return end - begin; }
 };
 
