@@ -37,7 +37,6 @@ bool is_utf8(const std::string& text) {
 }  // namespace
 
 std::string printable(std::string text) {
-  text.resize(std::min(text.find('\0'), text.size()));
   std::ranges::replace_if(
       text, [](char c) { return code(c) < 0x20 || c == 0x7F; }, '?');
   if (is_utf8(text)) return text;

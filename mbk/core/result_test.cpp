@@ -17,8 +17,8 @@ TEST(Error, NamesPlacesFromTheOutsideIn) {
   EXPECT_EQ(bad_data("is wrong").value().in("file").line(), "file: is wrong");
 }
 
-TEST(Printable, EndsAtANulAndKeepsUtf8) {
-  EXPECT_EQ(printable(std::string("a\0b", 3)), "a");
+TEST(Printable, IsOneLineAndKeepsUtf8) {
+  EXPECT_EQ(printable(std::string("a\0b", 3)), "a?b");
   EXPECT_EQ(printable("N·m °"), "N·m °");
   EXPECT_EQ(printable("\x80\xB0"), "?°");
 }

@@ -63,7 +63,8 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   const Index longest = std::max<Index>(shortest_cut / 4, order + 3) | 1;
   plan.smoothing.window = static_cast<int>(std::min<Index>(plan.smoothing.window, longest));
   if (!options.no_lowpass) {
-    const auto enough = static_cast<Index>(rate.value / (kRateOverCutoff * cutoff));
+    // A clock is read to rounding only: a whole number must not fall below itself.
+    const auto enough = static_cast<Index>(rate.value / (kRateOverCutoff * cutoff) * (1.0 + 1e-9));
     plan.every = std::max<Index>(1, std::min(enough, shortest_cut / kFewestRows));
   }
   return with_choices(std::move(plan), options);

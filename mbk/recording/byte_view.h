@@ -26,6 +26,9 @@ struct ByteView {
   }
   [[nodiscard]] std::string text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
+  /// What a field of fixed width says: its text up to the first NUL.
+  [[nodiscard]] std::string padded_text() const { return text().c_str(); }
+
   template <class Value>
   [[nodiscard]] Value at(std::size_t offset) const {
     std::byte raw[sizeof(Value)];

@@ -63,7 +63,7 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
   const std::size_t in_header = file.word(kKeyAt) == kFourLetterLabels ? file.word(kCountAt) : 0;
   for (std::size_t k = 0; k < in_header && k < kMostInHeader; ++k) {
     const double time = file.real(kTimesAt + 4 * k);
-    std::string name = trimmed(printable(file.view.part(kLabelsAt + 4 * k, 4).text()));
+    std::string name = trimmed(printable(file.view.part(kLabelsAt + 4 * k, 4).padded_text()));
     if (std::isfinite(time)) {
       add(events, {time, named(std::move(name))});
     } else {

@@ -101,7 +101,7 @@ Result<C3dParameters> C3dParameters::read(const C3dBytes& file, std::size_t begi
     if (name_size == 0) break;
     if (!file.view.holds(at, 2 + name_size + 2)) return damaged("the file ends");
     const int id = file.view.at<std::int8_t>(at + 1);
-    std::string name = capitals(printable(file.view.part(at + 2, name_size).text()));
+    std::string name = capitals(printable(file.view.part(at + 2, name_size).padded_text()));
     const std::size_t link = at + 2 + name_size;  // the distance to the next record, from here
     const std::size_t distance = file.word(link);
     std::size_t content_end = link + 2;
@@ -162,7 +162,7 @@ std::vector<std::string> C3dParameters::texts(std::string_view group, std::strin
     if (part.type != C3dParameter::Type::text) return;
     const std::size_t each = part.dimensions.empty() ? 1 : part.dimensions.front();
     for (std::size_t at = 0; each > 0 && at < part.data.view.size(); at += each) {
-      texts.push_back(trimmed(printable(part.data.view.part(at, each).text())));
+      texts.push_back(trimmed(printable(part.data.view.part(at, each).padded_text())));
     }
   });
   return texts;

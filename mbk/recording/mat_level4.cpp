@@ -51,7 +51,7 @@ std::optional<Header> header_at(ByteView file, std::uint64_t offset) {
   Header header{at(0) % 100 / 10, at(0) % 10, at(1), at(2), at(3) == 1, "", 0, 0};
   const std::uint32_t name_size = at(4);
   if (name_size == 0 || name_size > kLongestName || !file.holds(offset + kHeaderSize, name_size)) return std::nullopt;
-  header.name = file.part(static_cast<std::size_t>(offset) + kHeaderSize, name_size).text().c_str();
+  header.name = file.part(static_cast<std::size_t>(offset) + kHeaderSize, name_size).padded_text();
   if (header.name.empty()) return std::nullopt;
   for (const char c : header.name) {
     if (std::isprint(static_cast<unsigned char>(c)) == 0) return std::nullopt;

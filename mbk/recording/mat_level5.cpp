@@ -194,7 +194,7 @@ class Decoder {
     const auto name = elements.next("its name");
     if (!name) return tl::unexpected(name.error());
     if (size_of(name->type) != 1 && name->type != kUtf8) return damaged("its name is broken");
-    header.name = outer.empty() ? printable(name->data.text()) : outer;
+    header.name = outer.empty() ? printable(name->data.padded_text()) : outer;
     return header;
   }
 
@@ -206,12 +206,12 @@ class Decoder {
         const auto system = elements.next("its type system");
         const auto type = system ? elements.next("its class name") : system;
         if (!type) return tl::unexpected(type.error());
-        return object(header, printable(type->data.text()));
+        return object(header, printable(type->data.padded_text()));
       }
       case kObjectClass: {
         const auto type = elements.next("its class name");
         if (!type) return tl::unexpected(type.error());
-        return object(header, printable(type->data.text()));
+        return object(header, printable(type->data.padded_text()));
       }
       case kCellClass:
         return cells(header, elements);
@@ -336,7 +336,7 @@ class Decoder {
     }
     std::vector<std::string> fields;
     for (std::size_t i = 0; i < names->data.size(); i += static_cast<std::size_t>(width)) {
-      fields.push_back(printable(names->data.part(i, static_cast<std::size_t>(width)).text()));
+      fields.push_back(printable(names->data.part(i, static_cast<std::size_t>(width)).padded_text()));
     }
     const auto count = header.count();
     if (!count || *count > kMostElements) return aside(header, "a large structure array");

@@ -26,6 +26,7 @@ NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
     "--sg-order": ("0", "-1", "2.5", "1e1", "99999999999999999999"),
     "--padding": ("-1", "1.5", "1e3", "99999999999999999999"),
     "--threads": ("0", "-1", "1.5", "1e1", "99999999999999999999"),
+    "--every": ("0", "-1", "1.5", "1e1", "99999999999999999999"),
     "--axes": ("0", "-1", "3", "1.0"),
 }
 WORDS = {"--mode": "default|reference", "--procedure": "chapter3|chapter5",
@@ -204,10 +205,21 @@ class Effects(Case):
         self.assertIn("0.4 kg", run("measure", make_log().path, "--handle-mass", "0.4").out)
 
     def test_decimate_check(self):
-        check = self.measured("--decimate-check")["decimate_check"]
+        check = self.measured("--decimate-check", "--every", "1")["decimate_check"]
         self.assertEqual(check["rate_hz"], 100.0)
         self.assertLess(check["largest_relative_change"], 0.05)
-        self.assertIn("at 100 Hz", run("measure", make_log().path, "--decimate-check").out)
+        self.assertIn("at 100 Hz", run("measure", make_log().path, "--decimate-check", "--every", "1").out)
+        # The rows of the fit are thinned to less than that already: then every other one of them.
+        check = self.measured("--decimate-check", "--every", "25")["decimate_check"]
+        self.assertEqual(check["rate_hz"], 20.0)
+        self.assertLess(check["largest_relative_change"], 0.05)
+
+    def test_every(self):
+        all_rows, some = (self.measured("--every", every) for every in ("1", "10"))
+        self.assertEqual([r["preparation"][0]["every"] for r in (all_rows, some)], [1, 10])
+        for name in ("M", "B", "K", "x0"):
+            self.assertNotEqual(all_rows["model"][name], some["model"][name])
+            self.assert_relative(some["model"][name], all_rows["model"][name], 1e-3)
 
     def test_resample(self):
         result = self.measured("--resample", "500")
