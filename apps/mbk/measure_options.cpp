@@ -118,7 +118,8 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
       ->group(filters);
 
   const char* const model = "Model";
-  add_choice(command, "--method", a.method, {"ls"}, "least squares")->group(model);
+  add_choice(command, "--method", a.method, {"ls", "iv"},
+             "ls: least squares; iv: instrumental variables, which need the reference and hold in closed loop too")->group(model);
   add_choice(command, "--structure", a.structure, {"full", "symmetric", "mass-spring"},
              "full; symmetric: M and K symmetric; mass-spring: M = m I, no damping, K symmetric")
       ->group(model);
@@ -225,6 +226,7 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
                         : a.extension == "constant" ? dsp::Extension::constant
                                                     : dsp::Extension::odd;
   identify::Options& i = options.identify;
+  if (a.method == "iv") i.method = Method::instrumental_variables;
   if (a.structure == "symmetric") i.structure = Structure::symmetric;
   if (a.structure == "mass-spring") i.structure = Structure::mass_spring;
   if (a.parameters_from == "all") i.parameters_from = identify::ParametersFrom::all;

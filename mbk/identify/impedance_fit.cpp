@@ -2,194 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "mbk/identify/checks.h"
+#include "mbk/identify/instruments.h"
+#include "mbk/identify/regression.h"
+#include "mbk/numeric/instrumental_variables.h"
 #include "mbk/numeric/least_squares.h"
 #include "mbk/numeric/statistics.h"
 
 namespace mbk::identify {
 namespace {
-
-using numeric::RowRange;
-
-/// −F on [ẍ ẋ x−x̄ 1]; positions are measured from their mean, which costs no digits and changes nothing else.
-struct Regression {
-  Matrix Z;       ///< N×(3n+1)
-  Matrix Y;       ///< N×n, −F_h
-  Vector centre;  ///< x̄, n
-  std::vector<RowRange> identification, validation;
-  double sample_time = 0;
-
-  [[nodiscard]] Index axes() const { return Y.cols(); }
-};
-
-std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b) {
-  std::vector<RowRange> all = a;
-  all.insert(all.end(), b.begin(), b.end());
-  std::sort(all.begin(), all.end(), [](const RowRange& x, const RowRange& y) { return x.begin < y.begin; });
-  // Neighbours without a break in between are one range: the residual's correlation does not stop at the split.
-  std::vector<RowRange> merged;
-  for (const RowRange& range : all) {
-    if (!merged.empty() && merged.back().end == range.begin) {
-      merged.back().end = range.end;
-    } else {
-      merged.push_back(range);
-    }
-  }
-  return merged;
-}
-
-/// The stretches of all trials under each other; rows that do not count are left out. A break in time always starts a
-/// new range, and where two stretches follow each other without one, `joined` may merge them.
-Regression stack(const std::vector<PreparedTrial>& trials) {
-  const Index n = trials.front().axes;
-  Index rows = 0;
-  for (const PreparedTrial& trial : trials) {
-    for (const Stretch& stretch : trial.stretches) rows += stretch.size() + 1;
-  }
-  Regression r;
-  r.sample_time = trials.front().sample_time;
-  r.Z.setZero(rows, 3 * n + 1);
-  r.Y.setZero(rows, n);
-  Index row = 0;
-  for (const PreparedTrial& trial : trials) {
-    Index last_end = -1;
-    for (const Stretch& stretch : trial.stretches) {
-      const Index size = stretch.size();
-      const bool broken = stretch.begin != last_end ||
-                          trial.time[stretch.begin] - trial.time[stretch.begin - 1] > 1.5 * trial.sample_time;
-      if (row > 0 && broken) ++row;  // an empty row keeps the ranges apart; it belongs to none
-      last_end = stretch.end;
-      r.Z.block(row, 0, size, n) = trial.acceleration.middleRows(stretch.begin, size);
-      r.Z.block(row, n, size, n) = trial.velocity.middleRows(stretch.begin, size);
-      r.Z.block(row, 2 * n, size, n) = trial.position.middleRows(stretch.begin, size);
-      r.Z.block(row, 3 * n, size, 1).setOnes();
-      r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(stretch.begin, size);
-      (stretch.purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
-      row += size;
-    }
-  }
-  r.Z.conservativeResize(row, Eigen::NoChange);
-  r.Y.conservativeResize(row, Eigen::NoChange);
-  r.centre = Vector::Zero(n);
-  Index count = 0;
-  for (const RowRange& range : r.identification.empty() ? r.validation : r.identification) {
-    r.centre += r.Z.block(range.begin, 2 * n, range.size(), n).colwise().sum().transpose();
-    count += range.size();
-  }
-  r.centre /= static_cast<double>(std::max<Index>(count, 1));
-  for (const RowRange& range : joined(r.identification, r.validation)) {
-    r.Z.block(range.begin, 2 * n, range.size(), n).rowwise() -= r.centre.transpose();
-  }
-  return r;
-}
-
-/// Every `step`-th row of the ranges, under each other.
-Matrix rows_of(const Matrix& all, const std::vector<RowRange>& ranges, Index step = 1) {
-  Index count = 0;
-  for (const RowRange& range : ranges) count += (range.size() + step - 1) / step;
-  Matrix rows(count, all.cols());
-  Index row = 0;
-  for (const RowRange& range : ranges) {
-    for (Index i = range.begin; i < range.end; i += step) rows.row(row++) = all.row(i);
-  }
-  return rows;
-}
-
-/// θ = S φ with θ_j = [row j of M, row j of B, row j of K, c_j] stacked over the outputs j.
-Matrix structure_matrix(Structure structure, Index n) {
-  const Index p = 3 * n + 1;
-  if (structure == Structure::full || (structure == Structure::symmetric && n == 1)) {
-    return Matrix::Identity(n * p, n * p);
-  }
-  std::vector<Vector> columns;
-  const auto add = [&](std::initializer_list<std::pair<Index, Index>> entries) {
-    Vector column = Vector::Zero(n * p);
-    for (const auto& [output, regressor] : entries) column[output * p + regressor] = 1.0;
-    columns.push_back(std::move(column));
-  };
-  const auto add_symmetric = [&](Index first) {  // a symmetric matrix on regressors first … first + n − 1
-    for (Index j = 0; j < n; ++j) {
-      add({{j, first + j}});
-      for (Index i = j + 1; i < n; ++i) add({{j, first + i}, {i, first + j}});
-    }
-  };
-  if (structure == Structure::symmetric) {
-    add_symmetric(0);
-    for (Index j = 0; j < n; ++j) {
-      for (Index i = 0; i < n; ++i) add({{j, n + i}});
-    }
-  } else {  // M = m I, no damping
-    if (n == 1) {
-      add({{0, 0}});
-    } else {
-      add({{0, 0}, {1, 1}});
-    }
-  }
-  add_symmetric(2 * n);
-  for (Index j = 0; j < n; ++j) add({{j, 3 * n}});
-  Matrix S(n * p, static_cast<Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) S.col(static_cast<Index>(k)) = columns[k];
-  return S;
-}
-
-impedance::Model model_of(const Matrix& coefficients, const Vector& centre, double handle_mass) {
-  const Index n = coefficients.cols();
-  impedance::Model model;
-  model.M = coefficients.topRows(n).transpose() - handle_mass * Matrix::Identity(n, n);
-  model.B = coefficients.middleRows(n, n).transpose();
-  model.K = coefficients.middleRows(2 * n, n).transpose();
-  const Eigen::FullPivLU<Matrix> lu(model.K);
-  model.x0 = lu.isInvertible() ? Vector(centre - lu.solve(coefficients.row(3 * n).transpose()))
-                               : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
-  return model;
-}
-
-/// Covariance of [M B K (row by row) x₀] from that of φ, by the delta method:
-///   dx₀ = −K⁻¹ (dc − dK (x̄ − x₀))
-Matrix model_covariance(const numeric::LinearFit& fit, const Matrix& V, const impedance::Model& model,
-                        const Vector& centre) {
-  const Index n = model.axes(), p = 3 * n + 1;
-  Matrix J = Matrix::Zero(3 * n * n + n, n * p);
-  for (Index part = 0; part < 3; ++part) {
-    for (Index j = 0; j < n; ++j) {
-      for (Index i = 0; i < n; ++i) J(part * n * n + j * n + i, j * p + part * n + i) = 1.0;
-    }
-  }
-  const Matrix inverse = model.K.inverse();
-  const Vector offset = centre - model.x0;
-  for (Index j = 0; j < n; ++j) {
-    J.block(3 * n * n, j * p + 3 * n, n, 1) = -inverse.col(j);
-    for (Index i = 0; i < n; ++i) J.block(3 * n * n, j * p + 2 * n + i, n, 1) = inverse.col(j) * offset[i];
-  }
-  const Matrix JS = J * fit.structure;
-  return JS * V * JS.transpose();
-}
-
-Vector vaf(const Matrix& Y, const Matrix& residual) {
-  Vector result(Y.cols());
-  for (Index j = 0; j < Y.cols(); ++j) result[j] = numeric::variance_accounted_for(Y.col(j), residual.col(j));
-  return result;
-}
-
-Fit judge(const Regression& r, const Matrix& coefficients) {
-  const auto residual = [&](const std::vector<RowRange>& ranges) {
-    return Matrix(rows_of(r.Y, ranges) - rows_of(r.Z, ranges) * coefficients);
-  };
-  Fit fit;
-  const Matrix in_sample = residual(r.identification);
-  fit.vaf_in_sample = vaf(rows_of(r.Y, r.identification), in_sample);
-  fit.held_back = !r.validation.empty();
-  const Matrix judged = fit.held_back ? residual(r.validation) : in_sample;
-  fit.vaf = fit.held_back ? vaf(rows_of(r.Y, r.validation), judged) : fit.vaf_in_sample;
-  fit.rmse.resize(r.axes());
-  for (Index j = 0; j < r.axes(); ++j) fit.rmse[j] = numeric::root_mean_square(judged.col(j));
-  return fit;
-}
 
 double largest_relative_change(const impedance::Model& a, const impedance::Model& b) {
   double largest = 0.0;
@@ -200,19 +28,47 @@ double largest_relative_change(const impedance::Model& a, const impedance::Model
   return largest;
 }
 
-}  // namespace
+/// Coefficients by either method, with what their uncertainty is made of: φ − φ₀ ≈ A Σ_t Sᵀ(e_t ⊗ r_t).
+struct Estimate {
+  Matrix coefficients;  ///< p×n
+  Matrix structure;     ///< S
+  Matrix bread;         ///< A, k×k
+  int rank = 0;
+};
 
-std::vector<std::string> parameter_names(int axes) {
-  if (axes == 1) return {"m", "b", "k", "x0"};
-  std::vector<std::string> names;
-  for (const char matrix : {'m', 'b', 'k'}) {
-    for (const char* entry : {"xx", "xy", "yx", "yy"}) names.push_back(fmt::format("{}_{}", matrix, entry));
+/// What is fitted, and from which rows.
+class Fitter {
+ public:
+  Fitter(const std::vector<PreparedTrial>& trials, const Options& options)
+      : trials_(trials), options_(options), r_(stack(trials)) {}
+
+  Result<void> prepare();
+  Result<Identification> identify(Method method);
+  [[nodiscard]] Disagreement compare() const;
+
+ private:
+  [[nodiscard]] Result<Estimate> estimate(Method method, const std::vector<RowRange>& ranges, Index step = 1) const;
+  [[nodiscard]] const Matrix& instruments(Method method) const {
+    return method == Method::least_squares ? r_.Z : instruments_->R;
   }
-  names.insert(names.end(), {"x0", "y0"});
-  return names;
-}
+  [[nodiscard]] bool is_full(const Estimate& estimate) const { return estimate.rank == r_.Z.cols(); }
+  [[nodiscard]] impedance::Model model_from(const Estimate& estimate) const;
+  [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
+  void describe(Identification& result) const;
 
-Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials, const Options& options) {
+  const std::vector<PreparedTrial>& trials_;
+  const Options& options_;
+  Regression r_;
+  Matrix S_;
+  std::vector<RowRange> ranges_;  ///< behind the parameters
+  Index samples_ = 0, lags_ = 0;
+  double widening_ = 1.0;
+  bool all_ = false;
+  std::optional<Instruments> instruments_;
+  std::array<std::optional<Estimate>, 2> estimates_;  ///< by method
+};
+
+Result<void> check_options(const std::vector<PreparedTrial>& trials, const Options& options) {
   if (trials.empty()) return bad_usage("no trial to identify from");
   if (!(options.hac_lag_s >= 0.0 && std::isfinite(options.hac_lag_s))) {
     return bad_usage(
@@ -233,64 +89,68 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
           "put them on one clock with --resample HZ");
     }
   }
-  Regression r = stack(trials);
-  if (r.identification.empty()) return bad_data("no data to identify from", "move --split to a later time");
-  const Index n = r.axes();
-  const Matrix S = structure_matrix(options.structure, n);
+  return {};
+}
 
-  const auto fit_rows = [&](const std::vector<RowRange>& ranges, Index step) {
-    return numeric::fit_least_squares(rows_of(r.Z, ranges, step), rows_of(r.Y, ranges, step), S);
-  };
-  const auto check = fit_rows(r.identification, 1);
-  if (!check) return tl::unexpected(check.error());
-
-  Identification result;
-  result.axes = first.axes;
-  result.motion = first.motion;
-  result.structure = options.structure;
-  result.handle_mass = options.handle_mass;
-  result.fit = judge(r, check->coefficients);
-
-  const bool pulses_by_default =
-      first.preparation.mode == Mode::improved && first.preparation.protocol == Protocol::underdamped;
+Result<void> Fitter::prepare() {
+  if (r_.identification.empty()) return bad_data("no data to identify from", "move --split to a later time");
+  S_ = structure_matrix(options_.structure, r_.axes());
+  const Preparation& how = trials_.front().preparation;
+  const bool pulses_by_default = how.mode == Mode::improved && how.protocol == Protocol::underdamped;
   const ParametersFrom from =
-      options.parameters_from.value_or(pulses_by_default ? ParametersFrom::all : ParametersFrom::identification);
-  const bool all = from == ParametersFrom::all;
-  result.parameters_from = all ? "all" : "identification";
-  const std::vector<RowRange> ranges = all ? joined(r.identification, r.validation) : joined(r.identification, {});
-  const auto fit = all && !r.validation.empty() ? fit_rows(ranges, 1) : check;
-  if (!fit) return tl::unexpected(fit.error());
-
-  result.parameters = parameter_names(first.axes);
-  for (const RowRange& range : ranges) result.samples += range.size();
-  const double data_s = static_cast<double>(result.samples) * r.sample_time;
-  if (options.hac_lag_s > std::max(data_s, Options{}.hac_lag_s)) {
-    return bad_usage(fmt::format("--hac-lag {:g} s reaches beyond the {:.3g} s of data", options.hac_lag_s, data_s),
+      options_.parameters_from.value_or(pulses_by_default ? ParametersFrom::all : ParametersFrom::identification);
+  all_ = from == ParametersFrom::all;
+  ranges_ = all_ ? joined(r_.identification, r_.validation) : joined(r_.identification, {});
+  for (const RowRange& range : ranges_) samples_ += range.size();
+  const double data_s = static_cast<double>(samples_) * r_.sample_time;
+  if (options_.hac_lag_s > std::max(data_s, Options{}.hac_lag_s)) {
+    return bad_usage(fmt::format("--hac-lag {:g} s reaches beyond the {:.3g} s of data", options_.hac_lag_s, data_s),
                      "choose a shorter one; the residual's correlation seldom lasts for a second");
   }
-  const auto lags = static_cast<Index>(std::llround(options.hac_lag_s / r.sample_time));
-  result.hac_lag_s = static_cast<double>(lags) * r.sample_time;
-  // The coefficients of smallest norm explain the force too, but they are not the limb's.
-  const auto model_from = [&](const numeric::LinearFit& one) {
-    const Vector undefined = Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN());
-    return one.rank == r.Z.cols() ? model_of(one.coefficients, r.centre, options.handle_mass)
-                                  : impedance::unstacked(undefined, n);
-  };
-  result.model = model_from(*fit);
-  result.judged = model_from(*check);
-  if (fit->rank == r.Z.cols()) {
-    const Matrix residual = r.Y - r.Z * fit->coefficients;
-    const double widening =
-        numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(result.samples));
-    const Matrix V = widening * widening * numeric::newey_west_covariance(*fit, r.Z, residual, ranges, lags);
-    result.covariance = model_covariance(*fit, V, result.model, r.centre);
-  } else {
-    const auto count = static_cast<Index>(result.parameters.size());
-    result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
-  }
-  result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
+  lags_ = static_cast<Index>(std::llround(options_.hac_lag_s / r_.sample_time));
+  widening_ = numeric::newey_west_widening(static_cast<double>(lags_) / static_cast<double>(samples_));
+  return {};
+}
 
-  for (const PreparedTrial& trial : trials) {
+Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ranges, Index step) const {
+  const Matrix Z = rows_of(r_.Z, ranges, step), Y = rows_of(r_.Y, ranges, step);
+  if (method == Method::least_squares) {
+    auto fit = numeric::fit_least_squares(Z, Y, S_);
+    if (!fit) return tl::unexpected(fit.error());
+    return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse_gram), fit->rank};
+  }
+  auto fit = numeric::fit_instrumental_variables(Z, rows_of(instruments_->R, ranges, step), Y, S_);
+  if (!fit) return tl::unexpected(fit.error());
+  return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse), fit->rank};
+}
+
+/// The coefficients of smallest norm explain the force too where the rank is short, but they are not the limb's.
+impedance::Model Fitter::model_from(const Estimate& estimate) const {
+  const Index n = r_.axes();
+  const Vector undefined = Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN());
+  return is_full(estimate) ? model_of(estimate.coefficients, r_.centre, options_.handle_mass)
+                           : impedance::unstacked(undefined, n);
+}
+
+Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& range) const {
+  const Matrix residual = r_.Y.middleRows(range.begin, range.size()) -
+                          r_.Z.middleRows(range.begin, range.size()) * estimate.coefficients;
+  const Matrix R = instruments(method).middleRows(range.begin, range.size());
+  return estimate.bread * numeric::regression_scores(R, residual, estimate.structure, {0, range.size()});
+}
+
+/// What both methods have in common.
+void Fitter::describe(Identification& result) const {
+  const PreparedTrial& first = trials_.front();
+  result.axes = first.axes;
+  result.motion = first.motion;
+  result.structure = options_.structure;
+  result.handle_mass = options_.handle_mass;
+  result.parameters_from = all_ ? "all" : "identification";
+  result.parameters = parameter_names(first.axes);
+  result.samples = samples_;
+  result.hac_lag_s = static_cast<double>(lags_) * r_.sample_time;
+  for (const PreparedTrial& trial : trials_) {
     result.preparations.push_back(trial.preparation);
     result.sources.insert(result.sources.end(), trial.sources.begin(), trial.sources.end());
     result.durations.insert(result.durations.end(), trial.sources.size(), trial.recording_duration);
@@ -298,22 +158,119 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
     result.notes.insert(result.notes.end(), trial.notes.begin(), trial.notes.end());
     result.warnings.insert(result.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   }
-  result.excitation = measure_excitation(rows_of(r.Z, ranges), rows_of(r.Y, ranges), result.model, fit->rank);
-  result.excitation.duration = static_cast<double>(result.samples) * r.sample_time;
+}
 
-  if (options.decimate_check) {
+Result<Identification> Fitter::identify(Method method) {
+  const Index n = r_.axes();
+  if (method == Method::instrumental_variables && !instruments_) {
+    auto made = make_instruments(r_, trials_.front().reference_quantity, ranges_, lags_);
+    if (!made) return tl::unexpected(made.error());
+    instruments_ = std::move(*made);
+  }
+  const auto check = estimate(method, r_.identification);
+  if (!check) return tl::unexpected(check.error());
+  const auto fit = all_ && !r_.validation.empty() ? estimate(method, ranges_) : check;
+  if (!fit) return tl::unexpected(fit.error());
+  estimates_[static_cast<std::size_t>(method)] = *fit;
+
+  Identification result;
+  describe(result);
+  result.method = method;
+  result.model = model_from(*fit);
+  result.judged = model_from(*check);
+  result.fit = judge(r_, check->coefficients);
+  const auto count = static_cast<Index>(result.parameters.size());
+  result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
+  if (is_full(*fit)) {
+    const Matrix V = numeric::long_run_covariance(fit->bread.rows(), ranges_, lags_, [&](const RowRange& range) {
+      return scores(method, *fit, range);
+    });
+    result.covariance = model_covariance(fit->structure, widening_ * widening_ * V, result.model, r_.centre);
+  }
+  result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
+  if (method == Method::instrumental_variables) {
+    result.instrument = InstrumentCheck{instruments_->from, instruments_->strength, Vector::Constant(n, std::nan(""))};
+    if (is_full(*fit)) {
+      result.instrument->answered =
+          answered_share(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
+    }
+  }
+  result.excitation = measure_excitation(rows_of(r_.Z, ranges_), rows_of(r_.Y, ranges_), result.model, fit->rank);
+  result.excitation.duration = static_cast<double>(samples_) * r_.sample_time;
+
+  if (options_.decimate_check) {
     // At least every other one: the rows may be thinned already.
-    const auto step = std::max<Index>(2, static_cast<Index>(std::llround(1.0 / (100.0 * r.sample_time))));
-    const auto coarse = fit_rows(ranges, step);
+    const auto step = std::max<Index>(2, static_cast<Index>(std::llround(1.0 / (100.0 * r_.sample_time))));
+    const auto coarse = estimate(method, ranges_, step);
     if (!coarse) return tl::unexpected(coarse.error());
     DecimationCheck decimation;
-    decimation.rate_hz = 1.0 / (static_cast<double>(step) * r.sample_time);
-    decimation.model = model_of(coarse->coefficients, r.centre, options.handle_mass);
+    decimation.rate_hz = 1.0 / (static_cast<double>(step) * r_.sample_time);
+    decimation.model = model_of(coarse->coefficients, r_.centre, options_.handle_mass);
     decimation.largest_change = largest_relative_change(result.model, decimation.model);
     result.decimation = decimation;
   }
   add_warnings(result);
   return result;
+}
+
+Disagreement Fitter::compare() const {
+  constexpr auto kLs = Method::least_squares, kIv = Method::instrumental_variables;
+  const auto &ls = estimates_[0], &iv = estimates_[1];
+  Disagreement result;
+  if (!ls || !iv || !is_full(*ls) || !is_full(*iv)) return result;
+  const Index n = r_.axes(), p = 3 * n + 1;
+  const Matrix V = numeric::long_run_covariance(iv->bread.rows(), ranges_, lags_, [&](const RowRange& range) {
+    return Matrix(scores(kIv, *iv, range) - scores(kLs, *ls, range));
+  });
+  const Vector variance = (iv->structure * V * iv->structure.transpose()).diagonal();
+  const std::vector<std::string> names = parameter_names(static_cast<int>(n));
+  double largest = 0.0;
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < 3 * n; ++i) {
+      const double difference = iv->coefficients(i, j) - ls->coefficients(i, j);
+      const double error = widening_ * std::sqrt(std::max(0.0, variance[j * p + i]));
+      if (!(error > 0.0) || !(std::abs(difference) / error > largest)) continue;
+      largest = std::abs(difference) / error;
+      const Index part = i / n, column = i % n;
+      result.parameter = names[static_cast<std::size_t>(part * n * n + j * n + column)];
+      result.difference = difference;
+      result.standard_error = error;
+    }
+  }
+  // Bonferroni: 1 % over 3n² parameters.
+  constexpr double kOneAxis = 2.935, kTwoAxes = 3.341;  // two-sided normal quantiles of 0.01/3 and 0.01/12
+  result.significant = largest > (n == 1 ? kOneAxis : kTwoAxes);
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> parameter_names(int axes) {
+  if (axes == 1) return {"m", "b", "k", "x0"};
+  std::vector<std::string> names;
+  for (const char matrix : {'m', 'b', 'k'}) {
+    for (const char* entry : {"xx", "xy", "yx", "yy"}) names.push_back(fmt::format("{}_{}", matrix, entry));
+  }
+  names.insert(names.end(), {"x0", "y0"});
+  return names;
+}
+
+Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials, const Options& options) {
+  if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
+  Fitter fitter(trials, options);
+  if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
+  return fitter.identify(options.method);
+}
+
+Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, const Options& options) {
+  if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
+  Fitter fitter(trials, options);
+  if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
+  auto ls = fitter.identify(Method::least_squares);
+  if (!ls) return tl::unexpected(ls.error());
+  auto iv = fitter.identify(Method::instrumental_variables);
+  if (!iv) return tl::unexpected(iv.error());
+  return Comparison{std::move(*ls), std::move(*iv), fitter.compare()};
 }
 
 }  // namespace mbk::identify

@@ -17,6 +17,7 @@ enum class ParametersFrom {
 };
 
 struct Options {
+  Method method = Method::least_squares;
   Structure structure = Structure::full;
   std::optional<ParametersFrom> parameters_from;  ///< absent: all for underdamped in default mode, else identification
   double handle_mass = 0.0;                       ///< Λ [kg], taken off the diagonal of M (eq. 3.7)
@@ -33,10 +34,21 @@ struct Options {
 /// loop, and least squares is drawn towards minus the robot's impedance; noise in the position draws the inertia
 /// towards zero. The warnings name what can be seen of this.
 /// Where the regressors cannot be told apart (rank) there is no model: every number of it is NaN, and it is not usable.
+/// With Method::instrumental_variables the same rows are solved by θ = (RᵀZ)⁻¹RᵀY, R from the known perturbation
+/// (instruments.h): what the limb does on its own account, and noise of the position, are then no bias but noise.
 /// @fails trials differ in axes, units or rate; nothing to identify from; fewer samples than parameters; a value is not
-/// finite; the lag is negative or not finite; the handle's mass is not finite.
+/// finite; no reference for instrumental variables; the lag is negative or not finite; the handle's mass is not finite.
 [[nodiscard]] Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials,
                                                         const Options& options);
+
+/// Both methods on the same rows.
+struct Comparison {
+  Identification least_squares, instrumental_variables;
+  Disagreement disagreement;
+};
+
+/// @fails as identify_impedance with instrumental variables: where no reference was recorded there is nothing to compare.
+[[nodiscard]] Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, const Options& options);
 
 /// m_xx m_xy m_yx m_yy b_xx … k_yy x0 y0; with one axis m b k x0.
 [[nodiscard]] std::vector<std::string> parameter_names(int axes);

@@ -49,7 +49,8 @@ Result<std::optional<Recording>> on_even_clock(const Recording& recording, const
   return std::move(*even);
 }
 
-Result<PreparedTrial> prepare_one(const Recording& recording, const Options& options) {
+Result<PreparedTrial> prepare_one(const Recording& recording, Options options) {
+  options.preprocess.instruments = true;
   const auto even = on_even_clock(recording, options);
   if (!even) return tl::unexpected(even.error());
   const Inspection recorded = recording::inspect(recording);
@@ -85,14 +86,33 @@ Result<std::vector<PreparedTrial>> prepare_all(std::span<const Recording> record
   return trials;
 }
 
+/// By the method that was asked for and, where a reference was recorded, by the other one too.
+Result<result::Measured> identify_by_both(const std::vector<PreparedTrial>& trials, const identify::Options& options) {
+  const bool by_instruments = options.method == Method::instrumental_variables;
+  const bool known =
+      std::ranges::all_of(trials, [](const PreparedTrial& trial) { return trial.reference_motion.size() > 0; });
+  if (known || by_instruments) {
+    auto both = identify::compare_methods(trials, options);
+    if (both) {
+      auto &ls = both->least_squares, &iv = both->instrumental_variables;
+      if (by_instruments) std::swap(ls, iv);
+      return result::Measured{std::move(ls), std::nullopt, std::move(iv), both->disagreement};
+    }
+    if (by_instruments) return tl::unexpected(both.error());
+  }
+  auto alone = identify::identify_impedance(trials, options);
+  if (!alone) return tl::unexpected(alone.error());
+  return result::Measured{std::move(*alone), std::nullopt, std::nullopt, std::nullopt};
+}
+
 Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
                                           const std::vector<PreparedTrial>& trials, const Options& options) {
-  auto identification = identify::identify_impedance(trials, options.identify);
-  if (!identification) {
+  auto identified = identify_by_both(trials, options.identify);
+  if (!identified) {
     const bool one_file = recordings.size() == 1 && !recordings[0].sources.empty();
-    return tl::unexpected(one_file ? identification.error().in(recordings[0].sources[0].path) : identification.error());
+    return tl::unexpected(one_file ? identified.error().in(recordings[0].sources[0].path) : identified.error());
   }
-  result::Measured measured{std::move(*identification), std::nullopt};
+  result::Measured measured = std::move(*identified);
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());

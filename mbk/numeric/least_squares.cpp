@@ -129,23 +129,14 @@ Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matr
   return fit;
 }
 
-Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,
-                             const std::vector<RowRange>& ranges, Index lags) {
-  const Index p = Z.cols(), q = residuals.cols(), k = fit.free.size();
-  const bool tied = fit.structure.rows() != k || !fit.structure.isIdentity(0.0);
+Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
+                           const std::function<Matrix(const RowRange&)>& scores_of) {
   Matrix omega = Matrix::Zero(k, k);
   constexpr Index kBlock = 512;  // window sums are collected in blocks and added to Ω by one matrix product
   Matrix block(k, kBlock);
   for (const RowRange& range : ranges) {
     const Index n = range.size();
-    Matrix full(p * q, n);
-    for (Index j = 0; j < q; ++j) {
-      full.middleRows(j * p, p) =
-          (Z.middleRows(range.begin, n).array().colwise() * residuals.col(j).segment(range.begin, n).array())
-              .matrix()
-              .transpose();
-    }
-    const Matrix scores = tied ? Matrix(fit.structure.transpose() * full) : std::move(full);
+    const Matrix scores = scores_of(range);
     Vector sum = Vector::Zero(k);
     Index filled = 0;
     for (Index t = 0; t < n + lags; ++t) {  // the window [t − lags, t], clipped to the range
@@ -159,7 +150,28 @@ Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix
     }
   }
   omega /= static_cast<double>(lags + 1);
-  return fit.inverse_gram * omega.selfadjointView<Eigen::Lower>() * fit.inverse_gram;
+  return omega.selfadjointView<Eigen::Lower>();
+}
+
+Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix& structure, const RowRange& range) {
+  const Index p = R.cols(), q = residuals.cols(), n = range.size();
+  Matrix full(p * q, n);
+  for (Index j = 0; j < q; ++j) {
+    full.middleRows(j * p, p) =
+        (R.middleRows(range.begin, n).array().colwise() * residuals.col(j).segment(range.begin, n).array())
+            .matrix()
+            .transpose();
+  }
+  const bool tied = structure.rows() != structure.cols() || !structure.isIdentity(0.0);
+  return tied ? Matrix(structure.transpose() * full) : full;
+}
+
+Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,
+                             const std::vector<RowRange>& ranges, Index lags) {
+  const Matrix omega = long_run_covariance(fit.free.size(), ranges, lags, [&](const RowRange& range) {
+    return regression_scores(Z, residuals, fit.structure, range);
+  });
+  return fit.inverse_gram * omega * fit.inverse_gram;
 }
 
 double newey_west_widening(double b) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "mbk/core/linear_algebra.h"
@@ -32,10 +33,21 @@ struct LinearFit {
 /// smallest norm and must not be used.   @fails N < p; shapes differ; a value is not finite (first bad row named).
 [[nodiscard]] Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matrix& S = {});
 
-/// Covariance of φ that holds for coloured and correlated residuals (Newey & West 1987):
-///   V = A Ω A,  A = inverse_gram,  Ω = Σ_l (1 − |l|/(L + 1)) Σ_t s_t s_{t+l}ᵀ,  s_t = Sᵀ(e_t ⊗ z_t).
-/// The weights are the autocorrelation of a rectangle, so that Ω = Σ_t g_t g_tᵀ/(L + 1) with g the sums of s over
-/// L + 1 consecutive samples: one pass, and positive semidefinite by construction. Products never cross a break.
+/// Long-run covariance of scores, Ω = Σ_l (1 − |l|/(L + 1)) Σ_t s_t s_{t+l}ᵀ (Newey & West 1987). The weights are the
+/// autocorrelation of a rectangle, so that Ω = Σ_t g_t g_tᵀ/(L + 1) with g the sums of s over L + 1 consecutive samples:
+/// one pass, and positive semidefinite by construction. Products never cross a break.
+/// @param k scores of a sample    @param lags L ≥ 0, samples
+/// @param scores_of the scores of a range, k×n; asked for once for each range, in order
+[[nodiscard]] Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
+                                         const std::function<Matrix(const RowRange&)>& scores_of);
+
+/// s_t = Sᵀ(e_t ⊗ r_t) of the rows of a range, k×n.
+/// @param R N×p, regressors or instruments    @param residuals N×q    @param structure S, pq×k
+[[nodiscard]] Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix& structure,
+                                       const RowRange& range);
+
+/// Covariance of φ that holds for coloured and correlated residuals: V = A Ω A with A = inverse_gram and Ω the long-run
+/// covariance of the scores of Z.
 /// @param residuals N×q    @param ranges rows that count, in order    @param lags L ≥ 0, samples
 [[nodiscard]] Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,
                                            const std::vector<RowRange>& ranges, Index lags);

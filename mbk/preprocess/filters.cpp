@@ -71,7 +71,7 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
 }
 
 Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim, Hertz rate,
-                          const dsp::Padding& padding) {
+                          const dsp::Padding& padding, bool with_reference) {
   const Index n = signals.position.cols(), length = cut.end - cut.begin;
   if (length < filters.smoothing.window + 2 * trim + (filters.cutoff ? padding.samples + 1 : 0)) {
     return bad_data(fmt::format("a window of {} samples is too short for a Savitzky–Golay window of {}{}", length,
@@ -86,7 +86,9 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
     chain.lowpass = std::move(*lowpass);
   }
   std::vector<dsp::Column> columns;
-  for (const Matrix* quantity : {&signals.position, &signals.force_hand_on_robot, &signals.acceleration}) {
+  std::vector<const Matrix*> quantities = {&signals.position, &signals.force_hand_on_robot, &signals.acceleration};
+  if (with_reference) quantities.push_back(&signals.reference);
+  for (const Matrix* quantity : quantities) {
     for (Index k = 0; k < quantity->cols(); ++k) {
       columns.emplace_back(quantity->col(k).data() + cut.begin + trim, length - 2 * trim);
     }
@@ -103,6 +105,9 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
     want(0, 2);
   }
   want(n, 0);
+  if (with_reference) {
+    for (const int derivative : {2, 1, 0}) want(2 * n + signals.acceleration.cols(), derivative);
+  }
   return dsp::smooth_then_lowpass(chain, columns, wanted, rate, filters.every);
 }
 

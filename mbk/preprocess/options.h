@@ -28,6 +28,7 @@ struct Options {
   std::optional<AccelerationSource> acceleration;
   WindowLimits window;
   dsp::Padding padding;        ///< of the zero-phase filter
+  bool instruments = false;    ///< filter the reference too: what instrumental variables need
   std::optional<Index> every;  ///< rows that the fit takes; absent: all in reference mode, else what the cutoff needs
 };
 

@@ -77,10 +77,11 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     filters = improved_filters(options, *band, rate, shortest);
   }
 
+  const bool with_reference = options.instruments && signals->reference.size() > 0;
   Index total = 0;
   std::vector<Matrix> filtered;
   for (const Cut& cut : plan->cuts) {
-    auto piece = filter_cut(*signals, cut, filters, plan->trim, rate, options.padding);
+    auto piece = filter_cut(*signals, cut, filters, plan->trim, rate, options.padding, with_reference);
     if (!piece) return tl::unexpected(piece.error());
     total += piece->rows();
     filtered.push_back(std::move(*piece));
@@ -95,6 +96,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     signal->resize(total, n);
   }
   if (signals->reference.size() > 0) trial.reference.resize(total, n);
+  if (with_reference) trial.reference_motion.resize(total, 3 * n);
+  trial.reference_quantity = signals->reference_quantity;
   Index row = 0;
   for (std::size_t k = 0; k < filtered.size(); ++k) {
     const Cut& cut = plan->cuts[k];
@@ -105,7 +108,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     trial.position.middleRows(row, rows) = piece.leftCols(n);
     trial.velocity.middleRows(row, rows) = piece.middleCols(n, n);
     trial.acceleration.middleRows(row, rows) = piece.middleCols(2 * n, n);
-    trial.force_hand_on_robot.middleRows(row, rows) = piece.rightCols(n);
+    trial.force_hand_on_robot.middleRows(row, rows) = piece.middleCols(3 * n, n);
+    if (with_reference) trial.reference_motion.middleRows(row, rows) = piece.rightCols(3 * n);
     if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference(kept, Eigen::all);
     for (const Stretch& keep : cut.keep) {
       const auto row_at = [&](Index sample) {

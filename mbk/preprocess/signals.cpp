@@ -46,6 +46,14 @@ Result<Motion> motion_of(const Recording& recording, int axes) {
   return rotates ? Motion::rotation : (shifts ? Motion::translation : Motion::unknown);
 }
 
+ReferenceQuantity reference_quantity(const Recording& recording, int axes) {
+  const Channel* channel = recording.find(channel_name(Quantity::reference, axes, 0));
+  if (channel == nullptr) return ReferenceQuantity::unknown;
+  if (channel->unit == "m" || channel->unit == "rad") return ReferenceQuantity::position;
+  if (channel->unit == "N" || channel->unit == "N.m") return ReferenceQuantity::force;
+  return ReferenceQuantity::unknown;
+}
+
 }  // namespace
 
 const char* channel_name(Quantity quantity, int axes, Index axis) {
@@ -72,6 +80,7 @@ Result<Signals> select_signals(const Recording& recording, int axes, bool accele
     if (auto ok = take(Quantity::acceleration, signals.acceleration); !ok) return tl::unexpected(ok.error());
   }
   signals.reference = gather(recording, Quantity::reference, signals.axes);
+  signals.reference_quantity = reference_quantity(recording, signals.axes);
   const auto motion = motion_of(recording, signals.axes);
   if (!motion) return tl::unexpected(motion.error());
   signals.motion = *motion;

@@ -110,6 +110,39 @@ Json antisymmetry_json(const Findings& findings) {
   return {{"inertia", one(findings.antisymmetry[0])}, {"stiffness", one(findings.antisymmetry[1])}};
 }
 
+Json fit_json(const Fit& fit) {
+  return {{"VAF", list(fit.vaf)},
+          {"RMSE", list(fit.rmse)},
+          {"validated_on", fit.held_back ? "held-back" : "in-sample"},
+          {"VAF_in_sample", list(fit.vaf_in_sample)}};
+}
+
+Json instrument_json(const InstrumentCheck& check) {
+  return {{"reference", text(check.from)},
+          {"first_stage_F", list(check.strength)},
+          {"weakest_F", number(check.weakest())},
+          {"strong", check.strong()},
+          {"answered_share", list(check.answered)}};
+}
+
+/// A second method beside the first, without what both have in common.
+Json alternative_json(const Identification& id) {
+  Json json = {{"method", text(id.method)},
+               {"model", model_json(id.model)},
+               {"standard_error", model_json(id.standard_error)},
+               {"fit", fit_json(id.fit)},
+               {"usable", id.usable}};
+  if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
+  return json;
+}
+
+Json disagreement_json(const Disagreement& disagreement) {
+  return {{"parameter", disagreement.parameter},
+          {"iv_less_ls", number(disagreement.difference)},
+          {"standard_error", number(disagreement.standard_error)},
+          {"significant", disagreement.significant}};
+}
+
 Json result_json(const Measured& measured) {
   const Identification& id = measured.identification;
   Json json = header(kResultSchema);
@@ -123,7 +156,7 @@ Json result_json(const Measured& measured) {
     json["mode"] = text(id.preparations.front().mode);
     json["protocol"] = text(id.preparations.front().protocol);
   }
-  json["method"] = id.method;
+  json["method"] = text(id.method);
   json["axes"] = id.axes;
   json["structure"] = text(id.structure);
   if (id.motion != Motion::unknown) {
@@ -136,16 +169,15 @@ Json result_json(const Measured& measured) {
   }
   json["model"] = model_json(id.model);
   json["standard_error"] = model_json(id.standard_error);
-  json["fit"] = {{"VAF", list(id.fit.vaf)},
-                 {"RMSE", list(id.fit.rmse)},
-                 {"validated_on", id.fit.held_back ? "held-back" : "in-sample"},
-                 {"VAF_in_sample", list(id.fit.vaf_in_sample)}};
+  json["fit"] = fit_json(id.fit);
   if (measured.findings) {
     json["ellipses"] = ellipses_json(*measured.findings);
     json["antisymmetry"] = antisymmetry_json(*measured.findings);
   }
+  if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
   json["alternatives"] = Json::array();
-  json["disagreement"] = nullptr;
+  if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
+  json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
   json["warnings"] = warnings_json(id.warnings);
   json["usable"] = id.usable;
   json["covariance"] = {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}};
@@ -321,7 +353,8 @@ Identification identification_from(const Json& json) {
     id.covariance = matrix_from(*covariance, "matrix", count, count);
     id.parameters = covariance->value("parameters", std::vector<std::string>{});
   }
-  id.method = json.value("method", "ls");
+  id.method = json.value("method", "ls") == text(Method::instrumental_variables) ? Method::instrumental_variables
+                                                                                 : Method::least_squares;
   id.usable = json.value("usable", true);
   if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
     for (const Json& input : *inputs) {

@@ -21,6 +21,9 @@ namespace mbk::result {
 struct Measured {
   Identification identification;
   std::optional<Findings> findings;  ///< absent where they were not asked for, or with one axis
+  /// The other method on the same rows; absent where no reference was recorded.
+  std::optional<Identification> alternative;
+  std::optional<Disagreement> disagreement;
 };
 
 /// Schema "mbk.result/1". SI units; numbers carry every digit; absent = not computed, null = undefined.

@@ -30,6 +30,26 @@ enum class Structure {
   return "unknown";
 }
 
+/// How the parameters are found.
+enum class Method {
+  least_squares,           ///< regression on the measured motion
+  instrumental_variables,  ///< on what the known perturbation alone makes of it
+};
+
+[[nodiscard]] constexpr std::string_view text(Method method) {
+  return method == Method::least_squares ? "ls" : "iv";
+}
+
+/// What stands behind instrumental variables, and whether it may.
+struct InstrumentCheck {
+  ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
+  Vector strength;   ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; below 10 the instrument is weak
+  Vector answered;   ///< n, share of what the model leaves that answers the perturbation linearly within half a second
+
+  [[nodiscard]] double weakest() const { return strength.minCoeff(); }
+  [[nodiscard]] bool strong() const { return weakest() > 10.0; }
+};
+
 /// How well the model explains the force, axis by axis.
 struct Fit {
   Vector vaf;             ///< [%], on held-back data where there are any (eq. 3.10)
@@ -72,6 +92,15 @@ struct Units {
   return {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad", "m or rad", "N or N·m"};
 }
 
+/// Where two methods find different models in the same rows: the parameter whose difference is largest in terms of its own
+/// standard error, which counts that both methods saw the same noise.
+struct Disagreement {
+  std::string parameter;      ///< as in Identification::parameters
+  double difference = 0;      ///< instrumental variables less least squares
+  double standard_error = 0;  ///< of that difference
+  bool significant = false;   ///< more than chance gives in 1 % of cases to any of M, B and K
+};
+
 /// An impedance, how sure it is, how well it fits, and whether it may be used.
 struct Identification {
   impedance::Model model;
@@ -79,7 +108,8 @@ struct Identification {
   std::vector<std::string> parameters;  ///< m_xx m_xy m_yx m_yy b_… k_… x0 y0; one axis: m b k x0
   impedance::Model judged;              ///< behind `fit`: from the data that are there to identify, and nothing else
   impedance::Model standard_error;      ///< √ of its diagonal, in the model's shape
-  std::string method = "ls";
+  Method method = Method::least_squares;
+  std::optional<InstrumentCheck> instrument;  ///< with instrumental variables only
   Structure structure = Structure::full;
   double hac_lag_s = 0;         ///< reach of the autocovariance in the standard errors [s]
   double handle_mass = 0;       ///< [kg] taken off the diagonal of M

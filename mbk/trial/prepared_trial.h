@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mbk/core/linear_algebra.h"
@@ -53,6 +54,21 @@ struct Preparation {
   Index every = 1;  ///< of the filtered samples, the first of so many is kept
 };
 
+/// What the perturbation reference is, by the unit of its channel.
+enum class ReferenceQuantity { position, force, unknown };
+
+[[nodiscard]] constexpr std::string_view text(ReferenceQuantity quantity) {
+  switch (quantity) {
+    case ReferenceQuantity::position:
+      return "position";
+    case ReferenceQuantity::force:
+      return "force";
+    case ReferenceQuantity::unknown:
+      break;
+  }
+  return "unknown";
+}
+
 /// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame. Where the low-pass leaves
 /// nothing between them, only every so many samples of the recording are here.
 struct PreparedTrial {
@@ -66,6 +82,8 @@ struct PreparedTrial {
   Matrix acceleration;             ///< N×n, ẍ [m/s²]
   Matrix force_hand_on_robot;      ///< N×n, F_h [N]: what the limb exerts on the machine
   Matrix reference;                ///< N×n, unfiltered; empty where none was recorded
+  Matrix reference_motion;         ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
+  ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
   std::vector<Stretch> stretches;  ///< in order of time; rows outside them do not count
   Preparation preparation;
   std::vector<SourceFile> sources;
