@@ -31,7 +31,7 @@ struct Exchange {
   Matrix reference;            ///< N×n, or empty
   std::vector<bool> unbroken;  ///< intervals without a break
   Vector absorbed;             ///< in each interval; 0 across a break
-  Matrix velocity;             ///< N×n; NaN outside the window and where the smoothing does not reach
+  Matrix velocity;             ///< N×n; NaN where the smoothing does not reach
   Range window;
 
   /// Whether energy and velocity are both known throughout an interval.
@@ -67,20 +67,18 @@ Result<Range> window_of(const PreparedTrial& trial, const Vector& time) {
   return range;
 }
 
-/// First derivative by the preparation's own smoothing, in and about the window; never across a break.
+/// First derivative by the preparation's own smoothing; never across a break.
 Result<Matrix> smoothed_velocity(const Exchange& exchange, const Preparation& how, Hertz rate) {
   const dsp::SavitzkyGolay filter{how.smoothing_order, how.smoothing_window};
-  const Index half = filter.half_window(), samples = exchange.position.rows();
-  const Index from = std::max<Index>(0, exchange.window.first - half),
-              to = std::min(samples, exchange.window.last + half + 1);
+  const Index samples = exchange.position.rows();
   Matrix velocity = Matrix::Constant(samples, exchange.position.cols(), kNaN);
-  for (Index begin = from; begin < to;) {
+  for (Index begin = 0; begin < samples;) {
     Index end = begin + 1;
-    while (end < to && exchange.unbroken[static_cast<std::size_t>(end - 1)]) ++end;
+    while (end < samples && exchange.unbroken[static_cast<std::size_t>(end - 1)]) ++end;
     if (end - begin >= filter.window) {
       auto piece = dsp::savitzky_golay(filter, 1, exchange.position.middleRows(begin, end - begin), rate);
       if (!piece) return tl::unexpected(piece.error());
-      velocity.middleRows(begin + half, piece->rows()) = *piece;
+      velocity.middleRows(begin + filter.half_window(), piece->rows()) = *piece;
     }
     begin = end;
   }
