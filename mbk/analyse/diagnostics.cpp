@@ -1,7 +1,6 @@
 #include "mbk/analyse/diagnostics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "mbk/analyse/frequencies.h"
+#include "mbk/analyse/recorded.h"
 #include "mbk/analyse/thinning.h"
 #include "mbk/dsp/autocorrelation.h"
 #include "mbk/dsp/integral.h"
@@ -126,22 +126,9 @@ DoubleIntegral double_integral_of(const PreparedTrial& trial, const std::vector<
   return result;
 }
 
-using Names = std::array<const char*, 3>;  // of one axis, of x, of y
-
-/// Recorded channels side by side, or nothing where one is missing.
-Matrix recorded(const Recording& recording, int axes, const Names& names) {
-  Matrix columns(recording.samples(), axes);
-  for (Index k = 0; k < axes; ++k) {
-    const Channel* channel = recording.find(names[axes == 1 ? 0 : static_cast<std::size_t>(k) + 1]);
-    if (channel == nullptr) return {};
-    columns.col(k) = channel->values;
-  }
-  return columns;
-}
-
 void add_recording(const Recording& recording, const Matrix& position, const Matrix& force, Diagnostics& result) {
   const Index n = position.cols();
-  const Matrix reference = recorded(recording, static_cast<int>(n), {"reference", "reference_x", "reference_y"});
+  const Matrix reference = recorded(recording, static_cast<int>(n), kReference);
   Matrix all(recording.samples(), 2 * n + reference.cols());
   all.leftCols(2 * n) << position, force;
   if (reference.cols() > 0) all.rightCols(n) = reference;
@@ -173,8 +160,8 @@ Result<void> check_origin(const Matrix& position, const Matrix& force, const Pre
 
 Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& trial,
                              const Identification& identification, const PreparedTrial* other_acceleration) {
-  const Matrix position = recorded(recording, trial.axes, {"position", "hand_x", "hand_y"});
-  const Matrix force = recorded(recording, trial.axes, {"reaction", "force_x", "force_y"});
+  const Matrix position = recorded(recording, trial.axes, kPosition);
+  const Matrix force = recorded(recording, trial.axes, kForce);
   const std::vector<Rows> all = rows_of(trial), held_back = rows_of(trial, Purpose::validation);
   if (auto ok = check_origin(position, force, trial, all); !ok) return tl::unexpected(ok.error());
 

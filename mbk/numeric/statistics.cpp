@@ -1,7 +1,9 @@
 #include "mbk/numeric/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace mbk::numeric {
 
@@ -27,6 +29,47 @@ std::pair<double, double> positive_interval95(double value, double standard_erro
 
 std::pair<double, double> interval95(double value, double standard_error) {
   return {value - kNormal95 * standard_error, value + kNormal95 * standard_error};
+}
+
+double normal_probability(double z) {
+  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
+namespace {
+
+/// P(|T| ≤ t), t ≥ 0.
+double student_within(double t, int degrees_of_freedom) {
+  const double angle = std::atan2(t, std::sqrt(degrees_of_freedom));
+  const double c = std::cos(angle), s = std::sin(angle);
+  const bool odd = degrees_of_freedom % 2 == 1;
+  double term = odd ? c : 1.0, sum = degrees_of_freedom == 1 ? 0.0 : term;
+  for (int k = odd ? 3 : 2; k < degrees_of_freedom; k += 2) {
+    term *= c * c * static_cast<double>(k - 1) / static_cast<double>(k);
+    sum += term;
+  }
+  return odd ? (angle + s * sum) * 2.0 / std::numbers::pi : s * sum;
+}
+
+}  // namespace
+
+double student_quantile(double p, int degrees_of_freedom) {
+  const double within = std::abs(2.0 * p - 1.0);
+  double high = 1.0;
+  while (high < 1e300 && student_within(high, degrees_of_freedom) < within) high *= 2.0;
+  double low = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (student_within(middle, degrees_of_freedom) < within ? low : high) = middle;
+  }
+  return std::copysign(0.5 * (low + high), p - 0.5);
+}
+
+double quantile(const Eigen::Ref<const Vector>& sorted, double p) {
+  if (sorted.size() == 0) return std::numeric_limits<double>::quiet_NaN();
+  const double place = p * static_cast<double>(sorted.size() - 1);
+  const auto below = std::min(static_cast<Index>(place), sorted.size() - 1);
+  const Index above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 namespace {

@@ -26,6 +26,17 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 /// value ± 1.96 se.
 [[nodiscard]] std::pair<double, double> interval95(double value, double standard_error);
 
+/// Φ(z), P(Z ≤ z) of a standard normal Z.
+[[nodiscard]] double normal_probability(double z);
+
+/// t with P(T ≤ t) = p for Student's T, by bisection of its finite sums (Abramowitz & Stegun 1964, 26.7.3 and 26.7.4).
+/// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
+[[nodiscard]] double student_quantile(double p, int degrees_of_freedom);
+
+/// The value below which a share p of sorted values lies, by straight lines between them; NaN where there are none.
+/// @param sorted rising    @param p in [0, 1]
+[[nodiscard]] double quantile(const Eigen::Ref<const Vector>& sorted, double p);
+
 /// Exact (Clopper–Pearson) interval of a binomial proportion, by bisection of the binomial tails.
 /// @param successes 0…trials    @param confidence e.g. 0.99
 [[nodiscard]] std::pair<double, double> binomial_interval(int successes, int trials, double confidence);

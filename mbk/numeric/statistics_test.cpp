@@ -25,6 +25,30 @@ TEST(Statistics, VarianceAccountedForIgnoresAnOffsetAndMayBeNegative) {
   EXPECT_TRUE(std::isnan(variance_accounted_for(Vector::Ones(4), force)));
 }
 
+TEST(Statistics, StudentQuantileIsThatOfTheTables) {
+  // mpmath with 30 digits; of two degrees √2 (2p − 1)/√(1 − (2p − 1)²)
+  EXPECT_NEAR(student_quantile(0.975, 1), 12.7062047361747, 1e-11);
+  EXPECT_NEAR(student_quantile(0.95, 2), std::sqrt(2.0) * 0.9 / std::sqrt(1.0 - 0.81), 1e-12);
+  EXPECT_NEAR(student_quantile(0.975, 5), 2.57058183563631, 1e-12);
+  EXPECT_NEAR(student_quantile(0.05, 15), -1.75305035569257, 1e-12);
+  EXPECT_NEAR(student_quantile(0.975, 1000), 1.96233908082641, 1e-12);
+  EXPECT_NEAR(student_quantile(0.5, 3), 0.0, 1e-15);
+}
+
+TEST(Statistics, StudentQuantileTendsToTheNormal) {
+  EXPECT_NEAR(normal_probability(student_quantile(0.975, 1000000)), 0.975, 1e-6);  // they differ by about z³/4ν
+  EXPECT_NEAR(normal_probability(kNormal95), 0.975, 1e-15);
+}
+
+TEST(Statistics, QuantileLiesBetweenTheSortedValues) {
+  const Vector sorted = (Vector(4) << 1, 2, 4, 8).finished();
+  EXPECT_EQ(quantile(sorted, 0.0), 1.0);
+  EXPECT_EQ(quantile(sorted, 0.5), 3.0);
+  EXPECT_EQ(quantile(sorted, 1.0), 8.0);
+  EXPECT_EQ(quantile(Vector::Ones(1), 0.7), 1.0);
+  EXPECT_TRUE(std::isnan(quantile(Vector(), 0.5)));
+}
+
 TEST(Statistics, BinomialIntervalIsClopperAndPearsons) {
   // Beta quantiles: B(0.005; 380, 21) and B(0.995; 381, 20), from SciPy.
   const auto [lower, upper] = binomial_interval(380, 400, 0.99);
