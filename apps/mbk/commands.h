@@ -17,6 +17,7 @@ std::string command_line(int argc, char** argv);
 Action add_measure(CLI::App& app, const std::string& typed);
 Action add_identify(CLI::App& app);
 Action add_ellipse(CLI::App& app);
+Action add_passivity(CLI::App& app);
 Action add_info(CLI::App& app);
 Action add_convert(CLI::App& app);
 Action add_simulate(CLI::App& app);

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"
       "and position while the robot perturbs it. F is the force that the hand exerts on the robot.\n\n"
       "  mbk measure log.mat                 the main job: recording → M, B, K, x0, ellipses, warnings\n"
+      "  mbk passivity log.mat               is the limb passive? by its model and by the energy it absorbs\n"
       "  mbk info log.mat                    what is in a recording, and what is wrong with it\n"
       "  mbk measure --help                  every command explains itself\n"};
   app.name("mbk");
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
       {"measure", mbk::app::add_measure(app, mbk::app::command_line(argc, argv))},
       {"identify", mbk::app::add_identify(app)},
       {"ellipse", mbk::app::add_ellipse(app)},
+      {"passivity", mbk::app::add_passivity(app)},
       {"info", mbk::app::add_info(app)},
       {"convert", mbk::app::add_convert(app)},
       {"simulate", mbk::app::add_simulate(app)},

@@ -7,6 +7,7 @@
 #include "apps/mbk/report_file.h"
 #include "mbk/analyse/summary.h"
 #include "mbk/numeric/parallel.h"
+#include "mbk/report/passivity_text.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
 
@@ -64,7 +65,10 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   std::vector<std::optional<Diagnostics>> diagnostics;
   for (Result<Examined>& one : results) {
     if (!one) return report_error(one.error());
-    if (!with_findings) one->measured.findings.reset();
+    if (!with_findings) {
+      one->measured.findings.reset();
+      one->measured.passivity.reset();
+    }
     measured.push_back(std::move(one->measured));
     diagnostics.emplace_back();
     if (!one->diagnostics.empty()) diagnostics.back() = std::move(one->diagnostics.front());
@@ -85,6 +89,10 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
     for (const Measured& one : measured) {
       if (!text.empty()) text += "\n";
       text += report::result_text(one.identification, one.findings);
+      if (one.alternative && one.disagreement) {
+        text += "\n" + report::alternative_text(one.identification, *one.alternative, *one.disagreement);
+      }
+      if (one.passivity) text += "\n" + report::passivity_line(*one.passivity);
     }
     if (summary) text += "\n" + report::summary_text(*summary);
   }

@@ -9,6 +9,8 @@
 
 #include "mbk/analyse/diagnostics.h"
 #include "mbk/analyse/ellipses.h"
+#include "mbk/analyse/energy.h"
+#include "mbk/analyse/passivity.h"
 #include "mbk/preprocess/resample.h"
 #include "mbk/recording/inspection.h"
 
@@ -96,13 +98,69 @@ Result<result::Measured> identify_by_both(const std::vector<PreparedTrial>& tria
     if (both) {
       auto &ls = both->least_squares, &iv = both->instrumental_variables;
       if (by_instruments) std::swap(ls, iv);
-      return result::Measured{std::move(ls), std::nullopt, std::move(iv), both->disagreement};
+      result::Measured measured;
+      measured.identification = std::move(ls);
+      measured.alternative = std::move(iv);
+      measured.disagreement = both->disagreement;
+      return measured;
     }
     if (by_instruments) return tl::unexpected(both.error());
   }
   auto alone = identify::identify_impedance(trials, options);
   if (!alone) return tl::unexpected(alone.error());
-  return result::Measured{std::move(*alone), std::nullopt, std::nullopt, std::nullopt};
+  result::Measured measured;
+  measured.identification = std::move(*alone);
+  return measured;
+}
+
+/// The energy of each recording, and of all together.
+Result<std::optional<EnergyAccount>> account_for_energy(std::span<const Recording> recordings,
+                                                        const std::vector<PreparedTrial>& trials,
+                                                        const Options& options, result::Measured& measured) {
+  std::vector<Recording> even;
+  for (const Recording& recording : recordings) {
+    auto one = on_even_clock(recording, options);
+    if (!one) return tl::unexpected(one.error());
+    even.push_back(*one ? std::move(**one) : Recording{});
+  }
+  const auto recording = [&](std::size_t k) -> const Recording& { return options.resample ? even[k] : recordings[k]; };
+  const impedance::Model& model = measured.identification.model;
+  const bool known = model.axes() == 2 && model.K.allFinite();
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    auto energy = analyse::absorbed_energy(recording(k), trials[k], {}, known ? &model : nullptr);
+    if (!energy) return tl::unexpected(energy.error());
+    measured.energies.push_back(std::move(*energy));
+  }
+  if (recordings.size() == 1) return std::optional(measured.energies.front().account);
+  auto pooled = options.resample ? analyse::pooled_energy(even, trials) : analyse::pooled_energy(recordings, trials);
+  if (!pooled) return tl::unexpected(pooled.error());
+  return std::optional(std::move(*pooled));
+}
+
+/// Is the limb passive, by its model and by what it absorbed?
+Result<Passivity> judge_passivity(std::span<const Recording> recordings, const std::vector<PreparedTrial>& trials,
+                                  const Options& options, result::Measured& measured) {
+  auto energy = account_for_energy(recordings, trials, options, measured);
+  if (!energy) return tl::unexpected(energy.error());
+  const PassivityBand band = options.band.value_or(analyse::passivity_band(trials));
+  const Identification* first = &measured.identification;
+  const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
+  const bool by_instruments = first->method == Method::instrumental_variables;
+  const Identification* instrumental = by_instruments ? first : other;
+  if (instrumental != nullptr && other != nullptr &&
+      (instrumental == other) == analyse::instruments_speak(*instrumental, measured.disagreement)) {
+    std::swap(first, other);
+  }
+  std::vector<ModelPassivity> models;
+  for (const Identification* id : {first, other}) {
+    if (id == nullptr || !id->model.M.allFinite()) continue;
+    auto model = analyse::model_passivity(*id, band);
+    if (!model) return tl::unexpected(model.error());
+    models.push_back(std::move(*model));
+  }
+  const Identification& least_squares = by_instruments && measured.alternative ? *measured.alternative
+                                                                               : measured.identification;
+  return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
 }
 
 Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
@@ -117,6 +175,14 @@ Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());
     measured.findings = std::move(*findings);
+  }
+  if (options.passivity) {
+    auto passivity = judge_passivity(recordings, trials, options, measured);
+    if (!passivity) {
+      return tl::unexpected(recordings[0].sources.empty() ? passivity.error()
+                                                          : passivity.error().in(recordings[0].sources[0].path));
+    }
+    measured.passivity = std::move(*passivity);
   }
   return measured;
 }

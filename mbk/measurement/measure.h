@@ -18,7 +18,9 @@ namespace mbk::measurement {
 struct Options {
   preprocess::Options preprocess;
   identify::Options identify;
-  std::optional<Hertz> resample;  ///< put the samples on an even clock first
+  std::optional<Hertz> resample;      ///< put the samples on an even clock first
+  bool passivity = true;              ///< judge it too
+  std::optional<PassivityBand> band;  ///< in which a model is judged; absent: analyse::passivity_band
 };
 
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.

@@ -215,6 +215,28 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
   return text;
 }
 
+std::string alternative_text(const Identification& id, const Identification& alternative,
+                             const Disagreement& disagreement) {
+  const bool by_instruments = id.method == Method::instrumental_variables;
+  const Identification& instrumental = by_instruments ? id : alternative;
+  const std::string other = by_instruments ? "least squares" : "instrumental variables";
+  if (!instrumental.instrument->strong()) {
+    return paragraph("  ", fmt::format("instrumental variables cannot check this: what the reference alone moves is too "
+                                       "little beside the rest (first-stage F {:.2g}, wanted above 10)",
+                                       instrumental.instrument->weakest()));
+  }
+  const std::string largest = fmt::format("largest difference {} = {:.3g} ± {:.2g}", disagreement.parameter,
+                                          disagreement.difference, numeric::kNormal95 * disagreement.standard_error);
+  if (!disagreement.significant) return paragraph("  ", fmt::format("{} agree ({})", other, largest));
+  return paragraph("  ",
+                   fmt::format("least squares and instrumental variables DIFFER by more than chance ({}). The limb or "
+                               "noise acts back on the motion: least squares takes that for mechanics and is drawn "
+                               "towards minus the robot. What follows the known reference alone is not",
+                               largest)) +
+         fmt::format("  by {}, VAF {}\n", other, per_axis(alternative.fit.vaf, "%", 1)) +
+         model_table(alternative.model, alternative.standard_error, numeric::kNormal95, alternative.motion);
+}
+
 std::string summary_text(const Summary& summary) {
   return fmt::format("mean of {} trials\n", summary.trials) +
          model_table(summary.mean, summary.between_trial_standard_error, 1.0, summary.motion) +

@@ -28,6 +28,10 @@ inline constexpr std::size_t kLineColumns = 100;
 /// ellipses with a picture where there are findings, and every warning with what to try.
 [[nodiscard]] std::string result_text(const Identification& identification, const std::optional<Findings>& findings);
 
+/// The other method beside the first: that both agree, or its model and why they differ.
+[[nodiscard]] std::string alternative_text(const Identification& identification, const Identification& alternative,
+                                           const Disagreement& disagreement);
+
 /// Mean and between-trial standard error of several results.
 [[nodiscard]] std::string summary_text(const Summary& summary);
 

@@ -11,6 +11,7 @@
 #include "mbk/impedance/ellipse.h"
 #include "mbk/impedance/model.h"
 #include "mbk/result/json_parts.h"
+#include "mbk/result/passivity_json.h"
 
 namespace mbk::result {
 namespace {
@@ -20,10 +21,6 @@ constexpr const char* kResultsSchema = "mbk.results/1";
 
 Json model_json(const impedance::Model& model) {
   return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
-}
-
-Json interval(const Interval& value, double scale = 1.0) {
-  return Json::array({number(scale * value.first), number(scale * value.second)});
 }
 
 Json warnings_json(const std::vector<Warning>& warnings) {
@@ -178,6 +175,7 @@ Json result_json(const Measured& measured) {
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
   json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
+  if (measured.passivity) json["passivity"] = passivity_json(*measured.passivity);
   json["warnings"] = warnings_json(id.warnings);
   json["usable"] = id.usable;
   json["covariance"] = {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}};
@@ -487,6 +485,25 @@ std::string to_json(const robot::Workspace& workspace, const std::optional<robot
                     {"orientation_deg", number(degrees * felt.orientation)}}}};
   }
   return dumped(json);
+}
+
+std::string one_or_list_json(const char* schema_of_list, const std::vector<std::string>& documents) {
+  std::vector<Json> objects;
+  for (const std::string& document : documents) objects.push_back(Json::parse(document));
+  return one_or_list(schema_of_list, objects);
+}
+
+std::optional<PassivityBand> passivity_band_from_json(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  const Json::json_pointer alone("/passivity/band_hz"), first("/results/0/passivity/band_hz");
+  for (const auto& place : {alone, first}) {
+    if (!json.contains(place)) continue;
+    const Json& band = json[place];
+    if (!band.is_array() || band.size() != 2 || !band[0].is_number() || !band[1].is_number()) continue;
+    return PassivityBand{Hertz(band[0].get<double>()), Hertz(band[1].get<double>()), "as stored with the result"};
+  }
+  return std::nullopt;
 }
 
 Result<std::vector<Identification>> identifications_from_json(std::string_view text) {

@@ -11,6 +11,7 @@
 #include "mbk/trial/findings.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/inspection.h"
+#include "mbk/trial/passivity.h"
 #include "mbk/trial/recording.h"
 #include "mbk/trial/summary.h"
 #include "mbk/trial/validation_table.h"
@@ -24,6 +25,8 @@ struct Measured {
   /// The other method on the same rows; absent where no reference was recorded.
   std::optional<Identification> alternative;
   std::optional<Disagreement> disagreement;
+  std::optional<Passivity> passivity;
+  std::vector<Energy> energies;  ///< one for each recording, beside the passivity
 };
 
 /// Schema "mbk.result/1". SI units; numbers carry every digit; absent = not computed, null = undefined.
@@ -35,6 +38,11 @@ struct Measured {
 /// Schema "mbk.ellipse/1": the ellipses and antisymmetry of a result; "mbk.ellipses/1" with `results` for several.
 [[nodiscard]] std::string to_json(const std::vector<Identification>& identifications,
                                   const std::vector<Findings>& findings);
+
+/// Schema "mbk.passivity/1": what decides whether a limb is passive, in full: `passivity` as in a result, and for each
+/// recording the energy over time and part by part.
+[[nodiscard]] std::string passivity_to_json(const std::vector<SourceFile>& sources, const Passivity& passivity,
+                                            const std::vector<Energy>& energies);
 
 /// Schema "mbk.info/1": what is in a recording; "mbk.infos/1" with `results` for several.
 [[nodiscard]] std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections);
@@ -48,6 +56,12 @@ struct Measured {
 /// Schema "mbk.workspace/1": where the hand can be, and the robot at one place where one is given. Metres, except that
 /// angles are in degrees and say so.
 [[nodiscard]] std::string to_json(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture);
+
+/// One document as it is, or several as `results` of a schema of their own.
+[[nodiscard]] std::string one_or_list_json(const char* schema_of_list, const std::vector<std::string>& documents);
+
+/// The band in which a stored result's model was judged, from its first result; absent where it does not say.
+[[nodiscard]] std::optional<PassivityBand> passivity_band_from_json(std::string_view text);
 
 /// Reads back what `to_json` wrote, schema mbk.result/1 or mbk.results/1: model, covariance (from the standard errors
 /// where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and inputs; not the

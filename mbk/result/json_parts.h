@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mbk/core/linear_algebra.h"
@@ -25,6 +26,11 @@ inline Json list(const Vector& values) {
   Json array = Json::array();
   for (const double value : values) array.push_back(number(value));
   return array;
+}
+
+/// [low, high]
+inline Json interval(const std::pair<double, double>& value, double scale = 1.0) {
+  return Json::array({number(scale * value.first), number(scale * value.second)});
 }
 
 inline Json rows(const Matrix& matrix) {

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/measure_options.h"
+#include "apps/mbk/option_checks.h"
+#include "mbk/analyse/passivity.h"
+#include "mbk/measurement/measure.h"
+#include "mbk/report/chart.h"
+#include "mbk/report/passivity_text.h"
+#include "mbk/report/text.h"
+#include "mbk/result/json.h"
+
+namespace mbk::app {
+namespace {
+
+struct Arguments : MeasureArguments {
+  std::string band;
+};
+
+/// LOW:HIGH in Hz.
+Result<std::optional<PassivityBand>> band_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  double low = 0.0, high = 0.0;
+  const char *end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, low);
+  const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
+  const auto second = colon ? std::from_chars(first.ptr + 1, end, high) : first;
+  if (!colon || second.ec != std::errc() || second.ptr != end || !(low > 0.0) || !(high > low)) {
+    return bad_usage(fmt::format("--band: {} is not LOW:HIGH in Hz with 0 < LOW < HIGH", quoted(text)),
+                     "as in --band 0.3:3");
+  }
+  return PassivityBand{Hertz(low), Hertz(high), "as asked"};
+}
+
+/// One limb's answer, ready to be written.
+struct Answer {
+  std::vector<SourceFile> sources;
+  Passivity passivity;
+  std::vector<Energy> energies;
+};
+
+Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const std::optional<PassivityBand>& band) {
+  auto options = measurement_options(arguments);
+  if (!options) return tl::unexpected(options.error());
+  options->band = band;
+  const auto recordings = read_recordings(arguments);
+  if (!recordings) return tl::unexpected(recordings.error());
+  std::vector<Answer> answers;
+  const std::span<const Recording> all(*recordings);
+  for (std::size_t k = 0; k < (arguments.pool ? 1 : all.size()); ++k) {
+    auto measured = measurement::measure(arguments.pool ? all : all.subspan(k, 1), *options);
+    if (!measured) return tl::unexpected(measured.error());
+    answers.push_back(
+        {measured->identification.sources, std::move(*measured->passivity), std::move(measured->energies)});
+  }
+  return answers;
+}
+
+/// A stored result holds the model and not the data, so that only the model can be judged.
+Result<std::vector<Answer>> from_results(const Arguments& arguments, const std::optional<PassivityBand>& band) {
+  std::vector<Answer> answers;
+  for (const std::filesystem::path& file : arguments.files) {
+    const auto text = read_text(file);
+    if (!text) return tl::unexpected(text.error());
+    auto identifications = result::identifications_from_json(*text);
+    if (!identifications) return tl::unexpected(identifications.error().in(file.string()));
+    const auto stored = result::passivity_band_from_json(*text);
+    for (const Identification& id : *identifications) {
+      if (!band && !stored) {
+        return tl::unexpected(bad_usage(fmt::format("{} does not say in which band its model can be judged", file.string()),
+                                        "add --band LOW:HIGH in Hz")
+                                  .value());
+      }
+      auto model = analyse::model_passivity(id, band ? *band : *stored);
+      if (!model) return tl::unexpected(model.error().in(file.string()));
+      answers.push_back({id.sources, analyse::decide({std::move(*model)}, id.fit.vaf.mean(), std::nullopt), {}});
+    }
+  }
+  return answers;
+}
+
+std::string text_of(const Answer& answer) {
+  std::string text;
+  for (const SourceFile& source : answer.sources) text += source.path + "\n";
+  text += report::passivity_text(answer.passivity);
+  for (const Energy& energy : answer.energies) text += "\n" + report::chart_text(report::energy_chart(energy));
+  return text;
+}
+
+int run(const Arguments& arguments) {
+  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  const auto band = band_of(arguments.band);
+  if (!band) return report_error(band.error());
+  const bool stored = arguments.files.front().extension() == ".json";
+  const auto answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
+  if (!answers) return report_error(answers.error());
+  std::string shown;
+  if (arguments.json) {
+    std::vector<std::string> documents;
+    for (const Answer& one : *answers) {
+      documents.push_back(result::passivity_to_json(one.sources, one.passivity, one.energies));
+    }
+    shown = result::one_or_list_json("mbk.passivities/1", documents);
+  } else {
+    for (const Answer& one : *answers) shown += (shown.empty() ? "" : "\n") + text_of(one);
+  }
+  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_passivity(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("passivity", "is the limb passive? by the model and by the energy it absorbs");
+  command->footer(
+      "Examples:\n"
+      "  mbk passivity log.mat\n"
+      "      the verdict, every condition of the model with its interval, and the energy over time\n"
+      "  mbk passivity log.mat --band 0.5:3\n"
+      "      the model judged in a band of one's own choice: the band decides\n"
+      "  mbk passivity result.json\n"
+      "      the model that 'mbk measure --json' stored; there are no data in it, so no energy\n\n"
+      "passive: every condition holds with 95 % confidence. active: one fails, or energy was generated.\n"
+      "undecided: the data do not say. Where no model explains half of the force the energy decides.");
+  add_reading_options(*command, *arguments);
+  add_measuring_options(*command, *arguments);
+  command->add_option("--band", arguments->band, "frequencies at which the model is judged; otherwise those at which "
+                                                 "the perturbation explains position and force")
+      ->type_name("LOW:HIGH")
+      ->check(not_empty())
+      ->group("What counts");
+  add_output_options(*command, *arguments, "mbk.passivity/1");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,119 @@
+#include "mbk/report/passivity_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "mbk/report/chart.h"
+#include "mbk/report/layout.h"
+#include "mbk/report/text.h"
+
+namespace mbk::report {
+namespace {
+
+std::string between(const Interval& interval) {
+  if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return "";
+  return fmt::format("[{:.3g}, {:.3g}]", interval.first, interval.second);
+}
+
+const char* long_name(Method method) {
+  return method == Method::least_squares ? "least squares" : "instrumental variables";
+}
+
+std::string model_text(const ModelPassivity& model) {
+  std::string text = fmt::format("  model of {}: {} from {:.3g} to {:.3g} Hz\n", long_name(model.method),
+                                 mbk::text(model.verdict), model.band.low.value, model.band.high.value);
+  std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "± s.e.", "unit", ""}};
+  for (const PassivityCondition& c : model.conditions) {
+    rows.push_back({c.name, fmt::format("{:.3g}", c.value), fmt::format("{:.2g}", c.standard_error), c.unit,
+                    c.verdict == Verdict::passive  ? "holds"
+                    : c.verdict == Verdict::active ? "fails"
+                                                   : "open"});
+  }
+  text += table(rows);
+  rows = {{"smallest index", fmt::format("{:.3g}", model.smallest_index), between(model.smallest_index95),
+           fmt::format("at {:.3g} Hz", model.smallest_at.value)}};
+  if (model.excess) {
+    rows.push_back({"excess of passivity", fmt::format("{:.3g}", model.excess->corrected),
+                    between(model.excess->corrected95), "of the symmetric part: smallest eigenvalue of B"});
+    rows.push_back({"  by the published formula", fmt::format("{:.3g}", model.excess->published),
+                    between(model.excess->published95), "half of the largest eigenvalue of B"});
+  }
+  if (model.nonpassive_below_hz && *model.nonpassive_below_hz > 0.0) {
+    rows.push_back({"active below", fmt::format("{:.2g} Hz", *model.nonpassive_below_hz), "",
+                    "where the antisymmetric stiffness outweighs the damping"});
+  }
+  return text + table(rows);
+}
+
+std::string energy_text(const EnergyAccount& account) {
+  const char* const what = account.shortage_at_end < 0.0 ? "excess at the end" : "shortage at the end";
+  const char* const largest = account.shortage_largest < 0.0 ? "smallest excess" : "largest shortage";
+  const auto shortage = [](double value, const Interval& interval) {
+    return value < 0.0 ? std::pair{-value, Interval{-interval.second, -interval.first}} : std::pair{value, interval};
+  };
+  const auto [end, end95] = shortage(account.shortage_at_end, account.shortage_at_end95);
+  const auto [most, most95] = shortage(account.shortage_largest, account.shortage_largest95);
+  return fmt::format("  energy: {}\n", mbk::text(account.verdict)) +
+         table({{"absorbed", fmt::format("{:.3g} J", account.absorbed), between(account.absorbed95),
+                 fmt::format("in {:.1f} s", account.duration)},
+                {what, fmt::format("{:.3g} N·s/m", end), between(end95), "eq. (4.3)"},
+                {largest, fmt::format("{:.3g} N·s/m", most), between(most95), "over time"}}) +
+         paragraph("    ", account.reason);
+}
+
+}  // namespace
+
+std::string passivity_text(const Passivity& passivity) {
+  std::string text = fmt::format("passivity: {}, by the {}\n", mbk::text(passivity.verdict),
+                                 passivity.by_model ? "model" : "energy");
+  text += paragraph("  ", passivity.reason);
+  text += "\n";
+  for (const ModelPassivity& model : passivity.models) text += model_text(model) + "\n";
+  if (passivity.energy) text += energy_text(*passivity.energy) + "\n";
+  return text + "  (brackets are 95 % intervals)\n";
+}
+
+std::string passivity_line(const Passivity& passivity) {
+  return paragraph("  ", fmt::format("passivity: {}, by the {}: {}", mbk::text(passivity.verdict),
+                                     passivity.by_model ? "model" : "energy", passivity.reason));
+}
+
+Chart energy_chart(const Energy& energy) {
+  Chart chart;
+  chart.title = "energy that the limb absorbed";
+  chart.x = {"time", "s"};
+  chart.y = {"energy", "J"};
+  ChartSeries series;
+  series.name = "energy";
+  series.drawn = ChartSeries::Drawn::line;
+  series.x.assign(energy.curve.time.begin(), energy.curve.time.end());
+  series.y.assign(energy.curve.absorbed.begin(), energy.curve.absorbed.end());
+  chart.series.push_back(std::move(series));
+  chart.horizontal.push_back({0.0, "0"});
+  return chart;
+}
+
+Chart index_chart(const ModelPassivity& model) {
+  Chart chart;
+  chart.title = fmt::format("passivity index of the model by {}", long_name(model.method));
+  chart.x = {"frequency", "Hz"};
+  chart.y = {"index", "N·s/m"};
+  const PassivityIndexCurve& curve = model.curve;
+  const auto add = [&](const char* name, const Vector& y) {
+    ChartSeries series;
+    series.name = name;
+    series.drawn = ChartSeries::Drawn::line;
+    series.x.assign(curve.frequency.begin(), curve.frequency.end());
+    series.y.assign(y.begin(), y.end());
+    chart.series.push_back(std::move(series));
+  };
+  add("index", curve.index);
+  add("95 % below", curve.lower95);
+  add("95 % above", curve.upper95);
+  chart.horizontal.push_back({0.0, "0"});
+  return chart;
+}
+
+}  // namespace mbk::report

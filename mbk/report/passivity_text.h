@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "mbk/trial/chart.h"
+#include "mbk/trial/passivity.h"
+
+namespace mbk::report {
+
+/// A verdict in full for the terminal: why, every condition of each model, excess and shortage, energy.
+[[nodiscard]] std::string passivity_text(const Passivity& passivity);
+
+/// The verdict and its reason in a few words.
+[[nodiscard]] std::string passivity_line(const Passivity& passivity);
+
+/// Energy over time (Dyck 2013, figs 3.15, 3.17, 4.3, 4.4).
+[[nodiscard]] Chart energy_chart(const Energy& energy);
+
+/// The index over the band, with its interval.
+[[nodiscard]] Chart index_chart(const ModelPassivity& model);
+
+}  // namespace mbk::report

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "mbk/result/json_parts.h"
+#include "mbk/trial/passivity.h"
+
+/// For the sources of this module only.
+namespace mbk::result {
+
+/// Object `passivity` of a result: the verdict, what decided it, and the numbers behind it.
+[[nodiscard]] Json passivity_json(const Passivity& passivity);
+
+}  // namespace mbk::result
