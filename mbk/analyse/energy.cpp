@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -28,6 +30,7 @@ struct Range {
 struct Exchange {
   Vector time;                 ///< [s] from the first sample
   Matrix position;             ///< N×n
+  Matrix force;                ///< N×n, F_h
   Matrix reference;            ///< N×n, or empty
   std::vector<bool> unbroken;  ///< intervals without a break
   Vector absorbed;             ///< in each interval; 0 across a break
@@ -93,9 +96,9 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
   }
   Exchange exchange;
   exchange.position = recorded(recording, trial.axes, kPosition);
-  const Matrix force = recorded(recording, trial.axes, kForce);
+  exchange.force = recorded(recording, trial.axes, kForce);
   if (exchange.position.size() == 0) return bad_data("no position was recorded", "say where it is: --channels");
-  if (force.size() == 0) {
+  if (exchange.force.size() == 0) {
     return bad_data("no force was recorded, without which there is no energy", "say where it is: --channels");
   }
   exchange.reference = recorded(recording, trial.axes, kReference);
@@ -109,8 +112,8 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
   const double longest = 1.5 / trial.recording_rate;
   for (Index i = 0; i + 1 < samples; ++i) {
     const double step = exchange.step(i);
-    const double work =
-        -0.5 * (force.row(i) + force.row(i + 1)).dot(exchange.position.row(i + 1) - exchange.position.row(i));
+    const double work = -0.5 * (exchange.force.row(i) + exchange.force.row(i + 1))
+                                   .dot(exchange.position.row(i + 1) - exchange.position.row(i));
     const bool unbroken = step > 0.0 && step <= longest && std::isfinite(work);
     exchange.unbroken[static_cast<std::size_t>(i)] = unbroken;
     if (unbroken) exchange.absorbed[i] = work;
@@ -238,6 +241,17 @@ Vector curl_of(const Exchange& exchange, double k_a, const Vector& about) {
   return work;
 }
 
+/// ∫ Ḟ·v dt over the window, by increments of the force.
+double added_per_delay(const Exchange& exchange) {
+  double sum = 0.0;
+  for (Index i = exchange.window.first; i < exchange.window.last; ++i) {
+    if (!exchange.is_known(i)) continue;
+    sum += 0.5 * (exchange.velocity.row(i) + exchange.velocity.row(i + 1))
+                     .dot(exchange.force.row(i + 1) - exchange.force.row(i));
+  }
+  return sum;
+}
+
 Vector running_sum(const Vector& increments) {
   Vector sum(increments.size() + 1);
   sum[0] = 0.0;
@@ -296,6 +310,8 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
   energy.to_s = exchange->time[exchange->window.last];
   energy.left_out_s = std::max(0.0, energy.to_s - energy.from_s - energy.account.duration);
   energy.shortage_largest_at_s = largest_at(*exchange, energy.account.squared_velocity, options.first_share);
+  energy.added_per_delay = added_per_delay(*exchange);
+  energy.delay_that_makes_it_up = energy.account.absorbed / energy.added_per_delay;
   energy.parts_are_perturbations = has_perturbations(trial);
   for (const Range& range : parts) energy.parts.push_back(part_of(*exchange, range));
 

@@ -187,6 +187,13 @@ TEST(AbsorbedEnergy, OfALateForceIsOffByTheDelayTimesTheStiffnessAtTheSensor) {
   const double wanted = kDamping * std::cos(kOmega * kDelay) -
                         (kStiffness - kMass * kOmega * kOmega) * std::sin(kOmega * kDelay) / kOmega;
   EXPECT_NEAR(absorbed_energy(late, sine_trial(late)).value().account.shortage_at_end, -wanted, 1e-3);
+  // To first order in the delay that is what the recording itself foretells.
+  const Recording prompt = sine_recording();
+  const Energy energy = absorbed_energy(prompt, sine_trial(prompt)).value();
+  const double at_sensor = kStiffness - kMass * kOmega * kOmega;  // F = −at_sensor x − b v
+  EXPECT_NEAR(energy.added_per_delay, -at_sensor * energy.account.squared_velocity,
+              1e-4 * std::abs(energy.added_per_delay));
+  EXPECT_NEAR(energy.delay_that_makes_it_up, -kDamping / at_sensor, 2e-4 * std::abs(energy.delay_that_makes_it_up));
 }
 
 // Breaks

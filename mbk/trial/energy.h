@@ -66,11 +66,16 @@ struct CurlWork {
 
 /// Energy that the limb exchanged with the machine in one recording.
 struct Energy {
-  EnergyCurve curve;                     ///< of the whole recording
-  double from_s = 0, to_s = 0;           ///< the window: first and last sample that count
-  double left_out_s = 0;                 ///< of it, where the clock has gaps, or force or velocity are not known
-  double shortage_largest_at_s = 0;      ///< when [s] from the recording's first sample
-  EnergyAccount account;                 ///< of the window
+  EnergyCurve curve;                 ///< of the whole recording
+  double from_s = 0, to_s = 0;       ///< the window: first and last sample that count
+  double left_out_s = 0;             ///< of it, where the clock has gaps, or force or velocity are not known
+  double shortage_largest_at_s = 0;  ///< when [s] from the recording's first sample
+  EnergyAccount account;             ///< of the window
+  /// ∫ Ḟ_h·v dt over the window [W]: what a force that is recorded late adds to E, for each second of delay.
+  double added_per_delay = 0;
+  /// E/added_per_delay [s]: a force recorded as much later than the position (earlier, where it is negative) would make
+  /// up the whole of E. Judge by it whether the two were simultaneous enough; infinite where delay changes nothing.
+  double delay_that_makes_it_up = 0;
   bool parts_are_perturbations = false;  ///< false: blocks of about 2.5 s
   std::vector<EnergyPart> parts;         ///< in order of time
   std::optional<CurlWork> curl;          ///< only with a model of two axes
