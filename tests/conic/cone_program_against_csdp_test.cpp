@@ -57,7 +57,8 @@ struct Csdp {
       Matrix::Map(block.data.mat, constant.rows(), constant.cols()) = -constant;
     }
     for (int i = variables; i >= 1; --i) {
-      for (std::size_t k = blocks; k-- > 0;) add(i, static_cast<int>(k) + 1, inequalities[k][static_cast<std::size_t>(i)]);
+      for (std::size_t k = blocks; k-- > 0;)
+        add(i, static_cast<int>(k) + 1, inequalities[k][static_cast<std::size_t>(i)]);
     }
     initsoln(order, variables, C, a, constraints, &X, &y, &Z);
     outcome = easy_sdp(order, variables, C, a, constraints, 0.0, &X, &y, &Z, &primal, &dual);
@@ -143,8 +144,8 @@ struct InAFolderWithTightTolerances {
 TEST(ConeProgram, HasTheMinimumThatCsdpFinds) {
   omp_set_num_threads(1);
   const InAFolderWithTightTolerances here;
-  constexpr double kValue = 1e-8;      // CSDP's relative gap is asked to be 1e-11; it gives up at about 1e-9
-  constexpr double kArgument = 1e-4;   // and √1e-8 is what a value to 1e-8 says of the argument
+  constexpr double kValue = 1e-8;     // CSDP's relative gap is asked to be 1e-11; it gives up at about 1e-9
+  constexpr double kArgument = 1e-4;  // and √1e-8 is what a value to 1e-8 says of the argument
   Random random(1);
   int solved = 0;
   constexpr int kPrograms = 200;
