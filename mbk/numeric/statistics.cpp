@@ -29,6 +29,23 @@ std::pair<double, double> interval95(double value, double standard_error) {
   return {value - kNormal95 * standard_error, value + kNormal95 * standard_error};
 }
 
+double normal_probability(double z) {
+  return 0.5 * std::erfc(-z * M_SQRT1_2);
+}
+
+double normal_quantile(double p) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (std::isnan(p)) return p;
+  if (p <= 0.0) return -kInfinity;
+  if (p >= 1.0) return kInfinity;
+  double low = -40.0, high = 40.0;
+  for (int i = 0; i < 64; ++i) {
+    const double middle = 0.5 * (low + high);
+    (normal_probability(middle) < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 namespace {
 
 /// P(X ≤ k) for X ~ Binomial(n, p).

@@ -26,6 +26,12 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 /// value ± 1.96 se.
 [[nodiscard]] std::pair<double, double> interval95(double value, double standard_error);
 
+/// Φ(z) = P(Z < z) of a standard normal Z.
+[[nodiscard]] double normal_probability(double z);
+
+/// Φ⁻¹(p), by bisection to the last digits; −∞ for p ≤ 0, ∞ for p ≥ 1.
+[[nodiscard]] double normal_quantile(double p);
+
 /// Exact (Clopper–Pearson) interval of a binomial proportion, by bisection of the binomial tails.
 /// @param successes 0…trials    @param confidence e.g. 0.99
 [[nodiscard]] std::pair<double, double> binomial_interval(int successes, int trials, double confidence);
