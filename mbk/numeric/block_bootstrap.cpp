@@ -19,7 +19,7 @@ namespace {
 class Solver {
  public:
   Solver(const Moments& data, const Matrix& Z, const Matrix& R, const std::vector<RowRange>& ranges, const Matrix& S)
-      : p_(data.RtZ.rows()), q_(data.RtY.cols()), S_(S) {
+      : p_(data.regressors.rows()), q_(data.outputs.cols()), S_(S) {
     Vector z = Vector::Zero(p_), r = Vector::Zero(p_);
     for (const RowRange& range : ranges) {
       z += Z.middleRows(range.begin, range.size()).colwise().squaredNorm().transpose();
@@ -34,16 +34,16 @@ class Solver {
     constexpr double kApart = 1e-13;
     Matrix A, b;
     if (S_.size() == 0) {
-      A = moments.RtZ;
-      b = moments.RtY;
+      A = moments.regressors;
+      b = moments.outputs;
     } else {
       const Index k = S_.cols();
       A.setZero(k, k);
       b.setZero(k, 1);
       for (Index j = 0; j < q_; ++j) {
         const auto part = S_.middleRows(j * p_, p_);
-        A.noalias() += part.transpose() * (moments.RtZ * part);
-        b.noalias() += part.transpose() * moments.RtY.col(j);
+        A.noalias() += part.transpose() * (moments.regressors * part);
+        b.noalias() += part.transpose() * moments.outputs.col(j);
       }
     }
     A = left_.asDiagonal() * A * right_.asDiagonal();

@@ -12,8 +12,8 @@ namespace mbk::numeric {
 
 /// RᵀZ and RᵀY over some rows.
 struct Moments {
-  Matrix RtZ;  ///< p×p
-  Matrix RtY;  ///< p×q
+  Matrix regressors;  ///< p×p
+  Matrix outputs;     ///< p×q
 };
 
 /// Draws samples of rows as long as the data from blocks of rows that follow each other, with replacement, so that the

@@ -213,11 +213,11 @@ int polish(const Scaled& p, Point& at) {
 
 ConeSolution solution_of(const ConeProgram& program, const Scaled& p, const Point& at) {
   const Vector S = clipped(p, at.z), Y = at.weight * (S - at.z);
-  const Vector Px = p.P * at.x, AtY = p.A.transpose() * Y;
+  const Vector Px = p.P * at.x, pull = p.A.transpose() * Y;
   ConeSolution found;
   const double size = std::max({1.0, largest(at.x), largest(S), largest(Y)});
   found.primal_residual = largest(p.A * at.x + p.b - S) / size;
-  found.dual_residual = largest(Px + p.q - AtY) / size;
+  found.dual_residual = largest(Px + p.q - pull) / size;
   const double half = 0.5 * at.x.dot(Px), primal = half + p.q.dot(at.x), dual = -half - p.b.dot(Y);
   found.gap = std::abs(primal - dual) / (1.0 + std::abs(primal) + std::abs(dual));
   found.x = p.number_unit * p.x_unit.cwiseProduct(at.x);
