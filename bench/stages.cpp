@@ -2,13 +2,17 @@
 //   bench_stages --benchmark_filter=prepare
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
 #include "mbk/analyse/ellipses.h"
+#include "mbk/identify/consistent_fit.h"
 #include "mbk/identify/impedance_fit.h"
+#include "mbk/identify/regression.h"
 #include "mbk/laboratory/prescribed_motion.h"
 #include "mbk/measurement/measure.h"
+#include "mbk/numeric/block_bootstrap.h"
 #include "mbk/preprocess/prepare.h"
 #include "mbk/recording/inspection.h"
 #include "mbk/recording/read.h"
@@ -100,6 +104,24 @@ void identify_with_standard_errors(benchmark::State& state, Mode mode) {
 }
 BENCHMARK_CAPTURE(identify_with_standard_errors, reference, Mode::reference)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(identify_with_standard_errors, improved, Mode::improved)->Unit(benchmark::kMillisecond);
+
+void consistent_model(benchmark::State& state, Mode mode) {
+  const std::vector<PreparedTrial> trials = {trial(mode)};
+  Identification found = value_of(identify::identify_impedance(trials, {}));
+  found.model.K(0, 0) -= 100.0;  // so that a cone is in the way
+  for (auto _ : state) benchmark::DoNotOptimize(value_of(identify::consistent_model(trials, found)));
+}
+BENCHMARK_CAPTURE(consistent_model, reference, Mode::reference)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(consistent_model, improved, Mode::improved)->Unit(benchmark::kMillisecond);
+
+void bootstrap_of_1000_with_blocks_of_2500_ms(benchmark::State& state, Mode mode) {
+  const identify::Regression r = identify::stack({trial(mode)});
+  const auto rows = identify::joined(r.identification, {});
+  const numeric::BlockBootstrapOptions options{.block_rows = std::llround(2.5 / r.sample_time)};
+  for (auto _ : state) benchmark::DoNotOptimize(value_of(numeric::block_bootstrap(r.Z, r.Z, r.Y, {}, rows, options)));
+}
+BENCHMARK_CAPTURE(bootstrap_of_1000_with_blocks_of_2500_ms, reference, Mode::reference)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bootstrap_of_1000_with_blocks_of_2500_ms, improved, Mode::improved)->Unit(benchmark::kMillisecond);
 
 void ellipses_text_and_json(benchmark::State& state) {
   const Identification found = value_of(identify::identify_impedance({trial(Mode::improved)}, {}));

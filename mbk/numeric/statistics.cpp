@@ -35,6 +35,19 @@ double normal_probability(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
+double normal_quantile(double p) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (std::isnan(p)) return p;
+  if (p <= 0.0) return -kInfinity;
+  if (p >= 1.0) return kInfinity;
+  double low = -40.0, high = 40.0;
+  for (int i = 0; i < 64; ++i) {
+    const double middle = 0.5 * (low + high);
+    (normal_probability(middle) < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 namespace {
 
 /// P(|T| ≤ t), t ≥ 0.

@@ -29,6 +29,9 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 /// Φ(z), P(Z ≤ z) of a standard normal Z.
 [[nodiscard]] double normal_probability(double z);
 
+/// Φ⁻¹(p), by bisection to the last digits; −∞ for p ≤ 0, ∞ for p ≥ 1.
+[[nodiscard]] double normal_quantile(double p);
+
 /// t with P(T ≤ t) = p for Student's T, by bisection of its finite sums (Abramowitz & Stegun 1964, 26.7.3 and 26.7.4).
 /// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
 [[nodiscard]] double student_quantile(double p, int degrees_of_freedom);

@@ -59,6 +59,18 @@ TEST(Statistics, BinomialIntervalIsClopperAndPearsons) {
   EXPECT_EQ(binomial_interval(10, 10, 0.95).second, 1.0);
 }
 
+TEST(Statistics, NormalProbabilityAndItsQuantileAreEachOthersInverse) {
+  EXPECT_NEAR(normal_probability(kNormal95), 0.975, 1e-15);
+  EXPECT_NEAR(normal_quantile(0.975), kNormal95, 1e-12);
+  EXPECT_NEAR(normal_quantile(0.995), kNormal99, 1e-12);
+  for (double z = -8.0; z < 8.0; z += 0.37) {
+    EXPECT_NEAR(normal_quantile(normal_probability(z)), z, z < 4.0 ? 1e-9 : 0.1) << z;  // near 1 the digits are gone
+  }
+  EXPECT_EQ(normal_quantile(0.0), -INFINITY);
+  EXPECT_EQ(normal_quantile(1.0), INFINITY);
+  EXPECT_TRUE(std::isnan(normal_quantile(std::nan(""))));
+}
+
 TEST(Statistics, APositiveQuantityHasAPositiveInterval) {
   const auto [low, high] = positive_interval95(2.0, 3.0);
   EXPECT_GT(low, 0.0);
