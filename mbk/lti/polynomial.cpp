@@ -120,16 +120,16 @@ Polynomial monic(const Polynomial& p) {
 }
 
 Polynomial gcd(const Polynomial& a, const Polynomial& b) {
-  IntegerPolynomial first = primitive(a), second = primitive(b);
-  while (!second.empty()) {
-    first = primitive_remainder(std::move(first), second);
-    std::swap(first, second);
-  }
-  return monic(Polynomial(std::vector<Rational>(first.begin(), first.end())));
+  if (a.degree() < b.degree()) return gcd(b, a);
+  if (b.is_zero()) return monic(a);
+  if (are_surely_coprime(primitive(a), primitive(b))) return Polynomial{1};
+  const IntegerPolynomial last = signed_remainders(a, b).back();
+  return monic(Polynomial(std::vector<Rational>(last.begin(), last.end())));
 }
 
 Polynomial square_free(const Polynomial& p) {
-  return monic(divide(p, gcd(p, p.derivative())).quotient);
+  const Polynomial repeated = gcd(p, p.derivative());
+  return monic(repeated.degree() > 0 ? divide(p, repeated).quotient : p);
 }
 
 std::vector<Polynomial> square_free_factors(const Polynomial& p) {

@@ -19,10 +19,20 @@ class Sturm {
 
   [[nodiscard]] int sign(const Rational& x) const { return sign_at(sequence_.front(), x); }
 
+  /// A point with what Sturm's theorem needs of it.
+  struct Point {
+    Rational x;
+    int variations;
+    bool is_root;
+  };
+
+  [[nodiscard]] Point point(const Rational& x) const { return {x, variations(x), sign(x) == 0}; }
+
   /// Different roots in (low, high).
-  [[nodiscard]] int roots(const Rational& low, const Rational& high) const {
-    return variations(low) - variations(high) - (sign(high) == 0 ? 1 : 0);
+  [[nodiscard]] static int roots(const Point& low, const Point& high) {
+    return low.variations - high.variations - (high.is_root ? 1 : 0);
   }
+  [[nodiscard]] int roots(const Rational& low, const Rational& high) const { return roots(point(low), point(high)); }
 
   /// Every root lies in (−bound, bound): Cauchy's 1 + max |cᵢ/cₙ|, up to the next power of two.
   [[nodiscard]] Rational bound() const {
@@ -47,18 +57,18 @@ class Sturm {
   std::vector<IntegerPolynomial> sequence_;
 };
 
-void isolate(const Sturm& sturm, const Rational& low, const Rational& high, int count,
-             std::vector<RootBracket>& found) {
+void isolate(const Sturm& sturm, const Sturm::Point& low, const Sturm::Point& high, std::vector<RootBracket>& found) {
+  const int count = Sturm::roots(low, high);
   if (count == 0) return;
-  const bool across_zero = low < 0 && high > 0;
-  if (count == 1 && !across_zero && sturm.sign(low) != 0 && sturm.sign(high) != 0) {
-    found.push_back({low, high});
+  const bool across_zero = low.x < 0 && high.x > 0;
+  if (count == 1 && !across_zero && !low.is_root && !high.is_root) {
+    found.push_back({low.x, high.x});
     return;
   }
-  const Rational middle = across_zero ? Rational(0) : (low + high) / 2;
-  isolate(sturm, low, middle, sturm.roots(low, middle), found);
-  if (sturm.sign(middle) == 0) found.push_back({middle, middle});
-  isolate(sturm, middle, high, sturm.roots(middle, high), found);
+  const Sturm::Point middle = sturm.point(across_zero ? Rational(0) : (low.x + high.x) / 2);
+  isolate(sturm, low, middle, found);
+  if (middle.is_root) found.push_back({middle.x, middle.x});
+  isolate(sturm, middle, high, found);
 }
 
 /// Where the interval can hold roots; nothing where it cannot.
@@ -95,7 +105,7 @@ std::vector<RootBracket> isolate_roots(const Polynomial& p, const Interval& inte
   std::vector<RootBracket> found;
   const Sturm sturm(p);
   if (const auto ends = finite(sturm, interval)) {
-    isolate(sturm, ends->first, ends->second, sturm.roots(ends->first, ends->second), found);
+    isolate(sturm, sturm.point(ends->first), sturm.point(ends->second), found);
   }
   return found;
 }
