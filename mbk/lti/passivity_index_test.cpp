@@ -40,6 +40,13 @@ TEST(PassivityIndices, HaveThePublishedValues) {
   expect_index(relative_passivity_index(siso({1, 1}, {2, 1})), 1.0 / 3.0);
 }
 
+TEST(PassivityIndices, OfTheCircuitInMatlabsExampleAgree) {
+  // (s + 2)(2 s + 10)/(s² + 4 s + 10)
+  const RationalMatrix G = siso({20, 14, 2}, {10, 4, 1});
+  expect_index(input_passivity_index(G), 2.0);
+  expect_index(output_passivity_index(G), 0.2857, kPublished);
+}
+
 TEST(PassivityIndices, OfAGainHaveTheirClosedForms) {
   for (const double gain : {0.25, 1.0, 3.0, -0.5, -3.0}) {
     const RationalMatrix G = siso({gain}, {1});
