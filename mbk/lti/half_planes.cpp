@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "mbk/core/linear_algebra.h"
@@ -26,6 +28,17 @@ int cauchy_index(const Polynomial& a, const Polynomial& b) {
     right = at_plus;
   }
   return lost;
+}
+
+/// The power of two near the geometric mean of the roots of a monic polynomial; 1 where a root is zero.
+Rational typical_root(const Polynomial& p) {
+  const Rational product = abs(p.coefficient(0));
+  if (product.is_zero()) return 1;
+  const int digits =
+      static_cast<int>(msb(Integer(numerator(product)))) - static_cast<int>(msb(Integer(denominator(product))));
+  const int exponent = digits / p.degree();
+  const Integer power = Integer(1) << static_cast<unsigned>(std::abs(exponent));
+  return exponent < 0 ? Rational(Integer(1), power) : Rational(power);
 }
 
 }  // namespace
@@ -53,14 +66,15 @@ std::vector<std::complex<double>> complex_roots(const Polynomial& p) {
   const Index n = once.degree();
   if (n == 0) return {};
   // s = scale·z makes the roots about 1 large; scale is a power of two
-  double scale = 1.0;
-  if (!once.coefficient(0).is_zero()) {
-    scale = std::exp2(std::round(std::log2(std::abs(to_double(once.coefficient(0)))) / static_cast<double>(n)));
-  }
-  const Polynomial scaled = monic(compose(once, Polynomial{0, Rational(scale)}));
+  const Rational scale = typical_root(once);
+  const Polynomial scaled = monic(compose(once, Polynomial{0, scale}));
   Matrix companion = Matrix::Zero(n, n);
   companion.diagonal(-1).setOnes();
   for (Index i = 0; i < n; ++i) companion(i, n - 1) = -to_double(scaled.coefficient(static_cast<int>(i)));
+  if (!companion.allFinite()) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    return std::vector<std::complex<double>>(static_cast<std::size_t>(n), {none, none});
+  }
   const Eigen::EigenSolver<Matrix> solver(companion, false);
 
   std::vector<std::complex<double>> roots;
@@ -70,7 +84,7 @@ std::vector<std::complex<double>> complex_roots(const Polynomial& p) {
       const std::complex<double> move = evaluate(scaled, z) / evaluate(slope, z);
       if (std::isfinite(std::abs(move)) && std::abs(move) < 1e-3 * std::abs(z)) z -= move;
     }
-    roots.push_back(scale * z);
+    roots.push_back(to_double(scale) * z);
   }
   std::sort(roots.begin(), roots.end(), [](const auto& a, const auto& b) {
     return std::pair(-a.real(), a.imag()) < std::pair(-b.real(), b.imag());

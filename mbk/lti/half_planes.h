@@ -20,7 +20,7 @@ struct HalfPlaneCount {
 [[nodiscard]] Polynomial axis_roots(const Polynomial& p);
 
 /// The different roots in double, by the eigenvalues of the companion matrix and Newton's steps; the largest real part
-/// comes first. p must not be zero.
+/// comes first. NaN where the scaled coefficients are beyond the range of a double. p must not be zero.
 [[nodiscard]] std::vector<std::complex<double>> complex_roots(const Polynomial& p);
 
 }  // namespace mbk::lti

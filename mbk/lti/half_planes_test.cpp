@@ -84,6 +84,15 @@ TEST(ComplexRoots, AreRoots) {
   EXPECT_TRUE(complex_roots(Polynomial{1}).empty());
 }
 
+TEST(ComplexRoots, MayHaveAProductThatNoDoubleHolds) {
+  const auto roots = complex_roots(with_roots({*exact(-1e200), *exact(-3e200)}));
+  ASSERT_EQ(roots.size(), 2u);
+  EXPECT_NEAR(roots[0].real() / -1e200, 1.0, kRoots);
+  EXPECT_NEAR(roots[1].real() / -3e200, 1.0, kRoots);
+  const auto beyond = complex_roots(with_roots({-1, *exact(-1e300), *exact(-1e-300), *exact(-1e-301)}));
+  ASSERT_EQ(beyond.size(), 4u);
+}
+
 TEST(ComplexRoots, OfWideRangeKeepTheirDigits) {
   const auto roots = complex_roots(with_roots({*exact(-1e-6), -1, *exact(-1e6)}));
   ASSERT_EQ(roots.size(), 3u);

@@ -34,6 +34,9 @@ class Infimum {
     while (q_.coefficient(zeros).is_zero()) ++zeros;
     look(coefficients(zeros), 0.0);
     look(coefficients(q_.degree()), kInfinity);
+    if (!std::isfinite(lowest_)) {
+      return fail(ErrorKind::not_usable, "values at zero and infinite frequency are beyond the range of a double");
+    }
     std::optional<double> proven;
     for (int test = 0; test < kMostTests; ++test) {
       const double width = scale_ > 0.0 ? kWidth * scale_ : kWidth;
@@ -64,11 +67,11 @@ class Infimum {
       const double low = std::sqrt(to_double(band.low.high));
       const double high = band.high ? std::sqrt(to_double(band.high->low)) : kInfinity;
       const double inside = std::sqrt(to_double(band.witness));
-      look(at(inside), inside);
+      look(inside);
       if (std::isinf(high)) {
-        for (const double times : {2.0, 8.0, 64.0}) look(at(times * inside), times * inside);
+        for (const double times : {2.0, 8.0, 64.0}) look(times * inside);
       } else {
-        for (const double part : {0.25, 0.5, 0.75}) look(at(low + part * (high - low)), low + part * (high - low));
+        for (const double part : {0.25, 0.5, 0.75}) look(low + part * (high - low));
       }
     }
     if (lowest_ > level) {  // too narrow for a double to be inside: the test alone says that it is lower
@@ -86,9 +89,10 @@ class Infimum {
     Rational q;
   };
 
-  [[nodiscard]] Value at(double omega) const {
+  void look(double omega) {
+    if (!std::isfinite(omega)) return;
     const Rational exact_omega(omega);
-    return value([&](const Polynomial& p) { return p(exact_omega); });
+    look(value([&](const Polynomial& p) { return p(exact_omega); }), omega);
   }
 
   /// The limits at zero and infinity are quotients of coefficients.
@@ -113,6 +117,7 @@ class Infimum {
       const auto& [re, im] = value.P[static_cast<std::size_t>(i)];
       quotient(i / n, i % n) = {to_double(re / value.q), to_double(im / value.q)};
     }
+    if (!quotient.allFinite()) return;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(quotient, Eigen::EigenvaluesOnly);
     const double smallest = solver.eigenvalues()[0];
     scale_ = std::max(scale_, solver.eigenvalues().cwiseAbs().maxCoeff());

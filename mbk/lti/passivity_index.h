@@ -18,7 +18,8 @@ struct PassivityIndex {
 ///   ν = inf over ω of λ_min(½ (G(jω) + G(jω)*)),
 /// which is the input passivity index of MATLAB's getPassiveIndex. For Z = M s + B + K/s it is λ_min(½ (B + Bᵀ)).
 /// @fails  not usable: it does not exist, because G has poles that no positive real matrix has; the message says which
-/// condition of positive_real() they violate, and where. usage: G is empty or too large for positive_real().
+/// condition of positive_real() they violate, and where; or its values are beyond the range of a double. usage: G is
+/// empty or too large for positive_real().
 [[nodiscard]] Result<PassivityIndex> input_passivity_index(const RationalMatrix& G);
 
 /// ρ, the input passivity index of G⁻¹.

@@ -164,7 +164,7 @@ void expect_lowest(const RationalMatrix& G, double index, RadPerSec frequency,
 TEST(PassivityIndices, AreAttainedAndNowhereLowerOnADenseGrid) {
   Random random(5);
   int found = 0;
-  for (int trial = 0; trial < 16; ++trial) {
+  for (int trial = 0; trial < 10; ++trial) {
     SCOPED_TRACE(trial);
     const RationalMatrix G = random_stable(random, 1 + trial % 2);
     const auto input = input_passivity_index(G), output = output_passivity_index(G);
@@ -175,7 +175,7 @@ TEST(PassivityIndices, AreAttainedAndNowhereLowerOnADenseGrid) {
     if (relative) expect_lowest(G, -relative->value, relative->frequency, minus_relative_at);
     found += (output ? 1 : 0) + (relative ? 1 : 0);
   }
-  EXPECT_GT(found, 8);
+  EXPECT_GT(found, 5);
 }
 
 void expect_none(const Result<PassivityIndex>& index, const std::string& why) {
@@ -193,6 +193,8 @@ TEST(PassivityIndices, ThatDoNotExistSayWhy) {
   expect_none(relative_passivity_index(siso({-1}, {1})), "no inverse");
   expect_none(relative_passivity_index(siso({-2}, {1, 1})), "Re s ≥ 0");               // 1 + G = (s − 1)/(s + 1)
   expect_none(relative_passivity_index(siso({1, -1}, {1, 1})), "infinite frequency");  // 1 + G = 2/(s + 1)
+  expect_none(input_passivity_index(RationalMatrix(RationalFunction(Polynomial{*exact(1e300) * *exact(1e300)}))),
+              "beyond the range of a double");
   EXPECT_EQ(input_passivity_index(RationalMatrix(Index{0})).error().kind, ErrorKind::usage);
   EXPECT_EQ(relative_passivity_index(RationalMatrix(kMostPorts + 1)).error().kind, ErrorKind::usage);
 }

@@ -77,6 +77,8 @@ std::vector<FrequencyBand> right_poles(const Polynomial& denominator) {
   for (std::size_t i = 0; i < count; ++i) {
     if (roots[i].imag() >= 0.0) violated.push_back(single(roots[i].imag()));
   }
+  // the count is exact, the places are not
+  if (violated.empty()) violated.push_back({RadPerSec(0.0), RadPerSec(kInfinity), RadPerSec(0.0)});
   return violated;
 }
 

@@ -269,6 +269,13 @@ TEST(PositiveReal, AgreesWithADenseGridOnTheAxis) {
   EXPECT_LT(negative, 32);
 }
 
+TEST(PositiveReal, IsDecidedForNumbersAtTheEndsOfADouble) {
+  EXPECT_TRUE(judged(siso({1e300, 1e-300}, {1e-300, 1e300})).holds());
+  EXPECT_EQ(violated(judged(siso({1e300, -1e-300}, {1, 1e-300}))), only(hermitian_part));
+  EXPECT_FALSE(judged(siso({1}, {-1e-300, 1e300, 1}))[no_right_poles].holds());
+  EXPECT_FALSE(judged(siso({1}, {1, -1e300, 1e-300, 1e300, 1e-300, 1}))[no_right_poles].holds());
+}
+
 TEST(PositiveReal, RefusesSizesThatItCannotJudge) {
   EXPECT_FALSE(positive_real(RationalMatrix(Index{0})));
   EXPECT_FALSE(positive_real(RationalMatrix(kMostPorts + 1)));
