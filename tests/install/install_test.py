@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-PUBLIC = {"Eigen", "tl", "fmt"}  # outside libraries that may stand in headers
+PUBLIC = {"Eigen", "boost", "tl", "fmt"}  # outside libraries that may stand in headers
 LONGEST_S = 600
 
 
