@@ -92,6 +92,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
       if (one.alternative && one.disagreement) {
         text += "\n" + report::alternative_text(one.identification, *one.alternative, *one.disagreement);
       }
+      if (one.bootstrap) text += "\n" + report::bootstrap_text(*one.bootstrap);
       if (one.passivity) text += "\n" + report::passivity_line(*one.passivity);
     }
     if (summary) text += "\n" + report::summary_text(*summary);

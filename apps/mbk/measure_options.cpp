@@ -119,7 +119,8 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
 
   const char* const model = "Model";
   add_choice(command, "--method", a.method, {"ls", "iv"},
-             "ls: least squares; iv: instrumental variables, which need the reference and hold in closed loop too")->group(model);
+             "ls: least squares; iv: instrumental variables, which need the reference and hold in closed loop too")
+      ->group(model);
   add_choice(command, "--structure", a.structure, {"full", "symmetric", "mass-spring"},
              "full; symmetric: M and K symmetric; mass-spring: M = m I, no damping, K symmetric")
       ->group(model);
@@ -133,6 +134,17 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
   command.add_option("--hac-lag", a.hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
       ->type_name("S")
       ->check(positive())
+      ->group(model);
+  command
+      .add_option("--bootstrap", a.bootstrap,
+                  "so many fits to data drawn anew from blocks of 2.5 s, for intervals of every parameter, ellipse, "
+                  "eigenvalue and the excess of passivity that rest on no formula (0: none; 1000 take a moment)")
+      ->type_name("N")
+      ->check(whole_number(0, 1'000'000))
+      ->group(model);
+  command.add_option("--seed", a.seed, "of the bootstrap (1)")
+      ->type_name("N")
+      ->check(whole_number(0, 2'000'000'000))
       ->group(model);
   command.add_flag("--decimate-check", a.decimate_check, "fit again at 100 Hz and say what changes")->group(model);
   command.add_option("--threads", a.threads, "files measured at a time (as many as there are cores)")
@@ -234,6 +246,8 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
   i.handle_mass = a.handle_mass;
   i.hac_lag_s = a.hac_lag_s;
   i.decimate_check = a.decimate_check;
+  i.bootstrap = a.bootstrap;
+  i.seed = a.seed;
   if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
   return options;
 }

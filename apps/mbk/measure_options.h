@@ -28,6 +28,8 @@ struct MeasureArguments {
   std::optional<double> from_s, split_s, to_s;
   double hac_lag_s = 1.0;
   bool decimate_check = false, pool = false;
+  int bootstrap = 0;
+  std::uint64_t seed = 1;
   unsigned threads = 0;
   bool json = false, quiet = false;
   Output output;

@@ -1,3 +1,5 @@
+#include "mbk/analyse/passivity.h"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -8,7 +10,6 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
-#include "mbk/analyse/passivity.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/report/chart.h"
 #include "mbk/report/passivity_text.h"
@@ -26,7 +27,7 @@ struct Arguments : MeasureArguments {
 Result<std::optional<PassivityBand>> band_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   double low = 0.0, high = 0.0;
-  const char *end = text.data() + text.size();
+  const char* end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, low);
   const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
   const auto second = colon ? std::from_chars(first.ptr + 1, end, high) : first;
@@ -42,6 +43,8 @@ struct Answer {
   std::vector<SourceFile> sources;
   Passivity passivity;
   std::vector<Energy> energies;
+  std::optional<ConsistentFit> consistent;
+  Motion motion = Motion::translation;
 };
 
 Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const std::optional<PassivityBand>& band) {
@@ -55,8 +58,9 @@ Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const st
   for (std::size_t k = 0; k < (arguments.pool ? 1 : all.size()); ++k) {
     auto measured = measurement::measure(arguments.pool ? all : all.subspan(k, 1), *options);
     if (!measured) return tl::unexpected(measured.error());
-    answers.push_back(
-        {measured->identification.sources, std::move(*measured->passivity), std::move(measured->energies)});
+    const Identification& id = measured->identification;
+    answers.push_back({id.sources, std::move(*measured->passivity), std::move(measured->energies),
+                       std::move(measured->consistent), id.motion});
   }
   return answers;
 }
@@ -72,13 +76,18 @@ Result<std::vector<Answer>> from_results(const Arguments& arguments, const std::
     const auto stored = result::passivity_band_from_json(*text);
     for (const Identification& id : *identifications) {
       if (!band && !stored) {
-        return tl::unexpected(bad_usage(fmt::format("{} does not say in which band its model can be judged", file.string()),
-                                        "add --band LOW:HIGH in Hz")
-                                  .value());
+        return tl::unexpected(
+            bad_usage(fmt::format("{} does not say in which band its model can be judged", file.string()),
+                      "add --band LOW:HIGH in Hz")
+                .value());
       }
       auto model = analyse::model_passivity(id, band ? *band : *stored);
       if (!model) return tl::unexpected(model.error().in(file.string()));
-      answers.push_back({id.sources, analyse::decide({std::move(*model)}, id.fit.vaf.mean(), std::nullopt), {}});
+      answers.push_back({id.sources,
+                         analyse::decide({std::move(*model)}, id.fit.vaf.mean(), std::nullopt),
+                         {},
+                         std::nullopt,
+                         id.motion});
     }
   }
   return answers;
@@ -88,6 +97,7 @@ std::string text_of(const Answer& answer) {
   std::string text;
   for (const SourceFile& source : answer.sources) text += source.path + "\n";
   text += report::passivity_text(answer.passivity);
+  if (answer.consistent) text += "\n" + report::consistent_text(*answer.consistent, answer.motion);
   for (const Energy& energy : answer.energies) text += "\n" + report::chart_text(report::energy_chart(energy));
   return text;
 }
@@ -130,8 +140,10 @@ Action add_passivity(CLI::App& app) {
       "undecided: the data do not say. Where no model explains half of the force the energy decides.");
   add_reading_options(*command, *arguments);
   add_measuring_options(*command, *arguments);
-  command->add_option("--band", arguments->band, "frequencies at which the model is judged; otherwise those at which "
-                                                 "the perturbation explains position and force")
+  command
+      ->add_option("--band", arguments->band,
+                   "frequencies at which the model is judged; otherwise those at which "
+                   "the perturbation explains position and force")
       ->type_name("LOW:HIGH")
       ->check(not_empty())
       ->group("What counts");

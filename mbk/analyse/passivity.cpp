@@ -17,8 +17,8 @@
 namespace mbk::analyse {
 namespace {
 
-constexpr double kCoherent = 0.8;        ///< above it the band holds
-constexpr double kExplained = 50.0;      ///< [%] of the force: below it no model speaks for the limb
+constexpr double kCoherent = 0.8;    ///< above it the band holds
+constexpr double kExplained = 50.0;  ///< [%] of the force: below it no model speaks for the limb
 constexpr double kOneSided95 = 1.6448536269514722;
 constexpr double kOneSidedOfSeven = 2.4500547;  ///< Φ⁻¹(1 − 0.05/7)
 constexpr Index kCurvePoints = 200;
@@ -126,6 +126,14 @@ PassivityBand passivity_band(const std::vector<PreparedTrial>& trials) {
     band.low = Hertz(std::max(band.low.value, trial.preparation.band_low.value));
     band.high = Hertz(std::min(band.high.value, trial.preparation.band_high.value));
   }
+  // Below one period in the longest stretch nothing is seen.
+  double longest = 0.0;
+  for (const PreparedTrial& trial : trials) {
+    for (const Rows& rows : rows_of(trial)) {
+      longest = std::max(longest, static_cast<double>(rows.size()) * trial.sample_time);
+    }
+  }
+  if (longest > 0.0) band.low = Hertz(std::clamp(1.0 / longest, band.low.value, band.high.value));
   band.rule = "the excited band";
   const Coherence coherence = reference_coherence(trials);
   if (coherence.frequency.size() < 2) return band;
@@ -206,13 +214,15 @@ Passivity decide(std::vector<ModelPassivity> models, double explained, std::opti
     result.reason =
         model == nullptr
             ? "there is no model; what the limb absorbed decides"
-            : fmt::format("no inertia, damping and stiffness explains more than {:.0f} % of the force, so that no model "
-                          "speaks for the limb; what it absorbed decides",
-                          std::max(0.0, explained));
+            : fmt::format(
+                  "no inertia, damping and stiffness explains more than {:.0f} % of the force, so that no model "
+                  "speaks for the limb; what it absorbed decides",
+                  std::max(0.0, explained));
     if (model != nullptr && model->verdict != result.verdict && model->verdict != Verdict::undecided) {
-      result.reason += fmt::format(". The model would say {}: it fits what answers the perturbation as if it were "
-                                   "mechanics",
-                                   text(model->verdict));
+      result.reason += fmt::format(
+          ". The model would say {}: it fits what answers the perturbation as if it were "
+          "mechanics",
+          text(model->verdict));
     }
     return result;
   }
@@ -223,8 +233,8 @@ Passivity decide(std::vector<ModelPassivity> models, double explained, std::opti
   result.by_model = true;
   result.verdict = speaks ? model->verdict : Verdict::undecided;
   if (!speaks) {
-    result.reason = fmt::format("the model explains only {:.0f} % of the force, and there is no account of the energy",
-                                explained);
+    result.reason =
+        fmt::format("the model explains only {:.0f} % of the force, and there is no account of the energy", explained);
     return result;
   }
   for (const PassivityCondition& c : model->conditions) {

@@ -12,6 +12,7 @@
 #include "mbk/identify/checks.h"
 #include "mbk/identify/instruments.h"
 #include "mbk/identify/regression.h"
+#include "mbk/numeric/block_bootstrap.h"
 #include "mbk/numeric/instrumental_variables.h"
 #include "mbk/numeric/least_squares.h"
 #include "mbk/numeric/statistics.h"
@@ -53,6 +54,7 @@ class Fitter {
   }
   [[nodiscard]] bool is_full(const Estimate& estimate) const { return estimate.rank == r_.Z.cols(); }
   [[nodiscard]] impedance::Model model_from(const Estimate& estimate) const;
+  [[nodiscard]] Result<Replicates> resample(Method method) const;
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
   void describe(Identification& result) const;
 
@@ -133,8 +135,8 @@ impedance::Model Fitter::model_from(const Estimate& estimate) const {
 }
 
 Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& range) const {
-  const Matrix residual = r_.Y.middleRows(range.begin, range.size()) -
-                          r_.Z.middleRows(range.begin, range.size()) * estimate.coefficients;
+  const Matrix residual =
+      r_.Y.middleRows(range.begin, range.size()) - r_.Z.middleRows(range.begin, range.size()) * estimate.coefficients;
   const Matrix R = instruments(method).middleRows(range.begin, range.size());
   return estimate.bread * numeric::regression_scores(R, residual, estimate.structure, {0, range.size()});
 }
@@ -182,18 +184,21 @@ Result<Identification> Fitter::identify(Method method) {
   const auto count = static_cast<Index>(result.parameters.size());
   result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
   if (is_full(*fit)) {
-    const Matrix V = numeric::long_run_covariance(fit->bread.rows(), ranges_, lags_, [&](const RowRange& range) {
-      return scores(method, *fit, range);
-    });
+    const Matrix V = numeric::long_run_covariance(fit->bread.rows(), ranges_, lags_,
+                                                  [&](const RowRange& range) { return scores(method, *fit, range); });
     result.covariance = model_covariance(fit->structure, widening_ * widening_ * V, result.model, r_.centre);
   }
   result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
   if (method == Method::instrumental_variables) {
     result.instrument = InstrumentCheck{instruments_->from, instruments_->strength, Vector::Constant(n, std::nan(""))};
     if (is_full(*fit)) {
-      result.instrument->answered =
-          answered_share(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
+      result.instrument->answered = answered_share(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
     }
+  }
+  if (options_.bootstrap > 0 && is_full(*fit)) {
+    auto replicates = resample(method);
+    if (!replicates) return tl::unexpected(replicates.error());
+    result.replicates = std::move(*replicates);
   }
   result.excitation = measure_excitation(rows_of(r_.Z, ranges_), rows_of(r_.Y, ranges_), result.model, fit->rank);
   result.excitation.duration = static_cast<double>(samples_) * r_.sample_time;
@@ -210,6 +215,23 @@ Result<Identification> Fitter::identify(Method method) {
     result.decimation = decimation;
   }
   add_warnings(result);
+  return result;
+}
+
+Result<Replicates> Fitter::resample(Method method) const {
+  const Index n = r_.axes(), p = r_.Z.cols();
+  numeric::BlockBootstrapOptions how;
+  how.block_rows = std::max<Index>(1, std::llround(options_.block_s / r_.sample_time));
+  how.replicates = options_.bootstrap;
+  how.seed = options_.seed;
+  how.threads = options_.threads;
+  const auto drawn = numeric::block_bootstrap(r_.Z, instruments(method), r_.Y, S_, ranges_, how);
+  if (!drawn) return tl::unexpected(drawn.error());
+  Replicates result{Matrix(3 * n * n + n, drawn->coefficients.cols()), options_.block_s, drawn->blocks, how.seed};
+  for (Index k = 0; k < drawn->coefficients.cols(); ++k) {
+    const Matrix coefficients = Vector(S_ * drawn->coefficients.col(k)).reshaped(p, n);
+    result.models.col(k) = impedance::stacked(model_of(coefficients, r_.centre, options_.handle_mass));
+  }
   return result;
 }
 

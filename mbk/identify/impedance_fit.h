@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ struct Options {
   double handle_mass = 0.0;                       ///< Λ [kg], taken off the diagonal of M (eq. 3.7)
   double hac_lag_s = 1.0;  ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
   bool decimate_check = false;
+  int bootstrap = 0;       ///< replicates; 0: none
+  double block_s = 2.5;    ///< of the bootstrap [s], longer than the residual's correlation
+  std::uint64_t seed = 1;  ///< of the bootstrap
+  unsigned threads = 1;    ///< of the bootstrap; the numbers do not depend on it
 };
 
 /// Least squares of −F = M ẍ + B ẋ + K (x − x₀), that is of −F on [ẍ ẋ x 1]   (Dyck 2013, eq. 3.2, 3.7–3.9).
@@ -47,7 +52,8 @@ struct Comparison {
   Disagreement disagreement;
 };
 
-/// @fails as identify_impedance with instrumental variables: where no reference was recorded there is nothing to compare.
+/// @fails as identify_impedance with instrumental variables: where no reference was recorded there is nothing to
+/// compare.
 [[nodiscard]] Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, const Options& options);
 
 /// m_xx m_xy m_yx m_yy b_xx … k_yy x0 y0; with one axis m b k x0.

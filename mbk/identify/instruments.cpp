@@ -13,9 +13,9 @@
 namespace mbk::identify {
 namespace {
 
-constexpr int kPasses = 2;        ///< refinements of the nominal impedance
-constexpr double kFloor = 0.02;   ///< of the nominal impedance's eigenvalues, of the largest: it must be stable
-constexpr double kReach = 0.5;    ///< of an answer to the perturbation [s]
+constexpr int kPasses = 2;       ///< refinements of the nominal impedance
+constexpr double kFloor = 0.02;  ///< of the nominal impedance's eigenvalues, of the largest: it must be stable
+constexpr double kReach = 0.5;   ///< of an answer to the perturbation [s]
 constexpr Index kLagsOfAnswer = 5;
 
 /// The ranges of rows that were put under each other.

@@ -17,10 +17,10 @@ struct Instruments {
 
 /// From a position reference: [r̈ ṙ r 1], filtered as the motion is. From a force: the derivatives of
 ///   x̂ = (M_t s² + B_t s + K_t)⁻¹ F*,
-/// with M_t, B_t, K_t of robot and limb together, found from F* itself by least squares and then twice by the instruments
-/// of the pass before. What is instrumental about them is that they are made from F* alone: a nominal impedance that is
-/// wrong costs strength, not truth (Söderström & Stoica 1983). Where its unit does not say what the reference is, the
-/// stronger of both is taken.
+/// with M_t, B_t, K_t of robot and limb together, found from F* itself by least squares and then twice by the
+/// instruments of the pass before. What is instrumental about them is that they are made from F* alone: a nominal
+/// impedance that is wrong costs strength, not truth (Söderström & Stoica 1983). Where its unit does not say what the
+/// reference is, the stronger of both is taken.
 /// @param ranges rows that count    @param lags of the residuals' covariance, rows
 /// @fails the trials hold no filtered reference; it never changes.
 [[nodiscard]] Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity,

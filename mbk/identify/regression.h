@@ -17,7 +17,7 @@ struct Regression {
   Matrix Z;          ///< N×(3n+1)
   Matrix Y;          ///< N×n, −F_h
   Matrix reference;  ///< N×3n, [r̈ ṙ r] of the known perturbation, filtered like the motion; empty where it is not known
-  Vector centre;     ///< x̄, n
+  Vector centre;  ///< x̄, n
   std::vector<RowRange> identification, validation;
   double sample_time = 0;
 

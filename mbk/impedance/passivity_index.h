@@ -8,8 +8,8 @@
 
 namespace mbk::impedance {
 
-/// A number that follows from a model, and its derivative by the model's stacked M, B, K and x₀ (model.h), for the delta
-/// method.
+/// A number that follows from a model, and its derivative by the model's stacked M, B, K and x₀ (model.h), for the
+/// delta method.
 struct Sensitive {
   double value = 0;
   Eigen::RowVectorXd gradient;
@@ -33,12 +33,12 @@ struct Sensitive {
 /// |k_a|/(2π √det B_s). Absent where B_s is not positive definite. 0 with one axis.
 [[nodiscard]] std::optional<double> nonpassive_below(const Model& model);
 
-/// Excess of passivity of the symmetric part: the largest δ for which Z − δI is still positive real, λ_min(B_s) [N·s/m].
-/// Absent unless the symmetric parts of M and K are positive semidefinite.
+/// Excess of passivity of the symmetric part: the largest δ for which Z − δI is still positive real, λ_min(B_s)
+/// [N·s/m]. Absent unless the symmetric parts of M and K are positive semidefinite.
 [[nodiscard]] std::optional<Sensitive> excess_of_passivity(const Model& model);
 
-/// What table 3.6 of Dyck (2013) prints in its place, λ_max(B_s)/2. It is the excess of no system: half of the *largest*
-/// eigenvalue (docs/theory/sources-slips.md).
+/// What table 3.6 of Dyck (2013) prints in its place, λ_max(B_s)/2. It is the excess of no system: half of the
+/// *largest* eigenvalue (docs/theory/sources-slips.md).
 [[nodiscard]] Sensitive published_excess_of_passivity(const Model& model);
 
 }  // namespace mbk::impedance

@@ -7,10 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include "mbk/analyse/bootstrap.h"
 #include "mbk/analyse/diagnostics.h"
 #include "mbk/analyse/ellipses.h"
 #include "mbk/analyse/energy.h"
 #include "mbk/analyse/passivity.h"
+#include "mbk/identify/consistent_fit.h"
 #include "mbk/preprocess/resample.h"
 #include "mbk/recording/inspection.h"
 
@@ -151,6 +153,11 @@ Result<Passivity> judge_passivity(std::span<const Recording> recordings, const s
       (instrumental == other) == analyse::instruments_speak(*instrumental, measured.disagreement)) {
     std::swap(first, other);
   }
+  if (first->model.M.allFinite() && first->model.x0.allFinite()) {
+    auto consistent = identify::consistent_model(trials, *first);
+    if (!consistent) return tl::unexpected(consistent.error());
+    measured.consistent = std::move(*consistent);
+  }
   std::vector<ModelPassivity> models;
   for (const Identification* id : {first, other}) {
     if (id == nullptr || !id->model.M.allFinite()) continue;
@@ -158,8 +165,8 @@ Result<Passivity> judge_passivity(std::span<const Recording> recordings, const s
     if (!model) return tl::unexpected(model.error());
     models.push_back(std::move(*model));
   }
-  const Identification& least_squares = by_instruments && measured.alternative ? *measured.alternative
-                                                                               : measured.identification;
+  const Identification& least_squares =
+      by_instruments && measured.alternative ? *measured.alternative : measured.identification;
   return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
 }
 
@@ -175,6 +182,11 @@ Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());
     measured.findings = std::move(*findings);
+  }
+  if (measured.identification.replicates) {
+    auto bootstrap = analyse::bootstrap_findings(measured.identification);
+    if (!bootstrap) return tl::unexpected(bootstrap.error());
+    measured.bootstrap = std::move(*bootstrap);
   }
   if (options.passivity) {
     auto passivity = judge_passivity(recordings, trials, options, measured);

@@ -58,7 +58,8 @@ Result<InstrumentalFit> fit_instrumental_variables(const Matrix& Z, const Matrix
   Matrix weight = Matrix::Zero(p * q, p * q);  // back to RᵀZ, so that A is that of the unscaled scores
   for (Index j = 0; j < q; ++j) weight.diagonal().segment(j * p, p) = unit_R.cwiseInverse();
   const Matrix system = fit.structure.transpose() * weight * stacked * fit.structure;
-  const Vector row_scale = system.rowwise().norm().cwiseInverse(), column_scale = system.colwise().norm().cwiseInverse();
+  const Vector row_scale = system.rowwise().norm().cwiseInverse(),
+               column_scale = system.colwise().norm().cwiseInverse();
   const Eigen::FullPivLU<Matrix> lu(row_scale.asDiagonal() * system * column_scale.asDiagonal());
   fit.inverse = column_scale.asDiagonal() * lu.inverse() * row_scale.asDiagonal();
   const Vector target = fit.structure.transpose() * weight * Vector(right.reshaped());

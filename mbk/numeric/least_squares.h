@@ -34,8 +34,8 @@ struct LinearFit {
 [[nodiscard]] Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matrix& S = {});
 
 /// Long-run covariance of scores, Ω = Σ_l (1 − |l|/(L + 1)) Σ_t s_t s_{t+l}ᵀ (Newey & West 1987). The weights are the
-/// autocorrelation of a rectangle, so that Ω = Σ_t g_t g_tᵀ/(L + 1) with g the sums of s over L + 1 consecutive samples:
-/// one pass, and positive semidefinite by construction. Products never cross a break.
+/// autocorrelation of a rectangle, so that Ω = Σ_t g_t g_tᵀ/(L + 1) with g the sums of s over L + 1 consecutive
+/// samples: one pass, and positive semidefinite by construction. Products never cross a break.
 /// @param k scores of a sample    @param lags L ≥ 0, samples
 /// @param scores_of the scores of a range, k×n; asked for once for each range, in order
 [[nodiscard]] Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,

@@ -20,7 +20,7 @@ struct Signals {
   Matrix force_hand_on_robot;  ///< N×n [N or N·m]
   Matrix reference;            ///< N×n; empty where none was recorded
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
-  Matrix acceleration;         ///< N×n [m/s² or rad/s²]; empty where it is not asked for
+  Matrix acceleration;  ///< N×n [m/s² or rad/s²]; empty where it is not asked for
   Motion motion = Motion::translation;
 };
 

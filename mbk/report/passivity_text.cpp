@@ -1,6 +1,7 @@
 #include "mbk/report/passivity_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <vector>
@@ -66,13 +67,36 @@ std::string energy_text(const EnergyAccount& account) {
 }  // namespace
 
 std::string passivity_text(const Passivity& passivity) {
-  std::string text = fmt::format("passivity: {}, by the {}\n", mbk::text(passivity.verdict),
-                                 passivity.by_model ? "model" : "energy");
+  std::string text =
+      fmt::format("passivity: {}, by the {}\n", mbk::text(passivity.verdict), passivity.by_model ? "model" : "energy");
   text += paragraph("  ", passivity.reason);
   text += "\n";
   for (const ModelPassivity& model : passivity.models) text += model_text(model) + "\n";
   if (passivity.energy) text += energy_text(*passivity.energy) + "\n";
   return text + "  (brackets are 95 % intervals)\n";
+}
+
+std::string consistent_text(const ConsistentFit& fit, Motion motion) {
+  std::vector<std::string> active;
+  if (fit.inertia.active) active.emplace_back("inertia");
+  if (fit.damping.active) active.emplace_back("damping");
+  if (fit.stiffness.active) active.emplace_back("stiffness");
+  const Units units = units_of(motion);
+  const auto row = [](const char* name, const Semidefiniteness& one, const char* unit) {
+    const double smallest = one.active ? 0.0 : one.smallest;  // to rounding
+    return std::vector<std::string>{name, fmt::format("{:.3g}", one.free_smallest), fmt::format("{:.3g}", smallest),
+                                    unit};
+  };
+  const std::string held =
+      active.empty() ? "the data ask for nothing else but symmetry"
+                     : fmt::format("{} held at the edge of what a passive limb can have", fmt::join(active, " and "));
+  return paragraph("  ", fmt::format("nearest model with M and K symmetric and M, B, K positive semidefinite: {}; the "
+                                     "residual's power grows by {:.2g} %, {} moves by {:.2g} standard errors",
+                                     held, fit.increase_percent(), fit.largest_change, fit.largest_change_errors)) +
+         table({{"smallest eigenvalue", "as found", "nearest", ""},
+                row("M", fit.inertia, units.inertia),
+                row("B", fit.damping, units.damping),
+                row("K", fit.stiffness, units.stiffness)});
 }
 
 std::string passivity_line(const Passivity& passivity) {

@@ -3,12 +3,16 @@
 #include <string>
 
 #include "mbk/trial/chart.h"
+#include "mbk/trial/consistent_fit.h"
 #include "mbk/trial/passivity.h"
 
 namespace mbk::report {
 
 /// A verdict in full for the terminal: why, every condition of each model, excess and shortage, energy.
 [[nodiscard]] std::string passivity_text(const Passivity& passivity);
+
+/// The nearest model that a passive limb can have, and what it costs.
+[[nodiscard]] std::string consistent_text(const ConsistentFit& fit, Motion motion);
 
 /// The verdict and its reason in a few words.
 [[nodiscard]] std::string passivity_line(const Passivity& passivity);

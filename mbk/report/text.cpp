@@ -221,9 +221,10 @@ std::string alternative_text(const Identification& id, const Identification& alt
   const Identification& instrumental = by_instruments ? id : alternative;
   const std::string other = by_instruments ? "least squares" : "instrumental variables";
   if (!instrumental.instrument->strong()) {
-    return paragraph("  ", fmt::format("instrumental variables cannot check this: what the reference alone moves is too "
-                                       "little beside the rest (first-stage F {:.2g}, wanted above 10)",
-                                       instrumental.instrument->weakest()));
+    return paragraph("  ",
+                     fmt::format("instrumental variables cannot check this: what the reference alone moves is too "
+                                 "little beside the rest (first-stage F {:.2g}, wanted above 10)",
+                                 instrumental.instrument->weakest()));
   }
   const std::string largest = fmt::format("largest difference {} = {:.3g} ± {:.2g}", disagreement.parameter,
                                           disagreement.difference, numeric::kNormal95 * disagreement.standard_error);
@@ -235,6 +236,22 @@ std::string alternative_text(const Identification& id, const Identification& alt
                                largest)) +
          fmt::format("  by {}, VAF {}\n", other, per_axis(alternative.fit.vaf, "%", 1)) +
          model_table(alternative.model, alternative.standard_error, numeric::kNormal95, alternative.motion);
+}
+
+std::string bootstrap_text(const BootstrapFindings& bootstrap) {
+  std::vector<std::vector<std::string>> rows = {{"95 % intervals", "value", "bootstrap", "delta method", "unit"}};
+  const auto shown = [](const Interval& interval, double scale) {
+    if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return std::string("undefined");
+    return fmt::format("[{:.4g}, {:.4g}]", scale * interval.first, scale * interval.second);
+  };
+  for (const BootstrapFinding& finding : bootstrap.findings) {
+    const bool angle = finding.name.ends_with("orientation");
+    const double scale = angle ? 180.0 / std::numbers::pi : 1.0;
+    rows.push_back({finding.name, fmt::format("{:.4g}", scale * finding.value), shown(finding.interval95, scale),
+                    shown(finding.delta95, scale), angle ? "°" : finding.unit});
+  }
+  return table(rows) + fmt::format("  ({} samples from blocks of {:g} s, {:.0f} of which the data hold; seed {})\n",
+                                   bootstrap.replicates, bootstrap.block_s, bootstrap.blocks, bootstrap.seed);
 }
 
 std::string summary_text(const Summary& summary) {

@@ -7,6 +7,7 @@
 
 #include "mbk/core/result.h"
 #include "mbk/robot/workspace.h"
+#include "mbk/trial/bootstrap_findings.h"
 #include "mbk/trial/chart.h"
 #include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
@@ -31,6 +32,9 @@ inline constexpr std::size_t kLineColumns = 100;
 /// The other method beside the first: that both agree, or its model and why they differ.
 [[nodiscard]] std::string alternative_text(const Identification& identification, const Identification& alternative,
                                            const Disagreement& disagreement);
+
+/// Every quantity with its interval by the bootstrap and by the delta method.
+[[nodiscard]] std::string bootstrap_text(const BootstrapFindings& bootstrap);
 
 /// Mean and between-trial standard error of several results.
 [[nodiscard]] std::string summary_text(const Summary& summary);

@@ -133,6 +133,40 @@ Json alternative_json(const Identification& id) {
   return json;
 }
 
+Json bootstrap_json(const BootstrapFindings& bootstrap) {
+  Json json = {{"replicates", bootstrap.replicates},
+               {"block_s", bootstrap.block_s},
+               {"blocks", number(bootstrap.blocks)},
+               {"seed", bootstrap.seed},
+               {"quantities", Json::array()}};
+  for (const BootstrapFinding& finding : bootstrap.findings) {
+    json["quantities"].push_back({{"name", finding.name},
+                                  {"unit", finding.unit},
+                                  {"value", number(finding.value)},
+                                  {"interval95", interval(finding.interval95)},
+                                  {"delta_interval95", interval(finding.delta95)}});
+  }
+  return json;
+}
+
+Json consistent_json(const ConsistentFit& fit) {
+  const auto cone = [](const Semidefiniteness& one) {
+    return Json{{"free_smallest_eigenvalue", number(one.free_smallest)},
+                {"smallest_eigenvalue", number(one.smallest)},
+                {"active", one.active}};
+  };
+  return {
+      {"model", model_json(fit.model)},
+      {"inertia", cone(fit.inertia)},
+      {"damping", cone(fit.damping)},
+      {"stiffness", cone(fit.stiffness)},
+      {"fit", fit_json(fit.fit)},
+      {"residual_power_increase_percent", number(fit.increase_percent())},
+      {"force_change", number(fit.force_change)},
+      {"largest_change", {{"parameter", fit.largest_change}, {"standard_errors", number(fit.largest_change_errors)}}},
+      {"duality_gap", number(fit.duality_gap)}};
+}
+
 Json disagreement_json(const Disagreement& disagreement) {
   return {{"parameter", disagreement.parameter},
           {"iv_less_ls", number(disagreement.difference)},
@@ -175,6 +209,8 @@ Json result_json(const Measured& measured) {
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
   json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
+  if (measured.bootstrap) json["bootstrap"] = bootstrap_json(*measured.bootstrap);
+  if (measured.consistent) json["consistent_fit"] = consistent_json(*measured.consistent);
   if (measured.passivity) json["passivity"] = passivity_json(*measured.passivity);
   json["warnings"] = warnings_json(id.warnings);
   json["usable"] = id.usable;

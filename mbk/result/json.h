@@ -7,6 +7,8 @@
 
 #include "mbk/core/result.h"
 #include "mbk/robot/workspace.h"
+#include "mbk/trial/bootstrap_findings.h"
+#include "mbk/trial/consistent_fit.h"
 #include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
 #include "mbk/trial/identification.h"
@@ -25,6 +27,8 @@ struct Measured {
   /// The other method on the same rows; absent where no reference was recorded.
   std::optional<Identification> alternative;
   std::optional<Disagreement> disagreement;
+  std::optional<BootstrapFindings> bootstrap;  ///< where it was asked for
+  std::optional<ConsistentFit> consistent;     ///< nearest to the model that speaks for the limb
   std::optional<Passivity> passivity;
   std::vector<Energy> energies;  ///< one for each recording, beside the passivity
 };

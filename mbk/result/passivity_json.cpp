@@ -59,6 +59,8 @@ Json account_json(const EnergyAccount& account) {
           {"blocks", account.blocks}};
 }
 
+}  // namespace
+
 Json energy_json(const Energy& energy) {
   Json json = {{"window_s", {energy.from_s, energy.to_s}},
                {"account", account_json(energy.account)},
@@ -85,8 +87,6 @@ Json energy_json(const Energy& energy) {
   }
   return json;
 }
-
-}  // namespace
 
 Json passivity_json(const Passivity& passivity) {
   Json json = {{"verdict", text(passivity.verdict)},

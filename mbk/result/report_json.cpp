@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "mbk/result/json_parts.h"
+#include "mbk/result/passivity_json.h"
 
 namespace mbk::result {
 namespace {
@@ -100,6 +101,7 @@ std::string to_json(const Report& report) {
     measured.push_back(one.measured);
     Json trial = {{"recordings", Json::array()}};
     for (const RecordingFacts& facts : one.recordings) trial["recordings"].push_back(facts_json(facts));
+    for (const Energy& energy : one.measured.energies) trial["energy"].push_back(energy_json(energy));
     if (one.diagnostics) trial["diagnostics"] = diagnostics_json(*one.diagnostics);
     trials.push_back(std::move(trial));
   }

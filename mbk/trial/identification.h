@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,8 +44,8 @@ enum class Method {
 /// What stands behind instrumental variables, and whether it may.
 struct InstrumentCheck {
   ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
-  Vector strength;   ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; below 10 the instrument is weak
-  Vector answered;   ///< n, share of what the model leaves that answers the perturbation linearly within half a second
+  Vector strength;  ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; below 10 the instrument is weak
+  Vector answered;  ///< n, share of what the model leaves that answers the perturbation linearly within half a second
 
   [[nodiscard]] double weakest() const { return strength.minCoeff(); }
   [[nodiscard]] bool strong() const { return weakest() > 10.0; }
@@ -92,13 +93,22 @@ struct Units {
   return {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad", "m or rad", "N or N·m"};
 }
 
-/// Where two methods find different models in the same rows: the parameter whose difference is largest in terms of its own
-/// standard error, which counts that both methods saw the same noise.
+/// Where two methods find different models in the same rows: the parameter whose difference is largest in terms of its
+/// own standard error, which counts that both methods saw the same noise.
 struct Disagreement {
   std::string parameter;      ///< as in Identification::parameters
   double difference = 0;      ///< instrumental variables less least squares
   double standard_error = 0;  ///< of that difference
   bool significant = false;   ///< more than chance gives in 1 % of cases to any of M, B and K
+};
+
+/// The same fit on data drawn again and again from blocks of the rows: how the numbers would have come out in other
+/// experiments of the same kind.
+struct Replicates {
+  Matrix models;       ///< (3n²+n)×B, stacked as in impedance/model.h
+  double block_s = 0;  ///< [s] of a block; a whole perturbation where that is shorter
+  double blocks = 0;   ///< that the data hold beside each other
+  std::uint64_t seed = 1;
 };
 
 /// An impedance, how sure it is, how well it fits, and whether it may be used.
@@ -110,6 +120,7 @@ struct Identification {
   impedance::Model standard_error;      ///< √ of its diagonal, in the model's shape
   Method method = Method::least_squares;
   std::optional<InstrumentCheck> instrument;  ///< with instrumental variables only
+  std::optional<Replicates> replicates;       ///< where a bootstrap was asked for
   Structure structure = Structure::full;
   double hac_lag_s = 0;         ///< reach of the autocovariance in the standard errors [s]
   double handle_mass = 0;       ///< [kg] taken off the diagonal of M

@@ -31,7 +31,7 @@ struct PassivityBand {
 
 /// ½ λ_min(Z + Zᴴ)(jω) over the band, with pointwise 95 % intervals.
 struct PassivityIndexCurve {
-  Vector frequency;  ///< [Hz]
+  Vector frequency;                ///< [Hz]
   Vector index, lower95, upper95;  ///< [N·s/m]
 };
 
@@ -43,8 +43,8 @@ struct ExcessOfPassivity {
   Interval published95;
 };
 
-/// Is a model passive in a band? "Passive" is an intersection–union test: every condition is positive with 95 % confidence
-/// by itself. "Active": one is negative with 95 % confidence for all at once (Bonferroni).
+/// Is a model passive in a band? "Passive" is an intersection–union test: every condition is positive with 95 %
+/// confidence by itself. "Active": one is negative with 95 % confidence for all at once (Bonferroni).
 struct ModelPassivity {
   Method method = Method::least_squares;  ///< that found the model
   Verdict verdict = Verdict::undecided;
@@ -63,9 +63,9 @@ struct ModelPassivity {
 /// Passivity of a limb by model and by data, and what follows.
 struct Passivity {
   Verdict verdict = Verdict::undecided;
-  bool by_model = false;    ///< false: the energy decided
-  std::string reason;       ///< in words
-  double explained = 0;     ///< [%] of the held-back force, mean of the axes, by the M, B, K that explain most
+  bool by_model = false;  ///< false: the energy decided
+  std::string reason;     ///< in words
+  double explained = 0;   ///< [%] of the held-back force, mean of the axes, by the M, B, K that explain most
   std::vector<ModelPassivity> models;  ///< one for each method; the one that speaks for the limb comes first
   std::optional<EnergyAccount> energy;
 };

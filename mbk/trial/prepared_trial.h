@@ -74,15 +74,15 @@ enum class ReferenceQuantity { position, force, unknown };
 struct PreparedTrial {
   int axes = 2;  ///< n, 1 or 2
   Motion motion = Motion::translation;
-  double sample_time = 0;          ///< T [s], between rows
-  double recording_rate = 0;       ///< [Hz]
-  Vector time;                     ///< N, [s] from the recording's first sample
-  Matrix position;                 ///< N×n, x [m]
-  Matrix velocity;                 ///< N×n, ẋ [m/s]
-  Matrix acceleration;             ///< N×n, ẍ [m/s²]
-  Matrix force_hand_on_robot;      ///< N×n, F_h [N]: what the limb exerts on the machine
-  Matrix reference;                ///< N×n, unfiltered; empty where none was recorded
-  Matrix reference_motion;         ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
+  double sample_time = 0;      ///< T [s], between rows
+  double recording_rate = 0;   ///< [Hz]
+  Vector time;                 ///< N, [s] from the recording's first sample
+  Matrix position;             ///< N×n, x [m]
+  Matrix velocity;             ///< N×n, ẋ [m/s]
+  Matrix acceleration;         ///< N×n, ẍ [m/s²]
+  Matrix force_hand_on_robot;  ///< N×n, F_h [N]: what the limb exerts on the machine
+  Matrix reference;            ///< N×n, unfiltered; empty where none was recorded
+  Matrix reference_motion;  ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
   std::vector<Stretch> stretches;  ///< in order of time; rows outside them do not count
   Preparation preparation;
