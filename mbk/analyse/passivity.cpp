@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kCoherent = 0.8;    ///< above it the band holds
 constexpr double kExplained = 50.0;  ///< [%] of the force: below it no model speaks for the limb
+constexpr double kAnswered = 0.2;        ///< share of the residual: above it the model is not all that there is
 constexpr double kOneSided95 = 1.6448536269514722;
 constexpr double kOneSidedOfSeven = 2.4500547;  ///< Φ⁻¹(1 − 0.05/7)
 constexpr Index kCurvePoints = 200;
@@ -176,6 +177,9 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   add(fmt::format("{}B", smallest), "(3.24), (3.25)", units.damping, impedance::smallest_eigenvalue(id.model, 1));
   add(fmt::format("{}K", smallest), "(3.19), (3.20)", units.stiffness, impedance::smallest_eigenvalue(id.model, 2));
   result.symmetric_verdict = common_verdict(result.conditions);
+  if (id.instrument) {
+    for (const double share : id.instrument->answered) result.answered = std::max(result.answered, share);
+  }
   result.published_rule =
       std::ranges::all_of(result.conditions, [](const PassivityCondition& c) { return c.value >= 0.0; });
   if (id.axes == 2) {
@@ -232,6 +236,16 @@ Passivity decide(std::vector<ModelPassivity> models, double explained, std::opti
   }
   result.by_model = true;
   result.verdict = speaks ? model->verdict : Verdict::undecided;
+  if (result.verdict == Verdict::active && model->symmetric_verdict != Verdict::active &&
+      model->answered > kAnswered) {
+    result.verdict = Verdict::undecided;
+    result.reason = fmt::format(
+        "the antisymmetric part would make it active, but {:.0f} % of what inertia, damping and stiffness leave of the "
+        "force answers the perturbation too: a voluntary or reflex response is part of this model, and its intervals "
+        "know noise only",
+        100.0 * model->answered);
+    return result;
+  }
   if (!speaks) {
     result.reason =
         fmt::format("the model explains only {:.0f} % of the force, and there is no account of the energy", explained);

@@ -30,7 +30,8 @@ namespace mbk::analyse {
 
 /// The verdict on a limb. The model decides where it explains at least half of the force (least squares explains most
 /// of what any M, B and K can, so its held-back VAF is the measure) and is itself decided or the energy is not known;
-/// where it does not, the energy decides.
+/// where it does not, the energy decides. A model that leaves much of the limb's answer to the perturbation
+/// unexplained is not called active by its antisymmetric part alone: its intervals know noise, and that answer is none.
 /// @param models  of both methods, or of the only one; the first speaks for the limb
 /// @param explained  [%] held-back VAF of least squares, mean of the axes
 [[nodiscard]] Passivity decide(std::vector<ModelPassivity> models, double explained,

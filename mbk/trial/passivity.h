@@ -49,6 +49,7 @@ struct ModelPassivity {
   Method method = Method::least_squares;  ///< that found the model
   Verdict verdict = Verdict::undecided;
   Verdict symmetric_verdict = Verdict::undecided;  ///< of M_s, B_s, K_s alone
+  double answered = 0;  ///< largest share of what the model leaves that answers the perturbation; 0 where not known
   bool published_rule = false;  ///< theorem 3.2 as it was applied: estimates without intervals, symmetric parts only
   PassivityBand band;
   std::vector<PassivityCondition> conditions;

@@ -21,6 +21,7 @@ Result<SimulatedTrial> run(const TrialPlan& plan) {
   SimulatedTrial trial{performance->energy_absorbed, performance->truth, {}};
   if (!plan.measurement) return trial;
   measurement::Options options = *plan.measurement;
+  options.passivity = false;
   options.identify.handle_mass = handle_mass(plan.scenario);
   auto measured = measurement::measure({&performance->recording, 1}, options);
   if (!measured) return tl::unexpected(measured.error());

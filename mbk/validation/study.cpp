@@ -10,6 +10,8 @@ std::span<const Study> studies() {
   static constexpr std::array kStudies = {
       Study{"coverage", "how often the 95 % intervals of M, B, K and x0 hold the truth", 400, coverage_study},
       Study{"recovery", "bias, spread and coverage for a relaxed arm in the closed loop", 20, recovery_study},
+      Study{"closed-loop", "least squares, instrumental variables and energy of an arm that acts back", 20,
+            closed_loop_study},
       Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", 3, springs_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
   };

@@ -51,4 +51,9 @@ struct Study {
 /// A run is one seed of every arm and condition.
 [[nodiscard]] Result<ValidationTable> participant_study(const StudyOptions& options);
 
+/// Where the limb acts back on its own motion: does least squares call a passive arm active, do instrumental variables
+/// not, and what does the energy say (Dyck 2013, table 4.3)? A run is three pooled trials of a rigid arm under a 6 N
+/// multisine, of the same with the voluntary controller off, and under 2 N pulses.
+[[nodiscard]] Result<ValidationTable> closed_loop_study(const StudyOptions& options);
+
 }  // namespace mbk::validation
