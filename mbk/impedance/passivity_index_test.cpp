@@ -166,8 +166,8 @@ TEST_P(Gradient, AgreesWithCentralDifferences) {
     ASSERT_EQ(quantity.gradient.size(), 14);
     // Where two eigenvalues nearly meet or a root is near 0 the derivative changes within a step.
     const Ellipse ellipses[] = {ellipse(model.M), ellipse(model.B), ellipse(model.K)};
-    const bool smooth =
-        std::ranges::all_of(ellipses, [](const Ellipse& e) { return e.lambda_max - e.lambda_min > 0.1 * std::abs(e.lambda_max); });
+    const bool smooth = std::ranges::all_of(
+        ellipses, [](const Ellipse& e) { return e.lambda_max - e.lambda_min > 0.1 * std::abs(e.lambda_max); });
     if (!smooth || !std::isfinite(quantity.value)) continue;
     ++tried;
     const Vector numbers = stacked(model);
@@ -176,9 +176,11 @@ TEST_P(Gradient, AgreesWithCentralDifferences) {
       Vector above = numbers, below = numbers;
       above[k] += step;
       below[k] -= step;
-      const double slope = (GetParam().quantity(unstacked(above, 2)).value -
-                            GetParam().quantity(unstacked(below, 2)).value) / (2.0 * step);
-      EXPECT_NEAR(quantity.gradient[k], slope, kTolerance * (1.0 + std::abs(slope))) << "model " << i << " number " << k;
+      const double slope =
+          (GetParam().quantity(unstacked(above, 2)).value - GetParam().quantity(unstacked(below, 2)).value) /
+          (2.0 * step);
+      EXPECT_NEAR(quantity.gradient[k], slope, kTolerance * (1.0 + std::abs(slope)))
+          << "model " << i << " number " << k;
     }
   }
   EXPECT_GT(tried, 20);
@@ -210,16 +212,16 @@ TEST(ExcessOfPassivity, NeedsInertiaAndStiffnessToBeSemidefinite) {
 /// Area and shape of the damping ellipse as tables 3.3 and 3.5 of Dyck 2013 print them, and what table 3.6 prints.
 struct Printed {
   const char* participant;
-  double area, shape;    ///< rounded to 0.1
-  double published;      ///< table 3.6, rounded to 0.1
-  double corrected;      ///< λ_min(B_s)
+  double area, shape;  ///< rounded to 0.1
+  double published;    ///< table 3.6, rounded to 0.1
+  double corrected;    ///< λ_min(B_s)
 };
 
 constexpr std::array kPrinted = {
-    Printed{"P1", 176.8, 2.3, 5.7, 4.95},         Printed{"P2", 144.3, 2.4, 5.3, 4.37},
-    Printed{"P3", 162.9, 2.9, 6.1, 4.23},         Printed{"P4", 111.3, 3.5, 5.6, 3.18},
-    Printed{"P5", 159.8, 3.2, 6.3, 3.99},         Printed{"P6", 76.2, 3.0, 4.3, 2.84},
-    Printed{"P1 pulses", 385.7, 1.7, 7.2, 8.50},  Printed{"P4 pulses", 165.0, 3.1, 6.4, 4.12},
+    Printed{"P1", 176.8, 2.3, 5.7, 4.95},        Printed{"P2", 144.3, 2.4, 5.3, 4.37},
+    Printed{"P3", 162.9, 2.9, 6.1, 4.23},        Printed{"P4", 111.3, 3.5, 5.6, 3.18},
+    Printed{"P5", 159.8, 3.2, 6.3, 3.99},        Printed{"P6", 76.2, 3.0, 4.3, 2.84},
+    Printed{"P1 pulses", 385.7, 1.7, 7.2, 8.50}, Printed{"P4 pulses", 165.0, 3.1, 6.4, 4.12},
 };
 constexpr double kHalfDigit = 0.05;
 
