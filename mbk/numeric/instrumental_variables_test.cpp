@@ -113,7 +113,7 @@ TEST(InstrumentalVariables, FindThePlantInALoopWhereLeastSquaresFindsTheControll
     EXPECT_GT(std::abs(limit - kPlant), 10.0 * deviation);
     const Matrix left = Y - U * iv->coefficients;
     const double error = std::sqrt(newey_west_covariance(*iv, R, left, {{0, kRows}}, 0)(0, 0));
-    EXPECT_NEAR(error, deviation, 0.05 * deviation);
+    EXPECT_NEAR(error, deviation, 0.15 * deviation);  // E[ur] and the residual are known to 2 % each, and not apart
   }
 }
 
@@ -289,7 +289,7 @@ TEST(FirstStageStrength, GrowsWithTheShareThatTheInstrumentsExplain) {
     const FirstStage data(2000, slope * Matrix::Identity(2, 2), 0.0, 7);
     const double strength = first_stage_strength(data.Z, data.R, {{0, 2000}}, 0).minCoeff();
     EXPECT_GT(strength, before);
-    if (slope < 0.05) EXPECT_LT(strength, 10.0);
+    EXPECT_EQ(strength > 10.0, slope > 0.05);
     before = strength;
   }
   EXPECT_GT(before, 1000.0);
