@@ -79,7 +79,7 @@ TEST(ModelPassivity, HasThreeOutcomesAndSaysPassiveExactlyWhereEveryLowerBoundIs
 
 TEST(ModelPassivity, IsUndecidedWhereOneConditionAloneIsUnsure) {
   Identification id = arm();
-  id.covariance(11, 11) = 100.0 * 100.0;  // k_yy
+  id.covariance(8, 8) = 100.0 * 100.0;  // k_xx
   const ModelPassivity model = judged(id);
   EXPECT_EQ(model.verdict, Verdict::undecided);
   EXPECT_EQ(model.conditions[2].verdict, Verdict::undecided);
@@ -235,7 +235,7 @@ TEST(Decide, NamesTheConditionsThatDecided) {
   EXPECT_THAT(active.reason, HasSubstr("at 0.3 Hz"));
   EXPECT_THAT(active.reason, testing::Not(HasSubstr("eigenvalue of B")));
   Identification unsure = arm();
-  unsure.covariance(11, 11) = 1e4;
+  unsure.covariance(8, 8) = 1e4;
   const Passivity undecided = decide({judged(unsure)}, 99.0, std::nullopt);
   EXPECT_THAT(undecided.reason, HasSubstr("smallest eigenvalue of K"));
 }
