@@ -21,7 +21,7 @@ constexpr double kCoherent = 0.8;    ///< above it the band holds
 constexpr double kExplained = 50.0;  ///< [%] of the force: below it no model speaks for the limb
 constexpr double kAnswered = 0.2;        ///< share of the residual: above it the model is not all that there is
 constexpr double kOneSided95 = 1.6448536269514722;
-constexpr double kOneSidedOfSeven = 2.4500547;  ///< Φ⁻¹(1 − 0.05/7)
+constexpr double kOneSidedOfSeven = 2.4499976606;  ///< Φ⁻¹(1 − 0.05/7)
 constexpr Index kCurvePoints = 200;
 constexpr double kSegmentsAcross = 4.0;  ///< of the coherence, end to end; seven with the overlap
 

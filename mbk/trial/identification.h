@@ -47,7 +47,7 @@ struct InstrumentCheck {
   Vector strength;  ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; below 10 the instrument is weak
   Vector answered;  ///< n, share of what the model leaves that answers the perturbation linearly within half a second
 
-  [[nodiscard]] double weakest() const { return strength.minCoeff(); }
+  [[nodiscard]] double weakest() const { return strength.minCoeff<Eigen::PropagateNaN>(); }
   [[nodiscard]] bool strong() const { return weakest() > 10.0; }
 };
 
