@@ -2,13 +2,12 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { changed, closeBrowser, documentOf, folder, makeLog, mbk, measure, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, folder, makeLog, mbk, measure, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
 import { withDiagnostics } from "./diagnostics.mjs";
 
 after(closeBrowser);
 
 const normal95 = 1.959963984540054;
-const exact = 1e-12; // relative: a product of two numbers of which --json has every digit
 const axisPairs = (n) => Array.from({ length: n * n }, (_, k) => [Math.floor(k / n), k % n]);
 
 const person = makeLog("person.mat", "--protocol", "sinusoidal", "--seed", "4", "--coloured-force-noise", "0.3");
@@ -24,19 +23,6 @@ const onePage = withPlots(one, "one-plots");
 const oneAxis = measure("joint", joint);
 const unusable = measure("unusable", person, "--handle-mass", "5");
 const several = measure("several", person, pulses, relaxed);
-
-function close(got, want, what) {
-  if (want === null) return assert.equal(got, null, what);
-  return assert.ok(Math.abs(got - want) <= exact * Math.abs(want), `${what}: ${got} is not ${want}`);
-}
-
-/** What is shown is the number, rounded to the digits that are shown. */
-function assertShown({ value, shown }, what) {
-  const text = shown.replaceAll("−", "-");
-  if (!/^-?\d+(\.\d+)?[ %°]*$/.test(text)) return;
-  const half = 0.5 * 10 ** -((/\.(\d+)/.exec(text)?.[1] ?? "").length) * (1 + 1e-9);
-  assert.ok(Math.abs(parseFloat(text) - value) <= half, `${what}: ${value} is shown as ${shown}`);
-}
 
 function assertModel(read, result) {
   const n = result.axes;

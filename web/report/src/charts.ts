@@ -179,7 +179,7 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       nameLocation: "middle",
       nameGap: 26,
       nameTextStyle: text,
-      axisLabel: { ...text, formatter: chart.x.log ? powerOfTen : label, hideOverlap: true, showMinLabel: !chart.x.log, showMaxLabel: false },
+      axisLabel: { ...text, formatter: chart.x.log ? powerOfTen : label, hideOverlap: true, showMinLabel: !chart.x.log && !chart.x.range, showMaxLabel: false },
       axisLine: { ...rule, onZero: false },
       axisTick: rule,
       splitLine: { show: false },
@@ -187,7 +187,8 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
     yAxis: chart.panels.map((panel, k) => ({
       type: panel.log ? "log" : "value",
       gridIndex: k,
-      scale: !panel.range,
+      scale: !panel.range && !panel.zero,
+      axisLine: { onZero: false },
       ...(panel.range ? { min: panel.range[0], max: panel.range[1] } : {}),
       name: panel.unit ? `${panel.title} [${panel.unit}]` : panel.title,
       nameLocation: "end",

@@ -2,7 +2,7 @@
 import { type Trial, type Value, axisNames, matrices, unitsOf } from "./data";
 import { type HeadingLevel, h, heading, table } from "./dom";
 import { data, decimalsFor, fixed, perAxis, plain, significant, undefinedText, withHalfWidth } from "./format";
-import { type Bootstrap, type Instrument, type Method, methodNames, modelBy } from "./passivity_data";
+import { type Bootstrap, type Instrument, type Interval, type Method, methodNames, modelBy } from "./passivity_data";
 
 const both: Method[] = ["ls", "iv"];
 
@@ -48,21 +48,31 @@ function instrumentTable(instrument: Instrument, trial: Trial): HTMLElement {
     h("p", {}, h("strong", {}, instrument.strong ? "The instruments are strong. " : "The instruments are weak. "),
       "They are made from the commanded ", instrument.reference, "; the weakest first-stage F is ", data(instrument.weakest_F, significant(instrument.weakest_F), "weakest-F"),
       instrument.strong ? ", above the customary 10." : ", not above the customary 10: do not rely on the model of instrumental variables.",
-      " Of the force that the model leaves, this share answers the perturbation all the same, by reflex or because the limb is more than inertia, damping and stiffness: ",
+      " Of the force that instrumental variables leave unexplained, this share answers the perturbation all the same, by reflex or because the limb is more than inertia, damping and stiffness: ",
       perAxis(instrument.answered_share.map((share) => (share === null ? null : 100 * share)), 0, "%", "answered"), "."),
     table("Strength of the instruments: first-stage F of each signal, given the others", ["", "F", ""], rows, "numbers narrow instruments"));
 }
 
 function bootstrapTable(b: Bootstrap): HTMLElement {
-  const interval = ([low, high]: [Value, Value], name: string): Node => {
-    if (low === null || high === null) return h("span", {}, undefinedText);
-    const decimals = decimalsFor((high - low) / 2);
-    return h("span", { class: "number" }, "[", data(low, fixed(low, decimals), `${name}-low`), ", ", data(high, fixed(high, decimals), `${name}-high`), "]");
-  };
   const rows = b.quantities.map((q, k): (Node | string)[] => {
-    const [low, high] = q.interval95;
-    const shown = low === null || high === null ? significant(q.value) : fixed(q.value, decimalsFor((high - low) / 2));
-    return [parameterName(q.name), data(q.value, shown, `bootstrap${k}`), interval(q.interval95, `bootstrap${k}`), interval(q.delta_interval95, `delta${k}`), q.unit];
+    const isAngle = q.unit === "rad" && q.name.endsWith("orientation");
+    const shown = (value: Value): Value => (value === null || !isAngle ? value : (value * 180) / Math.PI);
+    const [low, high] = q.interval95.map(shown) as Interval;
+    const decimals = low === null || high === null ? 3 : decimalsFor((high - low) / 2);
+    const interval = (ends: Interval, name: string): Node => {
+      const [from, to] = ends.map(shown) as Interval;
+      return from === null || to === null
+        ? h("span", {}, undefinedText)
+        : h("span", { class: "number" }, "[", data(from, fixed(from, decimals), `${name}-low`), ", ", data(to, fixed(to, decimals), `${name}-high`), "]");
+    };
+    const value = shown(q.value);
+    return [
+      parameterName(q.name),
+      data(value, low === null ? significant(value) : fixed(value, decimals), `bootstrap${k}`),
+      interval(q.interval95, `bootstrap${k}`),
+      interval(q.delta_interval95, `delta${k}`),
+      isAngle ? "°" : q.unit,
+    ];
   });
   return h("div", {},
     table("95 % intervals by bootstrap beside those by linearisation (delta method)", ["", "value", "bootstrap", "delta method", "unit"], rows, "numbers bootstrap"),

@@ -52,22 +52,23 @@ export function overviewSection(report: Report): HTMLElement {
     { name: "condition", of: conditionOf },
   ].filter(({ of }) => trials.some((trial) => of(trial) !== undefined));
   const judged = trials.some((trial) => trial.result.passivity);
-  const head = ["recording", ...told.map(({ name }) => name), "usable", ...(judged ? ["passive"] : []), ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
+  const head = ["recording", ...told.map(({ name }) => name), judged ? "usable, passive" : "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
   const body: (Node | string)[][] = rows.map(({ trial, id }) => {
     const { result } = trial;
     const said = verdict(trial);
     return [
       h("a", { href: `#${id}` }, fileOf(trial)),
       ...told.map(({ of }) => of(trial) ?? "–"),
-      h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "yes") : "no"}`),
-      ...(judged ? [result.passivity ? verdictBadge(result.passivity.verdict) : "–"] : []),
+      h("div", { class: "badges" },
+        h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "usable") : "not usable"}`),
+        result.passivity && verdictBadge(result.passivity.verdict)),
       ...matrices.map(({ symbol }) => h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol))),
       h("div", {}, ...result.fit.VAF.map((vaf, axis) =>
         h("div", { class: "number" }, result.axes === 1 ? "" : `${"xy"[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
     ];
   });
   if (summary) {
-    body.push([`mean of ${summary.trials}`, ...told.map(() => ""), "", ...(judged ? [""] : []), ...matrices.map(({ symbol }) => matrix(summary.model[symbol], summary.between_trial_standard_error[symbol], `mean-${symbol}`)), ""]);
+    body.push([`mean of ${summary.trials}`, ...told.map(() => ""), "", ...matrices.map(({ symbol }) => matrix(summary.model[symbol], summary.between_trial_standard_error[symbol], `mean-${symbol}`)), ""]);
   }
   const two = trials.some((trial) => trial.result.ellipses);
   const ellipseRows: (Node | string)[][] = rows.filter(({ trial }) => trial.result.ellipses).map(({ trial }) => [

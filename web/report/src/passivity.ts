@@ -59,6 +59,9 @@ export function passivitySection(trial: Trial, id: string, level: HeadingLevel):
         h("p", {}, `${decidedBy(passivity)}: `, h("span", { "data-name": "reason" }, passivity.reason), `. ${holds(passivity)}`))),
     passivity.explained_percent === null ? "" : h("p", {}, "Inertia, damping and stiffness explain ", data(passivity.explained_percent, `${fixed(passivity.explained_percent, 0)} %`, "explained"), " of the force at best. The more that is, the more their verdict says of the limb."),
     ways(passivity, unitsOf(trial.result).B),
+    trial.result.disagreement?.significant
+      ? h("p", {}, "The two methods disagree beyond chance: the limb did something on its own account, which least squares takes for mechanics. ", h("a", { href: `#${id}-methods` }, "Both beside each other"), ".")
+      : "",
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
       "Passive: the limb gives back no more energy than it took. “Undecided” is a finding, not a fault: the data allow both. The symmetric part leaves out what makes force across the motion; the published rule takes estimates at their face value, without intervals."));
 }
@@ -142,7 +145,8 @@ function nyquistChart(trial: Trial, id: string): Chart | undefined {
   const unit = unitsOf(trial.result).B;
   const imaginary = frequency.map((f) => 2 * Math.PI * f * m - k / (2 * Math.PI * f));
   const half = frequency.map((_, i) => (first.index.upper95[i] ?? b) - b);
-  const reach = 1.6 * Math.max(Math.abs(b), ...half.map((width) => Math.abs(b) + width), Number.MIN_VALUE);
+  const reach = Number((1.8 * Math.max(Math.abs(b), ...half.map((width) => Math.abs(b) + width))).toPrecision(1));
+  if (!(reach > 0)) return undefined;
   const range: [number, number] = [-reach, reach];
   const ends = [0, frequency.length - 1] as const;
   const vertical = (name: string, real: Value[], style: Series["style"]): Series => ({ name, x: real, y: imaginary, style });
