@@ -132,7 +132,7 @@ test("the keyboard reaches the content first, zooms a chart and shows all again"
   assert.equal(await page.evaluate(() => document.activeElement.id), "content");
   await page.keyboard.press("Tab");
   assert.ok(await page.evaluate(() => document.querySelector("main").contains(document.activeElement)), "after the skip link the contents are skipped");
-  const figure = page.locator("figure.chart-figure").first();
+  const figure = page.locator("figure.chart-figure", { has: page.locator("#trial-1-prediction") });
   const ticks = () => figure.locator(".chart svg text").allTextContents();
   await figure.scrollIntoViewIfNeeded();
   await figure.locator(".chart svg").waitFor();
@@ -152,9 +152,10 @@ test("the keyboard reaches the content first, zooms a chart and shows all again"
 
 test("a data table opens by keyboard and has the numbers of the chart", async () => {
   const { page, close: done } = await open(onePage);
-  await page.locator("details.data-table summary").first().focus();
+  const figure = page.locator("figure.chart-figure", { has: page.locator("#trial-1-prediction") });
+  await figure.locator("details.data-table summary").focus();
   await page.keyboard.press("Enter");
-  const rows = page.locator("details.data-table table.values").first().locator("tbody tr");
+  const rows = figure.locator("details.data-table table.values tbody tr");
   await rows.first().waitFor();
   const { prediction } = documentOf(onePage).trials[0].diagnostics;
   const cells = (await rows.first().locator("td").allTextContents()).map((text) => Number(text.replaceAll("−", "-")));
@@ -165,7 +166,7 @@ test("a data table opens by keyboard and has the numbers of the chart", async ()
 
 test("a CSV file holds every value of its chart", async () => {
   const { page, close: done } = await open(onePage);
-  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /^Save CSV/ }).first().click()]);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /^Save CSV: Measured and predicted/ }).click()]);
   const lines = readFileSync(await download.path(), "utf8").trim().split("\n");
   const { prediction } = documentOf(onePage).trials[0].diagnostics;
   assert.match(lines[0], /^"time \[s\]","Force along x, measured \[N\]"/);
