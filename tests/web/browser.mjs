@@ -1,7 +1,8 @@
 // What the tests of the report share: the programs, a browser without a network, and reading numbers off a page.
 //
 // Run in the build folder of the page, where the packages are: cd build/test/web/report, then
-//   MBK=../../bin/mbk MAKE_LOG=../../bin/make_log node ../../../../tests/web/report_test.mjs
+//   MBK=$PWD/../../bin/mbk MAKE_LOG=$PWD/../../bin/make_log node ../../../../tests/web/report_test.mjs
+import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -10,6 +11,7 @@ import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
 const skipped = 77;
+const exact = 1e-12; // relative
 const packages = createRequire(join(process.cwd(), "package.json"));
 const skip = (why) => {
   console.log(`skipped: ${why}`);
@@ -118,6 +120,20 @@ export async function numbers(page, selector) {
   const all = await page.$$eval(`${selector} data[data-name]`, (elements) =>
     elements.map((e) => [e.dataset.name, { value: e.value === "null" ? null : Number(e.value), shown: e.textContent }]));
   return Object.fromEntries(all);
+}
+
+/** The same number, to the last digits: a product of two numbers of which --json has every digit. */
+export function close(got, want, what) {
+  if (want === null) return assert.equal(got, null, what);
+  return assert.ok(Math.abs(got - want) <= exact * Math.abs(want), `${what}: ${got} is not ${want}`);
+}
+
+/** What is shown is the number, rounded to the digits that are shown. */
+export function assertShown({ value, shown }, what) {
+  const text = shown.replaceAll("−", "-");
+  if (!/^-?\d+(\.\d+)?[ %°]*$/.test(text)) return;
+  const half = 0.5 * 10 ** -((/\.(\d+)/.exec(text)?.[1] ?? "").length) * (1 + 1e-9);
+  assert.ok(Math.abs(parseFloat(text) - value) <= half, `${what}: ${value} is shown as ${shown}`);
 }
 
 export const violations = async (page) => {

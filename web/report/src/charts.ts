@@ -10,8 +10,9 @@ import {
 import { type ECharts, init, use } from "echarts/core";
 import { SVGRenderer } from "echarts/renderers";
 import type { Value } from "./data";
-import { h, scrolling, svg } from "./dom";
+import { h, svg } from "./dom";
 import { plain, significant, superscript } from "./format";
+import { csv, dataTable, download } from "./sheet";
 
 use([LineChart, GridComponent, TooltipComponent, DataZoomComponent, MarkAreaComponent, MarkLineComponent, SVGRenderer]);
 
@@ -25,14 +26,32 @@ export const styles = {
   third: { color: "#009e73", dash: "dotted", width: 2 },
   ideal: { color: "#595959", dash: "dashed", width: 1 },
 } as const;
-type Style = (typeof styles)[keyof typeof styles];
-const dashes: Record<string, string> = { solid: "", dashed: "7 4", dotted: "2 3" };
+const dashes = { solid: "", dashed: "7 4", dotted: "2 3", dashdot: "9 3 2 3" } as const;
+const symbols = { circle: "M 1 5 a 4 4 0 1 0 8 0 a 4 4 0 1 0 -8 0", diamond: "M 5 0 L 10 5 L 5 10 L 0 5 Z", rect: "M 1 1 H 9 V 9 H 1 Z", triangle: "M 5 1 L 9.5 9 H 0.5 Z" } as const;
+export interface Style {
+  color: string;
+  dash: keyof typeof dashes;
+  width: number;
+}
+
+const colors = ["#0072b2", "#d55e00", "#009e73", "#000000", "#cc79a7"];
+const pick = <T>(all: T[], k: number): T => all[k % all.length] as T;
+
+/** For the k-th of several recordings: a line, and a mark, unlike those of its neighbours without colour too. */
+export const styleOf = (k: number): Style => ({ color: pick(colors, k), dash: pick(Object.keys(dashes) as Style["dash"][], k), width: 1.6 });
+export const symbolOf = (k: number): keyof typeof symbols => pick(Object.keys(symbols) as (keyof typeof symbols)[], k);
 
 export interface Series {
   name: string;
   x: Value[];
   y: Value[];
   style: Style;
+  /** A mark for each value instead of a line. */
+  marks?: keyof typeof symbols;
+  /** What is written beside each value. */
+  labels?: string[];
+  /** What is shaded around the line. */
+  between?: { low: Value[]; high: Value[]; name: string };
 }
 
 export interface Panel {
@@ -45,6 +64,8 @@ export interface Panel {
   band?: { from: number; to: number; name: string };
   /** Stretch of y that is shaded, with its name. */
   level?: { from: number; to: number; name: string };
+  /** A line at zero. */
+  zero?: boolean;
 }
 
 export interface Chart {
@@ -53,7 +74,7 @@ export interface Chart {
   howToRead: string;
   /** What the chart shows, for those who cannot see it. */
   description: string;
-  x: { name: string; unit: string; log?: boolean };
+  x: { name: string; unit: string; log?: boolean; range?: [number, number] };
   panels: Panel[];
   panelHeight?: number;
 }
@@ -79,6 +100,7 @@ function height(chart: Chart, printed: boolean): number {
 }
 
 function extent(chart: Chart): [number, number] {
+  if (chart.x.range) return chart.x.range;
   const all = chart.panels.flatMap((panel) => panel.series.flatMap((series) => series.x));
   const known = all.filter((v): v is number => v !== null && (!chart.x.log || v > 0));
   let [low, high] = [Infinity, -Infinity];
@@ -89,30 +111,61 @@ function extent(chart: Chart): [number, number] {
   return low < high ? [low, high] : [0, 1];
 }
 
+const pointsOf = (x: Value[], y: Value[], log = false): (number | "-")[][] =>
+  x.map((at, i) => {
+    const value = y[i] ?? null;
+    return [number(at), log && value !== null && value <= 0 ? "-" : number(value)];
+  });
+
+function line(one: Series, panel: Panel, k: number, first: boolean, text: object): object {
+  const dash = dashes[one.style.dash];
+  return {
+    type: "line",
+    name: one.name,
+    xAxisIndex: k,
+    yAxisIndex: k,
+    data: pointsOf(one.x, one.y, panel.log),
+    showSymbol: one.marks !== undefined,
+    symbol: one.marks,
+    symbolSize: 8,
+    animation: false,
+    silent: true,
+    ...(one.labels ? { label: { show: true, position: "right", ...text, formatter: ({ dataIndex }: { dataIndex: number }) => one.labels?.[dataIndex] ?? "" } } : {}),
+    lineStyle: { color: one.style.color, width: one.style.width, type: dash ? dash.split(" ").map(Number) : "solid", cap: "butt", opacity: one.marks ? 0 : 1 },
+    itemStyle: { color: one.style.color },
+    ...(first ? shades(panel) : {}),
+  };
+}
+
+/** The band around a line: what is between is stacked on its lower end. */
+function shaded(one: Series, k: number): object[] {
+  if (!one.between) return [];
+  const { low, high } = one.between;
+  const width = high.map((value, i) => (value === null || (low[i] ?? null) === null ? null : value - (low[i] as number)));
+  return [low, width].map((y, part) => ({
+    type: "line",
+    name: "",
+    xAxisIndex: k,
+    yAxisIndex: k,
+    data: pointsOf(one.x, y),
+    stack: `band ${k} ${one.name}`,
+    stackStrategy: "all",
+    showSymbol: false,
+    animation: false,
+    silent: true,
+    lineStyle: { opacity: 0 },
+    ...(part === 1 ? { areaStyle: { color: shadeColors.between } } : {}),
+  }));
+}
+
 function options(chart: Chart, printed: boolean): Record<string, unknown> {
   const each = panelHeight(chart, printed);
   const text = { fontFamily: font, color: "#333333", fontSize: 12 };
-  const line = { lineStyle: { color: "#8a8a8a" } };
+  const rule = { lineStyle: { color: "#8a8a8a" } };
   const [low, high] = extent(chart);
   const label = (value: number): string => plain(value, 4);
   const series = chart.panels.flatMap((panel, k) =>
-    panel.series.map((one, index) => ({
-      type: "line",
-      name: one.name,
-      xAxisIndex: k,
-      yAxisIndex: k,
-      data: one.x.map((x, i) => {
-        const y = one.y[i] ?? null;
-        return [number(x), panel.log && y !== null && y <= 0 ? "-" : number(y)];
-      }),
-      showSymbol: false,
-      animation: false,
-      silent: true,
-      lineStyle: { color: one.style.color, width: one.style.width, type: one.style.dash, cap: "butt" },
-      itemStyle: { color: one.style.color },
-      ...(index === 0 ? shades(panel) : {}),
-    })),
-  );
+    panel.series.flatMap((one, index) => [...shaded(one, k), line(one, panel, k, index === 0, text)]));
   return {
     animation: false,
     textStyle: { fontFamily: font },
@@ -126,15 +179,16 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       nameLocation: "middle",
       nameGap: 26,
       nameTextStyle: text,
-      axisLabel: { ...text, formatter: chart.x.log ? powerOfTen : label, hideOverlap: true, showMinLabel: !chart.x.log, showMaxLabel: false },
-      axisLine: { ...line, onZero: false },
-      axisTick: line,
+      axisLabel: { ...text, formatter: chart.x.log ? powerOfTen : label, hideOverlap: true, showMinLabel: !chart.x.log && !chart.x.range, showMaxLabel: false },
+      axisLine: { ...rule, onZero: false },
+      axisTick: rule,
       splitLine: { show: false },
     })),
     yAxis: chart.panels.map((panel, k) => ({
       type: panel.log ? "log" : "value",
       gridIndex: k,
-      scale: !panel.range,
+      scale: !panel.range && !panel.zero,
+      axisLine: { onZero: false },
       ...(panel.range ? { min: panel.range[0], max: panel.range[1] } : {}),
       name: panel.unit ? `${panel.title} [${panel.unit}]` : panel.title,
       nameLocation: "end",
@@ -157,7 +211,7 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       formatter: (points: { seriesName: string; value: [number, number]; seriesIndex: number }[]) => {
         const first = points[0];
         if (!first) return "";
-        const lines = points.map((p) => h("div", {}, `${p.seriesName}: ${significant(p.value[1], 4)}`));
+        const lines = points.filter((p) => p.seriesName).map((p) => h("div", {}, `${p.seriesName}: ${significant(p.value[1], 4)}`));
         return h("div", {}, h("strong", {}, `${chart.x.name} ${significant(first.value[0], 5)} ${chart.x.unit}`), ...lines);
       },
     },
@@ -186,35 +240,42 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
   };
 }
 
-const shadeColors = { band: "rgba(86,180,233,0.2)", level: "rgba(110,110,110,0.2)" };
+const shadeColors = { band: "rgba(86,180,233,0.2)", level: "rgba(110,110,110,0.2)", between: "rgba(0,114,178,0.16)" };
 
 function shades(panel: Panel): object {
   const areas: object[] = [];
   if (panel.band) areas.push([{ xAxis: panel.band.from, itemStyle: { color: shadeColors.band } }, { xAxis: panel.band.to }]);
   if (panel.level) areas.push([{ yAxis: panel.level.from, itemStyle: { color: shadeColors.level } }, { yAxis: panel.level.to }]);
-  return areas.length ? { markArea: { silent: true, animation: false, label: { show: false }, data: areas } } : {};
+  return {
+    ...(areas.length ? { markArea: { silent: true, animation: false, label: { show: false }, data: areas } } : {}),
+    ...(panel.zero ? { markLine: { silent: true, animation: false, symbol: "none", label: { show: false }, lineStyle: { color: "#1c1c1c", width: 1, type: "solid" }, data: [{ yAxis: 0 }] } } : {}),
+  };
 }
 
 /** Which dash is which. */
 function legend(chart: Chart): HTMLElement {
-  const seen = new Map(chart.panels.flatMap((panel) => panel.series).map((series) => [series.name, series.style]));
-  const shaded = new Map(
-    chart.panels.flatMap((panel) => [
+  const series = chart.panels.flatMap((panel) => panel.series);
+  const seen = new Map(series.map((one) => [one.name, one]));
+  const shaded = new Map([
+    ...chart.panels.flatMap((panel) => [
       ...(panel.band ? [[panel.band.name, shadeColors.band] as const] : []),
       ...(panel.level ? [[panel.level.name, shadeColors.level] as const] : []),
     ]),
-  );
+    ...series.flatMap((one) => (one.between ? [[one.between.name, shadeColors.between] as const] : [])),
+  ]);
   return h(
     "ul",
     { class: "legend" },
-    ...[...seen].map(([name, style]) =>
+    ...[...seen].map(([name, { style, marks }]) =>
       h(
         "li",
         {},
         svg(
           "svg",
-          { width: 34, height: 10, "aria-hidden": "true" },
-          svg("line", { x1: 1, y1: 5, x2: 33, y2: 5, stroke: style.color, "stroke-width": style.width + 0.4, "stroke-dasharray": dashes[style.dash] }),
+          { width: marks ? 12 : 34, height: 10, "aria-hidden": "true" },
+          marks
+            ? svg("path", { d: symbols[marks], fill: style.color })
+            : svg("line", { x1: 1, y1: 5, x2: 33, y2: 5, stroke: style.color, "stroke-width": style.width + 0.4, "stroke-dasharray": dashes[style.dash] }),
         ),
         name,
       ),
@@ -228,65 +289,6 @@ function legend(chart: Chart): HTMLElement {
       ),
     ),
   );
-}
-
-interface Sheet {
-  head: string[];
-  rows: Value[][];
-}
-
-/** All series as columns; those that share their x share a column. */
-function sheet(chart: Chart): Sheet {
-  const head: string[] = [];
-  const columns: Value[][] = [];
-  const shared: Value[][] = [];
-  for (const panel of chart.panels) {
-    for (const series of panel.series) {
-      if (!shared.includes(series.x)) {
-        shared.push(series.x);
-        head.push(`${chart.x.name} [${chart.x.unit}]`);
-        columns.push(series.x);
-      }
-      const unit = panel.unit ? ` [${panel.unit}]` : "";
-      head.push(panel.title === series.name ? `${series.name}${unit}` : `${panel.title}, ${series.name}${unit}`);
-      columns.push(series.y);
-    }
-  }
-  const length = Math.max(...columns.map((column) => column.length));
-  const rows = Array.from({ length }, (_, i) => columns.map((column) => column[i] ?? null));
-  return { head, rows: rows.filter((row) => row.some((value) => value !== null)) };
-}
-
-function csv(chart: Chart): string {
-  const { head, rows } = sheet(chart);
-  const lines = [head.map((name) => `"${name.replaceAll('"', '""')}"`), ...rows.map((row) => row.map((v) => v ?? ""))];
-  return `${lines.map((line) => line.join(",")).join("\n")}\n`;
-}
-
-const longestTable = 60;
-
-function dataTable(chart: Chart): HTMLElement {
-  const { head, rows } = sheet(chart);
-  const step = Math.max(1, Math.ceil(rows.length / longestTable));
-  const shown = rows.filter((_, i) => i % step === 0);
-  const caption = `${chart.title}: ${step === 1 ? "every value" : `every ${step}th of ${rows.length} rows; the CSV file has all`}`;
-  const cells = (row: Value[]) => row.map((value) => h("td", {}, value === null ? "" : significant(value, 5)));
-  return scrolling(
-    caption,
-    h(
-      "table",
-      { class: "values" },
-      h("caption", {}, caption),
-      h("thead", {}, h("tr", {}, ...head.map((name) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, ...shown.map((row) => h("tr", {}, ...cells(row)))),
-    ),
-  );
-}
-
-function download(name: string, text: string): void {
-  const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
-  h("a", { href: address, download: name }).click();
-  URL.revokeObjectURL(address);
 }
 
 /** A chart that exists once it has been drawn. */

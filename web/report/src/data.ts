@@ -1,4 +1,5 @@
 // The document of schema mbk.report/1 that stands in the page; docs/guide/report.md describes it.
+import type { Alternative, Bootstrap, Disagreement, Energy, Instrument, Method, Passivity } from "./passivity_data";
 
 export type Value = number | null;
 export type MatrixName = "M" | "B" | "K";
@@ -15,6 +16,7 @@ export interface Ellipse {
   shape: Value;
   orientation_deg: Value;
   eigenvalues: [Value, Value];
+  symmetric_part?: Value[][];
   interval95: { area: [Value, Value]; shape: [Value, Value]; orientation_deg: [Value, Value] };
 }
 
@@ -55,7 +57,7 @@ export interface Result {
   notes?: string[];
   mode?: string;
   protocol?: string;
-  method: string;
+  method: Method;
   axes: number;
   structure: string;
   units?: { M: string; B: string; K: string; x0: string; force: string };
@@ -64,6 +66,12 @@ export interface Result {
   fit: { VAF: Value[]; RMSE: Value[]; validated_on: string; VAF_in_sample: Value[] };
   ellipses?: Record<"inertia" | "damping" | "stiffness", Ellipse>;
   antisymmetry?: Record<"inertia" | "stiffness", Antisymmetry>;
+  covariance?: { parameters: string[]; matrix: Value[][] };
+  instrument?: Instrument;
+  alternatives?: Alternative[];
+  disagreement?: Disagreement | null;
+  bootstrap?: Bootstrap;
+  passivity?: Passivity;
   warnings: Warning[];
   usable: boolean;
   estimation: {
@@ -119,6 +127,8 @@ export interface Diagnostics {
 export interface Trial {
   result: Result;
   recordings: RecordingFacts[];
+  /** One for each recording. */
+  energy?: Energy[];
   diagnostics?: Diagnostics;
 }
 

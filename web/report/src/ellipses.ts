@@ -2,6 +2,7 @@
 import { type Ellipse, type Posture, type Trial, matrices, unitsOf } from "./data";
 import { h, svg } from "./dom";
 import { fixed, plain, significant } from "./format";
+import { type Band, directions, ellipseBand } from "./uncertainty";
 import { angleBetween } from "./words";
 
 const radius = 92; // of the largest ellipse [px]
@@ -101,6 +102,15 @@ function referenceLabel(text: string, r: number, angle: number, posture: Posture
   );
 }
 
+/** The ring in which the ellipse lies. */
+function bandPath(band: Band, scale: number): SVGElement {
+  const ring = (radii: number[]) => radii.map((r, k) => {
+    const angle = (2 * Math.PI * k) / directions;
+    return `${k === 0 ? "M" : "L"} ${(r * scale * Math.cos(angle)).toFixed(1)} ${(-r * scale * Math.sin(angle)).toFixed(1)}`;
+  }).join(" ");
+  return svg("path", { d: `${ring(band.high)} Z ${ring(band.low)} Z`, "fill-rule": "evenodd", class: "ellipse-band" });
+}
+
 /** One drawing. `largest` is the value at the radius of the drawing, the same for all that are compared. */
 function drawing(
   ellipse: Ellipse,
@@ -109,6 +119,7 @@ function drawing(
   largest: number,
   reference: number,
   posture: Posture | undefined,
+  band: Band | undefined,
 ): SVGSVGElement {
   const frame = frameFor(posture);
   const [small, large] = ellipse.eigenvalues;
@@ -121,6 +132,7 @@ function drawing(
     words = `long half axis ${significant(large)} ${unit} at ${fixed(angle, 0)}° from x, short half axis ${significant(small)} ${unit}`;
     const [dx, dy] = [Math.cos((angle * Math.PI) / 180), -Math.sin((angle * Math.PI) / 180)];
     const [a, b] = [large * scale, small * scale];
+    if (band) shapes.push(bandPath(band, scale));
     shapes.push(
       svg("ellipse", { rx: a.toFixed(2), ry: b.toFixed(2), transform: `rotate(${(-angle).toFixed(3)})`, class: "ellipse" }),
       svg("line", { x1: -a * dx, y1: -a * dy, x2: a * dx, y2: a * dy, class: "major" }),
@@ -155,6 +167,17 @@ const largestOf = (ellipses: (Ellipse | undefined)[]): number => {
   return Math.max(...values, 0);
 };
 
+/** Room for the band as well, up to twice the ellipse: what is wider is cut off by the edge of the drawing. */
+const roomFor = (ellipses: (Ellipse | undefined)[], bands: (Band | undefined)[]): number => {
+  const largest = largestOf(ellipses);
+  return Math.min(Math.max(largest, ...bands.flatMap((band) => band?.high ?? [])), 2 * largest);
+};
+
+const bandLegend = (): HTMLElement =>
+  h("ul", { class: "legend" }, h("li", {},
+    svg("svg", { width: 22, height: 12, "aria-hidden": "true" }, svg("rect", { x: 0.5, y: 0.5, width: 21, height: 11, class: "ellipse-band" })),
+    "where 95 % of 1000 ellipses drawn from the covariance end, direction by direction"));
+
 const postureWords = {
   arm: "The person's arm is drawn from the recording's metadata, seen from above, on a scale of its own.",
   robot: "The robot's links are drawn from its joint angles, seen from above, on a scale of their own; the recording says nothing of the arm.",
@@ -168,19 +191,21 @@ export function ellipsesOf(trial: Trial): HTMLElement | undefined {
   const units = unitsOf(trial.result);
   const posture = trial.recordings[0]?.posture;
   const words = [postureWords[posture?.of ?? "hand"], posture?.note ? `(${posture.note}.)` : ""].join(" ");
+  const bands = matrices.map(({ symbol }) => ellipseBand(symbol, trial.result));
   return h(
     "figure",
     { class: "ellipses" },
+    bands.some((band) => band) ? bandLegend() : "",
     h(
       "div",
       { class: "panels" },
-      ...matrices.map(({ symbol, name, title }) => {
+      ...matrices.map(({ symbol, name, title }, k) => {
         const largest = largestOf([ellipses[name]]);
         return h(
           "div",
           { class: "panel" },
           h("p", { class: "panel-title" }, `${title} ${symbol}`),
-          drawing(ellipses[name], title, units[symbol], largest, niceBelow(0.8 * largest), posture),
+          drawing(ellipses[name], title, units[symbol], roomFor([ellipses[name]], [bands[k]]), niceBelow(0.8 * largest), posture, bands[k]),
         );
       }),
     ),
@@ -201,8 +226,11 @@ export function ellipsesSideBySide(trials: Trial[], nameOf: (trial: Trial) => st
   return h(
     "figure",
     { class: "ellipses side-by-side" },
+    drawn.some((trial) => trial.result.covariance) ? bandLegend() : "",
     ...matrices.map(({ symbol, name, title }) => {
-      const largest = largestOf(drawn.map((trial) => trial.result.ellipses?.[name]));
+      const compared = drawn.map((trial) => trial.result.ellipses?.[name]);
+      const bands = drawn.map((trial) => ellipseBand(symbol, trial.result));
+      const largest = largestOf(compared);
       const reference = niceBelow(0.8 * largest);
       return h(
         "div",
@@ -211,13 +239,13 @@ export function ellipsesSideBySide(trials: Trial[], nameOf: (trial: Trial) => st
         h(
           "div",
           { class: "panels" },
-          ...drawn.map((trial) => {
+          ...drawn.map((trial, k) => {
             const unit = unitsOf(trial.result)[symbol];
             const ellipse = trial.result.ellipses?.[name] as Ellipse;
             return h(
               "div",
               { class: "panel" },
-              drawing(ellipse, `${nameOf(trial)}: ${title}`, unit, largest, reference, undefined),
+              drawing(ellipse, `${nameOf(trial)}: ${title}`, unit, roomFor(compared, bands), reference, undefined, bands[k]),
               h("p", { class: "panel-name" }, nameOf(trial), trial.result.usable ? "" : " (not usable)"),
             );
           }),

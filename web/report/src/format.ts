@@ -4,12 +4,15 @@ import { h } from "./dom";
 
 export const normal95 = 1.959963984540054;
 export const undefinedText = "undefined";
+const longest = 1e7; // beyond it the digits before the point say nothing
 
 const minus = (text: string): string => text.replaceAll("-", "−");
 
 export function fixed(value: Value | undefined, decimals: number): string {
   if (value === null || value === undefined) return undefinedText;
-  return minus(value.toFixed(Math.min(Math.max(decimals, 0), 12)));
+  if (Math.abs(value) >= longest) return significant(value);
+  const text = value.toFixed(Math.min(Math.max(decimals, 0), 12));
+  return minus(Number(text) === 0 ? text.replace("-", "") : text);
 }
 
 /** So many significant digits, without an exponent where that is readable. */

@@ -8,7 +8,11 @@ import { followPageAndPrinter } from "./charts";
 import { type Report, type Trial, conditionOf, fileOf, participantOf, readReport } from "./data";
 import { diagnosticElements } from "./diagnostics";
 import { type HeadingLevel, facts, h, heading } from "./dom";
+import { energySection } from "./energy";
+import { forceFieldSection } from "./force_field";
+import { methodsSection } from "./methods";
 import { inOrder, nameOf, overviewSection } from "./overview";
+import { passivityDetails, passivitySection } from "./passivity";
 import { ellipsesSection, identityFacts, modelSection, provenanceSection, simulatedNote } from "./sections";
 import "./style.css";
 import { summarySection, verdict, warningsSection } from "./summary";
@@ -18,8 +22,13 @@ function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLEleme
   const sections = [
     summarySection(trial, id, level),
     warningsSection(trial, id, level),
+    passivitySection(trial, id, level),
     modelSection(trial, id, level),
     ellipsesSection(trial, id, level),
+    forceFieldSection(trial, id, level),
+    methodsSection(trial, id, level),
+    passivityDetails(trial, id, level),
+    energySection(trial, id, level),
     ...diagnosticElements(trial, id, level),
     provenanceSection(trial, id, level),
   ];

@@ -2,7 +2,9 @@
 import { type Report, type Trial, type Value, axisNames, conditionOf, fileOf, matrices, participantOf, unitsOf } from "./data";
 import { h, heading, table } from "./dom";
 import { ellipsesSideBySide } from "./ellipses";
+import { energySideBySide } from "./energy";
 import { data, decimalsFor, fixed, normal95, significant, withInterval } from "./format";
+import { verdictBadge } from "./passivity";
 import { verdict } from "./summary";
 
 /** "P1, relaxed", or the name of the file where nothing else tells it apart. */
@@ -49,14 +51,17 @@ export function overviewSection(report: Report): HTMLElement {
     { name: "participant", of: participantOf },
     { name: "condition", of: conditionOf },
   ].filter(({ of }) => trials.some((trial) => of(trial) !== undefined));
-  const head = ["recording", ...told.map(({ name }) => name), "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
+  const judged = trials.some((trial) => trial.result.passivity);
+  const head = ["recording", ...told.map(({ name }) => name), judged ? "usable, passive" : "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
   const body: (Node | string)[][] = rows.map(({ trial, id }) => {
     const { result } = trial;
     const said = verdict(trial);
     return [
       h("a", { href: `#${id}` }, fileOf(trial)),
       ...told.map(({ of }) => of(trial) ?? "–"),
-      h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "yes") : "no"}`),
+      h("div", { class: "badges" },
+        h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "usable") : "not usable"}`),
+        result.passivity && verdictBadge(result.passivity.verdict)),
       ...matrices.map(({ symbol }) => h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol))),
       h("div", {}, ...result.fit.VAF.map((vaf, axis) =>
         h("div", { class: "number" }, result.axes === 1 ? "" : `${"xy"[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
@@ -86,6 +91,7 @@ export function overviewSection(report: Report): HTMLElement {
     table("Model of each recording, by participant and condition", head, body, "numbers overview"),
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval within one recording; in the row of the mean it is the standard error between recordings.${order}`),
     two ? table("Ellipses: area in the square of the matrix's unit, shape, orientation in degrees with its 95 % interval", ["recording", ...matrices.flatMap(({ symbol }) => [`${symbol} area`, `${symbol} shape`, `${symbol} angle`])], ellipseRows, "numbers overview") : "",
+    energySideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
     ellipsesSideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
   );
 }

@@ -3,6 +3,7 @@ import { type Trial, axisNames, conditionOf, fileOf, isSimulated, matrices, meta
 import { type HeadingLevel, facts, h, heading, table } from "./dom";
 import { ellipsesOf } from "./ellipses";
 import { data, fixed, listed, perAxis, plain, significant, withHalfWidth, withInterval } from "./format";
+import { methodNames } from "./passivity_data";
 
 const onlyOne = (values: string[]): string => [...new Set(values)].join(", ");
 
@@ -129,7 +130,7 @@ export function provenanceSection(trial: Trial, id: string, level: HeadingLevel)
     table("Files", ["file", "format", "SHA-256"], inputs, "files"),
     ...preparationFacts(trial),
     facts([
-      ["Estimator", `${result.method === "ls" ? "least squares" : result.method}, structure ${result.structure}`],
+      ["Estimator", `${methodNames[result.method]}, structure ${result.structure}`],
       ["Data behind the parameters", `${plain(e.duration_s, 4)} s, ${e.samples} samples (${e.parameters_from})`],
       ["Reach of the noise's memory", `${plain(e.hac_lag_s, 3)} s in the standard errors`],
       ["Handle taken off the inertia", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "nothing"],

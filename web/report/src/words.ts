@@ -68,6 +68,13 @@ export const plainWarnings: Record<string, { title: string; meaning: string }> =
   },
 };
 
+/** The verdict of passivity: a sign and a word, so that nothing hangs on colour, and what it means. */
+export const verdictWords = {
+  passive: { kind: "good", sign: "✓", word: "Passive", meaning: "Beyond reasonable doubt the limb takes energy up and gives back no more than it took. No passive machine can be made unstable by it." },
+  active: { kind: "bad", sign: "✕", word: "Active", meaning: "Beyond reasonable doubt the limb gave more energy than it took. A machine that counts on a passive limb may become unstable." },
+  undecided: { kind: "care", sign: "?", word: "Undecided", meaning: "The data allow both: the limb may be passive or active." },
+} as const;
+
 export const meanings = {
   K: "how hard the limb pushes back when it is held away from its resting place, as a spring does",
   B: "how hard it resists being moved fast, as if through honey",
@@ -107,5 +114,13 @@ export const glossary: [string, string][] = [
   ["Shape", "Long axis over short axis of an ellipse: 1 is a circle."],
   ["Orientation", "Angle of the long axis from x, counter-clockwise. An axis has no arrow, so 10° and 190° are the same."],
   ["Antisymmetry (z_mean)", "How far a matrix is from symmetric, relative to its size. Springs alone make symmetric stiffness; an interval that begins at 0 shows no antisymmetry."],
+  ["Passive", "A limb that gives back no more energy than it took. Passive limb and passive machine together are always stable."],
+  ["Passivity index", "At each frequency, the least damping of the model in any direction of motion: half the smallest eigenvalue of Z + Zᴴ. Positive is passive."],
+  ["Excess, shortage of passivity", "How much damping could be taken away, or would have to be added, for the limb to be just passive."],
+  ["Symmetric, antisymmetric part", "A matrix is the sum of both. Springs and masses are symmetric; an antisymmetric stiffness makes a force across the displacement that no spring makes."],
+  ["Least squares", "The M, B, K that leave the least force unexplained. Where the limb acts on its own account, that is taken for mechanics too."],
+  ["Instrumental variables", "M, B, K from what follows the known perturbation alone. What the limb does of itself does not follow it, and so drops out."],
+  ["First-stage F", "How well the known perturbation predicts a signal that the model needs. Below 10 it predicts too little to rely on."],
+  ["Bootstrap", "The measurement made again many times from parts of itself, drawn by chance: how much it varies shows how sure it is."],
   ["Reference circle", "The ellipse of something equally stiff (damped, heavy) in all directions, of the value that is written on it."],
 ];

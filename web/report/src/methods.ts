@@ -1,0 +1,89 @@
+// How far the numbers can be trusted: the other method beside this one, instruments, bootstrap.
+import { type Trial, type Value, axisNames, matrices, unitsOf } from "./data";
+import { type HeadingLevel, h, heading, table } from "./dom";
+import { data, decimalsFor, fixed, perAxis, plain, significant, undefinedText, withHalfWidth } from "./format";
+import { type Bootstrap, type Instrument, type Interval, type Method, methodNames, modelBy } from "./passivity_data";
+
+const both: Method[] = ["ls", "iv"];
+
+/** "K_xy", or "K" where there is one axis. */
+const elements = (axes: number) => {
+  const names = axisNames(axes);
+  return matrices.flatMap(({ symbol }) => names.flatMap((row, j) => names.map((column, i) => ({ symbol, name: `${symbol} ${row}${column}`.trim(), j, i }))));
+};
+
+/** "k_xy" as it is called in the tables: "K xy". */
+const parameterName = (name: string): string => (/^[mbk](_|$)/.test(name) ? `${name[0]?.toUpperCase()}${name.slice(1)}`.replace("_", " ") : name);
+
+function comparison(trial: Trial): HTMLElement | undefined {
+  const { axes, fit, alternatives } = trial.result;
+  const other = alternatives?.[0];
+  if (!other) return undefined;
+  const units = unitsOf(trial.result);
+  const columns = both.map((method) => ({ method, found: modelBy(method, trial) }));
+  const rows: (Node | string)[][] = elements(axes).map(({ symbol, name, j, i }) => [
+    name,
+    ...columns.map(({ method, found }) => (found ? withHalfWidth(found.model[symbol][j]?.[i] ?? null, found.standard_error[symbol][j]?.[i] ?? null, `${method}-${symbol}${j}${i}`) : "")),
+    units[symbol],
+  ]);
+  rows.push(["VAF", ...both.map((method) => perAxis((method === other.method ? other.fit : fit).VAF, 1, "%", `${method}-VAF`)), ""]);
+  return table("The same recording by two methods; ± is the 95 % interval", ["", ...both.map((method) => `${methodNames[method]}${method === trial.result.method ? " (the model above)" : ""}`), "unit"], rows, "numbers methods");
+}
+
+function disagreement(trial: Trial): HTMLElement | undefined {
+  const { disagreement: d, axes } = trial.result;
+  if (!d) return undefined;
+  const unit = unitsOf(trial.result)[(d.parameter[0] ?? "").toUpperCase() as "M" | "B" | "K"] ?? unitsOf(trial.result).x0;
+  const numbers = [`They differ most in ${parameterName(d.parameter)}: by `, withHalfWidth(d.iv_less_ls, d.standard_error, "iv-less-ls"), ` ${unit}`];
+  if (!d.significant) return h("p", { "data-significant": "false" }, h("strong", {}, "The two methods agree within chance. "), ...numbers, ".");
+  return h("p", { "data-significant": "true" }, h("strong", {}, "The two methods disagree beyond chance. "), ...numbers,
+    `. Least squares takes what the ${axes === 1 ? "limb" : "arm"} does on its own account, by will or by reflex, for mechanics. Instrumental variables look only at what follows the known perturbation, and what the limb does of itself does not follow it. Where the instruments are strong and the two disagree, the latter speak for the limb.`);
+}
+
+function instrumentTable(instrument: Instrument, trial: Trial): HTMLElement {
+  const { axes } = trial.result;
+  const names = ["acceleration", "velocity", "position"].flatMap((kind) => axisNames(axes).map((axis) => `${kind} ${axis}`.trim()));
+  const rows: (Node | string)[][] = instrument.first_stage_F.map((value, k) => [names[k] ?? `${k + 1}`, data(value, significant(value), `first-stage-F${k}`), value === null ? "?" : value > 10 ? "✓ strong" : "✕ weak"]);
+  return h("div", {},
+    h("p", {}, h("strong", {}, instrument.strong ? "The instruments are strong. " : "The instruments are weak. "),
+      "They are made from the commanded ", instrument.reference, "; the weakest first-stage F is ", data(instrument.weakest_F, significant(instrument.weakest_F), "weakest-F"),
+      instrument.strong ? ", above the customary 10." : ", not above the customary 10: do not rely on the model of instrumental variables.",
+      " Of the force that instrumental variables leave unexplained, this share answers the perturbation all the same, by reflex or because the limb is more than inertia, damping and stiffness: ",
+      perAxis(instrument.answered_share.map((share) => (share === null ? null : 100 * share)), 0, "%", "answered"), "."),
+    table("Strength of the instruments: first-stage F of each signal, given the others", ["", "F", ""], rows, "numbers narrow instruments"));
+}
+
+function bootstrapTable(b: Bootstrap): HTMLElement {
+  const rows = b.quantities.map((q, k): (Node | string)[] => {
+    const isAngle = q.unit === "rad" && q.name.endsWith("orientation");
+    const shown = (value: Value): Value => (value === null || !isAngle ? value : (value * 180) / Math.PI);
+    const [low, high] = q.interval95.map(shown) as Interval;
+    const decimals = low === null || high === null ? 3 : decimalsFor((high - low) / 2);
+    const interval = (ends: Interval, name: string): Node => {
+      const [from, to] = ends.map(shown) as Interval;
+      return from === null || to === null
+        ? h("span", {}, undefinedText)
+        : h("span", { class: "number" }, "[", data(from, fixed(from, decimals), `${name}-low`), ", ", data(to, fixed(to, decimals), `${name}-high`), "]");
+    };
+    const value = shown(q.value);
+    return [
+      parameterName(q.name),
+      data(value, low === null ? significant(value) : fixed(value, decimals), `bootstrap${k}`),
+      interval(q.interval95, `bootstrap${k}`),
+      interval(q.delta_interval95, `delta${k}`),
+      isAngle ? "°" : q.unit,
+    ];
+  });
+  return h("div", {},
+    table("95 % intervals by bootstrap beside those by linearisation (delta method)", ["", "value", "bootstrap", "delta method", "unit"], rows, "numbers bootstrap"),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `The measurement was made again ${b.replicates} times from blocks of ${plain(b.block_s)} s drawn from the recording (seed ${b.seed}). Where the two intervals differ much, trust the bootstrap's: the delta method takes everything for straight, which angles and eigenvalues are not.`));
+}
+
+/** What a second method and a second kind of interval say. */
+export function methodsSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
+  const { alternatives, bootstrap } = trial.result;
+  const instrument = trial.result.instrument ?? alternatives?.find((one) => one.instrument)?.instrument;
+  const parts = [disagreement(trial), comparison(trial), instrument && instrumentTable(instrument, trial), bootstrap && bootstrapTable(bootstrap)].filter((part) => part !== undefined);
+  if (parts.length === 0) return undefined;
+  return h("section", { id: `${id}-methods` }, heading(level, "Two methods, two kinds of interval"), ...parts);
+}
