@@ -120,7 +120,7 @@ TEST(NoiseOfThePosition, DrawsTheInertiaDownByLeastSquaresAlone) {
 
 // The participant's own responses are in the loop with the robot's impedance. Damping is drawn little either way.
 TEST(RigidArmUnderAForce, IsFoundByInstrumentsAndNotByLeastSquares) {
-  constexpr int kSeeds = 4;
+  static constexpr int kSeeds = 4;
   struct Eigenvalues {
     Eigen::Vector2d M = Eigen::Vector2d::Zero(), B = M, K = M;
     void add(const impedance::Model& model) {
