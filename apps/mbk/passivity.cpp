@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -31,7 +32,8 @@ Result<std::optional<PassivityBand>> band_of(const std::string& text) {
   const auto first = std::from_chars(text.data(), end, low);
   const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
   const auto second = colon ? std::from_chars(first.ptr + 1, end, high) : first;
-  if (!colon || second.ec != std::errc() || second.ptr != end || !(low > 0.0) || !(high > low)) {
+  if (!colon || second.ec != std::errc() || second.ptr != end || !(low > 0.0) || !(high > low) ||
+      !std::isfinite(high)) {
     return bad_usage(fmt::format("--band: {} is not LOW:HIGH in Hz with 0 < LOW < HIGH", quoted(text)),
                      "as in --band 0.3:3");
   }

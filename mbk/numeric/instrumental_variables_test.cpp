@@ -37,7 +37,7 @@ struct Data {
     E.resize(rows, 2);
     for (Index j = 0; j < 2; ++j) E.col(j) = first_order(random, rows, correlation);
     Z = R;
-    Z.col(0) += 0.3 * R.col(1) * 1e5 - 500.0 * E.col(0);
+    Z.col(0) += 2.0 * R.col(1) * 1e5 - 500.0 * E.col(0);
     Z.col(1) += 0.005 * (E.col(0) + E.col(1));
   }
   [[nodiscard]] Matrix outputs(double noise) const { return Z * theta + noise * E; }

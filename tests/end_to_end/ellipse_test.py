@@ -10,7 +10,7 @@ class Identify(Case):
     def test_it_is_measure_without_the_ellipses(self):
         log = make_log().path
         measured, identified = (self.fine(command, "--json", log).json for command in ("measure", "identify"))
-        self.assertEqual({key for key in measured if key not in identified}, {"ellipses", "antisymmetry"})
+        self.assertEqual({key for key in measured if key not in identified}, {"ellipses", "antisymmetry", "passivity"})
         self.assertEqual(identified, {key: measured[key] for key in identified})
 
     def test_the_text_has_the_model_and_no_ellipse(self):

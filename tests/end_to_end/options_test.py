@@ -10,7 +10,7 @@ from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, mak
                      write_csv)
 
 COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "robot", "validate",
-            "completion", "manual")
+            "completion", "manual", "passivity")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "robot": ("workspace",)}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
 NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
@@ -28,9 +28,11 @@ NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
     "--threads": ("0", "-1", "1.5", "1e1", "99999999999999999999"),
     "--every": ("0", "-1", "1.5", "1e1", "99999999999999999999"),
     "--axes": ("0", "-1", "3", "1.0"),
+    "--bootstrap": ("-1", "1.5", "1e1", "99999999999999999999"),
+    "--seed": ("-1", "1.5", "1e1", "99999999999999999999"),
 }
 WORDS = {"--mode": "default|reference", "--procedure": "chapter3|chapter5",
-         "--protocol": "auto|sinusoidal|underdamped|free", "--method": "ls", "--extension": "odd|even|constant",
+         "--protocol": "auto|sinusoidal|underdamped|free", "--method": "ls|iv", "--extension": "odd|even|constant",
          "--acceleration": "sensor|derivative", "--structure": "full|symmetric|mass-spring",
          "--parameters-from": "identification|all"}
 
