@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kCoherent = 0.8;    ///< above it the band holds
 constexpr double kExplained = 50.0;  ///< [%] of the force: below it no model speaks for the limb
-constexpr double kAnswered = 0.2;        ///< share of the residual: above it the model is not all that there is
+constexpr double kAnswered = 0.2;    ///< share of the residual: above it the model is not all that there is
 constexpr double kOneSided95 = 1.6448536269514722;
 constexpr double kOneSidedOfSeven = 2.4499976606;  ///< Φ⁻¹(1 − 0.05/7)
 constexpr Index kCurvePoints = 200;
@@ -236,8 +236,7 @@ Passivity decide(std::vector<ModelPassivity> models, double explained, std::opti
   }
   result.by_model = true;
   result.verdict = speaks ? model->verdict : Verdict::undecided;
-  if (result.verdict == Verdict::active && model->symmetric_verdict != Verdict::active &&
-      model->answered > kAnswered) {
+  if (result.verdict == Verdict::active && model->symmetric_verdict != Verdict::active && model->answered > kAnswered) {
     result.verdict = Verdict::undecided;
     result.reason = fmt::format(
         "the antisymmetric part would make it active, but {:.0f} % of what inertia, damping and stiffness leave of the "

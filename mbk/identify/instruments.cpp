@@ -13,9 +13,10 @@
 namespace mbk::identify {
 namespace {
 
-constexpr int kPasses = 2;       ///< refinements of the nominal impedance
-constexpr double kFloor = 0.02;  ///< of the nominal impedance's eigenvalues, of the largest: it must be stable
-constexpr double kReach = 0.5;   ///< of an answer to the perturbation [s]
+constexpr double kStrong = 10.0;  ///< first-stage F
+constexpr int kPasses = 2;        ///< refinements of the nominal impedance
+constexpr double kFloor = 0.02;   ///< of the nominal impedance's eigenvalues, of the largest: it must be stable
+constexpr double kReach = 0.5;    ///< of an answer to the perturbation [s]
 constexpr Index kLagsOfAnswer = 5;
 
 /// The ranges of rows that were put under each other.
@@ -55,11 +56,12 @@ impedance::Model stable(const Matrix& coefficients, double fastest) {
   return model;
 }
 
-/// [x̂'' x̂' x̂] of M x'' + B x' + K x = u, u straight between samples; each range begins at rest where u holds it.
+/// [x̂'' x̂' x̂] of M x'' + B x' + K x = u, u straight between samples. Each range begins at rest at 0, so that a step
+/// which the range begins with moves it.
 Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_time,
                 const std::vector<RowRange>& ranges) {
   const Index n = u.cols();
-  const Eigen::LDLT<Matrix> M(model.M), K(model.K);
+  const Eigen::LDLT<Matrix> M(model.M);
   const Matrix by_position = -M.solve(model.K), by_velocity = -M.solve(model.B);
   const Matrix by_force = M.solve(Matrix::Identity(n, n));
   Matrix generator = Matrix::Zero(4 * n, 4 * n);
@@ -74,7 +76,6 @@ Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_ti
   Matrix motion = Matrix::Zero(u.rows(), 3 * n);
   for (const RowRange& range : ranges) {
     Vector z = Vector::Zero(2 * n);
-    z.head(n) = K.solve(u.row(range.begin).transpose());
     for (Index i = range.begin; i < range.end; ++i) {
       const Vector now = u.row(i).transpose();
       motion.row(i).segment(2 * n, n) = z.head(n);
@@ -140,10 +141,13 @@ Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quan
     return bad_data("the reference never changes in one axis, so that it cannot serve as an instrument",
                     "perturb in every axis, or use --method ls");
   }
-  if (quantity == ReferenceQuantity::position) return from_position(r, ranges, lags);
   if (quantity == ReferenceQuantity::force) return from_force(r, ranges, lags);
-  Instruments position = from_position(r, ranges, lags), force = from_force(r, ranges, lags);
-  return force.strength.minCoeff() > position.strength.minCoeff() ? std::move(force) : std::move(position);
+  Instruments position = from_position(r, ranges, lags);
+  if (position.strength.minCoeff() > kStrong) return position;
+  // A reference of steps has no derivatives, and one without a unit may be a force: what a system makes of it remains.
+  Instruments response = from_force(r, ranges, lags);
+  if (quantity == ReferenceQuantity::position) response.from = ReferenceQuantity::position;
+  return response.strength.minCoeff() > position.strength.minCoeff() ? std::move(response) : std::move(position);
 }
 
 Vector answered_share(const Regression& r, const Instruments& instruments, const Matrix& residual,

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -58,9 +57,9 @@ void add_ellipses(const Findings& findings, const impedance::Model& truth, Held&
                       holds(finding.orientation95, true_ellipse.orientation + turns * std::numbers::pi));
   }
   for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
-    held.emplace_back(std::string(k == 0 ? "inertia" : "stiffness") + " antisymmetry",
-                      holds(findings.antisymmetry[k].value95,
-                            impedance::antisymmetric_part(k == 0 ? truth.M : truth.K)));
+    held.emplace_back(
+        std::string(k == 0 ? "inertia" : "stiffness") + " antisymmetry",
+        holds(findings.antisymmetry[k].value95, impedance::antisymmetric_part(k == 0 ? truth.M : truth.K)));
   }
 }
 
@@ -84,16 +83,16 @@ Result<Held> held_by(const CoverageOptions& options, int run) {
   return held;
 }
 
-/// The band in which the arms below are judged: from the second line of the perturbation to the last. At the first, 0.1 Hz,
-/// one trial with this noise cannot tell any arm passive, and what is never said is never wrong.
+/// The band in which the arms below are judged: from the second line of the perturbation to the last. At the first, 0.1
+/// Hz, one trial with this noise cannot tell any arm passive, and what is never said is never wrong.
 PassivityBand judged_band() {
   return {Hertz(0.4), Hertz(2.9), "as the study asks"};
 }
 
 constexpr double kBarelyActive = 1.0001, kWellPassive = 0.25;
 
-/// An arm whose stiffness, inertia or both are antisymmetric, with opposite signs, so that |ω m_a − k_a/ω| is `share` of
-/// √det B at one end of the band, and less elsewhere.
+/// An arm whose stiffness, inertia or both are antisymmetric, with opposite signs, so that |ω m_a − k_a/ω| is `share`
+/// of √det B at one end of the band, and less elsewhere.
 impedance::Model antisymmetric_arm(impedance::Model arm, int kind, double share) {
   const double low = 2.0 * std::numbers::pi * judged_band().low.value;
   const double high = 2.0 * std::numbers::pi * judged_band().high.value;
@@ -119,7 +118,8 @@ impedance::Model antisymmetric_arm(impedance::Model arm, int kind, double share)
   return arm;
 }
 
-constexpr std::array kKinds = {"stiffness", "inertia", "both, opposite signs, low end", "both, opposite signs, high end"};
+constexpr std::array kKinds = {"stiffness", "inertia", "both, opposite signs, low end",
+                               "both, opposite signs, high end"};
 
 /// Is an arm with that much antisymmetry called passive?
 Result<bool> called_passive(const CoverageOptions& options, int run, double share) {
@@ -186,8 +186,10 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
   }
   table.notes = {
       "An active arm is one whose antisymmetric stiffness or inertia makes the passivity index negative at 0.4 or at "
-      "2.9 Hz, by so little that no arm would be harder to tell; the runs take the four kinds in turn. It may be called "
-      "passive in at most 5 %. The passive arms have a quarter of that antisymmetry: how often they are recognised from "
+      "2.9 Hz, by so little that no arm would be harder to tell; the runs take the four kinds in turn. It may be "
+      "called "
+      "passive in at most 5 %. The passive arms have a quarter of that antisymmetry: how often they are recognised "
+      "from "
       "one trial is reported, not judged."};
   return table;
 }

@@ -6,11 +6,16 @@ namespace mbk::validation {
 namespace {
 
 TEST(Coverage, NominalNinetyFivePercentIntervalsHoldTheTruthThatOften) {
-  const auto table = coverage({.runs = 400, .seed = 1});
+  const auto table = coverage({.runs = 160, .seed = 1});
   ASSERT_TRUE(table) << table.error().line();
-  ASSERT_EQ(table->rows.size(), 14u);
+  ASSERT_EQ(table->rows.size(),
+            34u);  // 14 parameters, 9 of ellipses, 2 antisymmetries, excess, and 2 for each of 4 arms
   for (const ValidationRow& row : table->rows) {
-    EXPECT_TRUE(row.met()) << row.what << ": " << row.value << " % of 400 runs, 99 % interval " << row.interval99.first
+    // What is never said is never wrong: an arm that is well passive has to be recognised now and then.
+    if (row.what.starts_with("passive arm called passive")) {
+      EXPECT_GT(row.value, 40.0) << row.what;
+    }
+    EXPECT_TRUE(row.met()) << row.what << ": " << row.value << " % of 160 runs, 99 % interval " << row.interval99.first
                            << " to " << row.interval99.second;
   }
 }

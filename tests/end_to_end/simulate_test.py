@@ -131,11 +131,9 @@ class Recordings(Case):
                     texts[kind] = run("measure", "log.mat", folder=folder).bytes
                     results[kind] = run("measure", "--json", "log.mat", folder=folder).json
                     del results[kind]["inputs"][0]["sha256"]  # of the file's own bytes
-                self.assertEqual(texts["blind"], texts["told"])
-                self.assertEqual(results["blind"], results["told"])
-                # Without its unit the reference may be a force too, so that the instruments may be others.
-                for key in ("model", "standard_error", "covariance", "fit", "ellipses", "usable"):
-                    self.assertEqual(results["stripped"][key], results["told"][key], key)
+                for kind in ("blind", "stripped"):
+                    self.assertEqual(texts[kind], texts["told"], kind)
+                    self.assertEqual(results[kind], results["told"], kind)
                 info = run("info", "log.mat", folder=folders["blind"]).out
                 self.assertNotIn("truth", info)
                 self.assertNotIn(name, info)
