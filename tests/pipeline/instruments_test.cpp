@@ -6,6 +6,7 @@
 
 #include "mbk/identify/impedance_fit.h"
 #include "mbk/impedance/ellipse.h"
+#include "mbk/impedance/model.h"
 #include "mbk/laboratory/scenario.h"
 #include "mbk/numeric/random.h"
 #include "mbk/preprocess/prepare.h"
@@ -82,15 +83,19 @@ TEST(RelaxedArmMovedByARobot, HasOneModelByBothMethods) {
 
 // The reference is the step behind the pulse: nothing moves within a perturbation, and velocity and acceleration have
 // no instrument.
-TEST(PulsesWhoseReferenceIsAStep, GiveNoModelByInstruments) {
+// A step has no derivatives that could serve; what a second-order system makes of it has.
+TEST(PulsesWhoseReferenceIsAStep, AreInstrumentsByTheResponseToThem) {
   laboratory::PrescribedMotionOptions options;
   options.protocol = Protocol::underdamped;
   const Comparison both = compared(generated(options));
   EXPECT_TRUE(both.least_squares.usable);
-  EXPECT_FALSE(both.instrumental_variables.usable);
-  EXPECT_TRUE(both.instrumental_variables.model.K.array().isNaN().all());
-  EXPECT_FALSE(both.instrumental_variables.instrument->strong());
+  EXPECT_TRUE(both.instrumental_variables.usable);
+  EXPECT_TRUE(both.instrumental_variables.instrument->strong());
+  EXPECT_EQ(both.instrumental_variables.instrument->from, ReferenceQuantity::position);
   EXPECT_FALSE(both.disagreement.significant);
+  const Vector error = impedance::stacked(both.instrumental_variables.model) - impedance::stacked(options.limb);
+  const Vector reach = 4.0 * impedance::stacked(both.instrumental_variables.standard_error);
+  EXPECT_TRUE((error.head(12).array().abs() <= reach.head(12).array()).all()) << error.transpose();
 }
 
 // Noise of a regressor draws its coefficient towards zero, of the second derivative most: its power grows with the
