@@ -196,6 +196,10 @@ class Assembler {
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
     }
     if (named != nullptr) {
+      if (named->values.size() == 0) {
+        return bad_data(fmt::format("matrix is {}: there is no sample in it", shape(*named)),
+                        "copy it again from where it was recorded", fmt::format("variable '{}'", named->name));
+      }
       if (named->values.rows() == kLogsRows) return named;
       if (named->values.cols() == kLogsRows) return tall(*named);
       return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
