@@ -98,7 +98,7 @@ Result<std::vector<Answer>> from_results(const Arguments& arguments, const std::
 std::string text_of(const Answer& answer) {
   std::string text;
   for (const SourceFile& source : answer.sources) text += source.path + "\n";
-  text += report::passivity_text(answer.passivity);
+  text += report::passivity_text(answer.passivity, answer.motion);
   if (answer.consistent) text += "\n" + report::consistent_text(*answer.consistent, answer.motion);
   for (const Energy& energy : answer.energies) text += "\n" + report::chart_text(report::energy_chart(energy));
   return text;

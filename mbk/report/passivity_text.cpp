@@ -48,7 +48,7 @@ std::string model_text(const ModelPassivity& model) {
   return text + table(rows);
 }
 
-std::string energy_text(const EnergyAccount& account) {
+std::string energy_text(const EnergyAccount& account, const char* unit) {
   const char* const what = account.shortage_at_end < 0.0 ? "excess at the end" : "shortage at the end";
   const char* const largest = account.shortage_largest < 0.0 ? "smallest excess" : "largest shortage";
   const auto shortage = [](double value, const Interval& interval) {
@@ -59,20 +59,20 @@ std::string energy_text(const EnergyAccount& account) {
   return fmt::format("  energy: {}\n", mbk::text(account.verdict)) +
          table({{"absorbed", fmt::format("{:.3g} J", account.absorbed), between(account.absorbed95),
                  fmt::format("in {:.1f} s", account.duration)},
-                {what, fmt::format("{:.3g} N·s/m", end), between(end95), "eq. (4.3)"},
-                {largest, fmt::format("{:.3g} N·s/m", most), between(most95), "over time"}}) +
+                {what, fmt::format("{:.3g} {}", end, unit), between(end95), "eq. (4.3)"},
+                {largest, fmt::format("{:.3g} {}", most, unit), between(most95), "over time"}}) +
          paragraph("    ", account.reason);
 }
 
 }  // namespace
 
-std::string passivity_text(const Passivity& passivity) {
+std::string passivity_text(const Passivity& passivity, Motion motion) {
   std::string text =
       fmt::format("passivity: {}, by the {}\n", mbk::text(passivity.verdict), passivity.by_model ? "model" : "energy");
   text += paragraph("  ", passivity.reason);
   text += "\n";
   for (const ModelPassivity& model : passivity.models) text += model_text(model) + "\n";
-  if (passivity.energy) text += energy_text(*passivity.energy) + "\n";
+  if (passivity.energy) text += energy_text(*passivity.energy, units_of(motion).damping) + "\n";
   return text + "  (brackets are 95 % intervals)\n";
 }
 
@@ -115,27 +115,6 @@ Chart energy_chart(const Energy& energy) {
   series.x.assign(energy.curve.time.begin(), energy.curve.time.end());
   series.y.assign(energy.curve.absorbed.begin(), energy.curve.absorbed.end());
   chart.series.push_back(std::move(series));
-  chart.horizontal.push_back({0.0, "0"});
-  return chart;
-}
-
-Chart index_chart(const ModelPassivity& model) {
-  Chart chart;
-  chart.title = fmt::format("passivity index of the model by {}", long_name(model.method));
-  chart.x = {"frequency", "Hz"};
-  chart.y = {"index", "N·s/m"};
-  const PassivityIndexCurve& curve = model.curve;
-  const auto add = [&](const char* name, const Vector& y) {
-    ChartSeries series;
-    series.name = name;
-    series.drawn = ChartSeries::Drawn::line;
-    series.x.assign(curve.frequency.begin(), curve.frequency.end());
-    series.y.assign(y.begin(), y.end());
-    chart.series.push_back(std::move(series));
-  };
-  add("index", curve.index);
-  add("95 % below", curve.lower95);
-  add("95 % above", curve.upper95);
   chart.horizontal.push_back({0.0, "0"});
   return chart;
 }

@@ -9,7 +9,7 @@
 namespace mbk::report {
 
 /// A verdict in full for the terminal: why, every condition of each model, excess and shortage, energy.
-[[nodiscard]] std::string passivity_text(const Passivity& passivity);
+[[nodiscard]] std::string passivity_text(const Passivity& passivity, Motion motion);
 
 /// The nearest model that a passive limb can have, and what it costs.
 [[nodiscard]] std::string consistent_text(const ConsistentFit& fit, Motion motion);
@@ -19,8 +19,5 @@ namespace mbk::report {
 
 /// Energy over time (Dyck 2013, figs 3.15, 3.17, 4.3, 4.4).
 [[nodiscard]] Chart energy_chart(const Energy& energy);
-
-/// The index over the band, with its interval.
-[[nodiscard]] Chart index_chart(const ModelPassivity& model);
 
 }  // namespace mbk::report

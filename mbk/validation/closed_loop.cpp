@@ -222,10 +222,12 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
       "Eigenvalues are those of the symmetric parts, as errors against the arm's own. What remains with iv is the "
       "voluntary controller's answer to the perturbation, which by (4.2) of Dyck (2013) is part of what the hand "
       "shows.",
-      "Controller off: the same multisine at 3 N; the co-contraction stays at its ceiling, where it is after the first "
-      "seconds anyway, so that "
-      "there is one truth; the force noise stays. x0 and y0 are reported only: the arm's stiffness changes with its "
-      "posture, which shifts the place where it would rest by a fraction of a millimetre.",
+      "Controller off: the same multisine at 3 N, the co-contraction at its ceiling, where it is after the first "
+      "seconds "
+      "anyway, so that there is one truth; the force noise stays.",
+      "x0 and y0 are reported only: the arm's stiffness changes with its posture, which shifts the place where it "
+      "would "
+      "rest by a fraction of a millimetre.",
       "Theorem 3.2 as it was applied: estimates without intervals, antisymmetric parts left out.",
       "Under 2 N pulses the participant answers each pulse itself: no instrument is valid, no model explains the "
       "force, and the energy decides. No branch of the program knows the task.",
