@@ -216,23 +216,28 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
   add_multisine(of_task(0), table);
   add_coverage(of_task(1), table);
   add_pulses(of_task(2), table);
-  table.notes = {
+  table.notes.emplace_back(
       "A run is three trials of participant 1's arm, held stiff, pooled (controller off: one). ls: least squares, iv: "
-      "instrumental variables from the known force.",
+      "instrumental variables from the known force.");
+  table.notes.emplace_back(
       "Eigenvalues are those of the symmetric parts, as errors against the arm's own. What remains with iv is the "
       "voluntary controller's answer to the perturbation, which by (4.2) of Dyck (2013) is part of what the hand "
-      "shows.",
+      "shows.");
+  table.notes.emplace_back(
       "Controller off: the same multisine at 3 N, the co-contraction at its ceiling, where it is after the first "
       "seconds "
-      "anyway, so that there is one truth; the force noise stays.",
+      "anyway, so that there is one truth; the force noise stays.");
+  table.notes.emplace_back(
       "x0 and y0 are reported only: the arm's stiffness changes with its posture, which shifts the place where it "
       "would "
-      "rest by a fraction of a millimetre.",
-      "Theorem 3.2 as it was applied: estimates without intervals, antisymmetric parts left out.",
+      "rest by a fraction of a millimetre.");
+  table.notes.emplace_back("Theorem 3.2 as it was applied: estimates without intervals, antisymmetric parts left out.");
+  table.notes.emplace_back(
       "Under 2 N pulses the participant answers each pulse itself: no instrument is valid, no model explains the "
-      "force, and the energy decides. No branch of the program knows the task.",
+      "force, and the energy decides. No branch of the program knows the task.");
+  table.notes.emplace_back(
       "The gains of the participant's controller are tuned to the findings of Dyck (2013, chapter 4), not fitted to "
-      "anyone."};
+      "anyone.");
   return table;
 }
 
