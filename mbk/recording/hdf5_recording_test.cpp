@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
+
 #include "mbk/hdf5/test_files.h"
 #include "mbk/recording/annotations.h"
 #include "mbk/recording/assemble.h"
+#include "mbk/recording/hdf5_tree.h"
 #include "mbk/recording/mat_hdf5.h"
 
 namespace mbk::recording {
@@ -164,6 +168,14 @@ TEST(DecodeHdf5, NamesTheObjectThatIsDamaged) {
   bytes.replace(0, 10, "MATLAB 7.3");
   EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes))).error().line(),
               HasSubstr("variable 'x': a chunk has a wrong checksum"));
+}
+
+TEST(TakeColumns, BearASideThatNoNumberCanHoldBesideOneOfZero) {
+  constexpr auto kLargest = std::numeric_limits<std::uint64_t>::max();
+  hdf5::Numbers none;
+  EXPECT_EQ(take_columns(none, kLargest, 0).size(), 0);
+  EXPECT_GE(take_columns(none, 0, kLargest).cols(), 0);
+  EXPECT_GE(take_rows(none, kLargest, 0).rows(), 0);
 }
 
 TEST(DecodeHdf5, KnowsMatlabsFilesByTheirAttributesToo) {

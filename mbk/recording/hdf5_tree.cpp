@@ -1,19 +1,29 @@
 #include "mbk/recording/hdf5_tree.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 
 #include "mbk/recording/byte_view.h"
 
 namespace mbk::recording {
+namespace {
+
+/// A side of a matrix. Beside a side of 0 a damaged file can state one that no number of ours can hold.
+Index side(std::uint64_t length) {
+  return static_cast<Index>(std::min<std::uint64_t>(length, std::numeric_limits<Index>::max()));
+}
+
+}  // namespace
 
 Matrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
-  Matrix matrix = numbers.values.reshaped(static_cast<Index>(rows), static_cast<Index>(columns));
+  Matrix matrix = numbers.values.reshaped(side(rows), side(columns));
   numbers.values.resize(0);
   return matrix;
 }
 
 Matrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
-  Matrix matrix = numbers.values.reshaped<Eigen::RowMajor>(static_cast<Index>(rows), static_cast<Index>(columns));
+  Matrix matrix = numbers.values.reshaped<Eigen::RowMajor>(side(rows), side(columns));
   numbers.values.resize(0);
   return matrix;
 }

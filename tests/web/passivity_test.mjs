@@ -86,6 +86,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
     const [{ parts }] = energy;
     const figure = page.locator("figure.chart-figure", { has: page.locator("#trial-1-parts") });
     await figure.locator("details.data-table summary").click();
+    await figure.locator("tbody tr").first().waitFor();
     const rows = await figure.locator("tbody tr").evaluateAll((trs) => trs.map((tr) => [...tr.querySelectorAll("td")].map((td) => Number(td.textContent.replaceAll("−", "-").replace(/·10.*/, "")))));
     assert.equal(rows.length, parts.length);
     const fourDigits = (got, want) => assert.ok(Math.abs(got - want) <= 1e-4 * Math.abs(want) || Math.abs(want) < 1e-4, `${got} ${want}`);
