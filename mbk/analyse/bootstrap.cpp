@@ -16,6 +16,7 @@
 namespace mbk::analyse {
 namespace {
 
+using impedance::matrix_of;
 using impedance::Model;
 
 /// A number of a model, with its derivative by the stacked model.
@@ -25,10 +26,6 @@ struct Quantity {
   Eigen::RowVectorXd gradient;
   bool positive = false;  ///< its delta-method interval is one of its logarithm
 };
-
-const Matrix& part(const Model& model, int matrix) {
-  return matrix == 0 ? model.M : (matrix == 1 ? model.B : model.K);
-}
 
 Eigen::RowVectorXd at(Index size, Index place, const Eigen::RowVectorXd& values) {
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(size);
@@ -49,26 +46,26 @@ void add_ellipses(const Identification& id, std::vector<Quantity>& all) {
   for (int k = 0; k < 3; ++k) {
     const auto which = static_cast<std::size_t>(k);
     const std::string name = kMatrixNames[which];
-    const impedance::EllipseGradient gradient = impedance::ellipse_gradient(part(id.model, k));
+    const impedance::EllipseGradient gradient = impedance::ellipse_gradient(matrix_of(id.model, k));
     const Index place = 4 * k;
-    const double about = impedance::ellipse(part(id.model, k)).orientation;
+    const double about = impedance::ellipse(matrix_of(id.model, k)).orientation;
     all.push_back({name + " largest eigenvalue", unit[which],
-                   [k](const Model& m) { return impedance::ellipse(part(m, k)).lambda_max; },
+                   [k](const Model& m) { return impedance::ellipse(matrix_of(m, k)).lambda_max; },
                    at(size, place, gradient.lambda_max)});
     all.push_back({name + " smallest eigenvalue", unit[which],
-                   [k](const Model& m) { return impedance::ellipse(part(m, k)).lambda_min; },
+                   [k](const Model& m) { return impedance::ellipse(matrix_of(m, k)).lambda_min; },
                    at(size, place, gradient.lambda_min)});
     all.push_back({name + " area", fmt::format("({})²", unit[which]),
-                   [k](const Model& m) { return impedance::ellipse(part(m, k)).area; }, at(size, place, gradient.area),
-                   true});
-    all.push_back({name + " shape", "", [k](const Model& m) { return impedance::ellipse(part(m, k)).shape; },
+                   [k](const Model& m) { return impedance::ellipse(matrix_of(m, k)).area; },
+                   at(size, place, gradient.area), true});
+    all.push_back({name + " shape", "", [k](const Model& m) { return impedance::ellipse(matrix_of(m, k)).shape; },
                    at(size, place, gradient.shape), true});
     all.push_back({name + " orientation", "rad",
-                   [k, about](const Model& m) { return orientation_near(part(m, k), about); },
+                   [k, about](const Model& m) { return orientation_near(matrix_of(m, k), about); },
                    at(size, place, gradient.orientation)});
     if (k == 1) continue;
     all.push_back({name + " antisymmetry", unit[which],
-                   [k](const Model& m) { return impedance::antisymmetric_part(part(m, k)); },
+                   [k](const Model& m) { return impedance::antisymmetric_part(matrix_of(m, k)); },
                    at(size, place, Eigen::RowVector4d(0.0, 0.5, -0.5, 0.0))});
   }
 }
@@ -112,8 +109,7 @@ Result<BootstrapFindings> bootstrap_findings(const Identification& id) {
     auto [low, high] = numeric::bias_corrected_interval(value, drawn, 0.95);
     low = value - widening * (value - low);
     high = value + widening * (high - value);
-    const double variance = (quantity.gradient * id.covariance * quantity.gradient.transpose()).value();
-    const double error = variance < 0.0 ? 0.0 : std::sqrt(variance);
+    const double error = impedance::standard_error({value, quantity.gradient}, id.covariance);
     result.findings.push_back(
         {quantity.name,
          quantity.unit,

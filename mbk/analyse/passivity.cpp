@@ -29,11 +29,6 @@ double omega_of(Hertz frequency) {
   return 2.0 * std::numbers::pi * frequency.value;
 }
 
-double error_of(const impedance::Sensitive& quantity, const Matrix& covariance) {
-  const double variance = (quantity.gradient * covariance * quantity.gradient.transpose()).value();
-  return variance < 0.0 ? 0.0 : std::sqrt(variance);  // NaN, where there is no covariance, stays NaN
-}
-
 PassivityCondition condition(std::string name, std::string source, std::string unit,
                              const impedance::Sensitive& quantity, const Matrix& covariance) {
   PassivityCondition c;
@@ -41,7 +36,7 @@ PassivityCondition condition(std::string name, std::string source, std::string u
   c.source = std::move(source);
   c.unit = std::move(unit);
   c.value = quantity.value;
-  c.standard_error = error_of(quantity, covariance);
+  c.standard_error = impedance::standard_error(quantity, covariance);
   c.lower95 = c.value - kOneSided95 * c.standard_error;
   c.upper = c.value + kOneSidedOfSeven * c.standard_error;
   c.verdict = c.lower95 > 0.0 ? Verdict::passive : (c.upper < 0.0 ? Verdict::active : Verdict::undecided);
@@ -65,7 +60,7 @@ PassivityIndexCurve curve_of(const Identification& id, const PassivityBand& band
     const double share = static_cast<double>(k) / static_cast<double>(kCurvePoints - 1);
     const Hertz frequency(band.low.value * std::pow(band.high.value / band.low.value, share));
     const impedance::Sensitive index = impedance::passivity_index(id.model, omega_of(frequency));
-    const auto [low, high] = numeric::interval95(index.value, error_of(index, id.covariance));
+    const auto [low, high] = numeric::interval95(index.value, impedance::standard_error(index, id.covariance));
     curve.frequency[k] = frequency.value;
     curve.index[k] = index.value;
     curve.lower95[k] = low;
@@ -78,8 +73,9 @@ std::optional<ExcessOfPassivity> excess_of(const Identification& id) {
   const auto corrected = impedance::excess_of_passivity(id.model);
   if (!corrected) return std::nullopt;
   const auto published = impedance::published_excess_of_passivity(id.model);
-  return ExcessOfPassivity{corrected->value, numeric::interval95(corrected->value, error_of(*corrected, id.covariance)),
-                           published.value, numeric::interval95(published.value, error_of(published, id.covariance))};
+  return ExcessOfPassivity{
+      corrected->value, numeric::interval95(corrected->value, impedance::standard_error(*corrected, id.covariance)),
+      published.value, numeric::interval95(published.value, impedance::standard_error(published, id.covariance))};
 }
 
 /// Smallest multiple coherence of position and force with the reference, line by line; empty where it cannot be had.

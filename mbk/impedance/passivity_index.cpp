@@ -10,10 +10,6 @@
 namespace mbk::impedance {
 namespace {
 
-const Matrix& part(const Model& model, int matrix) {
-  return matrix == 0 ? model.M : (matrix == 1 ? model.B : model.K);
-}
-
 Eigen::RowVectorXd no_gradient(const Model& model) {
   const Index n = model.axes();
   return Eigen::RowVectorXd::Zero(3 * n * n + n);
@@ -22,7 +18,7 @@ Eigen::RowVectorXd no_gradient(const Model& model) {
 /// `which`-th eigenvalue of a symmetric part, from below.
 Sensitive eigenvalue(const Model& model, int matrix, Index which) {
   const Index n = model.axes();
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric_part(part(model, matrix)));
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric_part(matrix_of(model, matrix)));
   const Vector v = solver.eigenvectors().col(which);
   Sensitive result{solver.eigenvalues()[which], no_gradient(model)};
   result.gradient.segment(matrix * n * n, n * n) = Vector((v * v.transpose()).reshaped()).transpose();
@@ -40,6 +36,15 @@ Sensitive antisymmetry(const Model& model, double omega) {
 }
 
 }  // namespace
+
+double standard_error(const Sensitive& quantity, const Matrix& covariance) {
+  const double variance = (quantity.gradient * covariance * quantity.gradient.transpose()).value();
+  return variance < 0.0 ? 0.0 : std::sqrt(variance);
+}
+
+const Matrix& matrix_of(const Model& model, int matrix) {
+  return matrix == 0 ? model.M : (matrix == 1 ? model.B : model.K);
+}
 
 Sensitive smallest_eigenvalue(const Model& model, int matrix) {
   return eigenvalue(model, matrix, 0);

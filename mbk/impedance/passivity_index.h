@@ -15,6 +15,13 @@ struct Sensitive {
   Eigen::RowVectorXd gradient;
 };
 
+/// Its standard error by the delta method; NaN, where there is no covariance, stays NaN.
+/// @param covariance of the stacked model
+[[nodiscard]] double standard_error(const Sensitive& quantity, const Matrix& covariance);
+
+/// M (0), B (1) or K (2).
+[[nodiscard]] const Matrix& matrix_of(const Model& model, int matrix);
+
 /// Smallest eigenvalue of the symmetric part of M (0), B (1) or K (2): dλ = vᵀ dZ v.
 [[nodiscard]] Sensitive smallest_eigenvalue(const Model& model, int matrix);
 

@@ -9,6 +9,7 @@
 
 #include "mbk/identify/impedance_fit.h"
 #include "mbk/impedance/ellipse.h"
+#include "mbk/impedance/passivity_index.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/numeric/statistics.h"
 #include "mbk/validation/simulated_trials.h"
@@ -92,10 +93,6 @@ ValidationRow share_row(std::string what, const Runs& runs, const std::function<
   return row;
 }
 
-const Matrix& part(const impedance::Model& model, int matrix) {
-  return matrix == 0 ? model.M : (matrix == 1 ? model.B : model.K);
-}
-
 /// Eigenvalues of the symmetric parts against those of the arm itself [%].
 void add_eigenvalues(const Runs& runs, Method method, bool judged, ValidationTable& table) {
   constexpr std::array kNames = {"M", "B", "K"};
@@ -103,7 +100,7 @@ void add_eigenvalues(const Runs& runs, Method method, bool judged, ValidationTab
   for (int matrix = 0; matrix < 3; ++matrix) {
     for (const bool smallest : {true, false}) {
       const auto eigenvalue = [&](const impedance::Model& model) {
-        const impedance::Ellipse e = impedance::ellipse(part(model, matrix));
+        const impedance::Ellipse e = impedance::ellipse(impedance::matrix_of(model, matrix));
         return smallest ? e.lambda_min : e.lambda_max;
       };
       Vector error(static_cast<Index>(runs.size()));
