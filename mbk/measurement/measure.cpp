@@ -53,8 +53,7 @@ Result<std::optional<Recording>> on_even_clock(const Recording& recording, const
   return std::move(*even);
 }
 
-Result<PreparedTrial> prepare_one(const Recording& recording, Options options) {
-  options.preprocess.instruments = true;
+Result<PreparedTrial> prepare_one(const Recording& recording, const Options& options) {
   const auto even = on_even_clock(recording, options);
   if (!even) return tl::unexpected(even.error());
   const Inspection recorded = recording::inspect(recording);
@@ -66,8 +65,9 @@ Result<PreparedTrial> prepare_one(const Recording& recording, Options options) {
   return trial;
 }
 
-/// Each recording prepared; where several are pooled, their rows weigh alike.
-Result<std::vector<PreparedTrial>> prepare_all(std::span<const Recording> recordings, const Options& options) {
+/// Each recording prepared, its reference too; where several are pooled, their rows weigh alike.
+Result<std::vector<PreparedTrial>> prepare_all(std::span<const Recording> recordings, Options options) {
+  options.preprocess.instruments = true;
   std::vector<PreparedTrial> trials;
   for (const Recording& recording : recordings) {
     auto trial = prepare_one(recording, options);
@@ -79,11 +79,10 @@ Result<std::vector<PreparedTrial>> prepare_all(std::span<const Recording> record
   // Where each trial by itself would be thinned differently, the finest will do for all.
   Index finest = std::numeric_limits<Index>::max();
   for (const PreparedTrial& trial : trials) finest = std::min(finest, trial.preparation.every);
-  Options again = options;
-  again.preprocess.every = finest;
+  options.preprocess.every = finest;
   for (std::size_t k = 0; k < trials.size(); ++k) {
     if (trials[k].preparation.every == finest) continue;
-    auto trial = prepare_one(recordings[k], again);
+    auto trial = prepare_one(recordings[k], options);
     if (!trial) return tl::unexpected(trial.error());
     trials[k] = std::move(*trial);
   }
@@ -116,9 +115,9 @@ Result<result::Measured> identify_by_both(const std::vector<PreparedTrial>& tria
 }
 
 /// The energy of each recording, and of all together.
-Result<std::optional<EnergyAccount>> account_for_energy(std::span<const Recording> recordings,
-                                                        const std::vector<PreparedTrial>& trials,
-                                                        const Options& options, result::Measured& measured) {
+Result<EnergyAccount> account_for_energy(std::span<const Recording> recordings,
+                                         const std::vector<PreparedTrial>& trials, const Options& options,
+                                         result::Measured& measured) {
   std::vector<Recording> even;
   for (const Recording& recording : recordings) {
     auto one = on_even_clock(recording, options);
@@ -133,10 +132,8 @@ Result<std::optional<EnergyAccount>> account_for_energy(std::span<const Recordin
     if (!energy) return tl::unexpected(energy.error());
     measured.energies.push_back(std::move(*energy));
   }
-  if (recordings.size() == 1) return std::optional(measured.energies.front().account);
-  auto pooled = options.resample ? analyse::pooled_energy(even, trials) : analyse::pooled_energy(recordings, trials);
-  if (!pooled) return tl::unexpected(pooled.error());
-  return std::optional(std::move(*pooled));
+  if (recordings.size() == 1) return measured.energies.front().account;
+  return options.resample ? analyse::pooled_energy(even, trials) : analyse::pooled_energy(recordings, trials);
 }
 
 /// Is the limb passive, by its model and by what it absorbed?
