@@ -11,6 +11,9 @@
 namespace mbk::app {
 namespace {
 
+constexpr const char* kWindow = "What counts";
+constexpr const char* kFilters = "Filters";
+
 /// One of a few words, named in the message when it is none of them.
 CLI::Option* add_choice(CLI::App& command, const char* name, std::string& target,
                         const std::vector<std::string>& choices, const std::string& help) {
@@ -56,52 +59,41 @@ void add_reading_options(CLI::App& command, MeasureArguments& arguments) {
   command.add_flag("--parts", arguments.parts, "the FILEs are numbered parts of one record: join them");
 }
 
-void add_measuring_options(CLI::App& command, MeasureArguments& a) {
-  const char* const group = "What counts";
-  add_choice(command, "--mode", a.mode, {"default", "reference"},
-             "reference: the published procedure, sample for sample")
-      ->group(group);
-  add_choice(command, "--procedure", a.procedure, {"chapter3", "chapter5"},
-             "in reference mode: W 101, 5 Hz, ẍ from the position (this one unless said) | W 151, 4.5 Hz, ẍ from "
-             "the accelerometer")
-      ->group(group);
-  add_choice(command, "--protocol", a.protocol, {"auto", "sinusoidal", "underdamped", "free"},
-             "how the limb was perturbed; auto looks at the reference and says what it saw")
-      ->group(group);
+void add_window_options(CLI::App& command, MeasureArguments& a) {
   command.add_option("--from", a.from_s, "first second that counts, from the start of the recording")
       ->type_name("S")
       ->check(not_negative())
-      ->group(group);
+      ->group(kWindow);
   command.add_option("--split", a.split_s, "data before it identify, data after it are held back")
       ->type_name("S")
       ->check(positive())
-      ->group(group);
-  command.add_option("--to", a.to_s, "last second that counts")->type_name("S")->check(positive())->group(group);
-  command.add_flag("--pool", a.pool, "one fit over all FILEs; otherwise one result each and a summary")->group(group);
+      ->group(kWindow);
+  command.add_option("--to", a.to_s, "last second that counts")->type_name("S")->check(positive())->group(kWindow);
+}
 
-  const char* const filters = "Filters";
+void add_filter_options(CLI::App& command, MeasureArguments& a) {
   command.add_option("--sg-window", a.sg_window, "Savitzky–Golay window W in samples, odd")
       ->type_name("W")
       ->check(odd_number(3, 1'000'001))
-      ->group(filters);
+      ->group(kFilters);
   command.add_option("--sg-order", a.sg_order, "Savitzky–Golay order N (6)")
       ->type_name("N")
       ->check(whole_number(1, 1000))
-      ->group(filters);
+      ->group(kFilters);
   command.add_option("--cutoff", a.cutoff, "zero-phase Butterworth low-pass; otherwise by the excited band")
       ->type_name("HZ|none")
       ->check([](const std::string& given) -> std::string {
         const bool good = given == "none" || positive()(given).empty();
         return good ? "" : fmt::format("{} is neither a positive number nor 'none'", quoted(given));
       })
-      ->group(filters);
+      ->group(kFilters);
   add_choice(command, "--extension", a.extension, {"odd", "even", "constant"},
              "how signals are continued at their ends for the zero-phase filter (odd)")
-      ->group(filters);
+      ->group(kFilters);
   command.add_option("--padding", a.padding, "by how many samples (15)")
       ->type_name("N")
       ->check(whole_number(0, 1'000'000))
-      ->group(filters);
+      ->group(kFilters);
   command
       .add_option(
           "--every", a.every,
@@ -109,13 +101,30 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
           "all in reference mode")
       ->type_name("N")
       ->check(whole_number(1, 1'000'000))
-      ->group(filters);
-  add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")->group(filters);
+      ->group(kFilters);
   command
       .add_option("--resample", a.resample_hz, "put an uneven clock right first, by straight lines; never done unasked")
       ->type_name("HZ")
       ->check(positive())
-      ->group(filters);
+      ->group(kFilters);
+}
+
+void add_measuring_options(CLI::App& command, MeasureArguments& a) {
+  add_choice(command, "--mode", a.mode, {"default", "reference"},
+             "reference: the published procedure, sample for sample")
+      ->group(kWindow);
+  add_choice(command, "--procedure", a.procedure, {"chapter3", "chapter5"},
+             "in reference mode: W 101, 5 Hz, ẍ from the position (this one unless said) | W 151, 4.5 Hz, ẍ from "
+             "the accelerometer")
+      ->group(kWindow);
+  add_choice(command, "--protocol", a.protocol, {"auto", "sinusoidal", "underdamped", "free"},
+             "how the limb was perturbed; auto looks at the reference and says what it saw")
+      ->group(kWindow);
+  add_window_options(command, a);
+  command.add_flag("--pool", a.pool, "one fit over all FILEs; otherwise one result each and a summary")->group(kWindow);
+
+  add_filter_options(command, a);
+  add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")->group(kFilters);
 
   const char* const model = "Model";
   add_choice(command, "--method", a.method, {"ls", "iv"},
@@ -207,20 +216,10 @@ Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {
   return options;
 }
 
-Result<measurement::Options> measurement_options(const MeasureArguments& a) {
+/// Filters and window, which every command that fits a model has.
+Result<preprocess::Options> signal_options(const MeasureArguments& a) {
   if (auto ok = check_order(a); !ok) return tl::unexpected(ok.error());
-  if (!a.procedure.empty() && a.mode != "reference") {
-    return bad_usage(fmt::format("--procedure {} belongs to --mode reference", a.procedure),
-                     "add that, or leave --procedure out");
-  }
-  measurement::Options options;
-  preprocess::Options& p = options.preprocess;
-  p.mode = a.mode == "reference" ? Mode::reference : Mode::improved;
-  p.procedure = a.procedure == "chapter5" ? Procedure::chapter5 : Procedure::chapter3;
-  if (a.protocol == "sinusoidal") p.protocol = Protocol::sinusoidal;
-  if (a.protocol == "underdamped") p.protocol = Protocol::underdamped;
-  if (a.protocol == "free") p.protocol = Protocol::free;
-  p.axes = a.axes;
+  preprocess::Options p;
   p.smoothing_order = a.sg_order;
   p.smoothing_window = a.sg_window;
   p.no_lowpass = a.cutoff == "none";
@@ -229,14 +228,33 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
     std::from_chars(a.cutoff.data(), a.cutoff.data() + a.cutoff.size(), hz);
     p.cutoff = Hertz(hz);
   }
-  if (a.acceleration == "sensor") p.acceleration = preprocess::AccelerationSource::sensor;
-  if (a.acceleration == "derivative") p.acceleration = preprocess::AccelerationSource::derivative;
   p.window = {a.from_s, a.split_s, a.to_s};
   p.padding.samples = a.padding;
   p.every = a.every;
   p.padding.extension = a.extension == "even"       ? dsp::Extension::even
                         : a.extension == "constant" ? dsp::Extension::constant
                                                     : dsp::Extension::odd;
+  return p;
+}
+
+Result<measurement::Options> measurement_options(const MeasureArguments& a) {
+  const auto signals = signal_options(a);
+  if (!signals) return tl::unexpected(signals.error());
+  if (!a.procedure.empty() && a.mode != "reference") {
+    return bad_usage(fmt::format("--procedure {} belongs to --mode reference", a.procedure),
+                     "add that, or leave --procedure out");
+  }
+  measurement::Options options;
+  options.preprocess = *signals;
+  preprocess::Options& p = options.preprocess;
+  p.mode = a.mode == "reference" ? Mode::reference : Mode::improved;
+  p.procedure = a.procedure == "chapter5" ? Procedure::chapter5 : Procedure::chapter3;
+  if (a.protocol == "sinusoidal") p.protocol = Protocol::sinusoidal;
+  if (a.protocol == "underdamped") p.protocol = Protocol::underdamped;
+  if (a.protocol == "free") p.protocol = Protocol::free;
+  p.axes = a.axes;
+  if (a.acceleration == "sensor") p.acceleration = preprocess::AccelerationSource::sensor;
+  if (a.acceleration == "derivative") p.acceleration = preprocess::AccelerationSource::derivative;
   identify::Options& i = options.identify;
   if (a.method == "iv") i.method = Method::instrumental_variables;
   if (a.structure == "symmetric") i.structure = Structure::symmetric;

@@ -40,7 +40,13 @@ struct MeasureArguments {
 /// Adds FILE… and how to read it: --channels, --variable, --rate, --parts.
 void add_reading_options(CLI::App& command, MeasureArguments& arguments);
 
-/// Adds everything that decides what is measured and how.
+/// Adds --from, --split, --to.
+void add_window_options(CLI::App& command, MeasureArguments& arguments);
+
+/// Adds --sg-window, --sg-order, --cutoff, --extension, --padding, --every, --resample.
+void add_filter_options(CLI::App& command, MeasureArguments& arguments);
+
+/// Adds everything that decides what is measured and how, window and filters too.
 void add_measuring_options(CLI::App& command, MeasureArguments& arguments);
 
 /// Adds --json, --out, --overwrite, --quiet.
@@ -53,6 +59,8 @@ void add_report_options(CLI::App& command, MeasureArguments& arguments);
 [[nodiscard]] Result<void> check_files(const MeasureArguments& arguments);
 
 [[nodiscard]] Result<recording::ReadOptions> read_options(const MeasureArguments& arguments);
+/// Window and filters alone.
+[[nodiscard]] Result<preprocess::Options> signal_options(const MeasureArguments& arguments);
 [[nodiscard]] Result<measurement::Options> measurement_options(const MeasureArguments& arguments);
 
 /// Every FILE as a recording; with --parts all of them as one.

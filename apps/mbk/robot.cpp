@@ -9,6 +9,7 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/robot_commands.h"
 #include "mbk/report/chart.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
@@ -100,12 +101,14 @@ Action add_workspace(CLI::App& group) {
 }  // namespace
 
 Action add_robot(CLI::App& app) {
-  CLI::App* group = app.add_subcommand("robot", "the robot itself: where its hand can be");
+  CLI::App* group = app.add_subcommand("robot", "the robot itself: where its hand can be, its inertia and friction");
   group->footer(
-      "Example:\n"
-      "  mbk robot workspace --at 300,50\n");
+      "Examples:\n"
+      "  mbk robot workspace --at 300,50\n"
+      "  mbk robot identify free_motion.h5\n");
   group->require_subcommand(1);
-  const std::vector<std::pair<std::string, Action>> actions = {{"workspace", add_workspace(*group)}};
+  const std::vector<std::pair<std::string, Action>> actions = {{"workspace", add_workspace(*group)},
+                                                               {"identify", add_robot_identify(*group)}};
   return [group, actions] {
     for (const auto& [name, action] : actions) {
       if (group->got_subcommand(name)) return action();

@@ -7,28 +7,46 @@
 #include "mbk/dsp/spectrum.h"
 
 namespace mbk::preprocess {
+namespace {
 
-Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, Hertz sample_rate) {
-  Index shortest = motion.rows();
+/// Mean of the spectra of all columns and cuts, but for a factor.
+Result<dsp::Spectrum> spectrum_of(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate) {
+  Index shortest = signals.rows();
   for (const Cut& cut : cuts) shortest = std::min(shortest, cut.end - cut.begin);
   // Ten seconds resolve the lines of a multisine; shorter pieces give what they can.
   const Hertz resolution(std::max(0.1, sample_rate.value / static_cast<double>(std::max<Index>(shortest, 1))));
-  dsp::Spectrum position;
+  dsp::Spectrum sum;
   for (const Cut& cut : cuts) {
-    for (Index axis = 0; axis < motion.cols(); ++axis) {
-      auto spectrum = dsp::welch(motion.col(axis).segment(cut.begin, cut.end - cut.begin), sample_rate, resolution);
+    for (Index axis = 0; axis < signals.cols(); ++axis) {
+      auto spectrum = dsp::welch(signals.col(axis).segment(cut.begin, cut.end - cut.begin), sample_rate, resolution);
       if (!spectrum) return tl::unexpected(spectrum.error());
-      if (position.density.size() == 0) {
-        position = std::move(*spectrum);
+      if (sum.density.size() == 0) {
+        sum = std::move(*spectrum);
       } else {
-        position.density += spectrum->density;
+        sum.density += spectrum->density;
       }
     }
   }
-  dsp::Spectrum velocity = position;
-  velocity.density.array() *= (2.0 * std::numbers::pi * position.frequency.array()).square();
-  const Hertz limit(0.1 * sample_rate.value);
-  return Band{dsp::power_quantile(position, 0.05, limit), dsp::power_quantile(velocity, 0.95, limit)};
+  return sum;
+}
+
+Hertz limit_of(Hertz sample_rate) { return Hertz(0.1 * sample_rate.value); }
+
+}  // namespace
+
+Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, Hertz sample_rate) {
+  const auto position = spectrum_of(motion, cuts, sample_rate);
+  if (!position) return tl::unexpected(position.error());
+  dsp::Spectrum velocity = *position;
+  velocity.density.array() *= (2.0 * std::numbers::pi * velocity.frequency.array()).square();
+  const Hertz limit = limit_of(sample_rate);
+  return Band{dsp::power_quantile(*position, 0.05, limit), dsp::power_quantile(velocity, 0.95, limit)};
+}
+
+Result<Hertz> band_top(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate) {
+  const auto spectrum = spectrum_of(signals, cuts, sample_rate);
+  if (!spectrum) return tl::unexpected(spectrum.error());
+  return dsp::power_quantile(*spectrum, 0.95, limit_of(sample_rate));
 }
 
 }  // namespace mbk::preprocess

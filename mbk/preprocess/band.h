@@ -21,4 +21,11 @@ struct Band {
 /// samples.
 [[nodiscard]] Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, Hertz sample_rate);
 
+/// Where 95 % of a signal's own power lies below, looking up to a tenth of the sample rate.
+/// @fails  as excited_band.
+[[nodiscard]] Result<Hertz> band_top(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate);
+
+/// Forward and backward, the low-pass passes this fraction of its cutoff with a gain of 0.994.
+inline constexpr double kPassed = 0.6;
+
 }  // namespace mbk::preprocess

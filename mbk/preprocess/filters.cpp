@@ -12,8 +12,6 @@
 namespace mbk::preprocess {
 namespace {
 
-/// Forward and backward, the filter passes 0.6 of its cutoff with a gain of 0.994.
-constexpr double kCutoffOverBand = 1.0 / 0.6;
 /// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
 constexpr double kSmoothingOverCutoff = 4.6;
 /// At ten samples for each period of the cutoff the low-pass leaves 1e-7 above half of their rate.
@@ -50,7 +48,7 @@ FilterPlan reference_filters(const Options& options) {
 
 FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut) {
   FilterPlan plan;
-  const double wanted = options.cutoff.value_or(Hertz(band.high.value * kCutoffOverBand)).value;
+  const double wanted = options.cutoff.value_or(Hertz(band.high.value / kPassed)).value;
   const double cutoff = std::min(wanted, 0.4 * rate.value);
   plan.cutoff = Hertz(cutoff);
   plan.rule = fmt::format("{:.3g} Hz, the top of the excited band, over 0.6", band.high.value);

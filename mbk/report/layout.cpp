@@ -54,4 +54,21 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+std::string warnings_text(const std::vector<Warning>& warnings) {
+  std::string text;
+  for (const Warning& warning : warnings) {
+    text += paragraph("  ! ", fmt::format("{}: {}", mbk::text(warning.code), warning.message));
+    text += paragraph("    try: ", warning.remedy);
+  }
+  return text;
+}
+
+std::string filters_text(const Preparation& how) {
+  std::string filters = fmt::format("Savitzky–Golay N {} W {}", how.smoothing_order, how.smoothing_window);
+  filters += how.cutoff ? fmt::format(", then zero-phase Butterworth {:.3g} Hz: {}", how.cutoff->value, how.cutoff_rule)
+                        : ", no low-pass";
+  if (how.every > 1) filters += fmt::format("; every {}th sample", how.every);
+  return filters;
+}
+
 }  // namespace mbk::report

@@ -4,6 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/trial/prepared_trial.h"
+#include "mbk/trial/warning.h"
+
 /// How tables and paragraphs of a terminal are set. For the sources of this module only.
 namespace mbk::report {
 
@@ -15,5 +18,11 @@ namespace mbk::report {
 
 /// Left-aligned columns; the width of each is that of its longest cell. A last cell that is too long is broken.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
+
+/// Every warning with what to try.
+[[nodiscard]] std::string warnings_text(const std::vector<Warning>& warnings);
+
+/// The filters of a preparation in one line.
+[[nodiscard]] std::string filters_text(const Preparation& how);
 
 }  // namespace mbk::report

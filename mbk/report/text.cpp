@@ -58,11 +58,7 @@ std::string how_made(const Identification& id) {
                               : "default"});
   rows.push_back({"protocol", fmt::format("{} ({})", text(how.protocol), how.protocol_rule)});
   rows.push_back({"window", how.window_rule});
-  std::string filters = fmt::format("Savitzky–Golay N {} W {}", how.smoothing_order, how.smoothing_window);
-  filters += how.cutoff ? fmt::format(", then zero-phase Butterworth {:.3g} Hz: {}", how.cutoff->value, how.cutoff_rule)
-                        : ", no low-pass";
-  if (how.every > 1) filters += fmt::format("; every {}th sample", how.every);
-  rows.push_back({"filters", filters});
+  rows.push_back({"filters", filters_text(how)});
   rows.push_back(
       {"acceleration", how.acceleration_from_sensor ? "from the accelerometer" : "second derivative of position"});
   std::string data = fmt::format("{:.1f} s", id.excitation.duration);
@@ -113,15 +109,6 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
   equilibrium.push_back(n == 1 ? units.position : "mm");
   rows.push_back(std::move(equilibrium));
   return table(rows);
-}
-
-std::string warnings_text(const std::vector<Warning>& warnings) {
-  std::string text;
-  for (const Warning& warning : warnings) {
-    text += paragraph("  ! ", fmt::format("{}: {}", mbk::text(warning.code), warning.message));
-    text += paragraph("    try: ", warning.remedy);
-  }
-  return text;
 }
 
 /// Two, or as many as show four digits of what is smaller than ten.

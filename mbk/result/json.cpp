@@ -11,6 +11,7 @@
 #include "mbk/impedance/ellipse.h"
 #include "mbk/impedance/model.h"
 #include "mbk/result/json_parts.h"
+#include "mbk/result/json_reading.h"
 #include "mbk/result/passivity_json.h"
 
 namespace mbk::result {
@@ -21,33 +22,6 @@ constexpr const char* kResultsSchema = "mbk.results/1";
 
 Json model_json(const impedance::Model& model) {
   return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
-}
-
-Json warnings_json(const std::vector<Warning>& warnings) {
-  Json array = Json::array();
-  for (const Warning& warning : warnings) {
-    array.push_back({{"code", text(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
-  }
-  return array;
-}
-
-Json preparation_json(const Preparation& how) {
-  Json json = {{"protocol", text(how.protocol)},
-               {"protocol_rule", how.protocol_rule},
-               {"window_rule", how.window_rule},
-               {"from_s", how.from_s},
-               {"to_s", how.to_s},
-               {"savitzky_golay", {{"order", how.smoothing_order}, {"window", how.smoothing_window}}},
-               {"cutoff_hz", how.cutoff ? Json(how.cutoff->value) : Json(nullptr)},
-               {"cutoff_rule", how.cutoff_rule},
-               {"every", how.every},
-               {"excited_band_hz", {how.band_low.value, how.band_high.value}},
-               {"acceleration", how.acceleration_from_sensor ? "sensor" : "derivative"},
-               {"cut_before_filter", how.cut_before_filter}};
-  if (how.split_s) json["split_s"] = *how.split_s;
-  if (how.protocol == Protocol::underdamped) json["perturbations"] = how.perturbations;
-  if (how.mode == Mode::reference) json["procedure"] = text(how.procedure);
-  return json;
 }
 
 Json numbers(const std::vector<double>& values) {
@@ -281,56 +255,11 @@ std::string one_or_list(const char* schema_of_list, const std::vector<Json>& obj
 
 // Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-/// Thrown within this file only.
-struct Malformed {
-  std::string message;
-};
-
-bool has_schema(const Json& json, const char* schema) {
-  if (!json.is_object()) return false;
-  const auto found = json.find("schema");
-  return found != json.end() && found->is_string() && *found == schema;
-}
-
-double number_from(const Json& json) {
-  if (json.is_null()) return kUnknown;
-  if (!json.is_number())
-    throw Malformed{fmt::format("a number was expected, and a value of type '{}' stands there", json.type_name())};
-  return json.get<double>();
-}
-
-Matrix matrix_from(const Json& object, const char* name, Index expected_rows, Index expected_columns) {
-  const auto found = object.find(name);
-  if (found == object.end()) throw Malformed{fmt::format("'{}' is missing", name)};
-  const auto wrong = [&] {
-    return Malformed{fmt::format("'{}' is not a {}×{} matrix", name, expected_rows, expected_columns)};
-  };
-  if (!found->is_array() || static_cast<Index>(found->size()) != expected_rows) throw wrong();
-  Matrix matrix(expected_rows, expected_columns);
-  for (Index i = 0; i < expected_rows; ++i) {
-    const Json& row = (*found)[static_cast<std::size_t>(i)];
-    // A vector (expected_columns = 1) is written as a plain list.
-    if (expected_columns == 1 && !row.is_array()) {
-      matrix(i, 0) = number_from(row);
-      continue;
-    }
-    if (!row.is_array() || static_cast<Index>(row.size()) != expected_columns) throw wrong();
-    for (Index j = 0; j < expected_columns; ++j) matrix(i, j) = number_from(row[static_cast<std::size_t>(j)]);
-  }
-  return matrix;
-}
-
 impedance::Model model_from(const Json& json, const char* name, Index n) {
   const auto found = json.find(name);
   if (found == json.end() || !found->is_object()) throw Malformed{fmt::format("'{}' is missing", name)};
   return {matrix_from(*found, "M", n, n), matrix_from(*found, "B", n, n), matrix_from(*found, "K", n, n),
           found->contains("x0") ? Vector(matrix_from(*found, "x0", n, 1)) : Vector::Constant(n, kUnknown)};
-}
-
-Vector list_from(const Json& object, const char* name, Index size) {
-  return matrix_from(object, name, size, 1);
 }
 
 Fit fit_from(const Json& json, Index n) {

@@ -10,7 +10,9 @@
 
 #include "mbk/core/linear_algebra.h"
 #include "mbk/core/version.h"
+#include "mbk/trial/prepared_trial.h"
 #include "mbk/trial/recording.h"
+#include "mbk/trial/warning.h"
 
 /// What every JSON document of mbk is put together from. For the sources of this module only.
 namespace mbk::result {
@@ -54,6 +56,33 @@ inline Json inputs_json(const std::vector<SourceFile>& sources) {
     inputs.push_back({{"file", source.path}, {"sha256", source.sha256}, {"format", source.format}});
   }
   return inputs;
+}
+
+inline Json warnings_json(const std::vector<Warning>& warnings) {
+  Json array = Json::array();
+  for (const Warning& warning : warnings) {
+    array.push_back({{"code", text(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
+  }
+  return array;
+}
+
+inline Json preparation_json(const Preparation& how) {
+  Json json = {{"protocol", text(how.protocol)},
+               {"protocol_rule", how.protocol_rule},
+               {"window_rule", how.window_rule},
+               {"from_s", how.from_s},
+               {"to_s", how.to_s},
+               {"savitzky_golay", {{"order", how.smoothing_order}, {"window", how.smoothing_window}}},
+               {"cutoff_hz", how.cutoff ? Json(how.cutoff->value) : Json(nullptr)},
+               {"cutoff_rule", how.cutoff_rule},
+               {"every", how.every},
+               {"excited_band_hz", {how.band_low.value, how.band_high.value}},
+               {"acceleration", how.acceleration_from_sensor ? "sensor" : "derivative"},
+               {"cut_before_filter", how.cut_before_filter}};
+  if (how.split_s) json["split_s"] = *how.split_s;
+  if (how.protocol == Protocol::underdamped) json["perturbations"] = how.perturbations;
+  if (how.mode == Mode::reference) json["procedure"] = text(how.procedure);
+  return json;
 }
 
 }  // namespace mbk::result

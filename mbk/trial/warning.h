@@ -26,6 +26,7 @@ enum class WarningCode {
   clipping,
   too_little_data,
   decimation_changes_model,
+  torque_unit,
 };
 
 /// Every code with its text, which is stable: scripts may test for it.
@@ -46,6 +47,7 @@ inline constexpr auto kWarningTexts = std::to_array<std::pair<WarningCode, std::
     {WarningCode::clipping, "clipping"},
     {WarningCode::too_little_data, "too-little-data"},
     {WarningCode::decimation_changes_model, "decimation-changes-model"},
+    {WarningCode::torque_unit, "torque-unit"},
 });
 
 /// "inertia-not-positive", …

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "apps/mbk/commands.h"
+
+/// The commands of `mbk robot`, one file each.
+namespace mbk::app {
+
+Action add_robot_identify(CLI::App& group);
+
+}  // namespace mbk::app

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/mbk/measure_options.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/robot_commands.h"
+#include "mbk/measurement/identify_robot.h"
+#include "mbk/report/robot_text.h"
+#include "mbk/result/robot_json.h"
+#include "mbk/robot/planar_mechanism.h"
+
+namespace mbk::app {
+namespace {
+
+struct Arguments : MeasureArguments {
+  std::vector<std::filesystem::path> held_back;
+  std::string terms, delay, stribeck_velocity;
+  std::optional<double> smoothing, motion_cutoff_hz;
+};
+
+/// A number, or the word "auto" as no number.
+Result<std::optional<double>> number_or_auto(const std::string& given, const char* option) {
+  if (given == "auto") return std::nullopt;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), value);
+  if (error != std::errc() || end != given.data() + given.size() || !(std::abs(value) < 1e6)) {
+    return bad_usage(fmt::format("{}: {} is neither a number nor 'auto'", option, quoted(given)));
+  }
+  return value;
+}
+
+/// Sets the terms that a list names.
+Result<void> set_terms(const std::string& list, robot::DriveTerms& drive) {
+  const std::pair<const char*, bool robot::DriveTerms::*> known[] = {
+      {"viscous", &robot::DriveTerms::viscous},   {"coulomb", &robot::DriveTerms::coulomb},
+      {"stribeck", &robot::DriveTerms::stribeck}, {"cable", &robot::DriveTerms::cable},
+      {"offset", &robot::DriveTerms::offset},     {"motor_inertia", &robot::DriveTerms::motor_inertia}};
+  for (const auto& [name, flag] : known) drive.*flag = false;
+  if (list == "none") return {};
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string word = list.substr(begin, end - begin);
+    begin = end + 1;
+    bool found = false;
+    for (const auto& [name, flag] : known) {
+      if (word == name) drive.*flag = found = true;
+    }
+    if (!found) {
+      return bad_usage(fmt::format("--terms: there is no term {}", quoted(word)),
+                       "take of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none");
+    }
+  }
+  if (drive.cable) drive.offset = true;  // k (q − q₀) has a constant
+  return {};
+}
+
+Result<robot::DynamicModel> robot_of(const Arguments& arguments, measurement::RobotOptions& options) {
+  robot::DynamicModel model;
+  model.mechanism = std::make_shared<robot::PlanarMechanism>(robot::PlanarMechanism::Options());
+  if (!arguments.terms.empty()) {
+    if (auto ok = set_terms(arguments.terms, model.drive); !ok) return tl::unexpected(ok.error());
+  }
+  if (arguments.smoothing) model.drive.smoothing = *arguments.smoothing;
+  if (!arguments.delay.empty()) {
+    const auto delay = number_or_auto(arguments.delay, "--motor-delay");
+    if (!delay) return tl::unexpected(delay.error());
+    options.fit.delay = !*delay;
+    if (*delay) model.delay = 1e-3 * **delay;
+  }
+  if (!arguments.stribeck_velocity.empty()) {
+    const auto velocity = number_or_auto(arguments.stribeck_velocity, "--stribeck-velocity");
+    if (!velocity) return tl::unexpected(velocity.error());
+    if (*velocity && !(**velocity > 0.0)) return bad_usage("--stribeck-velocity: not above 0");
+    if (!model.drive.stribeck) {
+      return bad_usage("--stribeck-velocity without a Stribeck term", "add --terms viscous,coulomb,stribeck,offset");
+    }
+    options.stribeck_velocity = !*velocity;
+    if (*velocity) model.drive.stribeck_velocity = **velocity;
+  }
+  return model;
+}
+
+int run(const Arguments& arguments) {
+  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  measurement::RobotOptions options;
+  const auto model = robot_of(arguments, options);
+  if (!model) return report_error(model.error());
+  const auto signals = signal_options(arguments);
+  if (!signals) return report_error(signals.error());
+  options.preprocess.signals = *signals;
+  if (arguments.motion_cutoff_hz) options.preprocess.motion_cutoff = Hertz(*arguments.motion_cutoff_hz);
+  if (arguments.method == "ls") options.fit.method = RobotMethod::least_squares;
+  if (arguments.method == "iv") options.fit.method = RobotMethod::instrumental_variables;
+  options.fit.hac_lag_s = arguments.hac_lag_s;
+  if (arguments.resample_hz) options.resample = Hertz(*arguments.resample_hz);
+
+  const auto recordings = read_recordings(arguments);
+  if (!recordings) return report_error(recordings.error());
+  MeasureArguments others = arguments;
+  others.files = arguments.held_back;
+  const auto held_back = read_recordings(others);
+  if (!held_back) return report_error(held_back.error());
+  const auto found = measurement::identify_robot(*recordings, *held_back, *model, options);
+  if (!found) return report_error(found.error());
+  const std::string text = arguments.json ? result::to_json(*found) : report::robot_text(*found);
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  return found->usable ? kFine : kNotUsable;
+}
+
+}  // namespace
+
+Action add_robot_identify(CLI::App& group) {
+  auto arguments = std::make_shared<Arguments>();
+  arguments->method = "wls";
+  CLI::App* command = group.add_subcommand("identify", "the robot's own inertia and friction, from its motion alone");
+  command->footer(
+      "Examples:\n"
+      "  mbk simulate free_motion --out free.h5\n"
+      "  mbk robot identify free.h5\n"
+      "      the thesis's robot: alpha1 … alpha3, friction, and how well the torque is explained\n"
+      "  mbk robot identify free_1.h5 free_2.h5 --held-back free_3.h5 --json --out robot.json\n"
+      "      several recordings in one fit, another to judge it; robot.json is what a virtual force needs\n"
+      "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n\n"
+      "Record with nothing at the hand, every joint moving, fast and slow, through the places where you will\n"
+      "measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
+      "Exit codes: " +
+      std::string(kExitCodes));
+  add_reading_options(*command, *arguments);
+  command->add_option("--held-back", arguments->held_back, "recordings that only judge the fit")->type_name("FILE");
+  add_window_options(*command, *arguments);
+  add_filter_options(*command, *arguments);
+  const char* const model = "Model";
+  command
+      ->add_option("--terms", arguments->terms,
+                   "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
+                   "(viscous,coulomb,offset)")
+      ->type_name("LIST")
+      ->check(not_empty())
+      ->group(model);
+  command->add_option("--friction-smoothing", arguments->smoothing,
+                      "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
+                      "(0.02)")
+      ->type_name("V")
+      ->check(not_negative())
+      ->group(model);
+  command->add_option("--stribeck-velocity", arguments->stribeck_velocity, "rad/s or m/s; auto finds it (0.05)")
+      ->type_name("V|auto")
+      ->check(not_empty())
+      ->group(model);
+  command->add_option("--motor-delay", arguments->delay,
+                      "by which the motors act after the torque that is recorded; auto finds it (0)")
+      ->type_name("MS|auto")
+      ->check(not_empty())
+      ->group(model);
+  command
+      ->add_option("--method", arguments->method,
+                   "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, "
+                   "which noise of the motion does not bias")
+      ->type_name("wls|ls|iv")
+      ->check(one_of({"wls", "ls", "iv"}))
+      ->group(model);
+  command->add_option("--motion-cutoff", arguments->motion_cutoff_hz,
+                      "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
+                      "reference, or without one the band of the torque")
+      ->type_name("HZ")
+      ->check(positive())
+      ->group(model);
+  command->add_option("--hac-lag", arguments->hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
+      ->type_name("S")
+      ->check(positive())
+      ->group(model);
+  add_output_options(*command, *arguments, "mbk.robot/1");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

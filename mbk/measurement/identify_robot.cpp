@@ -1,0 +1,150 @@
+#include "mbk/measurement/identify_robot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "mbk/preprocess/resample.h"
+#include "mbk/recording/inspection.h"
+
+namespace mbk::measurement {
+namespace {
+
+Result<std::vector<PreparedDynamics>> prepare_all(std::span<const Recording> recordings,
+                                                  const robot::DynamicModel& model,
+                                                  preprocess::DynamicsOptions options) {
+  std::vector<PreparedDynamics> trials;
+  const auto prepare = [&](const Recording& recording) -> Result<PreparedDynamics> {
+    auto trial = preprocess::prepare_dynamics(recording, recording::inspect(recording), model, options);
+    if (!trial && !recording.sources.empty()) return tl::unexpected(trial.error().in(recording.sources[0].path));
+    return trial;
+  };
+  for (const Recording& recording : recordings) {
+    auto trial = prepare(recording);
+    if (!trial) return tl::unexpected(trial.error());
+    trials.push_back(std::move(*trial));
+  }
+  // One band and one spacing of the rows for all: those of the recording that moves fastest.
+  const auto cutoff_of = [](const PreparedDynamics& trial) {
+    return trial.preparation.cutoff.value_or(Hertz(0.0)).value;
+  };
+  const auto fastest = std::ranges::max_element(trials, {}, cutoff_of);
+  if (fastest == trials.end() || !fastest->preparation.cutoff) return trials;
+  const Preparation how = fastest->preparation;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (cutoff_of(trials[k]) == how.cutoff->value && trials[k].preparation.every == how.every) continue;
+    options.signals.cutoff = how.cutoff;
+    options.signals.every = how.every;
+    auto trial = prepare(recordings[k]);
+    if (!trial) return tl::unexpected(trial.error());
+    trials[k] = std::move(*trial);
+    trials[k].preparation.cutoff_rule = how.cutoff_rule;
+  }
+  return trials;
+}
+
+/// Recordings on an even clock, where that was asked.
+Result<std::vector<Recording>> even(std::span<const Recording> recordings, std::optional<Hertz> rate) {
+  std::vector<Recording> all(recordings.begin(), recordings.end());
+  if (!rate) return all;
+  for (Recording& recording : all) {
+    auto resampled = preprocess::resample(recording, *rate);
+    if (!resampled) return tl::unexpected(resampled.error());
+    recording = std::move(*resampled);
+  }
+  return all;
+}
+
+/// The pipeline with everything given.
+Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+                                    const robot::DynamicModel& model, const RobotOptions& options) {
+  auto trials = prepare_all(recordings, model, options.preprocess);
+  if (!trials) return tl::unexpected(trials.error());
+  preprocess::DynamicsOptions judged = options.preprocess;
+  if (const Preparation& how = trials->front().preparation; how.cutoff) {
+    judged.signals.cutoff = how.cutoff;
+    judged.signals.every = how.every;
+  }
+  judged.signals.window = {};
+  if (trials->front().motion_cutoff > 0.0) judged.motion_cutoff = Hertz(trials->front().motion_cutoff);
+  auto others = prepare_all(held_back, model, judged);
+  if (!others) return tl::unexpected(others.error());
+  return identify::fit_robot(*trials, *others, model, options.fit);
+}
+
+/// With the delay found where it is wanted.
+Result<RobotIdentification> fit_delay(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+                                      robot::DynamicModel model, const RobotOptions& options) {
+  constexpr int kMostPasses = 8;
+  constexpr double kSettled = 1e-5;  // [s], a hundredth of a sample at 1 kHz
+  for (int pass = 1;; ++pass) {
+    auto made = fit_once(recordings, held_back, model, options);
+    if (!made) return tl::unexpected(made.error());
+    if (!options.fit.delay || std::abs(made->delay_correction) < kSettled || pass == kMostPasses) {
+      return std::move(made->identification);
+    }
+    model.delay = std::clamp(model.delay + made->delay_correction, -0.2, 0.2);
+  }
+}
+
+double unexplained(const RobotIdentification& found) {
+  double sum = 0.0;
+  for (const TorqueFit& fit : found.fit) sum += std::log(std::max(fit.rmse_in_sample, 1e-300));
+  return sum;
+}
+
+}  // namespace
+
+Result<RobotIdentification> identify_robot(std::span<const Recording> recordings, std::span<const Recording> held_back,
+                                           const robot::DynamicModel& model, const RobotOptions& options) {
+  RobotOptions all = options;
+  all.preprocess.instruments = options.fit.method == RobotMethod::instrumental_variables;
+  const auto trials = even(recordings, options.resample);
+  if (!trials) return tl::unexpected(trials.error());
+  const auto others = even(held_back, options.resample);
+  if (!others) return tl::unexpected(others.error());
+  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(*trials, *others, model, all);
+
+  // Between the velocity at which the sign is smooth and a hundred times that.
+  const double low = std::log(std::max(1.5 * model.drive.smoothing, 1e-4)), high = low + std::log(100.0);
+  constexpr double kGolden = 0.6180339887498949;
+  robot::DynamicModel tried = model;
+  Result<RobotIdentification> best = bad_data("not tried");
+  double least = std::numeric_limits<double>::infinity();
+  const auto at = [&](double log_velocity) -> Result<double> {
+    tried.drive.stribeck_velocity = std::exp(log_velocity);
+    auto found = fit_delay(*trials, *others, tried, all);
+    if (!found) return tl::unexpected(found.error());
+    const double left = unexplained(*found);
+    if (left < least) {
+      least = left;
+      best = std::move(found);
+    }
+    return left;
+  };
+  double a = low, b = high, c = b - kGolden * (b - a), d = a + kGolden * (b - a);
+  auto at_c = at(c);
+  auto at_d = at(d);
+  constexpr double kNear = 0.02;  // of the velocity
+  while (at_c && at_d && b - a > kNear) {
+    if (*at_c < *at_d) {
+      b = d;
+      d = c;
+      at_d = at_c;
+      c = b - kGolden * (b - a);
+      at_c = at(c);
+    } else {
+      a = c;
+      c = d;
+      at_c = at_d;
+      d = a + kGolden * (b - a);
+      at_d = at(d);
+    }
+  }
+  if (!at_c) return tl::unexpected(at_c.error());
+  if (!at_d) return tl::unexpected(at_d.error());
+  return best;
+}
+
+}  // namespace mbk::measurement

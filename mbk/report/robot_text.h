@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "mbk/trial/robot_identification.h"
+
+namespace mbk::report {
+
+/// The dynamics of a robot for the terminal: how they were found, every coefficient with its 95 % interval and unit,
+/// what could not be told apart, the fit joint by joint, and warnings with what to try.
+[[nodiscard]] std::string robot_text(const RobotIdentification& found);
+
+}  // namespace mbk::report
