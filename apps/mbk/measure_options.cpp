@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/robot_file.h"
 #include "mbk/recording/channel_map.h"
 #include "mbk/report/html.h"
 
@@ -124,7 +125,19 @@ void add_measuring_options(CLI::App& command, MeasureArguments& a) {
   command.add_flag("--pool", a.pool, "one fit over all FILEs; otherwise one result each and a summary")->group(kWindow);
 
   add_filter_options(command, a);
-  add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")->group(kFilters);
+  add_choice(command, "--acceleration", a.acceleration, {"sensor", "derivative"}, "where ẍ comes from")
+      ->group(kFilters);
+
+  add_choice(command, "--force-source", a.force_source, {"sensor", "virtual", "observer"},
+             "virtual: without a force sensor, from motion, motor torques and the robot's dynamics; observer: the same "
+             "as it could be had while the robot runs, for comparison")
+      ->group(kFilters);
+  command
+      .add_option("--robot", a.robot,
+                  "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
+      ->type_name("FILE")
+      ->check(not_empty())
+      ->group(kFilters);
 
   const char* const model = "Model";
   add_choice(command, "--method", a.method, {"ls", "iv"},
@@ -255,6 +268,15 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
   p.axes = a.axes;
   if (a.acceleration == "sensor") p.acceleration = preprocess::AccelerationSource::sensor;
   if (a.acceleration == "derivative") p.acceleration = preprocess::AccelerationSource::derivative;
+  if (a.force_source == "virtual") p.force_source = ForceSource::virtual_sensor;
+  if (a.force_source == "observer") p.force_source = ForceSource::observer;
+  if (p.force_source != ForceSource::sensor) {
+    auto robot = robot_of(a.robot);
+    if (!robot) return tl::unexpected(robot.error());
+    p.robot = std::make_shared<const robot::DynamicModel>(std::move(*robot));
+  } else if (a.robot) {
+    return bad_usage("--robot belongs to --force-source virtual or observer", "add that, or leave --robot out");
+  }
   identify::Options& i = options.identify;
   if (a.method == "iv") i.method = Method::instrumental_variables;
   if (a.structure == "symmetric") i.structure = Structure::symmetric;

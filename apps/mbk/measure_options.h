@@ -21,6 +21,8 @@ struct MeasureArguments {
   int axes = 0;
   std::string mode = "default", procedure, protocol = "auto", method = "ls";
   std::optional<int> sg_window, sg_order;
+  std::string force_source = "sensor";
+  std::optional<std::filesystem::path> robot;
   std::string cutoff, acceleration, parameters_from, structure = "full", extension = "odd";
   long padding = 15;
   std::optional<long> every;

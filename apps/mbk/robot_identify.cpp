@@ -19,7 +19,7 @@ namespace {
 
 struct Arguments : MeasureArguments {
   std::vector<std::filesystem::path> held_back;
-  std::string terms, delay, stribeck_velocity;
+  std::string terms, delay = "auto", stribeck_velocity;
   std::optional<double> smoothing, motion_cutoff_hz;
 };
 
@@ -66,12 +66,10 @@ Result<robot::DynamicModel> robot_of(const Arguments& arguments, measurement::Ro
     if (auto ok = set_terms(arguments.terms, model.drive); !ok) return tl::unexpected(ok.error());
   }
   if (arguments.smoothing) model.drive.smoothing = *arguments.smoothing;
-  if (!arguments.delay.empty()) {
-    const auto delay = number_or_auto(arguments.delay, "--motor-delay");
-    if (!delay) return tl::unexpected(delay.error());
-    options.fit.delay = !*delay;
-    if (*delay) model.delay = 1e-3 * **delay;
-  }
+  const auto delay = number_or_auto(arguments.delay, "--motor-delay");
+  if (!delay) return tl::unexpected(delay.error());
+  options.fit.delay = !*delay;
+  if (*delay) model.delay = 1e-3 * **delay;
   if (!arguments.stribeck_velocity.empty()) {
     const auto velocity = number_or_auto(arguments.stribeck_velocity, "--stribeck-velocity");
     if (!velocity) return tl::unexpected(velocity.error());
@@ -142,9 +140,10 @@ Action add_robot_identify(CLI::App& group) {
       ->type_name("LIST")
       ->check(not_empty())
       ->group(model);
-  command->add_option("--friction-smoothing", arguments->smoothing,
-                      "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
-                      "(0.02)")
+  command
+      ->add_option("--friction-smoothing", arguments->smoothing,
+                   "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
+                   "(0.02)")
       ->type_name("V")
       ->check(not_negative())
       ->group(model);
@@ -152,8 +151,11 @@ Action add_robot_identify(CLI::App& group) {
       ->type_name("V|auto")
       ->check(not_empty())
       ->group(model);
-  command->add_option("--motor-delay", arguments->delay,
-                      "by which the motors act after the torque that is recorded; auto finds it (0)")
+  command
+      ->add_option(
+          "--motor-delay", arguments->delay,
+          "by which the motors act after the torque that is recorded; a torque that is held for a sample counts "
+          "as half of one (auto: found)")
       ->type_name("MS|auto")
       ->check(not_empty())
       ->group(model);
@@ -164,13 +166,15 @@ Action add_robot_identify(CLI::App& group) {
       ->type_name("wls|ls|iv")
       ->check(one_of({"wls", "ls", "iv"}))
       ->group(model);
-  command->add_option("--motion-cutoff", arguments->motion_cutoff_hz,
-                      "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
-                      "reference, or without one the band of the torque")
+  command
+      ->add_option("--motion-cutoff", arguments->motion_cutoff_hz,
+                   "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
+                   "reference, or without one the band of the torque")
       ->type_name("HZ")
       ->check(positive())
       ->group(model);
-  command->add_option("--hac-lag", arguments->hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
+  command
+      ->add_option("--hac-lag", arguments->hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
       ->type_name("S")
       ->check(positive())
       ->group(model);

@@ -329,7 +329,7 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
   return energy;
 }
 
-Result<EnergyAccount> pooled_energy(std::span<const Recording> recordings, std::span<const PreparedTrial> trials,
+Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings, std::span<const PreparedTrial> trials,
                                     const EnergyOptions& options) {
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
   if (recordings.empty() || recordings.size() != trials.size()) {
@@ -343,7 +343,7 @@ Result<EnergyAccount> pooled_energy(std::span<const Recording> recordings, std::
       return bad_data("its axes or units are not those of the first file, so energies cannot be pooled",
                       "take it by itself", trials[k].sources.empty() ? "" : trials[k].sources.front().path);
     }
-    const auto exchange = exchange_of(recordings[k], trials[k]);
+    const auto exchange = exchange_of(*recordings[k], trials[k]);
     if (!exchange) return tl::unexpected(exchange.error());
     const bool own = has_perturbations(trials[k]);
     perturbations = perturbations && own;

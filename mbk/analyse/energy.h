@@ -47,7 +47,7 @@ struct EnergyOptions {
 /// one after another.
 /// @param trials  one for each recording
 /// @fails  as absorbed_energy; none; not as many trials as recordings; axes or units differ.
-[[nodiscard]] Result<EnergyAccount> pooled_energy(std::span<const Recording> recordings,
+[[nodiscard]] Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings,
                                                   std::span<const PreparedTrial> trials,
                                                   const EnergyOptions& options = {});
 

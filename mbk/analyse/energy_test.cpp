@@ -403,22 +403,22 @@ TEST(PooledEnergy, AddsEnergiesAndBlocks) {
   const std::vector<Recording> both = {sine_recording(), sine_recording()};
   const std::vector<PreparedTrial> trials = {sine_trial(both[0]), sine_trial(both[1])};
   const EnergyAccount one = absorbed_energy(both[0], trials[0]).value().account;
-  const EnergyAccount pooled = pooled_energy(both, trials).value();
+  const EnergyAccount pooled = pooled_energy(std::vector{&both[0], &both[1]}, trials).value();
   EXPECT_DOUBLE_EQ(pooled.absorbed, 2.0 * one.absorbed);
   EXPECT_DOUBLE_EQ(pooled.duration, 2.0 * one.duration);
   EXPECT_DOUBLE_EQ(pooled.mean_power, one.mean_power);
   EXPECT_DOUBLE_EQ(pooled.shortage_at_end, one.shortage_at_end);
   EXPECT_EQ(pooled.blocks, 2 * one.blocks);
-  EXPECT_EQ(pooled_energy({both.data(), 1}, {trials.data(), 1}).value().absorbed95, one.absorbed95);
+  EXPECT_EQ(pooled_energy(std::vector{&both[0]}, {trials.data(), 1}).value().absorbed95, one.absorbed95);
 }
 
 TEST(PooledEnergy, RefusesWhatDoesNotBelongTogether) {
   const std::vector<Recording> both = {sine_recording(), sine_recording()};
   std::vector<PreparedTrial> trials = {sine_trial(both[0]), sine_trial(both[1])};
   EXPECT_FALSE(pooled_energy({}, {}));
-  EXPECT_FALSE(pooled_energy(both, {trials.data(), 1}));
+  EXPECT_FALSE(pooled_energy(std::vector{&both[0], &both[1]}, {trials.data(), 1}));
   trials[1].motion = Motion::rotation;
-  EXPECT_FALSE(pooled_energy(both, trials));
+  EXPECT_FALSE(pooled_energy(std::vector{&both[0], &both[1]}, trials));
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ class Fitter {
   [[nodiscard]] bool is_full(const Estimate& estimate) const { return estimate.rank == r_.Z.cols(); }
   [[nodiscard]] impedance::Model model_from(const Estimate& estimate) const;
   [[nodiscard]] Result<Replicates> resample(Method method) const;
+  [[nodiscard]] Matrix covariance_of_robot(Method method, const Estimate& estimate) const;
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
   void describe(Identification& result) const;
 
@@ -141,6 +142,25 @@ Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& r
   return estimate.bread * numeric::regression_scores(R, residual, estimate.structure, {0, range.size()});
 }
 
+/// What the coefficients of the robot, on which the force rests, leave open of φ: D V Dᵀ with D = ∂φ/∂θ, found by the
+/// same regression from ∂(−F_h)/∂θ, since φ is linear in the force.
+Matrix Fitter::covariance_of_robot(Method method, const Estimate& estimate) const {
+  const Index p = r_.robot_covariance.rows(), n = r_.axes();
+  Matrix D = Matrix::Zero(estimate.bread.rows(), p);
+  for (const RowRange& range : ranges_) {
+    const Matrix R = instruments(method).middleRows(range.begin, range.size());
+    for (Index k = 0; k < p; ++k) {
+      Matrix change(range.size(), n);
+      for (Index axis = 0; axis < n; ++axis) {
+        change.col(axis) = -r_.force_sensitivity.col(axis * p + k).segment(range.begin, range.size());
+      }
+      D.col(k) += numeric::regression_scores(R, change, estimate.structure, {0, range.size()}).rowwise().sum();
+    }
+  }
+  D = estimate.bread * D;
+  return D * r_.robot_covariance * D.transpose();
+}
+
 /// What both methods have in common.
 void Fitter::describe(Identification& result) const {
   const PreparedTrial& first = trials_.front();
@@ -187,6 +207,12 @@ Result<Identification> Fitter::identify(Method method) {
     const Matrix V = numeric::long_run_covariance(fit->bread.rows(), ranges_, lags_,
                                                   [&](const RowRange& range) { return scores(method, *fit, range); });
     result.covariance = model_covariance(fit->structure, widening_ * widening_ * V, result.model, r_.centre);
+    if (r_.robot_covariance.size() > 0) {
+      const Matrix of_robot =
+          model_covariance(fit->structure, covariance_of_robot(method, *fit), result.model, r_.centre);
+      result.covariance += of_robot;
+      result.standard_error_of_robot = impedance::unstacked(of_robot.diagonal().cwiseMax(0.0).cwiseSqrt(), n);
+    }
   }
   result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
   if (method == Method::instrumental_variables) {

@@ -45,6 +45,12 @@ Regression stack(const std::vector<PreparedTrial>& trials) {
   r.Y.setZero(rows, n);
   const bool known = std::ranges::all_of(trials, [](const auto& trial) { return trial.reference_motion.size() > 0; });
   if (known) r.reference.setZero(rows, 3 * n);
+  const bool computed =
+      std::ranges::all_of(trials, [](const auto& trial) { return trial.force_sensitivity.size() > 0; });
+  if (computed) {
+    r.robot_covariance = trials.front().robot_covariance;
+    r.force_sensitivity.setZero(rows, trials.front().force_sensitivity.cols());
+  }
   Index row = 0;
   for (const PreparedTrial& trial : trials) {
     Index last_end = -1;
@@ -60,6 +66,9 @@ Regression stack(const std::vector<PreparedTrial>& trials) {
       r.Z.block(row, 3 * n, size, 1).setOnes();
       r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(stretch.begin, size);
       if (known) r.reference.middleRows(row, size) = trial.reference_motion.middleRows(stretch.begin, size);
+      if (computed) {
+        r.force_sensitivity.middleRows(row, size) = trial.force_sensitivity.middleRows(stretch.begin, size);
+      }
       (stretch.purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
       row += size;
     }
@@ -67,6 +76,7 @@ Regression stack(const std::vector<PreparedTrial>& trials) {
   r.Z.conservativeResize(row, Eigen::NoChange);
   r.Y.conservativeResize(row, Eigen::NoChange);
   if (known) r.reference.conservativeResize(row, Eigen::NoChange);
+  if (computed) r.force_sensitivity.conservativeResize(row, Eigen::NoChange);
   r.centre = Vector::Zero(n);
   Index count = 0;
   for (const RowRange& range : r.identification.empty() ? r.validation : r.identification) {

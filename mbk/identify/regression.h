@@ -17,7 +17,9 @@ struct Regression {
   Matrix Z;          ///< N×(3n+1)
   Matrix Y;          ///< N×n, −F_h
   Matrix reference;  ///< N×3n, [r̈ ṙ r] of the known perturbation, filtered like the motion; empty where it is not known
-  Vector centre;  ///< x̄, n
+  Vector centre;             ///< x̄, n
+  Matrix force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ of a force that rests on a robot's coefficients; empty otherwise
+  Matrix robot_covariance;  ///< p×p, of those; all trials rest on the same
   std::vector<RowRange> identification, validation;
   double sample_time = 0;
 

@@ -45,35 +45,69 @@ void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& t
                                                   : "choose a window without long gaps with --from and --to"});
 }
 
-/// A recording as it is prepared: on an even clock where that was asked, otherwise as it is (and then nothing here).
-Result<std::optional<Recording>> on_even_clock(const Recording& recording, const Options& options) {
-  if (!options.resample) return std::nullopt;
-  auto even = preprocess::resample(recording, *options.resample);
-  if (!even) return tl::unexpected(even.error());
-  return std::move(*even);
+/// A recording as it is analysed: on an even clock and with a computed force, where that was asked.
+struct Source {
+  const Recording* given = nullptr;
+  Inspection recorded;  ///< of `given`
+  std::optional<Recording> even;
+  std::optional<preprocess::VirtualForce> computed;
+
+  [[nodiscard]] const Recording& recording() const {
+    if (computed) return computed->recording;
+    return even ? *even : *given;
+  }
+  /// An error, with the file in which it is.
+  [[nodiscard]] tl::unexpected<Error> in_file(const Error& error) const {
+    return tl::unexpected<Error>(given->sources.empty() ? error : error.in(given->sources[0].path));
+  }
+};
+
+Result<Source> make_ready(const Recording& recording, const Options& options) {
+  Source source{&recording, recording::inspect(recording), {}, {}};
+  if (options.resample) {
+    auto even = preprocess::resample(recording, *options.resample);
+    if (!even) return tl::unexpected(even.error());
+    source.even = std::move(*even);
+  }
+  if (options.preprocess.force_source == ForceSource::sensor) return source;
+  if (!options.preprocess.robot) return bad_usage("a computed force needs a robot", "name it with --robot");
+  const Inspection inspection = source.even ? recording::inspect(*source.even) : source.recorded;
+  auto computed =
+      preprocess::virtual_force(source.recording(), inspection, *options.preprocess.robot, options.preprocess);
+  if (!computed) return tl::unexpected(computed.error());
+  source.computed = std::move(*computed);
+  return source;
 }
 
-Result<PreparedTrial> prepare_one(const Recording& recording, const Options& options) {
-  const auto even = on_even_clock(recording, options);
-  if (!even) return tl::unexpected(even.error());
-  const Inspection recorded = recording::inspect(recording);
-  auto trial = *even ? preprocess::prepare(**even, recording::inspect(**even), options.preprocess)
-                     : preprocess::prepare(recording, recorded, options.preprocess);
+Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, const Options& options) {
+  std::vector<Source> sources;
+  for (const Recording& recording : recordings) {
+    auto source = make_ready(recording, options);
+    if (!source)
+      return tl::unexpected(recording.sources.empty() ? source.error() : source.error().in(recording.sources[0].path));
+    sources.push_back(std::move(*source));
+  }
+  return sources;
+}
+
+Result<PreparedTrial> prepare_one(const Source& source, const Options& options) {
+  const Recording& recording = source.recording();
+  const bool same = &recording == source.given;
+  auto trial = preprocess::prepare(recording, same ? source.recorded : recording::inspect(recording),
+                                   options.preprocess, source.computed ? &*source.computed : nullptr);
   if (!trial) return trial;
-  warn_of_clipping(recorded, *trial);
-  if (options.resample) warn_of_resampling(recorded, *options.resample, *trial);
+  warn_of_clipping(source.recorded, *trial);
+  if (options.resample) warn_of_resampling(source.recorded, *options.resample, *trial);
   return trial;
 }
 
 /// Each recording prepared, its reference too; where several are pooled, their rows weigh alike.
-Result<std::vector<PreparedTrial>> prepare_all(std::span<const Recording> recordings, Options options) {
+Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& sources, Options options) {
   options.preprocess.instruments = true;
   std::vector<PreparedTrial> trials;
-  for (const Recording& recording : recordings) {
-    auto trial = prepare_one(recording, options);
-    if (!trial) {
-      return tl::unexpected(recording.sources.empty() ? trial.error() : trial.error().in(recording.sources[0].path));
-    }
+  for (const Source& source : sources) {
+    auto trial = prepare_one(source, options);
+    if (!trial) return source.in_file(trial.error());
     trials.push_back(std::move(*trial));
   }
   // Where each trial by itself would be thinned differently, the finest will do for all.
@@ -82,7 +116,7 @@ Result<std::vector<PreparedTrial>> prepare_all(std::span<const Recording> record
   options.preprocess.every = finest;
   for (std::size_t k = 0; k < trials.size(); ++k) {
     if (trials[k].preparation.every == finest) continue;
-    auto trial = prepare_one(recordings[k], options);
+    auto trial = prepare_one(sources[k], options);
     if (!trial) return tl::unexpected(trial.error());
     trials[k] = std::move(*trial);
   }
@@ -115,31 +149,25 @@ Result<result::Measured> identify_by_both(const std::vector<PreparedTrial>& tria
 }
 
 /// The energy of each recording, and of all together.
-Result<EnergyAccount> account_for_energy(std::span<const Recording> recordings,
-                                         const std::vector<PreparedTrial>& trials, const Options& options,
+Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                          result::Measured& measured) {
-  std::vector<Recording> even;
-  for (const Recording& recording : recordings) {
-    auto one = on_even_clock(recording, options);
-    if (!one) return tl::unexpected(one.error());
-    even.push_back(*one ? std::move(**one) : Recording{});
-  }
-  const auto recording = [&](std::size_t k) -> const Recording& { return options.resample ? even[k] : recordings[k]; };
   const impedance::Model& model = measured.identification.model;
   const bool known = model.axes() == 2 && model.K.allFinite();
-  for (std::size_t k = 0; k < recordings.size(); ++k) {
-    auto energy = analyse::absorbed_energy(recording(k), trials[k], {}, known ? &model : nullptr);
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    auto energy = analyse::absorbed_energy(sources[k].recording(), trials[k], {}, known ? &model : nullptr);
     if (!energy) return tl::unexpected(energy.error());
     measured.energies.push_back(std::move(*energy));
   }
-  if (recordings.size() == 1) return measured.energies.front().account;
-  return options.resample ? analyse::pooled_energy(even, trials) : analyse::pooled_energy(recordings, trials);
+  if (sources.size() == 1) return measured.energies.front().account;
+  std::vector<const Recording*> recordings;
+  for (const Source& source : sources) recordings.push_back(&source.recording());
+  return analyse::pooled_energy(recordings, trials);
 }
 
 /// Is the limb passive, by its model and by what it absorbed?
-Result<Passivity> judge_passivity(std::span<const Recording> recordings, const std::vector<PreparedTrial>& trials,
+Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                   const Options& options, result::Measured& measured) {
-  auto energy = account_for_energy(recordings, trials, options, measured);
+  auto energy = account_for_energy(sources, trials, measured);
   if (!energy) return tl::unexpected(energy.error());
   const PassivityBand band = options.band.value_or(analyse::passivity_band(trials));
   const Identification* first = &measured.identification;
@@ -167,12 +195,11 @@ Result<Passivity> judge_passivity(std::span<const Recording> recordings, const s
   return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
 }
 
-Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
-                                          const std::vector<PreparedTrial>& trials, const Options& options) {
+Result<result::Measured> measure_prepared(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                                          const Options& options) {
   auto identified = identify_by_both(trials, options.identify);
   if (!identified) {
-    const bool one_file = recordings.size() == 1 && !recordings[0].sources.empty();
-    return tl::unexpected(one_file ? identified.error().in(recordings[0].sources[0].path) : identified.error());
+    return sources.size() == 1 ? sources[0].in_file(identified.error()) : tl::unexpected(identified.error());
   }
   result::Measured measured = std::move(*identified);
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
@@ -186,10 +213,9 @@ Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
     measured.bootstrap = std::move(*bootstrap);
   }
   if (options.passivity) {
-    auto passivity = judge_passivity(recordings, trials, options, measured);
+    auto passivity = judge_passivity(sources, trials, options, measured);
     if (!passivity) {
-      return tl::unexpected(recordings[0].sources.empty() ? passivity.error()
-                                                          : passivity.error().in(recordings[0].sources[0].path));
+      return sources[0].in_file(passivity.error());
     }
     measured.passivity = std::move(*passivity);
   }
@@ -197,46 +223,47 @@ Result<result::Measured> measure_prepared(std::span<const Recording> recordings,
 }
 
 /// The same trial with ẍ from the other source; absent where the recording holds no accelerometer that could be used.
-std::optional<PreparedTrial> with_other_acceleration(const Recording& recording, const PreparedTrial& trial,
+std::optional<PreparedTrial> with_other_acceleration(const Source& source, const PreparedTrial& trial,
                                                      Options options) {
   using preprocess::AccelerationSource;
   const bool sensor = trial.preparation.acceleration_from_sensor;
-  if (!sensor && recording.find(trial.axes == 1 ? "acceleration" : "acceleration_x") == nullptr) return std::nullopt;
+  if (!sensor && source.recording().find(trial.axes == 1 ? "acceleration" : "acceleration_x") == nullptr) {
+    return std::nullopt;
+  }
   options.preprocess.acceleration = sensor ? AccelerationSource::derivative : AccelerationSource::sensor;
   options.preprocess.every = trial.preparation.every;
-  auto other = prepare_one(recording, options);
+  auto other = prepare_one(source, options);
   if (!other || other->time.size() != trial.time.size()) return std::nullopt;
   return std::move(*other);
 }
 
-Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& trial,
-                             const Identification& identification, const Options& options) {
-  const auto even = on_even_clock(recording, options);
-  if (!even) return tl::unexpected(even.error());
-  const auto other = with_other_acceleration(recording, trial, options);
-  return analyse::diagnose(*even ? **even : recording, trial, identification, other ? &*other : nullptr);
+Result<Diagnostics> diagnose(const Source& source, const PreparedTrial& trial, const Identification& identification,
+                             const Options& options) {
+  const auto other = with_other_acceleration(source, trial, options);
+  return analyse::diagnose(source.recording(), trial, identification, other ? &*other : nullptr);
 }
 
 }  // namespace
 
 Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options) {
-  const auto trials = prepare_all(recordings, options);
+  const auto sources = make_ready(recordings, options);
+  if (!sources) return tl::unexpected(sources.error());
+  const auto trials = prepare_all(*sources, options);
   if (!trials) return tl::unexpected(trials.error());
-  return measure_prepared(recordings, *trials, options);
+  return measure_prepared(*sources, *trials, options);
 }
 
 Result<Examined> examine(std::span<const Recording> recordings, const Options& options) {
-  const auto trials = prepare_all(recordings, options);
+  const auto sources = make_ready(recordings, options);
+  if (!sources) return tl::unexpected(sources.error());
+  const auto trials = prepare_all(*sources, options);
   if (!trials) return tl::unexpected(trials.error());
-  auto measured = measure_prepared(recordings, *trials, options);
+  auto measured = measure_prepared(*sources, *trials, options);
   if (!measured) return tl::unexpected(measured.error());
   Examined examined{std::move(*measured), {}};
-  for (std::size_t k = 0; k < recordings.size(); ++k) {
-    auto diagnostics = diagnose(recordings[k], (*trials)[k], examined.measured.identification, options);
-    if (!diagnostics) {
-      return tl::unexpected(recordings[k].sources.empty() ? diagnostics.error()
-                                                          : diagnostics.error().in(recordings[k].sources[0].path));
-    }
+  for (std::size_t k = 0; k < sources->size(); ++k) {
+    auto diagnostics = diagnose((*sources)[k], (*trials)[k], examined.measured.identification, options);
+    if (!diagnostics) return (*sources)[k].in_file(diagnostics.error());
     examined.diagnostics.push_back(std::move(*diagnostics));
   }
   return examined;

@@ -29,7 +29,8 @@ IndependentColumns independent_columns(const Matrix& Z, double tolerance) {
   if (count == 0) return found;
   const Matrix basis = small(Eigen::all, found.kept);
   found.combination = Eigen::HouseholderQR<Matrix>(basis).solve(small);
-  for (Index k = 0; k < count; ++k) found.combination.col(found.kept[static_cast<std::size_t>(k)]) = Vector::Unit(count, k);
+  for (Index k = 0; k < count; ++k)
+    found.combination.col(found.kept[static_cast<std::size_t>(k)]) = Vector::Unit(count, k);
   return found;
 }
 

@@ -30,7 +30,9 @@ Result<dsp::Spectrum> spectrum_of(const Matrix& signals, const std::vector<Cut>&
   return sum;
 }
 
-Hertz limit_of(Hertz sample_rate) { return Hertz(0.1 * sample_rate.value); }
+Hertz limit_of(Hertz sample_rate) {
+  return Hertz(0.1 * sample_rate.value);
+}
 
 }  // namespace
 

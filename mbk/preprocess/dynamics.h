@@ -11,9 +11,10 @@
 namespace mbk::preprocess {
 
 struct DynamicsOptions {
-  Options signals;                     ///< smoothing, cutoff, padding, window and thinning
-  bool instruments = false;            ///< make them too
-  std::optional<Hertz> motion_cutoff;  ///< of the smoothed motion that serves as instrument; absent: the band of the torque
+  Options signals;           ///< smoothing, cutoff, padding, window and thinning
+  bool instruments = false;  ///< make them too
+  std::optional<Hertz>
+      motion_cutoff;  ///< of the smoothed motion that serves as instrument; absent: the band of the torque
 };
 
 /// Torques and regressors of a robot that moves with nothing at its hand. Motion and torque are smoothed, the

@@ -86,6 +86,7 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   std::vector<dsp::Column> columns;
   std::vector<const Matrix*> quantities = {&signals.position, &signals.force_hand_on_robot, &signals.acceleration};
   if (with_reference) quantities.push_back(&signals.reference);
+  quantities.push_back(&signals.force_sensitivity);
   for (const Matrix* quantity : quantities) {
     for (Index k = 0; k < quantity->cols(); ++k) {
       columns.emplace_back(quantity->col(k).data() + cut.begin + trim, length - 2 * trim);
@@ -106,6 +107,8 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   if (with_reference) {
     for (const int derivative : {2, 1, 0}) want(2 * n + signals.acceleration.cols(), derivative);
   }
+  const Index computed = signals.force_sensitivity.cols();
+  for (Index k = 0; k < computed; ++k) wanted.push_back({static_cast<Index>(columns.size()) - computed + k, 0});
   return dsp::smooth_then_lowpass(chain, columns, wanted, rate, filters.every);
 }
 

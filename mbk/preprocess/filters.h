@@ -31,7 +31,8 @@ struct FilterPlan {
 /// @param shortest_cut [samples]; the window takes at most a quarter of it
 [[nodiscard]] FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut);
 
-/// One cut through both filters: [x ẋ ẍ F], each n columns, and [r̈ ṙ r] of the reference where it is wanted; row i
+/// One cut through both filters: [x ẋ ẍ F], each n columns, then [r̈ ṙ r] of the reference where it is wanted and what a
+/// computed force's sensitivity has; row i
 /// belongs to sample cut.begin + half window + trim + i·every.
 /// @fails the cut is shorter than the filters need; the settings are none that a filter can have.
 [[nodiscard]] Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,

@@ -60,8 +60,8 @@ void shift(Matrix& values, const Matrix& slopes, double sample_time, double dela
       continue;
     }
     const double a = u * u * (3.0 - 2.0 * u), b = u * (1.0 - u) * (1.0 - u), c = u * u * (u - 1.0);
-    values.row(i) = (1.0 - a) * old.row(k) + a * old.row(k + 1) +
-                    sample_time * (b * slopes.row(k) + c * slopes.row(k + 1));
+    values.row(i) =
+        (1.0 - a) * old.row(k) + a * old.row(k + 1) + sample_time * (b * slopes.row(k) + c * slopes.row(k + 1));
   }
 }
 
@@ -96,9 +96,9 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
         gather(recording, plane ? Names{"acceleration_x", "acceleration_y"} : Names{"acceleration"},
                plane || mechanism.slides(0) ? "m/s2" : "rad/s2");
     if (signals.hand_acceleration.size() == 0) {
-      return bad_data(fmt::format("channel '{}' is missing; {}", plane ? "acceleration_x" : "acceleration",
-                                  there(recording)),
-                      "name it with --channels, or use --acceleration derivative");
+      return bad_data(
+          fmt::format("channel '{}' is missing; {}", plane ? "acceleration_x" : "acceleration", there(recording)),
+          "name it with --channels, or use --acceleration derivative");
     }
   }
   return signals;
@@ -124,8 +124,9 @@ Result<void> check_joint_signals(const JointSignals& signals, const robot::Mecha
         Error error = ok.error();
         error.kind = ErrorKind::data;
         error.message = fmt::format("at {}: {}", at(i), error.message);
-        error.remedy = "check unit, sign and order of the joints in --channels, choose a window with --from and --to, "
-                       "or give the robot's own limits with --robot";
+        error.remedy =
+            "check unit, sign and order of the joints in --channels, choose a window with --from and --to, "
+            "or give the robot's own limits with --robot";
         return tl::unexpected(std::move(error));
       }
     }
@@ -194,7 +195,8 @@ Result<SmoothedJoints> smooth_joints(const JointSignals& signals, const robot::M
                                v = joints.motion.velocity.row(i).transpose();
       const auto from_joints = robot::hand_from_joints(mechanism, q);
       if (!from_joints) {
-        return tl::unexpected(from_joints.error().in(fmt::format("sample {}", cut.begin + smoothing.half_window() + i)));
+        return tl::unexpected(
+            from_joints.error().in(fmt::format("sample {}", cut.begin + smoothing.half_window() + i)));
       }
       joints.motion.acceleration.row(i) =
           (from_joints->transpose() * (hand->row(i).transpose() - mechanism.jacobian_rate(q, v) * v)).transpose();

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "mbk/core/units.h"
 #include "mbk/dsp/zero_phase.h"
+#include "mbk/robot/dynamic_model.h"
+#include "mbk/trial/prepared_trial.h"
 #include "mbk/trial/protocol.h"
 
 namespace mbk::preprocess {
@@ -27,8 +30,10 @@ struct Options {
   bool no_lowpass = false;  ///< smoothing only, no Butterworth filter
   std::optional<AccelerationSource> acceleration;
   WindowLimits window;
-  dsp::Padding padding;        ///< of the zero-phase filter
-  bool instruments = false;    ///< filter the reference too: what instrumental variables need
+  dsp::Padding padding;      ///< of the zero-phase filter
+  bool instruments = false;  ///< filter the reference too: what instrumental variables need
+  ForceSource force_source = ForceSource::sensor;
+  std::shared_ptr<const robot::DynamicModel> robot;  ///< what a computed force rests on
   std::optional<Index> every;  ///< rows that the fit takes; absent: all in reference mode, else what the cutoff needs
 };
 

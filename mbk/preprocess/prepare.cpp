@@ -14,7 +14,8 @@
 
 namespace mbk::preprocess {
 
-Result<PreparedTrial> prepare(const Recording& recording, const Inspection& inspection, const Options& options) {
+Result<PreparedTrial> prepare(const Recording& recording, const Inspection& inspection, const Options& options,
+                              const VirtualForce* computed) {
   if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
   const bool published = options.mode == Mode::reference;
   const Index samples = recording.samples();
@@ -38,8 +39,13 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
                                         ? AccelerationSource::sensor
                                         : AccelerationSource::derivative) == AccelerationSource::sensor;
 
-  const auto signals = select_signals(recording, options.axes, how.acceleration_from_sensor);
+  how.force_source = options.force_source;
+  auto signals = select_signals(recording, options.axes, how.acceleration_from_sensor);
   if (!signals) return tl::unexpected(signals.error());
+  if (computed != nullptr && computed->sensitivity.size() > 0) {
+    signals->force_sensitivity = computed->sensitivity;
+    trial.robot_covariance = options.robot->covariance;
+  }
   trial.axes = signals->axes;
   trial.motion = signals->motion;
 
@@ -97,6 +103,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   }
   if (signals->reference.size() > 0) trial.reference.resize(total, n);
   if (with_reference) trial.reference_motion.resize(total, 3 * n);
+  trial.force_sensitivity.resize(signals->force_sensitivity.size() > 0 ? total : 0, signals->force_sensitivity.cols());
   trial.reference_quantity = signals->reference_quantity;
   Index row = 0;
   for (std::size_t k = 0; k < filtered.size(); ++k) {
@@ -109,7 +116,10 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     trial.velocity.middleRows(row, rows) = piece.middleCols(n, n);
     trial.acceleration.middleRows(row, rows) = piece.middleCols(2 * n, n);
     trial.force_hand_on_robot.middleRows(row, rows) = piece.middleCols(3 * n, n);
-    if (with_reference) trial.reference_motion.middleRows(row, rows) = piece.rightCols(3 * n);
+    if (with_reference) trial.reference_motion.middleRows(row, rows) = piece.middleCols(4 * n, 3 * n);
+    if (trial.force_sensitivity.size() > 0) {
+      trial.force_sensitivity.middleRows(row, rows) = piece.rightCols(trial.force_sensitivity.cols());
+    }
     if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference(kept, Eigen::all);
     for (const Stretch& keep : cut.keep) {
       const auto row_at = [&](Index sample) {

@@ -18,6 +18,7 @@ struct Signals {
   int axes = 2;                ///< n
   Matrix position;             ///< N×n [m or rad]
   Matrix force_hand_on_robot;  ///< N×n [N or N·m]
+  Matrix force_sensitivity;    ///< N×(n·p) of a force that was computed, or empty
   Matrix reference;            ///< N×n; empty where none was recorded
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
   Matrix acceleration;  ///< N×n [m/s² or rad/s²]; empty where it is not asked for

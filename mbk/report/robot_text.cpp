@@ -48,14 +48,14 @@ std::string how_found(const RobotIdentification& found) {
   if (found.method == RobotMethod::instrumental_variables) rows.push_back({"instruments", instruments_text(found)});
   rows.push_back({"window", how.window_rule});
   rows.push_back({"filters", filters_text(how)});
-  rows.push_back({"excitation", fmt::format("{} of {} coefficients told apart ({} in any motion), condition {:.3g}",
-                                            found.rank, found.coefficients.size(), found.structural_rank,
-                                            found.condition)});
+  rows.push_back(
+      {"excitation", fmt::format("{} of {} coefficients told apart ({} in any motion), condition {:.3g}", found.rank,
+                                 found.coefficients.size(), found.structural_rank, found.condition)});
   const double delay = 1e3 * found.model.delay;
-  rows.push_back({"motor delay", found.delay_standard_error
-                                     ? with_interval(delay, 1e3 * numeric::kNormal95 * *found.delay_standard_error) +
-                                           " ms, found"
-                                     : fmt::format("{:.4g} ms, given", delay)});
+  rows.push_back(
+      {"motor delay", found.delay_standard_error
+                          ? with_interval(delay, 1e3 * numeric::kNormal95 * *found.delay_standard_error) + " ms, found"
+                          : fmt::format("{:.4g} ms, given", delay)});
   return text + table(rows);
 }
 
@@ -77,13 +77,15 @@ std::string robot_text(const RobotIdentification& found) {
   }
   text += table(rows) + "  (± is the 95 % interval; W θ = τ + Jᵀ F, τ the motors', F the hand's force on the robot)\n";
   if (combined) {
-    text += paragraph("  ", "What stands behind a value is part of it: only these sums can be told apart (base "
-                            "parameters), and they are all that torque and force need.");
+    text += paragraph("  ",
+                      "What stands behind a value is part of it: only these sums can be told apart (base "
+                      "parameters), and they are all that torque and force need.");
   }
   if (!nothing.empty()) text += paragraph("  not told apart, or without effect: ", nothing);
 
   rows = {{found.held_back ? "held back" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
-  const bool smoothed = std::ranges::any_of(found.fit, [](const TorqueFit& fit) { return fit.vaf_smoothed.has_value(); });
+  const bool smoothed =
+      std::ranges::any_of(found.fit, [](const TorqueFit& fit) { return fit.vaf_smoothed.has_value(); });
   if (smoothed) rows.front().emplace_back("VAF %, smoothed motion");
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     const TorqueFit& fit = found.fit[joint];

@@ -58,7 +58,8 @@ robot::DriveTerms drive_from(const Json& json) {
   }
   drive.smoothing = json.value("smoothing", drive.smoothing);
   drive.stribeck_velocity = json.value("stribeck_velocity", drive.stribeck_velocity);
-  if (!(drive.smoothing >= 0.0) || !(drive.stribeck_velocity > 0.0)) throw Malformed{"a velocity of friction is negative"};
+  if (!(drive.smoothing >= 0.0) || !(drive.stribeck_velocity > 0.0))
+    throw Malformed{"a velocity of friction is negative"};
   return drive;
 }
 

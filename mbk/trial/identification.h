@@ -118,6 +118,8 @@ struct Identification {
   std::vector<std::string> parameters;  ///< m_xx m_xy m_yx m_yy b_… k_… x0 y0; one axis: m b k x0
   impedance::Model judged;              ///< behind `fit`: from the data that are there to identify, and nothing else
   impedance::Model standard_error;      ///< √ of its diagonal, in the model's shape
+  /// The part of it that the robot's coefficients have, where the force rests on a model of the robot.
+  std::optional<impedance::Model> standard_error_of_robot;
   Method method = Method::least_squares;
   std::optional<InstrumentCheck> instrument;  ///< with instrumental variables only
   std::optional<Replicates> replicates;       ///< where a bootstrap was asked for

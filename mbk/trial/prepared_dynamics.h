@@ -18,16 +18,16 @@ enum class InstrumentMotion {
 
 /// Motor torques beside what a robot's dynamics say they are made of, all filtered alike: τ = W θ.
 struct PreparedDynamics {
-  double sample_time = 0;                ///< [s] between rows
-  Vector time;                           ///< N, [s] from the recording's first sample
-  Matrix torque;                         ///< N×n, of the motors [N·m, or N where a joint slides]
-  Matrix torque_rate;                    ///< N×n [N·m/s]
-  std::vector<Matrix> regressors;        ///< W, N×p for each joint
-  std::vector<Matrix> instruments;       ///< the same of `instrument_motion`; empty where there is none
+  double sample_time = 0;           ///< [s] between rows
+  Vector time;                      ///< N, [s] from the recording's first sample
+  Matrix torque;                    ///< N×n, of the motors [N·m, or N where a joint slides]
+  Matrix torque_rate;               ///< N×n [N·m/s]
+  std::vector<Matrix> regressors;   ///< W, N×p for each joint
+  std::vector<Matrix> instruments;  ///< the same of `instrument_motion`; empty where there is none
   InstrumentMotion instrument_motion = InstrumentMotion::none;
-  double motion_cutoff = 0;              ///< [Hz] of the smoothed motion, where that is it
-  std::vector<bool> stands;              ///< n: the joint did not move beyond the steps of its encoder
-  std::vector<Stretch> stretches;        ///< in order of time
+  double motion_cutoff = 0;        ///< [Hz] of the smoothed motion, where that is it
+  std::vector<bool> stands;        ///< n: the joint did not move beyond the steps of its encoder
+  std::vector<Stretch> stretches;  ///< in order of time
   Preparation preparation;
   std::vector<SourceFile> sources;
   double recording_rate = 0, recording_duration = 0;  ///< [Hz], [s]

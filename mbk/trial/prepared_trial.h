@@ -34,6 +34,25 @@ struct Stretch {
 /// Order of the zero-phase low-pass (Dyck 2013 §3.5.1).
 inline constexpr int kLowpassOrder = 5;
 
+/// Where the force at the hand comes from.
+enum class ForceSource {
+  sensor,          ///< measured
+  virtual_sensor,  ///< from motion, torques and a model of the robot, not causal (Dyck 2013, §5.2.2, method 1)
+  observer,        ///< from the same, as it could be had while the robot runs
+};
+
+[[nodiscard]] constexpr std::string_view text(ForceSource source) {
+  switch (source) {
+    case ForceSource::sensor:
+      return "sensor";
+    case ForceSource::virtual_sensor:
+      return "virtual";
+    case ForceSource::observer:
+      return "observer";
+  }
+  return "unknown";
+}
+
 /// How the signals of a PreparedTrial were made, so that any number can be traced and made again.
 struct Preparation {
   Mode mode = Mode::improved;
@@ -50,6 +69,7 @@ struct Preparation {
   std::string cutoff_rule;        ///< how the cutoff came about, in words
   Hertz band_low, band_high;      ///< excited band that the filters let through
   bool acceleration_from_sensor = false;
+  ForceSource force_source = ForceSource::sensor;
   bool cut_before_filter = true;
   Index every = 1;  ///< of the filtered samples, the first of so many is kept
 };
@@ -81,7 +101,10 @@ struct PreparedTrial {
   Matrix velocity;             ///< N×n, ẋ [m/s]
   Matrix acceleration;         ///< N×n, ẍ [m/s²]
   Matrix force_hand_on_robot;  ///< N×n, F_h [N]: what the limb exerts on the machine
-  Matrix reference;            ///< N×n, unfiltered; empty where none was recorded
+  Matrix
+      force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ by the p coefficients of the robot; empty where F_h does not rest on any
+  Matrix robot_covariance;  ///< p×p, of those coefficients
+  Matrix reference;         ///< N×n, unfiltered; empty where none was recorded
   Matrix reference_motion;  ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
   std::vector<Stretch> stretches;  ///< in order of time; rows outside them do not count

@@ -61,15 +61,16 @@ struct RobotIdentification {
   std::vector<RobotCoefficient> coefficients;
   RobotMethod method = RobotMethod::weighted_least_squares;
   InstrumentMotion instrument_motion = InstrumentMotion::none;
-  double motion_cutoff = 0;                         ///< [Hz], where the motion was smoothed for it
-  std::optional<double> delay_standard_error;       ///< [s]; absent where the delay was not estimated
-  std::vector<TorqueFit> fit;                       ///< of each joint
-  bool held_back = true;                            ///< false: vaf and rmse are in-sample
-  std::vector<std::string> held_back_files;         ///< where whole recordings were
-  int rank = 0;                                     ///< coefficients that the data tell apart
-  int structural_rank = 0;                          ///< that any motion could
-  double condition = 0;                             ///< of the regressors kept, each scaled to unit length
-  std::vector<std::pair<std::string, double>> weakest;  ///< what is hardest to tell apart: coefficients with their shares
+  double motion_cutoff = 0;                    ///< [Hz], where the motion was smoothed for it
+  std::optional<double> delay_standard_error;  ///< [s]; absent where the delay was not estimated
+  std::vector<TorqueFit> fit;                  ///< of each joint
+  bool held_back = true;                       ///< false: vaf and rmse are in-sample
+  std::vector<std::string> held_back_files;    ///< where whole recordings were
+  int rank = 0;                                ///< coefficients that the data tell apart
+  int structural_rank = 0;                     ///< that any motion could
+  double condition = 0;                        ///< of the regressors kept, each scaled to unit length
+  std::vector<std::pair<std::string, double>>
+      weakest;  ///< what is hardest to tell apart: coefficients with their shares
   InertiaCheck inertia;
   double hac_lag_s = 0;
   Index samples = 0;

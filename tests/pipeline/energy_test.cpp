@@ -143,7 +143,8 @@ TEST(PooledEnergy, OfTrialsIsTheirSumAndSurerThanOneOfThem) {
     sum += absorbed_energy(recordings.back(), trials.back()).value().account.absorbed;
   }
   const EnergyAccount one = absorbed_energy(recordings[0], trials[0]).value().account;
-  const EnergyAccount all = analyse::pooled_energy(recordings, trials).value();
+  const EnergyAccount all =
+      analyse::pooled_energy(std::vector{&recordings[0], &recordings[1], &recordings[2]}, trials).value();
   EXPECT_NEAR(all.absorbed, sum, 1e-12);
   EXPECT_EQ(all.blocks, 48);
   EXPECT_EQ(all.verdict, Verdict::active);

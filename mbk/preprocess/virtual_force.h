@@ -1,0 +1,30 @@
+#pragma once
+
+#include "mbk/preprocess/options.h"
+#include "mbk/robot/dynamic_model.h"
+#include "mbk/trial/inspection.h"
+#include "mbk/trial/recording.h"
+
+namespace mbk::preprocess {
+
+/// A recording whose force was computed, and how sure it is.
+struct VirtualForce {
+  Recording
+      recording;  ///< with the computed force in the place of the sensor's; the hand's place where it was not in it
+  Matrix sensor_force;  ///< N×axes, what was recorded as force; empty where there was none
+  Matrix sensitivity;   ///< N×(axes·p), ∂F/∂θ axis by axis [N per unit of θ]; empty where θ has no covariance
+  Matrix standard_error;      ///< N×axes [N], of the robot's coefficients alone; empty likewise
+  Index first = 0, last = 0;  ///< samples [first, last) at which the force was computed; before and after it is held
+};
+
+/// Method 1 of Dyck (2013, §5.2.2, with the sign of 5.1): the force of the hand on the robot from motion and torque,
+///   F_h = L(q) [W(q, q̇, q̈) θ − τ]
+/// not causal. Motion and torque pass the same Savitzky–Golay filter, that of the measurement that follows; q̈ is its
+/// second derivative, or with options.acceleration from the sensor J⁻¹ (ẍ − J̇ q̇) (5.3). The low-pass comes later, with
+/// that of the motion, so that friction at a reversal loses to it on both sides alike.
+/// @fails  data: a channel is missing; a joint beyond its limits, a singular configuration or a value that is no
+/// number, with the time; an uneven clock; torques that must be in another unit.
+[[nodiscard]] Result<VirtualForce> virtual_force(const Recording& recording, const Inspection& inspection,
+                                                 const robot::DynamicModel& model, const Options& options);
+
+}  // namespace mbk::preprocess
