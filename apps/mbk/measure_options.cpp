@@ -204,6 +204,7 @@ Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {
   }
   if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
   options.axes = arguments.axes;
+  options.untimed = arguments.untimed;
   options.variable = arguments.variable;
   return options;
 }
@@ -256,17 +257,26 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
 Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments) {
   const auto options = read_options(arguments);
   if (!options) return tl::unexpected(options.error());
+  const auto sensor = sensor_use(arguments.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
   std::vector<Recording> recordings;
+  const auto add = [&](Result<Recording> one, const std::filesystem::path& file) -> Result<void> {
+    if (!one) return tl::unexpected(one.error());
+    if (*sensor) {
+      one = calibration::force_from_voltage(std::move(*one), **sensor);
+      if (!one) return tl::unexpected(one.error().in(file.string()));
+    }
+    recordings.push_back(std::move(*one));
+    return {};
+  };
   if (arguments.parts) {
-    auto whole = recording::read_parts(arguments.files, *options);
-    if (!whole) return tl::unexpected(whole.error());
-    recordings.push_back(std::move(*whole));
+    if (auto ok = add(recording::read_parts(arguments.files, *options), arguments.files.front()); !ok) {
+      return tl::unexpected(ok.error());
+    }
     return recordings;
   }
   for (const std::filesystem::path& file : arguments.files) {
-    auto one = recording::read(file, *options);
-    if (!one) return tl::unexpected(one.error());
-    recordings.push_back(std::move(*one));
+    if (auto ok = add(recording::read(file, *options), file); !ok) return tl::unexpected(ok.error());
   }
   return recordings;
 }

@@ -600,6 +600,12 @@ class Assembler {
     }
     if (recording_.time.size() == 0) {
       const double own = signals_.front().line.rate_hz();
+      if (own == 0.0 && !options_.rate && options_.untimed) {
+        const Index rows = recording_.channels.front().values.size();
+        recording_.time = Vector::LinSpaced(rows, 0.0, static_cast<double>(rows - 1));
+        recording_.untimed = true;
+        return {};
+      }
       if (own == 0.0 && !options_.rate) {
         return bad_data("the file holds no time that is recognised",
                         "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
