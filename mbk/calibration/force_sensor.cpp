@@ -197,16 +197,43 @@ std::vector<Group> load_intervals(const Data& data, Index axis) {
   return groups;
 }
 
-/// Standard deviation at constant load, pooled over the loads; absent with fewer than 4 degrees of freedom.
-std::optional<double> noise_at_constant_load(const Vector& voltage, const std::vector<Group>& groups) {
+/// Of each row: 1 where the load on the axis last rose, −1 where it last fell, 0 before it changed.
+std::vector<int> directions(const Data& data, Index axis) {
+  std::vector<int> direction(static_cast<std::size_t>(data.rows()), 0);
+  for (const RowRange& range : data.ranges) {
+    int now = 0;
+    for (Index i = range.begin + 1; i < range.end; ++i) {
+      const double change = data.force(i, axis) - data.force(i - 1, axis);
+      if (change != 0.0) now = change > 0.0 ? 1 : -1;
+      direction[static_cast<std::size_t>(i)] = now;
+    }
+  }
+  return direction;
+}
+
+/// The rows of a group that came in one direction.
+std::vector<Index> rows_of(const Group& group, const std::vector<int>& direction, int wanted) {
+  std::vector<Index> rows;
+  for (const Index i : group.rows) {
+    if (direction[static_cast<std::size_t>(i)] == wanted) rows.push_back(i);
+  }
+  return rows;
+}
+
+/// Standard deviation at one load that was reached one way, pooled; absent with fewer than 4 degrees of freedom.
+std::optional<double> noise_at_constant_load(const Vector& voltage, const std::vector<Group>& groups,
+                                             const std::vector<int>& direction) {
   constexpr Index kFewest = 4;
   double sum = 0.0;
   Index freedom = 0;
   for (const Group& group : groups) {
-    if (group.rows.size() < 2) continue;
-    const Vector values = voltage(group.rows);
-    sum += (values.array() - values.mean()).square().sum();
-    freedom += values.size() - 1;
+    for (const int way : {-1, 0, 1}) {
+      const std::vector<Index> rows = rows_of(group, direction, way);
+      if (rows.size() < 2) continue;
+      const Vector values = voltage(rows);
+      sum += (values.array() - values.mean()).square().sum();
+      freedom += values.size() - 1;
+    }
   }
   if (freedom < kFewest) return std::nullopt;
   return std::sqrt(sum / static_cast<double>(freedom));
@@ -221,32 +248,25 @@ Deviation mean_of(const Vector& residual, const std::vector<Index>& rows, double
   return {residual(rows).mean(), scatter / std::sqrt(static_cast<double>(rows.size()))};
 }
 
-/// Largest difference between the means at one load that was reached upwards and downwards; absent where there is none.
-std::optional<Deviation> hysteresis_of(const Data& data, const std::vector<Group>& groups, Index axis,
-                                       const Vector& residual, double scatter) {
-  std::vector<int> direction(static_cast<std::size_t>(data.rows()), 0);
-  for (const RowRange& range : data.ranges) {
-    int now = 0;
-    for (Index i = range.begin + 1; i < range.end; ++i) {
-      const double change = data.force(i, axis) - data.force(i - 1, axis);
-      if (change != 0.0) now = change > 0.0 ? 1 : -1;
-      direction[static_cast<std::size_t>(i)] = now;
-    }
-  }
-  std::optional<Deviation> largest;
+/// Differences between the means at one load that was reached upwards and downwards.
+struct Hysteresis {
+  double largest = 0.0;  ///< magnitude [N]
+  Deviation mean;        ///< over the loads; its error from how they differ among themselves
+};
+
+/// Absent with fewer than 3 loads that were reached both ways.
+std::optional<Hysteresis> hysteresis_of(const std::vector<Group>& groups, const std::vector<int>& direction,
+                                        const Vector& residual) {
+  constexpr std::size_t kFewest = 3;
+  std::vector<double> differences;
   for (const Group& group : groups) {
-    std::vector<Index> up, down;
-    for (const Index i : group.rows) {
-      const int way = direction[static_cast<std::size_t>(i)];
-      if (way > 0) up.push_back(i);
-      if (way < 0) down.push_back(i);
-    }
-    if (up.empty() || down.empty()) continue;
-    const Deviation a = mean_of(residual, up, scatter), b = mean_of(residual, down, scatter);
-    const Deviation difference{std::abs(a.value - b.value), std::hypot(a.error, b.error)};
-    if (!largest || difference.value > largest->value) largest = difference;
+    const std::vector<Index> up = rows_of(group, direction, 1), down = rows_of(group, direction, -1);
+    if (!up.empty() && !down.empty()) differences.push_back(residual(up).mean() - residual(down).mean());
   }
-  return largest;
+  if (differences.size() < kFewest) return std::nullopt;
+  const Vector all = Eigen::Map<const Vector>(differences.data(), std::ssize(differences));
+  return Hysteresis{all.cwiseAbs().maxCoeff(),
+                    {all.mean(), std::sqrt(numeric::variance(all) / static_cast<double>(all.size()))}};
 }
 
 ForceOnVoltage force_on_voltage(const Data& data, Index axis, bool continuous) {
@@ -478,12 +498,13 @@ class Calibrator {
     std::vector<Group> groups = equal_loads(data_, i);
     const bool repeats = std::ssize(groups) <= data_.rows() / 2;
     const bool by_load = repeats || !result_.continuous;
-    if (repeats || !result_.continuous) axis.noise = noise_at_constant_load(voltage, groups);
+    const std::vector<int> direction = directions(data_, i);
+    if (by_load) axis.noise = noise_at_constant_load(voltage, groups, direction);
     const double scatter = axis.noise ? std::abs(result_.slope(i, i)) * *axis.noise : axis.rmse;
     if (by_load) {
-      if (const auto found = hysteresis_of(data_, groups, i, deviation, scatter)) {
-        axis.hysteresis = found->value;
-        judge_hysteresis(axis, *found);
+      if (const auto found = hysteresis_of(groups, direction, deviation)) {
+        axis.hysteresis = found->largest;
+        judge_hysteresis(axis, found->mean);
       }
     } else {
       groups = load_intervals(data_, i);
@@ -530,12 +551,13 @@ class Calibrator {
     }
   }
 
-  void judge_hysteresis(const SensorAxis& axis, const Deviation& difference) {
+  /// @param mean  of the differences over the loads: noise alone has none, a loop has one sign throughout
+  void judge_hysteresis(const SensorAxis& axis, const Deviation& mean) {
     constexpr double kShare = 0.01, kSeen = 3.0;
-    if (difference.value > kShare * axis.full_scale && difference.value > kSeen * difference.error) {
+    if (*axis.hysteresis > kShare * axis.full_scale && std::abs(mean.value) > kSeen * mean.error) {
       warn(SensorWarningCode::hysteresis,
            fmt::format("loading and unloading of {} differ by {:.3g} N, {:.1f} % of the largest load", axis.name,
-                       difference.value, 100.0 * difference.value / axis.full_scale),
+                       *axis.hysteresis, 100.0 * *axis.hysteresis / axis.full_scale),
            "tighten what holds the sensor; wait until the load hangs still");
     }
   }
