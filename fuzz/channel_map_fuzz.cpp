@@ -30,7 +30,8 @@ std::vector<std::string> seeds() {
           "hand_x=HAND.x,force_x=Force X@100",
           "q1=1:deg,q2=2,tau1=3:N.m",
           "x=S:H.x,xr=5:rad",
-          "t=1,x=-logs:mm,ax=7:g"};
+          "t=1,x=-logs:mm,ax=7:g",
+          "Fx=-Fx*-8.56+0.54:N,Vx=3:mV,q3=2*2:mm,tau8=y-1e-3:N"};
 }
 
 }  // namespace mbk::fuzz

@@ -22,6 +22,7 @@ Action add_info(CLI::App& app);
 Action add_convert(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_springs(CLI::App& app);
+Action add_sensor(CLI::App& app);
 Action add_validate(CLI::App& app);
 Action add_robot(CLI::App& app);
 

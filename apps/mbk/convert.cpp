@@ -78,6 +78,7 @@ Action add_convert(CLI::App& app) {
       "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
       "What was left aside in reading, or has no place in the new format, is said on standard error.");
   add_reading_options(*command, arguments->reading);
+  add_sensor_options(*command, arguments->reading.sensor);
   command->get_option("FILE")->description("the recording to read (several with --parts), and last the one to write");
   command->add_option("--format", arguments->format, "of the file to write; otherwise by the end of its name")
       ->type_name("mat5|mat73|hdf5|csv")

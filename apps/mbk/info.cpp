@@ -53,6 +53,7 @@ Action add_info(CLI::App& app) {
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
       "Nothing is repaired: gaps, repeated or backward time and values that are no numbers are reported.");
   add_reading_options(*command, *arguments);
+  add_sensor_options(*command, arguments->sensor);
   add_output_options(*command, *arguments, "mbk.info/1");
   return [arguments] { return run(*arguments); };
 }

@@ -114,6 +114,7 @@ Action add(CLI::App& app, const char* name, const char* summary, const std::stri
   CLI::App* command = app.add_subcommand(name, summary);
   command->footer(footer);
   add_reading_options(*command, *arguments);
+  add_sensor_options(*command, arguments->sensor);
   add_measuring_options(*command, *arguments);
   add_output_options(*command, *arguments, "mbk.result/1");
   if (with_findings) add_report_options(*command, *arguments);

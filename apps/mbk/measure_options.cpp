@@ -40,10 +40,11 @@ Result<void> check_order(const MeasureArguments& a) {
 void add_reading_options(CLI::App& command, MeasureArguments& arguments) {
   command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5 or .csv")->required();
   command
-      .add_option("--channels", arguments.channels,
-                  "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
-                  "(or rows of a wide matrix, or names in the file); x=2:mm converts, Fx=-10 flips. Channels: time, "
-                  "x, y, Fx, Fy, xr, yr, q1, q2, tau1, tau2, ax, ay; one axis: time, x, F, xr, a")
+      .add_option(
+          "--channels", arguments.channels,
+          "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
+          "(or rows of a wide matrix, or names in the file); x=2:mm converts, Fx=-10 flips. Channels: time, "
+          "x, y, Fx, Fy, xr, yr, q1 to q8, tau1 to tau8, qr1 to qr8, ax, ay, Vx, Vy; one axis: time, x, F, xr, a")
       ->type_name("MAP")
       ->check(not_empty());
   command.add_option("--variable", arguments.variable, "which variable of a MAT file, where several could be meant")
@@ -225,6 +226,7 @@ Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {
   }
   if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
   options.axes = arguments.axes;
+  options.untimed = arguments.untimed;
   options.variable = arguments.variable;
   return options;
 }
@@ -295,17 +297,26 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
 Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments) {
   const auto options = read_options(arguments);
   if (!options) return tl::unexpected(options.error());
+  const auto sensor = sensor_use(arguments.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
   std::vector<Recording> recordings;
+  const auto add = [&](Result<Recording> one, const std::filesystem::path& file) -> Result<void> {
+    if (!one) return tl::unexpected(one.error());
+    if (*sensor) {
+      one = calibration::force_from_voltage(std::move(*one), **sensor);
+      if (!one) return tl::unexpected(one.error().in(file.string()));
+    }
+    recordings.push_back(std::move(*one));
+    return {};
+  };
   if (arguments.parts) {
-    auto whole = recording::read_parts(arguments.files, *options);
-    if (!whole) return tl::unexpected(whole.error());
-    recordings.push_back(std::move(*whole));
+    if (auto ok = add(recording::read_parts(arguments.files, *options), arguments.files.front()); !ok) {
+      return tl::unexpected(ok.error());
+    }
     return recordings;
   }
   for (const std::filesystem::path& file : arguments.files) {
-    auto one = recording::read(file, *options);
-    if (!one) return tl::unexpected(one.error());
-    recordings.push_back(std::move(*one));
+    if (auto ok = add(recording::read(file, *options), file); !ok) return tl::unexpected(ok.error());
   }
   return recordings;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/mbk/output.h"
+#include "apps/mbk/sensor_options.h"
 #include "mbk/core/result.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/recording/read.h"
@@ -19,6 +20,8 @@ struct MeasureArguments {
   std::string channels, variable;
   std::optional<double> rate_hz, resample_hz;
   int axes = 0;
+  bool untimed = false;  ///< rows without a time are welcome
+  SensorArguments sensor;
   std::string mode = "default", procedure, protocol = "auto", method = "ls";
   std::optional<int> sg_window, sg_order;
   std::string force_source = "sensor";
@@ -65,7 +68,8 @@ void add_report_options(CLI::App& command, MeasureArguments& arguments);
 [[nodiscard]] Result<preprocess::Options> signal_options(const MeasureArguments& arguments);
 [[nodiscard]] Result<measurement::Options> measurement_options(const MeasureArguments& arguments);
 
-/// Every FILE as a recording; with --parts all of them as one.
+/// Every FILE as a recording; with --parts all of them as one. Where --sensor is given, the force is that of its
+/// voltages.
 [[nodiscard]] Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments);
 
 }  // namespace mbk::app

@@ -141,6 +141,7 @@ Action add_passivity(CLI::App& app) {
       "passive: every condition holds with 95 % confidence. active: one fails, or energy was generated.\n"
       "undecided: the data do not say. Where no model explains half of the force the energy decides.");
   add_reading_options(*command, *arguments);
+  add_sensor_options(*command, arguments->sensor);
   add_measuring_options(*command, *arguments);
   command
       ->add_option("--band", arguments->band,

@@ -98,7 +98,10 @@ std::optional<ArmPosture> posture(const Recording& recording, double from_s, dou
   if (!hand) return std::nullopt;
   ArmPosture found = arm_posture(recording, *hand);
   if (found.of == ArmPosture::Of::arm) return found;
-  const auto joints = mean_of(recording, "joint_1", "joint_2", from_s, to_s);
+  const Channel* const sliding = recording.find("joint_1");
+  const auto joints = sliding != nullptr && sliding->unit == "m"
+                          ? std::nullopt
+                          : mean_of(recording, "joint_1", "joint_2", from_s, to_s);
   if (!joints) return found;
   const robot::Geometry geometry;
   if ((robot::hand_position(geometry, *joints) - *hand).norm() > kSamePlace) return found;

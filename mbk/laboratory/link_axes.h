@@ -2,19 +2,14 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cmath>
+
+#include "mbk/robot/kinematics.h"
 
 namespace mbk::laboratory {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-/// R_BS(θ₂) = [[sin θ₂, cos θ₂], [−cos θ₂, sin θ₂]] of the axes of a sensor on the last link: x_s points along it, away
-/// from the elbow, y_s is 90° to the left.  v_B = R_BS v_S                   (Dyck 2013, eq. E.4)
-[[nodiscard]] inline Matrix2d link_axes(double theta2) {
-  const double s = std::sin(theta2), c = std::cos(theta2);
-  return (Matrix2d() << s, c, -c, s).finished();
-}
+using robot::link_axes;
 
 /// What a sensor on the last link reads of v, turned back into the base frame with the encoder's angle θ̂₂:
 ///   R_BS(θ̂₂) [v_S + e_S] = turn(θ̂₂ − θ₂) v_B + R_BS(θ̂₂) e_S,   v_S = R_BS(θ₂)ᵀ v_B

@@ -42,6 +42,10 @@ struct Signal {
   const Unit* unit = nullptr;  ///< of the file; nullptr: SI, or unknown where the kind measures several things
   bool negate = false;
   std::string source;  ///< for messages
+  double gain = 1.0;
+  double offset = 0.0;  ///< in `unit`
+
+  [[nodiscard]] bool is_plain() const { return gain == 1.0 && offset == 0.0; }
 };
 
 bool same_rate(double a_hz, double b_hz) {
@@ -304,16 +308,17 @@ class Assembler {
         return bad_usage(fmt::format("unknown channel '{}'", entry.channel),
                          fmt::format("did you mean '{}'?", nearest_channel_name(entry.channel)));
       }
-      const auto line = source(entry);
-      if (!line) return tl::unexpected(line.error());
-      Signal signal{kind, *line, nullptr, entry.negate, entry.source};
+      const auto found = resolve(entry);
+      if (!found) return tl::unexpected(found.error());
+      const Line* const line = &found->line;
+      Signal signal{kind, *line, nullptr, entry.negate, entry.source, found->gain, found->offset};
       if (!entry.unit.empty()) {
         signal.unit = find_unit(entry.unit);
         if (signal.unit == nullptr || !kind->accepts(*signal.unit)) {
           return bad_data(fmt::format("channel {} cannot be in '{}'", kind->name, entry.unit),
                           fmt::format("possible are {}", unit_names(kind->measures)));
         }
-      } else if (!line->array->unit.empty()) {
+      } else if (!line->array->unit.empty() && (signal.is_plain() || in_unit_of(*kind, *line->array))) {
         const auto unit = unit_said(*kind, *line->array, nullptr);
         if (!unit) return tl::unexpected(unit.error());
         signal.unit = *unit;
@@ -323,9 +328,51 @@ class Assembler {
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
       }
+      if (!signal.is_plain()) note_arithmetic(signal);
       signals_.push_back(std::move(signal));
     }
     return find_time();
+  }
+
+  /// Whether the file says a unit of the array that the channel can be in: a gain then keeps it, and else changes it.
+  static bool in_unit_of(const ChannelKind& kind, const Array& array) {
+    const Unit* const unit = find_unit(array.unit);
+    return unit != nullptr && kind.accepts(*unit);
+  }
+
+  void note_arithmetic(const Signal& signal) {
+    const std::string_view unit = signal.unit != nullptr ? signal.unit->name : signal.kind->default_unit();
+    recording_.notes.push_back(fmt::format("{} is {}{}, as asked{}", signal.kind->name, signal.negate ? "-" : "",
+                                           printable(signal.source), unit.empty() ? "" : fmt::format(", in {}", unit)));
+  }
+
+  struct Found {
+    Line line;
+    double gain, offset;
+  };
+
+  /// The longest name of `entry` that the file has, and what is to be done with its numbers.
+  Result<Found> resolve(const ChannelSource& entry) {
+    const std::vector<SourceReading> ways = readings(entry.source);
+    for (const SourceReading& way : ways) {
+      const auto line = source({entry.channel, std::string(way.name), "", false}, entry.source);
+      if (!line && &way != &ways.back()) continue;
+      if (!line) return without_unit(entry, line.error());
+      if (way.gain == 0.0) {
+        return bad_usage(fmt::format("channel {}: the gain 0 leaves nothing of '{}'", entry.channel, way.name),
+                         "give another gain");
+      }
+      return Found{*line, way.gain, way.offset};
+    }
+    return bad_usage(fmt::format("channel {} names no source", entry.channel));
+  }
+
+  /// `error`, or that what stands behind the last colon is no unit, where what stands before it is there.
+  Result<Found> without_unit(const ChannelSource& entry, const Error& error) {
+    const auto colon = entry.source.rfind(':');
+    if (colon == entry.source.npos) return tl::unexpected(error);
+    if (!resolve({entry.channel, entry.source.substr(0, colon), "", false})) return tl::unexpected(error);
+    return unknown_unit(entry, entry.source.substr(colon + 1));
   }
 
   /// A map that does not name the time leaves it to its own name, or to row 1 of a logs matrix.
@@ -355,9 +402,10 @@ class Assembler {
   /// Whether the array's name is that of this one line.
   [[nodiscard]] bool is_named(const Line& line) const { return contents_.table || !is_matrix(*line.array); }
 
-  Result<Line> source(const ChannelSource& entry) {
+  /// @param asked  the whole of what the map says, for messages
+  Result<Line> source(const ChannelSource& entry, const std::string& asked) {
     if (const auto at = entry.source.rfind('@'); at != entry.source.npos && find(contents_, entry.source) == nullptr) {
-      return thinned(entry, at);
+      return thinned(entry, at, asked);
     }
     if (const Array* array = find(contents_, entry.source)) {
       if (contents_.table || is_vector(*array)) return vector_of(*array);
@@ -371,12 +419,9 @@ class Assembler {
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
         error != std::errc() || stop != end) {
-      if (const auto colon = entry.source.rfind(':'); colon != entry.source.npos) {
-        const auto line = source({entry.channel, entry.source.substr(0, colon), "", false});
-        if (line) return unknown_unit(entry, entry.source.substr(colon + 1));
-      }
-      return bad_data(
-          fmt::format("channel {}: there is no '{}'; {}", entry.channel, entry.source, inventory(contents_)));
+      const std::string neither = asked == entry.source ? "" : fmt::format("'{}' and no ", asked);
+      return bad_data(fmt::format("channel {}: there is no {}'{}'; {}", entry.channel, neither, entry.source,
+                                  inventory(contents_)));
     }
     if (contents_.table) {
       if (number < 1 || number > std::ssize(contents_.arrays)) {
@@ -409,8 +454,9 @@ class Assembler {
   }
 
   /// SOURCE@RATE: every k-th sample of a source that runs at k times that rate.
-  Result<Line> thinned(const ChannelSource& entry, std::size_t at) {
-    auto line = source({entry.channel, entry.source.substr(0, at), entry.unit, entry.negate});
+  Result<Line> thinned(const ChannelSource& entry, std::size_t at, const std::string& asked) {
+    const std::string name = entry.source.substr(0, at);
+    auto line = source({entry.channel, name, entry.unit, entry.negate}, asked == entry.source ? name : asked);
     if (!line) return line;
     double rate = 0.0;
     const char* const end = entry.source.data() + entry.source.size();
@@ -532,10 +578,11 @@ class Assembler {
     for (std::size_t s = 0; s < signals_.size(); ++s) {
       const Signal& signal = signals_[s];
       Vector& channel = values[s];
+      if (signal.negate) channel = -channel;
+      if (!signal.is_plain()) channel = (signal.gain * channel.array() + signal.offset).matrix();
       if (signal.unit != nullptr && signal.unit->multiply != signal.unit->divide) {
         channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
       }
-      if (signal.negate) channel = -channel;
       if (signal.kind->name == "time") {
         recording_.time = std::move(channel);
         continue;
@@ -553,6 +600,12 @@ class Assembler {
     }
     if (recording_.time.size() == 0) {
       const double own = signals_.front().line.rate_hz();
+      if (own == 0.0 && !options_.rate && options_.untimed) {
+        const Index rows = recording_.channels.front().values.size();
+        recording_.time = Vector::LinSpaced(rows, 0.0, static_cast<double>(rows - 1));
+        recording_.untimed = true;
+        return {};
+      }
       if (own == 0.0 && !options_.rate) {
         return bad_data("the file holds no time that is recognised",
                         "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");

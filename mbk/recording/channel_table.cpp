@@ -14,9 +14,10 @@ using enum Dimension;
 constexpr std::array kTime{time};
 constexpr std::array kLength{length};
 constexpr std::array kForce{force};
-constexpr std::array kAngle{angle};
-constexpr std::array kTorque{torque};
 constexpr std::array kAcceleration{acceleration};
+constexpr std::array kVoltage{voltage};
+constexpr std::array kAngleOrLength{angle, length};
+constexpr std::array kTorqueOrForce{torque, force};
 constexpr std::array kLengthOrForce{length, force};
 constexpr std::array kAnyPosition{length, angle};
 constexpr std::array kAnyForce{force, torque};
@@ -27,29 +28,52 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"time", "t", kTime, "", 0, 1},
     {"hand_x", "x", kLength, "base", 2, 2},
     {"hand_y", "y", kLength, "base", 2, 3},
-    {"joint_1", "q1", kAngle, "joint", 2, 6},
-    {"joint_2", "q2", kAngle, "joint", 2, 7},
+    {"joint_1", "q1", kAngleOrLength, "joint", 2, 6, true},
+    {"joint_2", "q2", kAngleOrLength, "joint", 2, 7, true},
+    {"joint_3", "q3", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_4", "q4", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_5", "q5", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_6", "q6", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_7", "q7", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_8", "q8", kAngleOrLength, "joint", 2, 0, true},
     {"force_x", "Fx", kForce, "base", 2, 10},
     {"force_y", "Fy", kForce, "base", 2, 11},
     {"reference_x", "xr", kLengthOrForce, "base", 2, 12},
     {"reference_y", "yr", kLengthOrForce, "base", 2, 13},
-    {"torque_1", "tau1", kTorque, "joint", 2, 14},
-    {"torque_2", "tau2", kTorque, "joint", 2, 15},
+    {"reference_joint_1", "qr1", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_2", "qr2", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_3", "qr3", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_4", "qr4", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_5", "qr5", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_6", "qr6", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_7", "qr7", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_8", "qr8", kAngleOrLength, "joint", 2, 0, true},
+    {"torque_1", "tau1", kTorqueOrForce, "joint", 2, 14, true},
+    {"torque_2", "tau2", kTorqueOrForce, "joint", 2, 15, true},
+    {"torque_3", "tau3", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_4", "tau4", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_5", "tau5", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_6", "tau6", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_7", "tau7", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_8", "tau8", kTorqueOrForce, "joint", 2, 0, true},
     {"acceleration_x", "ax", kAcceleration, "base", 2, 18},
     {"acceleration_y", "ay", kAcceleration, "base", 2, 19},
+    {"voltage_x", "Vx", kVoltage, "", 2, 0},
+    {"voltage_y", "Vy", kVoltage, "", 2, 0},
     {"position", "x", kAnyPosition, "", 1, 0},
     {"reaction", "F", kAnyForce, "", 1, 0},
     {"reference", "xr", kAnyReference, "", 1, 0},
     {"acceleration", "a", kAnyAcceleration, "", 1, 0},
 });
+static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMostJoints);
 
 char lower(char c) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
 
-bool same_name(std::string_view a, std::string_view b) {
-  if (a.size() == 1) return a == b;
-  return std::ranges::equal(a, b, {}, lower, lower);
+bool same_name(std::string_view name, std::string_view known) {
+  if (known.size() == 1 || known.starts_with('V')) return name == known;
+  return std::ranges::equal(name, known, {}, lower, lower);
 }
 
 /// Levenshtein distance, case aside.

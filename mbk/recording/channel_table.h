@@ -17,21 +17,23 @@ struct ChannelKind {
   std::string_view frame;               ///< "base", "joint" or ""
   int axes;                             ///< 1 or 2: the kind of experiment it belongs to; 0: both
   int logs_row;                         ///< 1-based row of the 19-row `logs` matrix; 0: it has none
+  bool first_unless_said = false;       ///< of several measures, the first one where nothing was said: joints turn
 
-  /// SI unit, or "" where several are possible and nothing was said.
+  /// SI unit, or "" where several are possible, nothing was said and none goes without saying.
   [[nodiscard]] std::string_view default_unit() const {
-    return measures.size() == 1 ? si_unit(measures.front()) : std::string_view();
+    return measures.size() == 1 || first_unless_said ? si_unit(measures.front()) : std::string_view();
   }
   [[nodiscard]] bool accepts(const Unit& unit) const;
 };
 
 inline constexpr int kLogsRows = 19;
+inline constexpr int kMostJoints = 8;
 
 /// Every kind, time first, in the order of the documentation.
 [[nodiscard]] std::span<const ChannelKind> channel_kinds();
 
 /// The kinds that a name or alias can mean: none, one, or two ("x", "xr"). Case does not count, except in names of one
-/// letter.
+/// letter and in Vx and Vy: vx is a velocity.
 [[nodiscard]] std::vector<const ChannelKind*> kinds_called(std::string_view name);
 
 /// The known name or alias that looks most like `name`.

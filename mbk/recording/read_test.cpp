@@ -52,6 +52,67 @@ class Read : public testing::Test {
   test::Folder folder_;
 };
 
+// ---- arithmetic in the map ----
+
+TEST_F(Read, ScalesAndShiftsASourceBeforeTheUnit) {
+  const std::string csv = "time,Vx,clip\n0,1,10\n0.1,-2,20\n";
+  const Recording recording = good(csv, with_channels("Fx=Vx*-8.56+0.54:N,Fy=-Vx*2:mN,x=clip-5:mm"));
+  EXPECT_EQ(recording.find("force_x")->values, Vector(Eigen::Vector2d(-8.56 + 0.54, -8.56 * -2 + 0.54)));
+  EXPECT_EQ(recording.find("force_x")->unit, "N");
+  EXPECT_EQ(recording.find("force_y")->values, Vector(Eigen::Vector2d(-2.0 / 1e3, 4.0 / 1e3)));
+  EXPECT_EQ(recording.find("hand_x")->values, Vector(Eigen::Vector2d(5.0 / 1e3, 15.0 / 1e3)));
+  EXPECT_THAT(recording.notes, Contains("force_x is Vx*-8.56+0.54, as asked, in N"));
+}
+
+TEST_F(Read, TakesANameBeforeArithmetic) {
+  const std::string csv = "time,a,a*2,a*2+1,hand-1\n0,1,5,7,9\n0.1,1,5,7,9\n";
+  for (const auto& [map, value] : {std::pair{"x=a*2+1", 7.0},
+                                   {"x=a*2+2", 7.0},
+                                   {"x=a*2", 5.0},
+                                   {"x=a*3", 3.0},
+                                   {"x=hand-1", 9.0},
+                                   {"x=hand-1*2-3", 15.0},
+                                   {"x=2*4", 4.0}}) {
+    EXPECT_EQ(good(csv, with_channels(map)).channels.front().values[1], value) << map;
+  }
+}
+
+TEST_F(Read, NamesWhatArithmeticDoesNotFind) {
+  const std::string csv = "time,a\n0,1\n0.1,1\n";
+  EXPECT_THAT(bad(csv, with_channels("x=b*2+1")).message,
+              HasSubstr("there is no 'b*2+1' and no 'b'; it has 2 columns"));
+  EXPECT_EQ(bad(csv, with_channels("x=a*2:furlong")).message, "unknown unit 'furlong' of channel x");
+  const Error none = bad(csv, with_channels("x=a*0"));
+  EXPECT_EQ(none.kind, ErrorKind::usage);
+  EXPECT_EQ(none.message, "channel x: the gain 0 leaves nothing of 'a'");
+}
+
+// ---- robots of other kinds, voltages ----
+
+TEST_F(Read, KnowsJointsThatTurnAndJointsThatSlide) {
+  const std::string csv = "time,q1_deg,q3_mm,q4,tau1,tau3_N,qr1,qr3_mm\n0,180,250,1,2,3,4,500\n1,0,0,0,0,0,0,0\n";
+  const Recording recording = good(csv);
+  for (const auto& [name, unit, value] : {std::tuple{"joint_1", "rad", M_PI},
+                                          {"joint_3", "m", 0.25},
+                                          {"joint_4", "rad", 1.0},
+                                          {"torque_1", "N.m", 2.0},
+                                          {"torque_3", "N", 3.0},
+                                          {"reference_joint_1", "rad", 4.0},
+                                          {"reference_joint_3", "m", 0.5}}) {
+    ASSERT_NE(recording.find(name), nullptr) << name;
+    EXPECT_EQ(recording.find(name)->unit, unit) << name;
+    EXPECT_EQ(recording.find(name)->frame, "joint") << name;
+    EXPECT_DOUBLE_EQ(recording.find(name)->values[0], value) << name;
+  }
+}
+
+TEST_F(Read, KnowsVoltagesByNameAndUnitAndLeavesVelocitiesAside) {
+  const Recording recording = good("time,Vx_mV,voltage_y,vy\n0,500,2,7\n1,0,0,7\n");
+  EXPECT_THAT(names_of(recording), ElementsAre("voltage_x", "voltage_y"));
+  EXPECT_EQ(recording.find("voltage_x")->values[0], 0.5);
+  EXPECT_EQ(recording.find("voltage_x")->unit, "V");
+}
+
 // ---- the 19-row logs matrix ----
 
 TEST_F(Read, RecognisesALogsMatrixInEveryMatVersion) {

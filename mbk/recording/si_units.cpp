@@ -28,6 +28,7 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"kN", force, 1e3, 1},
     {"mN", force, 1, 1e3},
     {"lbf", force, 4.4482216152605, 1},
+    {"kgf", force, 9.80665, 1},
     {"N.m", torque, 1, 1},
     {"Nm", torque, 1, 1},
     {"N*m", torque, 1, 1},
@@ -43,6 +44,9 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"rad/s^2", angular_acceleration, 1, 1},
     {"deg/s2", angular_acceleration, kPi, 180},
     {"deg/s^2", angular_acceleration, kPi, 180},
+    {"V", voltage, 1, 1},
+    {"mV", voltage, 1, 1e3},
+    {"uV", voltage, 1, 1e6},
 });
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace mbk::recording {
 
 /// What a number measures. The one place that knows units; everything behind this edge is SI and radians.
-enum class Dimension { time, length, angle, force, torque, acceleration, angular_acceleration };
+enum class Dimension { time, length, angle, force, torque, acceleration, angular_acceleration, voltage };
 
 /// A unit of a file: value in SI = value · multiply / divide. Two factors, so that 153 mm is exactly 0.153 m.
 struct Unit {

@@ -46,4 +46,9 @@ Result<Vector2d> joint_angles(const Geometry& geometry, const Vector2d& hand) {
   return Vector2d(theta1, theta1 + elbow - 0.5 * std::numbers::pi);
 }
 
+Eigen::Matrix2d link_axes(double theta2) {
+  const double s = std::sin(theta2), c = std::cos(theta2);
+  return (Eigen::Matrix2d() << s, c, -c, s).finished();
+}
+
 }  // namespace mbk::robot

@@ -47,4 +47,8 @@ struct Geometry {
 /// @fails  usage: the place is farther than d₁ + d₂ or nearer than |d₁ − d₂|, or not finite.
 [[nodiscard]] Result<Vector2d> joint_angles(const Geometry& geometry, const Vector2d& hand);
 
+/// R_BS(θ₂) = [[sin θ₂, cos θ₂], [−cos θ₂, sin θ₂]] of the axes of a sensor on the last link: x_s points along it, away
+/// from the elbow, y_s is 90° to the left.  v_B = R_BS v_S                   (Dyck 2013, eq. E.4)
+[[nodiscard]] Eigen::Matrix2d link_axes(double theta2);
+
 }  // namespace mbk::robot

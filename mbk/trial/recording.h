@@ -34,8 +34,9 @@ struct SourceFile {
 /// What was measured, sample by sample, exactly as it was recorded: never resampled, padded, sorted or cleaned.
 /// Gaps, jitter, backward time and non-finite values stay in it; recording::inspect reports them.
 struct Recording {
-  Vector time;                    ///< [s], as recorded; not necessarily even or increasing
-  bool time_from_rate = false;    ///< true where the file holds no time, but it or the user gave the rate
+  Vector time;                  ///< [s], as recorded; not necessarily even or increasing
+  bool time_from_rate = false;  ///< true where the file holds no time, but it or the user gave the rate
+  bool untimed = false;  ///< true where the rows are no samples but loads or places by themselves: `time` counts them
   std::vector<Channel> channels;  ///< each as long as `time`
   std::vector<Event> events;
   std::map<std::string, std::string> metadata;  ///< participant number, posture, protocol, robot, …

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/measure_options.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
+#include "apps/mbk/sensor_options.h"
+#include "mbk/calibration/force_sensor.h"
+#include "mbk/report/sensor_text.h"
+#include "mbk/result/sensor_json.h"
+
+namespace mbk::app {
+namespace {
+
+constexpr double kMillimetres = 1000.0, kMilliseconds = 1000.0;
+
+struct Arguments {
+  MeasureArguments reading;
+  std::optional<double> lever_arm_mm, range;
+  std::optional<int> bits;
+  std::string frame = "auto";
+  double longest_delay_ms = 50.0;
+};
+
+Result<calibration::SensorCalibrationOptions> options_of(const Arguments& arguments) {
+  calibration::SensorCalibrationOptions options;
+  options.crosstalk = arguments.reading.axes != 1;
+  if (arguments.lever_arm_mm) options.lever_arm = *arguments.lever_arm_mm / kMillimetres;
+  if (arguments.bits) options.converter = calibration::Converter{*arguments.bits, *arguments.range};
+  options.hac_lag_s = arguments.reading.hac_lag_s;
+  options.longest_delay = arguments.longest_delay_ms / kMilliseconds;
+  return options;
+}
+
+Result<SensorCalibration> calibrate(const Arguments& arguments) {
+  const auto options = options_of(arguments);
+  if (!options) return tl::unexpected(options.error());
+  MeasureArguments reading = arguments.reading;
+  reading.axes = 2;  // --axes counts those of the sensor here; the names are Fx, Fy, Vx, Vy either way
+  reading.untimed = true;
+  const auto recordings = read_recordings(reading);
+  if (!recordings) return tl::unexpected(recordings.error());
+  std::vector<calibration::SensorRun> runs;
+  for (const Recording& recording : *recordings) {
+    auto run = calibration::sensor_run(recording, sensor_frame(arguments.frame));
+    if (!run) return tl::unexpected(run.error());
+    runs.push_back(std::move(*run));
+  }
+  return calibration::calibrate_sensor(runs, *options);
+}
+
+int run_calibrate(const Arguments& arguments) {
+  const Output& output = arguments.reading.output;
+  if (auto ok = output.check(arguments.reading.files); !ok) return report_error(ok.error());
+  const auto calibration = calibrate(arguments);
+  if (!calibration) return report_error(calibration.error());
+  const std::string text = arguments.reading.json ? result::to_json(*calibration) : report::sensor_text(*calibration);
+  if (auto ok = output.write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+Action add_calibrate(CLI::App& sensor) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = sensor.add_subcommand("calibrate", "slope, zero, crosstalk and noise from known loads");
+  command->footer(
+      "Examples:\n"
+      "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10\n"
+      "      columns Fx, Fy in N and Vx, Vy in V, one row a load; repeats and both signs are welcome\n"
+      "  mbk sensor calibrate --channels Fx=mass*9.81,Vx=volt x_loads.csv --axes 1\n"
+      "      a hung mass in kg, one axis\n"
+      "  mbk sensor calibrate trial.csv --json --out cell.json\n"
+      "      a recording of a reference sensor's Fx, Fy beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
+      "Each FILE is a run with a zero of its own; the slopes are those of all runs, the zero is that of the last.");
+  MeasureArguments& reading = arguments->reading;
+  add_reading_options(*command, reading);
+  command->get_option("--axes")->description("1: each axis by itself; otherwise crosstalk is fitted too");
+  command->get_option("FILE")->description("tables of loads or recordings: .csv, .h5 or .mat");
+  command->add_option("--lever-arm-mm", arguments->lever_arm_mm, "from the gauges to the load, kept for --sensor")
+      ->type_name("MM")
+      ->check(positive());
+  CLI::Option* const bits =
+      command->add_option("--bits", arguments->bits, "of the converter; otherwise its step is looked for in the data")
+          ->type_name("N")
+          ->check(whole_number(2, 32));
+  CLI::Option* const range = command->add_option("--range", arguments->range, "of the converter, ± volts")
+                                 ->type_name("V")
+                                 ->check(positive())
+                                 ->needs(bits);
+  bits->needs(range);
+  add_sensor_frame(
+      *command, arguments->frame,
+      "link: the reference's force is turned into the axes of the last link, at q2; base: it is not; auto: "
+      "link where q2 is there");
+  command
+      ->add_option("--longest-delay-ms", arguments->longest_delay_ms,
+                   "by which the voltage may come after a reference, either way (50; 0: none)")
+      ->type_name("MS")
+      ->check(not_negative());
+  command
+      ->add_option("--hac-lag", reading.hac_lag_s, "reach of the residual's correlation in the standard errors, s (1)")
+      ->type_name("S")
+      ->check(not_negative());
+  command->add_flag("--json", reading.json, "for machines: schema mbk.sensor/1, which --sensor reads");
+  reading.output.add_options(*command);
+  return [arguments] { return run_calibrate(*arguments); };
+}
+
+}  // namespace
+
+Action add_sensor(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("sensor", "calibrate a force sensor of your own");
+  command->require_subcommand(1);
+  command->footer(
+      "Examples:\n"
+      "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --json --out cell.json\n"
+      "  mbk measure --sensor cell.json trial.csv");
+  return add_calibrate(*command);
+}
+
+}  // namespace mbk::app
