@@ -3,9 +3,24 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace mbk::robot {
+namespace {
+
+/// A motion in pieces that stay in the cache: work(first sample, piece).
+template <class Work>
+void in_pieces(const JointMotion& motion, Work&& work) {
+  constexpr Index kPiece = 1024;
+  for (Index first = 0; first < motion.samples(); first += kPiece) {
+    const Index samples = std::min(kPiece, motion.samples() - first);
+    work(first, JointMotion{motion.position.middleRows(first, samples), motion.velocity.middleRows(first, samples),
+                            motion.acceleration.middleRows(first, samples)});
+  }
+}
+
+}  // namespace
 
 std::vector<Coefficient> DynamicModel::coefficients() const {
   std::vector<Coefficient> all = mechanism->coefficients();
@@ -14,27 +29,33 @@ std::vector<Coefficient> DynamicModel::coefficients() const {
 }
 
 std::vector<Matrix> DynamicModel::regressors(const JointMotion& motion) const {
-  std::vector<Matrix> W = mechanism->regressors(motion);
   const Index terms = drive.per_joint(), n = mechanism->joints();
-  for (Index joint = 0; joint < n; ++joint) {
-    Matrix& of_joint = W[static_cast<std::size_t>(joint)];
-    of_joint.conservativeResize(Eigen::NoChange, bodies() + n * terms);
-    of_joint.rightCols(n * terms).setZero();
-    drive.regressors(motion.position.col(joint), motion.velocity.col(joint), motion.acceleration.col(joint),
-                     of_joint.middleCols(bodies() + joint * terms, terms));
-  }
+  std::vector<Matrix> W(static_cast<std::size_t>(n), Matrix::Zero(motion.samples(), bodies() + n * terms));
+  in_pieces(motion, [&](Index first, const JointMotion& piece) {
+    const std::vector<Matrix> Y = mechanism->regressors(piece);
+    for (Index joint = 0; joint < n; ++joint) {
+      auto rows = W[static_cast<std::size_t>(joint)].middleRows(first, piece.samples());
+      rows.leftCols(bodies()) = Y[static_cast<std::size_t>(joint)];
+      drive.regressors(piece.position.col(joint), piece.velocity.col(joint), piece.acceleration.col(joint),
+                       rows.middleCols(bodies() + joint * terms, terms));
+    }
+  });
   return W;
 }
 
 Matrix DynamicModel::torques(const JointMotion& motion) const {
-  const std::vector<Matrix> Y = mechanism->regressors(motion);
   const Index terms = drive.per_joint();
-  Matrix torque(motion.samples(), mechanism->joints()), D(motion.samples(), terms);
-  for (Index joint = 0; joint < torque.cols(); ++joint) {
-    drive.regressors(motion.position.col(joint), motion.velocity.col(joint), motion.acceleration.col(joint), D);
-    torque.col(joint) = Y[static_cast<std::size_t>(joint)] * parameters.head(bodies()) +
-                        D * parameters.segment(bodies() + joint * terms, terms);
-  }
+  Matrix torque(motion.samples(), mechanism->joints());
+  in_pieces(motion, [&](Index first, const JointMotion& piece) {
+    const std::vector<Matrix> Y = mechanism->regressors(piece);
+    Matrix D(piece.samples(), terms);
+    for (Index joint = 0; joint < torque.cols(); ++joint) {
+      drive.regressors(piece.position.col(joint), piece.velocity.col(joint), piece.acceleration.col(joint), D);
+      auto of_joint = torque.col(joint).segment(first, piece.samples());
+      of_joint.noalias() = Y[static_cast<std::size_t>(joint)] * parameters.head(bodies());
+      of_joint.noalias() += D * parameters.segment(bodies() + joint * terms, terms);
+    }
+  });
   return torque;
 }
 

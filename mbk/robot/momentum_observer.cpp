@@ -29,11 +29,11 @@ Result<MomentumObserver> MomentumObserver::create(const DynamicModel& model, dou
                                 model.parameters.size(), coefficients),
                     "identify it again");
   }
-  if (!(model.delay >= 0.0 && std::isfinite(model.delay))) {
-    return bad_data(fmt::format("a delay of {:g} s from the recorded torque to the motors is not one that an observer "
-                                "can wait for",
-                                model.delay),
-                    "take the virtual sensor that knows the whole recording, or a model whose delay is not negative");
+  if (!(model.delay >= 0.0 && model.delay <= kLongestDelay)) {
+    return bad_data(fmt::format("the motors act {:g} s after the torque is recorded, and an observer can follow from "
+                                "0 to {:g} s",
+                                model.delay, kLongestDelay),
+                    "take inverse dynamics, which know the whole recording, or check the delay of the model");
   }
   return MomentumObserver(model, gain, sample_time);
 }

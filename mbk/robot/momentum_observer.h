@@ -28,9 +28,11 @@ struct ObservedForce {
 /// A constant force is met exactly, any smooth one with an error of T²; no gain makes it unstable.
 class MomentumObserver {
  public:
+  static constexpr double kLongestDelay = 1.0;  ///< of the motors [s]
+
   /// @param gain  K_I [1/s]    @param sample_time  T [s]
   /// @fails  usage: K_I or T is not above zero; data: the model has not as many parameters as coefficients, or a
-  /// negative or infinite delay: a torque that acted before it was recorded is not known in time.
+  /// delay that is negative (a torque that acts before it is recorded is not known in time) or above kLongestDelay.
   [[nodiscard]] static Result<MomentumObserver> create(const DynamicModel& model, double gain, double sample_time);
 
   /// The next sample. The first finds r = 0. One that is not finite gives NaN, and the next is the first again; where
@@ -40,7 +42,7 @@ class MomentumObserver {
   const ObservedForce& step(const JointVector& position, const JointVector& velocity,
                             const JointVector& torque) noexcept;
 
-  /// By which slow forces come late: a T/(1 − a) + T/2, which is 1/K_I + K_I T²/12 and less   [s]
+  /// By which slow forces come late: a T/(1 − a) + T/2 [s], which is 1/K_I and K_I T²/12 more
   [[nodiscard]] double lag() const;
 
  private:
