@@ -30,7 +30,8 @@ std::vector<Coefficient> DynamicModel::coefficients() const {
 
 std::vector<Matrix> DynamicModel::regressors(const JointMotion& motion) const {
   const Index terms = drive.per_joint(), n = mechanism->joints();
-  std::vector<Matrix> W(static_cast<std::size_t>(n), Matrix::Zero(motion.samples(), bodies() + n * terms));
+  std::vector<Matrix> W(static_cast<std::size_t>(n));
+  for (Matrix& of_joint : W) of_joint.setZero(motion.samples(), bodies() + n * terms);
   in_pieces(motion, [&](Index first, const JointMotion& piece) {
     const std::vector<Matrix> Y = mechanism->regressors(piece);
     for (Index joint = 0; joint < n; ++joint) {
