@@ -15,9 +15,9 @@ struct ForcePair {
 };
 
 struct ForceComparisonOptions {
-  double rest_speed = 0.02;       ///< a joint that is not faster rests [rad/s or m/s] ≥ 0
-  double reversal_window = 0.05;  ///< to each side of a reversal [s] ≥ 0
-  double longest_lag = 0.1;       ///< that is tried, earlier and later [s] ≥ 0
+  double rest_speed = 0.02;        ///< a joint that is not faster rests [rad/s or m/s] ≥ 0
+  double reversal_window = 0.025;  ///< to each side of a reversal [s] ≥ 0
+  double longest_lag = 0.1;        ///< that is tried, earlier and later [s] ≥ 0
 };
 
 /// Compares an estimated force with a measured one, row by row; rows of several stretches count together.

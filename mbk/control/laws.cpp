@@ -30,7 +30,8 @@ Vector2d ForceControl::step(const Vector2d& measured, const Vector2d& force_on_h
   return robot::jacobian(geometry_, measured).transpose() * force_on_hand;
 }
 
-LineConstraint::LineConstraint(const Options& options, const robot::Geometry& geometry, robot::VelocityEstimate velocity)
+LineConstraint::LineConstraint(const Options& options, const robot::Geometry& geometry,
+                               robot::VelocityEstimate velocity)
     : options_(options), geometry_(geometry), velocity_(velocity) {
   const Vector2d along(std::cos(options.angle), std::sin(options.angle));
   across_ = Matrix2d::Identity() - along * along.transpose();

@@ -33,8 +33,8 @@ void DriveTerms::regressor(double position, double velocity, double acceleration
   if (motor_inertia) *row++ = acceleration;
   if (viscous) *row++ = velocity;
   if (coulomb || stribeck) {
-    const double sign = smoothing > 0.0 ? std::tanh(velocity / smoothing)
-                                        : static_cast<double>((velocity > 0.0) - (velocity < 0.0));
+    const double sign =
+        smoothing > 0.0 ? std::tanh(velocity / smoothing) : static_cast<double>((velocity > 0.0) - (velocity < 0.0));
     if (coulomb) *row++ = sign;
     if (stribeck) {
       const double ratio = velocity / stribeck_velocity;

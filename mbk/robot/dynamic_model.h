@@ -16,9 +16,9 @@ namespace mbk::robot {
 struct DynamicModel {
   std::shared_ptr<const Mechanism> mechanism;
   DriveTerms drive;
-  Vector parameters;    ///< θ, in the order of `coefficients`
-  Matrix covariance;    ///< of θ; empty where it is not known
-  double delay = 0.0;   ///< by which the motors act after the torque that is recorded [s]
+  Vector parameters;   ///< θ, in the order of `coefficients`
+  Matrix covariance;   ///< of θ; empty where it is not known
+  double delay = 0.0;  ///< by which the motors act after the torque that is recorded [s]
 
   [[nodiscard]] std::vector<Coefficient> coefficients() const;
 
@@ -37,7 +37,8 @@ struct DynamicModel {
 };
 
 /// What turns a torque that is missing at the joints into the force at the hand, F_h = L (W θ − τ): the inverse of Jᵀ,
-/// or where there are more joints than axes the least-squares one, (J Jᵀ)⁻¹ J, which takes what J cannot pass for error.
+/// or where there are more joints than axes the least-squares one, (J Jᵀ)⁻¹ J, which takes what J cannot pass for
+/// error.
 /// @returns L, axes×n [1/m]
 /// @fails  data: the posture is singular: the smallest singular value of J is below 10⁻³ of the largest (the joints are
 /// named).

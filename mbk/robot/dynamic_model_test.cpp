@@ -45,7 +45,8 @@ TEST(DynamicModel, TorquesAreRegressorsTimesParameters) {
   ASSERT_EQ(W.size(), 2U);
   for (std::size_t joint = 0; joint < 2; ++joint) {
     ASSERT_EQ(W[joint].cols(), static_cast<Index>(model.coefficients().size()));
-    EXPECT_LE((W[joint] * model.parameters - torque.col(static_cast<Index>(joint))).cwiseAbs().maxCoeff(), 100.0 * kRounding);
+    EXPECT_LE((W[joint] * model.parameters - torque.col(static_cast<Index>(joint))).cwiseAbs().maxCoeff(),
+              100.0 * kRounding);
   }
 }
 

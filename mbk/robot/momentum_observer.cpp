@@ -72,8 +72,8 @@ const ObservedForce& MomentumObserver::step(const JointVector& position, const J
   const JointTerms terms = model_.mechanism->terms(position, velocity, phi_);
   JointVector momentum = motor_inertia_.cwiseProduct(velocity);
   momentum.noalias() += terms.inertia * velocity;
-  const JointVector rest = terms.coriolis_transposed - terms.gravity -
-                           model_.drive_torque(position, velocity, JointVector::Zero(n));
+  const JointVector rest =
+      terms.coriolis_transposed - terms.gravity - model_.drive_torque(position, velocity, JointVector::Zero(n));
   if (started_) {
     const JointVector mean = (momentum - momentum_) / sample_time_ - mean_torque(torque) - 0.5 * (rest_ + rest);
     observed_.joint_torque = memory_ * observed_.joint_torque + (1.0 - memory_) * mean;

@@ -67,7 +67,7 @@ class MomentumObserver {
 class EncoderMomentumObserver {
  public:
   struct Options {
-    double gain = 60.0;             ///< K_I [1/s] > 0
+    double gain = 60.0;            ///< K_I [1/s] > 0
     Hertz velocity_cutoff{100.0};  ///< of the low-pass behind the differences of positions > 0
   };
   /// @fails  as MomentumObserver; usage: the cutoff is not above zero.

@@ -86,10 +86,10 @@ TEST(MomentumObserver, FindsNothingAtTheHandOfARobotThatMovesAsItsModel) {
   auto observer = MomentumObserver::create(model, kGain, kTick).value();
   double largest = 0.0;
   for (Index i = 0; i < 3000; ++i) {
-    largest = std::max(largest, observer
-                                    .step(motion.position.row(i).transpose(), motion.velocity.row(i).transpose(),
-                                          torque.row(i).transpose())
-                                    .joint_torque.norm());
+    largest = std::max(
+        largest,
+        observer.step(motion.position.row(i).transpose(), motion.velocity.row(i).transpose(), torque.row(i).transpose())
+            .joint_torque.norm());
   }
   EXPECT_LT(largest, 2e-3);  // torques of 2 N·m; what is left are reversals, a dry friction of 0.1 N·m within one tick
 }
@@ -106,8 +106,7 @@ std::vector<Vector2d> twin(const DynamicModel& model, const std::vector<Vector2d
   const auto terms = [&](double t) -> Terms {
     const Vector2d q = swing.position(t), v = swing.velocity(t);
     const JointTerms now = model.mechanism->terms(q, v, phi);
-    return {now.inertia * v,
-            now.coriolis_transposed - now.gravity - model.drive_torque(q, v, Vector2d::Zero())};
+    return {now.inertia * v, now.coriolis_transposed - now.gravity - model.drive_torque(q, v, Vector2d::Zero())};
   };
   const Vector2d p0 = terms(0.0).momentum;
   Vector2d integral = Vector2d::Zero();  // ∫ (τ + b + r) dt
@@ -215,8 +214,8 @@ TEST(MomentumObserver, KnowsTheJointsButNotTheHandInASingularPosture) {
 
 TEST(MomentumObserver, ObservesARobotWithMoreJointsThanAxesUnderGravity) {
   const auto mechanism = std::make_shared<ThreePointMasses>();
-  const DynamicModel model{mechanism, {.coulomb = false, .offset = false},
-                           (Vector(6) << 1.0, 0.8, 0.5, 0.1, 0.1, 0.1).finished()};
+  const DynamicModel model{
+      mechanism, {.coulomb = false, .offset = false}, (Vector(6) << 1.0, 0.8, 0.5, 0.1, 0.1, 0.1).finished()};
   const JointVector q = Eigen::Vector3d(0.2, 0.7, -0.4), still = JointVector::Zero(3);
   const Vector2d force(2.0, -1.0);
   const JointVector holding =
@@ -245,7 +244,8 @@ TEST(MomentumObserver, DoesNotAllocate) {
 }
 
 TEST(MomentumObserver, RefusesGainsTimesAndModelsThatAreNone) {
-  EXPECT_EQ(MomentumObserver::create(thesis_robot(), 0.0, kTick).error().message, "observer gain 0 1/s is not above zero");
+  EXPECT_EQ(MomentumObserver::create(thesis_robot(), 0.0, kTick).error().message,
+            "observer gain 0 1/s is not above zero");
   EXPECT_EQ(MomentumObserver::create(thesis_robot(), kGain, -kTick).error().kind, ErrorKind::usage);
   DynamicModel model = thesis_robot();
   model.delay = -0.001;
@@ -286,8 +286,8 @@ TEST(EncoderMomentumObserver, IsAsLateForAForceThatAcceleratesAsForOneThatTheMot
     of_hand = std::max(of_hand, std::abs(seen + peak * std::sin(kOmega * (t - by_hand.lag()))));
     of_motors = std::max(of_motors, std::abs(left));
   }
-  EXPECT_LT(of_hand, 0.06 * peak);      // a low-pass of 60 1/s at 20 1/s: gain 0.949, and a delay below that at zero
-  EXPECT_LT(of_motors, 1e-4 * peak);    // differences of a tick
+  EXPECT_LT(of_hand, 0.06 * peak);    // a low-pass of 60 1/s at 20 1/s: gain 0.949, and a delay below that at zero
+  EXPECT_LT(of_motors, 1e-4 * peak);  // differences of a tick
 }
 
 TEST(EncoderMomentumObserver, BeginsAgainAfterASampleThatIsNoNumber) {

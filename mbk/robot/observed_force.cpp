@@ -41,9 +41,10 @@ Result<ObservedForces> observe_force(const DynamicModel& model, const Matrix& po
     const ObservedForce& now = observer->step(position.row(i).transpose(), torque.row(i).transpose());
     if (!now.force_hand_on_robot.allFinite()) {
       const auto L = hand_from_joints(*model.mechanism, position.row(i).transpose());
-      return tl::unexpected((L ? Error{ErrorKind::data, "the observed force is not finite", "check the parameters of the model", ""}
-                               : L.error())
-                                .in(fmt::format("sample {}", i)));
+      return tl::unexpected(
+          (L ? Error{ErrorKind::data, "the observed force is not finite", "check the parameters of the model", ""}
+             : L.error())
+              .in(fmt::format("sample {}", i)));
     }
     all.joint_torque.row(i) = now.joint_torque.transpose();
     all.force_hand_on_robot.row(i) = now.force_hand_on_robot.transpose();

@@ -14,9 +14,10 @@ struct ObservedForces {
 };
 
 /// Causal: no sample knows of a later one.
-/// @param position  N×n, of the encoders [rad or m]   @param torque  N×n, of the motors [N·m, or N where a joint slides]
-/// @fails  as EncoderMomentumObserver; data: shapes differ, or are not those of the robot; a value is not finite, or the
-/// posture is singular (the first such sample is named).
+/// @param position  N×n, of the encoders [rad or m]   @param torque  N×n, of the motors [N·m, or N where a joint
+/// slides]
+/// @fails  as EncoderMomentumObserver; data: shapes differ, or are not those of the robot; a value is not finite, or
+/// the posture is singular (the first such sample is named).
 [[nodiscard]] Result<ObservedForces> observe_force(const DynamicModel& model, const Matrix& position,
                                                    const Matrix& torque,
                                                    const EncoderMomentumObserver::Options& options, double sample_time);

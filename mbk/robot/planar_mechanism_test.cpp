@@ -28,9 +28,7 @@ std::vector<State> random_states(int count) {
   const std::vector<Vector2d> places = postures(Geometry{}.limits, 30);
   std::vector<State> states;
   for (int i = 0; i < count; ++i) {
-    states.push_back({places[random() % places.size()],
-                      {uniform(3.0), uniform(3.0)},
-                      {uniform(20.0), uniform(20.0)}});
+    states.push_back({places[random() % places.size()], {uniform(3.0), uniform(3.0)}, {uniform(20.0), uniform(20.0)}});
   }
   return states;
 }
@@ -55,7 +53,8 @@ TEST(PlanarMechanism, RegressorsOfAMotionAreThoseOfItsSamples) {
   for (const std::optional<double> up : {std::optional<double>(), std::optional<double>(1.2)}) {
     const PlanarMechanism mechanism({{}, up, {}});
     const JointMotion motion = Swing{}.sampled(50, 0.01);
-    const std::vector<Matrix> at_once = mechanism.regressors(motion), one_by_one = mechanism.Mechanism::regressors(motion);
+    const std::vector<Matrix> at_once = mechanism.regressors(motion),
+                              one_by_one = mechanism.Mechanism::regressors(motion);
     for (std::size_t joint = 0; joint < 2; ++joint) {
       EXPECT_LE((at_once[joint] - one_by_one[joint]).cwiseAbs().maxCoeff(), 100.0 * kRounding);
     }
@@ -134,8 +133,8 @@ TEST(PlanarMechanism, PayloadAtTheHandAddsToTheThreeCoefficients) {
   const Eigen::Vector3d added =
       kMass * Eigen::Vector3d(geometry.d1 * geometry.d1, 2.0 * geometry.d1 * geometry.d2, geometry.d2 * geometry.d2);
   for (const State& s : random_states(200)) {
-    const Vector2d of_hand = mechanism.jacobian(s.position) * s.acceleration +
-                             mechanism.jacobian_rate(s.position, s.velocity) * s.velocity;
+    const Vector2d of_hand =
+        mechanism.jacobian(s.position) * s.acceleration + mechanism.jacobian_rate(s.position, s.velocity) * s.velocity;
     const Vector2d torque = kMass * mechanism.jacobian(s.position).transpose() * of_hand;
     EXPECT_LE((regressor(mechanism, s) * added - torque).norm(), 10.0 * kRounding);
   }

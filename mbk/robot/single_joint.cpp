@@ -18,7 +18,9 @@ JointTerms SingleJoint::terms(const JointVector& /*position*/, const JointVector
   return {JointMatrix::Constant(1, 1, phi[0]), JointVector::Zero(1), JointVector::Zero(1)};
 }
 
-HandJacobian SingleJoint::jacobian(const JointVector& /*position*/) const { return HandJacobian::Ones(1, 1); }
+HandJacobian SingleJoint::jacobian(const JointVector& /*position*/) const {
+  return HandJacobian::Ones(1, 1);
+}
 
 HandJacobian SingleJoint::jacobian_rate(const JointVector& /*position*/, const JointVector& /*velocity*/) const {
   return HandJacobian::Zero(1, 1);

@@ -24,7 +24,7 @@ struct ForceComparison {
   Vector correlation;        ///< n, at lag 0
   Vector gain;               ///< n, slope of estimated over measured, by least squares
   Vector lag;                ///< n, by which the estimate comes late [s]; NaN where no lag within ±longest_lag is best
-  Vector correlation_at_lag;  ///< n; NaN where the lag is
+  Vector correlation_at_lag;   ///< n; NaN where the lag is
   double rest_speed = 0;       ///< [rad/s, or m/s where a joint slides]
   double reversal_window = 0;  ///< to each side [s]
   double longest_lag = 0;      ///< that was tried [s]

@@ -24,10 +24,10 @@ struct Watched {
 };
 
 Watched watched(bool perfect) {
-  auto scenario = laboratory::read_scenarios(laboratory::find_ready_scenario("relaxed_sinusoidal")->text,
-                                             "relaxed_sinusoidal.toml")
-                      .value()
-                      .front();
+  auto scenario =
+      laboratory::read_scenarios(laboratory::find_ready_scenario("relaxed_sinusoidal")->text, "relaxed_sinusoidal.toml")
+          .value()
+          .front();
   auto& trial = std::get<laboratory::PlanarTrial>(scenario.trial);
   for (robot::JointFriction& joint : trial.robot.robot.friction) joint.coulomb = 0.11;
   if (perfect) trial.sensors = laboratory::SensorOptions::perfect();
@@ -51,8 +51,8 @@ robot::DynamicModel thesis_robot(double coulomb) {
   robot::DynamicModel model{std::make_shared<robot::PlanarMechanism>(robot::PlanarMechanism::Options{}),
                             {.offset = false}};
   model.parameters.resize(7);
-  model.parameters << thesis.inertia.alpha1, thesis.inertia.alpha2, thesis.inertia.alpha3,
-      thesis.friction[0].viscous, coulomb, thesis.friction[1].viscous, coulomb;
+  model.parameters << thesis.inertia.alpha1, thesis.inertia.alpha2, thesis.inertia.alpha3, thesis.friction[0].viscous,
+      coulomb, thesis.friction[1].viscous, coulomb;
   return model;
 }
 
@@ -69,10 +69,9 @@ struct Outcome {
 };
 
 Outcome compared(const Watched& trial, double coulomb, const EncoderMomentumObserver::Options& options) {
-  const auto seen =
-      robot::observe_force(thesis_robot(coulomb), channels(trial.recording, "joint_1", "joint_2"),
-                           channels(trial.recording, "torque_1", "torque_2"), options, 1e-3)
-          .value();
+  const auto seen = robot::observe_force(thesis_robot(coulomb), channels(trial.recording, "joint_1", "joint_2"),
+                                         channels(trial.recording, "torque_1", "torque_2"), options, 1e-3)
+                        .value();
   const Index rows = trial.force.rows() - seen.settled, late = std::llround(seen.lag / 1e-3);
   const analyse::ForcePair pair{seen.force_hand_on_robot.bottomRows(rows), trial.force.bottomRows(rows),
                                 trial.joint_velocity.bottomRows(rows)};
@@ -108,7 +107,7 @@ TEST(ObservedForce, AsksForTheFrictionOfTheRobot) {
 TEST(ObservedForce, FromTheEncodersOfTheThesisIsNoiseAwayFromThatOfPerfectOnes) {
   const Outcome found = compared(watched(false), 0.11, {});
   for (Index axis = 0; axis < 2; ++axis) {
-    EXPECT_LT(found.comparison.all.rmse[axis], 0.5);   // the lag of 18 ms is most of it
+    EXPECT_LT(found.comparison.all.rmse[axis], 0.5);  // the lag of 18 ms is most of it
     EXPECT_LT(found.without_lag.all.rmse[axis], 0.1);
     EXPECT_GT(found.without_lag.vaf[axis], 99.0);
   }
