@@ -5,19 +5,6 @@
 #include "mbk/core/option_limits.h"
 
 namespace mbk::control {
-Result<VelocityEstimate> VelocityEstimate::create(double sample_time, Hertz cutoff) {
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}, {"velocity cutoff", cutoff.value, "Hz"}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  return VelocityEstimate(sample_time, std::exp(-RadPerSec(cutoff).value * sample_time));
-}
-
-Vector2d VelocityEstimate::step(const Vector2d& angles) noexcept {
-  if (started_) velocity_ = memory_ * velocity_ + (1.0 - memory_) / sample_time_ * (angles - last_);
-  started_ = true;
-  last_ = angles;
-  return velocity_;
-}
 
 Result<JointPositionControl> JointPositionControl::create(const Gains& gains, double sample_time) {
   for (int joint = 0; joint < 2; ++joint) {
@@ -27,7 +14,7 @@ Result<JointPositionControl> JointPositionControl::create(const Gains& gains, do
       return tl::unexpected(ok.error());
     }
   }
-  const auto velocity = VelocityEstimate::create(sample_time, gains.velocity_cutoff);
+  const auto velocity = robot::VelocityEstimate::create(sample_time, gains.velocity_cutoff);
   if (!velocity) return tl::unexpected(velocity.error());
   return JointPositionControl(gains, *velocity);
 }
@@ -43,7 +30,8 @@ Vector2d ForceControl::step(const Vector2d& measured, const Vector2d& force_on_h
   return robot::jacobian(geometry_, measured).transpose() * force_on_hand;
 }
 
-LineConstraint::LineConstraint(const Options& options, const robot::Geometry& geometry, VelocityEstimate velocity)
+LineConstraint::LineConstraint(const Options& options, const robot::Geometry& geometry,
+                               robot::VelocityEstimate velocity)
     : options_(options), geometry_(geometry), velocity_(velocity) {
   const Vector2d along(std::cos(options.angle), std::sin(options.angle));
   across_ = Matrix2d::Identity() - along * along.transpose();
@@ -56,7 +44,7 @@ Result<LineConstraint> LineConstraint::create(const Options& options, const robo
       !ok) {
     return tl::unexpected(ok.error());
   }
-  const auto velocity = VelocityEstimate::create(sample_time, options.velocity_cutoff);
+  const auto velocity = robot::VelocityEstimate::create(sample_time, options.velocity_cutoff);
   if (!velocity) return tl::unexpected(velocity.error());
   return LineConstraint(options, geometry, *velocity);
 }

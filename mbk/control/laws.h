@@ -3,27 +3,12 @@
 #include "mbk/core/result.h"
 #include "mbk/core/units.h"
 #include "mbk/robot/kinematics.h"
+#include "mbk/robot/velocity_estimate.h"
 
 namespace mbk::control {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-/// Velocity of the joints from their measured angles: backward differences behind a first-order low-pass,
-///   ω ← a ω + (1 − a) Δθ/T,   a = e^{−2π f_c T}                                [rad/s]
-/// The first call takes the velocity as zero.
-class VelocityEstimate {
- public:
-  /// @fails  usage: T or f_c is not above zero.
-  [[nodiscard]] static Result<VelocityEstimate> create(double sample_time, Hertz cutoff);
-  Vector2d step(const Vector2d& angles) noexcept;
-
- private:
-  VelocityEstimate(double sample_time, double memory) : sample_time_(sample_time), memory_(memory) {}
-  double sample_time_, memory_;
-  bool started_ = false;
-  Vector2d last_ = {0.0, 0.0}, velocity_ = {0.0, 0.0};
-};
 
 /// Joint position control, proportional and derivative:
 ///   τ = K_p (θ_r − θ) + K_d (θ̇_r − θ̇)                                          [N·m]
@@ -35,16 +20,16 @@ class JointPositionControl {
     Vector2d derivative = {1.5, 1.5};      ///< K_d [N·m·s/rad] ≥ 0
     Hertz velocity_cutoff{100.0};          ///< of the velocity estimate
   };
-  /// @fails  usage: a gain is negative or not finite; as VelocityEstimate.
+  /// @fails  usage: a gain is negative or not finite; as robot::VelocityEstimate.
   [[nodiscard]] static Result<JointPositionControl> create(const Gains& gains, double sample_time);
 
   /// @param measured  θ [rad]   @param reference, reference_rate  θ_r [rad], θ̇_r [rad/s]
   Vector2d step(const Vector2d& measured, const Vector2d& reference, const Vector2d& reference_rate) noexcept;
 
  private:
-  JointPositionControl(const Gains& gains, VelocityEstimate velocity) : gains_(gains), velocity_(velocity) {}
+  JointPositionControl(const Gains& gains, robot::VelocityEstimate velocity) : gains_(gains), velocity_(velocity) {}
   Gains gains_;
-  VelocityEstimate velocity_;
+  robot::VelocityEstimate velocity_;
 };
 
 /// Open-loop force by the Jacobian transpose: τ = J(θ)ᵀ F*, so that a robot without friction and inertia would exert F*
@@ -72,7 +57,7 @@ class LineConstraint {
     double damping = 60.0;              ///< b [N·s/m] ≥ 0
     Hertz velocity_cutoff{100.0};
   };
-  /// @fails  usage: a gain is negative or not finite; as VelocityEstimate.
+  /// @fails  usage: a gain is negative or not finite; as robot::VelocityEstimate.
   [[nodiscard]] static Result<LineConstraint> create(const Options& options, const robot::Geometry& geometry,
                                                      double sample_time);
 
@@ -80,11 +65,11 @@ class LineConstraint {
   Vector2d step(const Vector2d& measured, const Vector2d& force_on_hand) noexcept;
 
  private:
-  LineConstraint(const Options& options, const robot::Geometry& geometry, VelocityEstimate velocity);
+  LineConstraint(const Options& options, const robot::Geometry& geometry, robot::VelocityEstimate velocity);
   Options options_;
   robot::Geometry geometry_;
   Matrix2d across_;
-  VelocityEstimate velocity_;
+  robot::VelocityEstimate velocity_;
 };
 
 }  // namespace mbk::control

@@ -26,30 +26,6 @@ Vector2d home_angles() {
   return robot::joint_angles(geometry(), kHome).value();
 }
 
-TEST(VelocityEstimate, IsTheSlopeOfALineOnceItHasSettled) {
-  VelocityEstimate velocity = VelocityEstimate::create(kTick, Hertz(50.0)).value();
-  const Vector2d rate(0.3, -2.0);
-  Vector2d estimate;
-  for (int i = 0; i < 200; ++i) estimate = velocity.step(Vector2d(1.0, 2.0) + i * kTick * rate);
-  EXPECT_LT((estimate - rate).norm(), 1e-9);  // e^{−2π 50 0.2}, and rounding of 2 rad over 1 ms
-}
-
-TEST(VelocityEstimate, BeginsAtRestWhereverTheJointIs) {
-  VelocityEstimate velocity = VelocityEstimate::create(kTick, Hertz(50.0)).value();
-  EXPECT_EQ(velocity.step({7.0, -3.0}), Vector2d::Zero());
-}
-
-TEST(VelocityEstimate, PassesHalfThePowerAtItsCutoff) {
-  VelocityEstimate velocity = VelocityEstimate::create(kTick, Hertz(20.0)).value();
-  const double omega = 2.0 * std::numbers::pi * 20.0;
-  double largest = 0.0;
-  for (int i = 0; i < 3000; ++i) {
-    const double value = velocity.step({std::sin(omega * i * kTick) / omega, 0.0})[0];
-    if (i > 1000) largest = std::max(largest, std::abs(value));
-  }
-  EXPECT_NEAR(largest, std::sqrt(0.5), 0.01);  // the discrete filter's, 20 Hz against 1 kHz
-}
-
 TEST(JointPositionControl, IsProportionalToTheErrorOfAJointAtRest) {
   auto law = JointPositionControl::create({}, kTick).value();
   const Vector2d error(0.02, -0.01), measured = home_angles();
@@ -139,7 +115,6 @@ TEST(Laws, RefuseGainsAndTimesThatAreNone) {
   LineConstraint::Options options;
   options.stiffness = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(LineConstraint::create(options, geometry(), kTick));
-  EXPECT_FALSE(VelocityEstimate::create(kTick, Hertz(0.0)));
 }
 
 }  // namespace

@@ -45,4 +45,22 @@ void DriveTerms::regressor(double position, double velocity, double acceleration
   if (offset) *row++ = 1.0;
 }
 
+void DriveTerms::regressors(const Eigen::Ref<const Vector>& position, const Eigen::Ref<const Vector>& velocity,
+                            const Eigen::Ref<const Vector>& acceleration, Eigen::Ref<Matrix> rows) const {
+  Index term = 0;
+  if (motor_inertia) rows.col(term++) = acceleration;
+  if (viscous) rows.col(term++) = velocity;
+  if (coulomb || stribeck) {
+    Eigen::ArrayXd sign = velocity.array().sign();
+    if (smoothing > 0.0) {  // tanh by the exponential function, of which Eigen takes several at once
+      const Eigen::ArrayXd decay = (-2.0 / smoothing * velocity.array().abs()).exp();
+      sign *= (1.0 - decay) / (1.0 + decay);
+    }
+    if (coulomb) rows.col(term++) = sign;
+    if (stribeck) rows.col(term++) = sign * (-(velocity.array() / stribeck_velocity).square()).exp();
+  }
+  if (cable) rows.col(term++) = position;
+  if (offset) rows.col(term++).setOnes();
+}
+
 }  // namespace mbk::robot

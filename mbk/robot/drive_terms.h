@@ -27,6 +27,10 @@ struct DriveTerms {
 
   /// The terms of one joint, per_joint() of them.
   void regressor(double position, double velocity, double acceleration, double* row) const;
+
+  /// The same of N samples, N×per_joint(), many at a time: it differs from one at a time by roundings of 1.
+  void regressors(const Eigen::Ref<const Vector>& position, const Eigen::Ref<const Vector>& velocity,
+                  const Eigen::Ref<const Vector>& acceleration, Eigen::Ref<Matrix> rows) const;
 };
 
 }  // namespace mbk::robot

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,9 @@ struct DynamicModel {
 /// @fails  data: the posture is singular: the smallest singular value of J is below 10⁻³ of the largest (the joints are
 /// named).
 [[nodiscard]] Result<HandJacobian> hand_from_joints(const Mechanism& mechanism, const JointVector& position);
+
+/// The same L for a loop that cannot wait for words; nothing where the posture is singular. Does not allocate.
+[[nodiscard]] std::optional<HandJacobian> regular_hand_from_joints(const Mechanism& mechanism,
+                                                                   const JointVector& position) noexcept;
 
 }  // namespace mbk::robot
