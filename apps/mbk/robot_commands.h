@@ -6,5 +6,6 @@
 namespace mbk::app {
 
 Action add_robot_identify(CLI::App& group);
+Action add_robot_force(CLI::App& group);
 
 }  // namespace mbk::app
