@@ -164,6 +164,9 @@ class Apply(Case):
         for zero in ("auto", "auto:0", "auto:x", "1", "1,2,3", "1,x", "auto:1000"):
             self.refused(WRONG_USAGE, "measure", voltages, *sensor, f"--sensor-zero={zero}")
         self.refused(WRONG_USAGE, "measure", voltages, *sensor, "--sensor-frame", "hand")
+        result = self.folder / "result.json"
+        self.mbk("measure", self.trial, "--json", "--out", result)
+        self.refused(WRONG_USAGE, "passivity", result, *sensor, says="--sensor needs the voltages")
 
 
 if __name__ == "__main__":
