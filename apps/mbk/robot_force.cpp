@@ -27,16 +27,23 @@ int run(const Arguments& arguments) {
     format = *found;
   }
   if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
-  auto options = measurement_options(arguments);
-  if (!options) return report_error(options.error());
+  if (arguments.files.size() > 1 && !arguments.parts) {
+    return report_error({ErrorKind::usage, "one recording at a time", "or join numbered parts with --parts", ""});
+  }
+  const auto signals = signal_options(arguments);
+  if (!signals) return report_error(signals.error());
+  measurement::Options options;
+  options.preprocess = *signals;
   auto robot = robot_of(arguments.robot);
   if (!robot) return report_error(robot.error());
-  preprocess::Options& p = options->preprocess;
+  preprocess::Options& p = options.preprocess;
   p.robot = std::make_shared<const robot::DynamicModel>(std::move(*robot));
   p.force_source = arguments.source == "observer" ? ForceSource::observer : ForceSource::virtual_sensor;
+  if (arguments.acceleration == "sensor") p.acceleration = preprocess::AccelerationSource::sensor;
+  if (arguments.resample_hz) options.resample = Hertz(*arguments.resample_hz);
   const auto recordings = read_recordings(arguments);
   if (!recordings) return report_error(recordings.error());
-  const auto made = measurement::compute_force(recordings->front(), *options);
+  const auto made = measurement::compute_force(recordings->front(), options);
   if (!made) return report_error(made.error().in(arguments.files.front().string()));
   if (format) {
     if (auto ok = recording::write(made->recording, *arguments.output.file, *format, arguments.output.overwrite); !ok) {
