@@ -8,6 +8,7 @@
 #include <cmath>
 #include <exception>
 #include <kdl/rigidbodyinertia.hpp>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <set>
@@ -217,15 +218,18 @@ Result<SerialChain::Joint> description(const urdf::Joint& joint, double zero, in
                       "correct it");
     }
   }
-  if (joint.type == urdf::Joint::CONTINUOUS) return d;
+  if (joint.type == urdf::Joint::CONTINUOUS) {
+    constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
+    d.range = {-kWithoutEnd, kWithoutEnd};
+    return d;
+  }
   const double lower = joint.limits ? joint.limits->lower : 0.0, upper = joint.limits ? joint.limits->upper : 0.0;
   if (!(lower < upper) || !std::isfinite(upper - lower)) {
     return bad_data(fmt::format("the limits of joint '{}', {:g} … {:g}, leave it no room", joint.name, lower, upper),
                     "write lower and upper in its <limit>, or make it continuous or fixed");
   }
   const auto [low, high] = std::minmax({sign * (lower - zero), sign * (upper - zero)});
-  d.low = low;
-  d.high = high;
+  d.range = {low, high};
   return d;
 }
 

@@ -101,6 +101,12 @@ const std::string& SerialChain::tip_link() const {
 int SerialChain::joints() const {
   return static_cast<int>(parts_->joints.size());
 }
+std::string SerialChain::joint_name(int joint) const {
+  return parts_->descriptions[static_cast<std::size_t>(joint)].name;
+}
+JointRange SerialChain::joint_range(int joint) const {
+  return parts_->descriptions[static_cast<std::size_t>(joint)].range;
+}
 bool SerialChain::slides(int joint) const {
   return parts_->joints[static_cast<std::size_t>(joint)].slides;
 }
@@ -218,12 +224,12 @@ Result<void> SerialChain::check_joints(const JointVector& position) const {
     const double q = position[i];
     const char* unit = joint.slides ? "m" : "rad";
     if (!std::isfinite(q)) return bad_data(fmt::format("joint {} is at {}", joint.name, q), "repair the recording");
-    if (joint.low && *joint.low - q > worst) {
-      worst = *joint.low - q;
+    if (joint.range.low - q > worst) {
+      worst = joint.range.low - q;
       message = fmt::format("joint {} at {:.4g} {} is {:.3g} {} below its limit", joint.name, q, unit, worst, unit);
     }
-    if (joint.high && q - *joint.high > worst) {
-      worst = q - *joint.high;
+    if (q - joint.range.high > worst) {
+      worst = q - joint.range.high;
       message = fmt::format("joint {} at {:.4g} {} is {:.3g} {} above its limit", joint.name, q, unit, worst, unit);
     }
   }
@@ -237,10 +243,10 @@ std::vector<JointVector> SerialChain::postures(int per_joint) const {
   const auto root = static_cast<int>(std::pow(kMostPostures, 1.0 / static_cast<double>(n)) + 1e-9);
   const int steps = std::max(1, std::min(per_joint, root));
   const auto at = [&](Index i, int step) {
-    const Joint& joint = parts_->descriptions[static_cast<std::size_t>(i)];
-    if (!joint.low || !joint.high) return 2.0 * std::numbers::pi * step / steps - std::numbers::pi;
+    const JointRange range = joint_range(static_cast<int>(i));
+    if (!std::isfinite(range.high - range.low)) return 2.0 * std::numbers::pi * step / steps - std::numbers::pi;
     const double along = steps == 1 ? 0.5 : step / (steps - 1.0);
-    return *joint.low + along * (*joint.high - *joint.low);
+    return range.low + along * (range.high - range.low);
   };
   std::vector<JointVector> all;
   std::vector<int> step(static_cast<std::size_t>(n), 0);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,9 +36,9 @@ class SerialChain : public Mechanism {
     std::string name;
     std::string link;  ///< the link that it moves, which names the coefficients of its body
     bool slides = false;
-    std::optional<double> low, high;  ///< limits [rad or m]; absent: it turns without end
-    double damping = 0.0;             ///< that the URDF states [N·m·s/rad or N·s/m]
-    double friction = 0.0;            ///< that the URDF states [N·m or N]
+    JointRange range;       ///< infinite where it turns without end
+    double damping = 0.0;   ///< that the URDF states [N·m·s/rad or N·s/m]
+    double friction = 0.0;  ///< that the URDF states [N·m or N]
   };
 
   /// Joints that branch off between base and tip, or come after the tip, count as held at zero.
@@ -62,6 +61,8 @@ class SerialChain : public Mechanism {
   [[nodiscard]] const std::string& tip_link() const;
 
   [[nodiscard]] int joints() const override;
+  [[nodiscard]] std::string joint_name(int joint) const override;
+  [[nodiscard]] JointRange joint_range(int joint) const override;
   [[nodiscard]] bool slides(int joint) const override;
   [[nodiscard]] int hand_axes() const override;
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override;

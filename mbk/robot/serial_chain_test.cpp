@@ -254,8 +254,8 @@ TEST(SerialChain, TurnsAnglesOfTheRecordingIntoTheURDFs) {
   EXPECT_LE((mapped->hand_position(q) - plain->hand_position(there)).norm(), kRounding);
   EXPECT_LE((mapped->jacobian(q) - plain->jacobian(there) * sign.asDiagonal()).norm(), kRounding);
   const SerialChain::Joint& first = mapped->joint_descriptions()[0];  // 0.4 − q within ±3
-  EXPECT_DOUBLE_EQ(*first.low, -2.6);
-  EXPECT_DOUBLE_EQ(*first.high, 3.4);
+  EXPECT_DOUBLE_EQ(first.range.low, -2.6);
+  EXPECT_DOUBLE_EQ(first.range.high, 3.4);
 }
 
 TEST(SerialChain, MakesOneBodyOfWhatIsFixedToALink) {

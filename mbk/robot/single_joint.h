@@ -15,6 +15,7 @@ class SingleJoint : public Mechanism {
   explicit SingleJoint(const Options& options);
 
   [[nodiscard]] int joints() const override { return 1; }
+  [[nodiscard]] JointRange joint_range(int /*joint*/) const override { return {options_.low, options_.high}; }
   [[nodiscard]] bool slides(int /*joint*/) const override { return options_.slides; }
   [[nodiscard]] int hand_axes() const override { return 1; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
