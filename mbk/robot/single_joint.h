@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "mbk/robot/mechanism.h"
 
 namespace mbk::robot {
@@ -10,7 +12,8 @@ class SingleJoint : public Mechanism {
  public:
   struct Options {
     bool slides = true;
-    double low = -1e9, high = 1e9;  ///< its limits [m or rad]
+    double low = -std::numeric_limits<double>::infinity();   ///< its limits [m or rad]; infinite where it has none
+    double high = std::numeric_limits<double>::infinity();
   };
   explicit SingleJoint(const Options& options);
 
