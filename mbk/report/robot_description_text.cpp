@@ -97,11 +97,12 @@ std::string robot_description_text(const robot::RobotDescription& description,
   }
   text += "\n" + table(rows);
   const std::size_t all = coefficients.size(), apart = base.kept.size();
-  text += paragraph("  ", apart == all ? fmt::format("A motion that is rich enough tells all {} coefficients apart.", all)
-                                       : fmt::format("A motion that is rich enough tells {} of {} coefficients apart; "
-                                                     "the others act only in those that stand behind them, or not at "
-                                                     "all.",
-                                                     apart, all));
+  text +=
+      paragraph("  ", apart == all ? fmt::format("A motion that is rich enough tells all {} coefficients apart.", all)
+                                   : fmt::format("A motion that is rich enough tells {} of {} coefficients apart; "
+                                                 "the others act only in those that stand behind them, or not at "
+                                                 "all.",
+                                                 apart, all));
   return text;
 }
 

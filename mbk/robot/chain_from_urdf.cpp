@@ -60,24 +60,6 @@ int depth(std::string_view xml) {
   return most;
 }
 
-Result<Model> parse(std::string_view urdf) {
-  constexpr int kDeepest = 1000;  // a URDF stands 4 deep
-  constexpr const char* kRemedy = "check it, as by 'check_urdf FILE'";
-  if (depth(urdf) > kDeepest) return bad_data("no URDF: elements stand too deep in one another", kRemedy);
-  if (urdf.find("</robot") == std::string_view::npos) return bad_data("no URDF: there is no </robot>", kRemedy);
-  const Overheard overheard;
-  Model model;
-  try {
-    model = urdf::parseURDF(std::string(urdf));
-  } catch (const std::exception& problem) {
-    return bad_data(fmt::format("no URDF: {}", problem.what()), kRemedy);
-  }
-  // The parser also gives robots with parts that it could not read.
-  if (!overheard.first().empty()) return bad_data("no URDF: " + overheard.first(), kRemedy);
-  if (!model || !model->getRoot()) return bad_data("no URDF", kRemedy);
-  return model;
-}
-
 KDL::Frame frame(const urdf::Pose& pose) {
   double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
   pose.rotation.getQuaternion(x, y, z, w);
@@ -117,12 +99,48 @@ Result<void> check_tree(const Model& model) {
                   "a serial robot is one tree: join them");
 }
 
+/// The parser hands what it complains of to printf as a format, so that "%n" in a number would write into memory: each
+/// '%' becomes '％'.
+std::string without_formats(std::string_view text) {
+  std::string safe;
+  for (const char c : text) safe += c == '%' ? std::string("％") : std::string(1, c);
+  return safe;
+}
+
+/// Links that hang on each other in a loop would keep each other alive.
+void take_apart(const urdf::ModelInterface& model) {
+  for (const auto& [name, link] : model.links_) link->clear();
+}
+
+Result<Model> parse(std::string_view urdf) {
+  constexpr int kDeepest = 1000;  // a URDF stands 4 deep
+  constexpr const char* kRemedy = "check it, as by 'check_urdf FILE'";
+  if (depth(urdf) > kDeepest) return bad_data("no URDF: elements stand too deep in one another", kRemedy);
+  if (urdf.find("</robot") == std::string_view::npos) return bad_data("no URDF: there is no </robot>", kRemedy);
+  const Overheard overheard;
+  Model model;
+  try {
+    model = urdf::parseURDF(without_formats(urdf));
+  } catch (const std::exception& problem) {
+    return bad_data(fmt::format("no URDF: {}", problem.what()), kRemedy);
+  }
+  const auto refused = [&](const Error& error) {
+    if (model) take_apart(*model);
+    return tl::unexpected(error);
+  };
+  // The parser also gives robots with parts that it could not read.
+  if (!overheard.first().empty()) return refused(bad_data("no URDF: " + overheard.first(), kRemedy).value());
+  if (!model || !model->getRoot()) return refused(bad_data("no URDF", kRemedy).value());
+  if (auto ok = check_tree(model); !ok) return refused(ok.error());
+  return model;
+}
+
 std::string names(const std::vector<std::string>& all) {
   return fmt::format("'{}'", fmt::join(all, "', '"));
 }
 
 Result<Link> find_link(const Model& model, const std::string& name, const char* which) {
-  if (const Link link = model->getLink(name)) return link;
+  if (const Link link = model->getLink(without_formats(name))) return link;
   std::vector<std::string> known;
   for (const auto& [one, link] : model->links_) known.push_back(one);
   return bad_usage(fmt::format("the URDF has no link '{}' for the {}", name, which), "it has " + names(known));
@@ -283,7 +301,6 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
   const auto parsed = parse(urdf);
   if (!parsed) return tl::unexpected(parsed.error());
   const Model& model = *parsed;
-  if (auto ok = check_tree(model); !ok) return tl::unexpected(ok.error());
   const auto base =
       options.base_link.empty() ? Result<Link>(model->getRoot()) : find_link(model, options.base_link, "base");
   if (!base) return tl::unexpected(base.error());
@@ -345,6 +362,9 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
     from_body = KDL::Frame();
   }
   parts.hand = from_body * vector(options.tool);
+  if (!parts.stated.allFinite()) {
+    return bad_data("the bodies are too heavy or too large for numbers", "check mass, inertia and origin of each link");
+  }
   return parts;
 }
 

@@ -388,6 +388,21 @@ TEST(SerialChain, SaysWhatTheParserFoundWrong) {
   EXPECT_THAT(refusal(with(pendulum(), R"(child link="upper")", R"(child link="uper")")), HasSubstr("uper"));
 }
 
+TEST(SerialChain, PrintsNothingByTheFormatsOfAURDF) {
+  EXPECT_THAT(refusal(with(pendulum(), R"(value="0.8")", R"(value="%s%s%s%n%n%n")")), HasSubstr("％s％s"));
+  SerialChain::Options options = vertical_plane(0.25);
+  options.tip_link = "lower%s";
+  std::string text = pendulum();
+  for (std::size_t at = 0; (at = text.find("\"lower\"", at)) != std::string::npos; ++at) text.insert(at + 6, "%s");
+  EXPECT_EQ(chain(text, options)->tip_link(), "lower％s");
+}
+
+TEST(SerialChain, RefusesBodiesBeyondAllNumbers) {
+  EXPECT_THAT(refusal(with(pendulum(), R"(value="0.8")", R"(value="1e308")")), HasSubstr("nothing was refused"));
+  const std::string heavy = with(with(pendulum(), R"(value="0.8")", R"(value="1e308")"), "0 0 -0.12", "0 0 -100");
+  EXPECT_THAT(refusal(heavy), HasSubstr("too heavy or too large"));
+}
+
 TEST(SerialChain, SurvivesAnyPieceOfAURDF) {
   const std::string whole = RandomChain("RPR", 18).urdf();
   for (std::size_t length = 0; length < whole.size(); length += 7) {

@@ -9,14 +9,14 @@ namespace mbk::robot_file {
 using robot::DriveTerms;
 
 const std::vector<DriveTerm>& drive_terms() {
-  static const std::vector<DriveTerm> all = {
+  static const std::vector<DriveTerm> kAll = {
       {"motor_inertia", &DriveTerms::motor_inertia, "motor_inertia_kg_m2", "motor_inertia_kg"},
       {"viscous", &DriveTerms::viscous, "viscous_Nms_per_rad", "viscous_Ns_per_m"},
       {"coulomb", &DriveTerms::coulomb, "coulomb_Nm", "coulomb_N"},
       {"stribeck", &DriveTerms::stribeck, "stribeck_Nm", "stribeck_N"},
       {"cable", &DriveTerms::cable, "cable_Nm_per_rad", "cable_N_per_m"},
       {"offset", &DriveTerms::offset, "offset_Nm", "offset_N"}};
-  return all;
+  return kAll;
 }
 
 DriveValues::DriveValues(const DriveTerms& wanted, int joints)

@@ -147,8 +147,9 @@ TEST(Planar, TakesTheFrictionThatAScenarioWouldHave) {
 }
 
 TEST(Planar, RefusesFrictionThatNoTermTakes) {
-  EXPECT_THAT(refusal("[robot]\nkind = 'planar'\nbreakaway_Nm = [0.5, 0.5]\n"),
-              HasSubstr("x.toml, line 3, robot.breakaway_Nm: \"stribeck\" is not among the terms of the drives; add it"));
+  EXPECT_THAT(
+      refusal("[robot]\nkind = 'planar'\nbreakaway_Nm = [0.5, 0.5]\n"),
+      HasSubstr("x.toml, line 3, robot.breakaway_Nm: \"stribeck\" is not among the terms of the drives; add it"));
   EXPECT_THAT(refusal("[robot]\nkind = 'planar'\nsmoothing_rad_per_s = [0.5, 0.4]\n"),
               HasSubstr("the two joints differ"));
   EXPECT_THAT(refusal("[robot]\nkind = 'planar'\ntheta1_deg = [40, -40]\n"), HasSubstr("not below the second"));
