@@ -105,9 +105,11 @@ Action add_robot(CLI::App& app) {
   group->footer(
       "Examples:\n"
       "  mbk robot workspace --at 300,50\n"
+      "  mbk robot describe my_robot.toml\n"
       "  mbk robot identify free_motion.h5\n");
   group->require_subcommand(1);
   const std::vector<std::pair<std::string, Action>> actions = {{"workspace", add_workspace(*group)},
+                                                               {"describe", add_robot_describe(*group)},
                                                                {"identify", add_robot_identify(*group)},
                                                                {"force", add_robot_force(*group)}};
   return [group, actions] {
