@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <optional>
@@ -19,7 +21,7 @@ namespace {
 
 struct Arguments : MeasureArguments {
   std::vector<std::filesystem::path> held_back;
-  std::string terms, delay = "auto", stribeck_velocity;
+  std::string fixed, terms, delay = "auto", stribeck_velocity;
   std::optional<double> smoothing, motion_cutoff_hz;
 };
 
@@ -34,15 +36,15 @@ Result<std::optional<double>> number_or_auto(const std::string& given, const cha
   return value;
 }
 
-/// Sets the terms that a list names.
-Result<void> set_terms(const std::string& list, robot::DriveTerms& drive) {
+/// Sets the terms that a list names; the bodies keep their values.
+Result<void> set_terms(const std::string& list, robot::DynamicModel& model) {
+  robot::DriveTerms& drive = model.drive;
   const std::pair<const char*, bool robot::DriveTerms::*> known[] = {
       {"viscous", &robot::DriveTerms::viscous},   {"coulomb", &robot::DriveTerms::coulomb},
       {"stribeck", &robot::DriveTerms::stribeck}, {"cable", &robot::DriveTerms::cable},
       {"offset", &robot::DriveTerms::offset},     {"motor_inertia", &robot::DriveTerms::motor_inertia}};
   for (const auto& [name, flag] : known) drive.*flag = false;
-  if (list == "none") return {};
-  for (std::size_t begin = 0; begin <= list.size();) {
+  for (std::size_t begin = 0; list != "none" && begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string word = list.substr(begin, end - begin);
     begin = end + 1;
@@ -56,13 +58,16 @@ Result<void> set_terms(const std::string& list, robot::DriveTerms& drive) {
     }
   }
   if (drive.cable) drive.offset = true;  // k (q − q₀) has a constant
+  const Vector of_bodies = model.parameters.head(static_cast<Index>(model.mechanism->coefficients().size()));
+  model.parameters.setZero(static_cast<Index>(model.coefficients().size()));
+  model.parameters.head(of_bodies.size()) = of_bodies;
   return {};
 }
 
 /// The robot's structure with what the options say of its drives.
 Result<void> choose(const Arguments& arguments, robot::DynamicModel& model, measurement::RobotOptions& options) {
   if (!arguments.terms.empty()) {
-    if (auto ok = set_terms(arguments.terms, model.drive); !ok) return tl::unexpected(ok.error());
+    if (auto ok = set_terms(arguments.terms, model); !ok) return tl::unexpected(ok.error());
   }
   if (arguments.smoothing) model.drive.smoothing = *arguments.smoothing;
   const auto delay = number_or_auto(arguments.delay, "--motor-delay");
@@ -82,13 +87,39 @@ Result<void> choose(const Arguments& arguments, robot::DynamicModel& model, meas
   return {};
 }
 
+/// Which coefficients a list names.
+Result<std::vector<Index>> indices_of(const std::string& list, const robot::RobotDescription& robot) {
+  std::vector<Index> indices;
+  if (list.empty()) return indices;
+  const std::vector<robot::Coefficient> known = robot.model.coefficients();
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string name = list.substr(begin, end - begin);
+    begin = end + 1;
+    const auto found = std::ranges::find(known, name, &robot::Coefficient::name);
+    if (found == known.end()) {
+      std::vector<std::string> names;
+      for (const robot::Coefficient& one : known) names.push_back(one.name);
+      return bad_usage(fmt::format("--fix: the robot has no coefficient {}", quoted(name)),
+                       fmt::format("there are {}", fmt::join(names, ", ")));
+    }
+    indices.push_back(found - known.begin());
+  }
+  return indices;
+}
+
 int run(const Arguments& arguments) {
   if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
   measurement::RobotOptions options;
   auto robot = describe_robot(arguments.robot);
   if (!robot) return report_error(robot.error());
-  if (!arguments.robot) robot->model.drive.coulomb = robot->model.drive.offset = true;
+  if (!arguments.robot && arguments.terms.empty()) {
+    if (auto ok = set_terms("viscous,coulomb,offset", robot->model); !ok) return report_error(ok.error());
+  }
   if (auto ok = choose(arguments, robot->model, options); !ok) return report_error(ok.error());
+  const auto fixed = indices_of(arguments.fixed, *robot);
+  if (!fixed) return report_error(fixed.error());
+  options.fit.fixed = *fixed;
   const auto signals = signal_options(arguments);
   if (!signals) return report_error(signals.error());
   options.preprocess.signals = *signals;
@@ -147,6 +178,13 @@ Action add_robot_identify(CLI::App& group) {
       ->add_option("--terms", arguments->terms,
                    "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
                    "(viscous,coulomb,offset)")
+      ->type_name("LIST")
+      ->check(not_empty())
+      ->group(model);
+  command
+      ->add_option("--fix", arguments->fixed,
+                   "coefficients that are known: they keep the value of the robot's description, as in "
+                   "--fix link_1.mass_x,link_2.mass_x for links that are symmetric")
       ->type_name("LIST")
       ->check(not_empty())
       ->group(model);

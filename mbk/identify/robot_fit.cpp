@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "mbk/identify/regression.h"
 #include "mbk/numeric/instrumental_variables.h"
@@ -22,7 +21,7 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 /// Rows of all trials under each other, joint by joint.
 struct Stack {
-  std::vector<Matrix> W, R;  ///< N×p for each joint; R empty without instruments
+  std::vector<Matrix> W, R, S;  ///< N×p for each joint; R of the instruments, S of the smoothed motion, or empty
   Matrix torque, torque_rate;
   std::vector<RowRange> ranges;
 
@@ -41,7 +40,9 @@ Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purp
   const Index n = trials.front().torque.cols(), p = trials.front().regressors.front().cols();
   const bool with_instruments = !trials.front().instruments.empty();
   stack.W.assign(static_cast<std::size_t>(n), Matrix(total, p));
+  const bool with_smoothed = !trials.front().smoothed.empty();
   if (with_instruments) stack.R = stack.W;
+  if (with_smoothed) stack.S = stack.W;
   stack.torque.resize(total, n);
   stack.torque_rate.resize(total, n);
   Index row = 0;
@@ -54,6 +55,7 @@ Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purp
         if (with_instruments) {
           stack.R[joint].middleRows(row, rows) = trial.instruments[joint].middleRows(stretch.begin, rows);
         }
+        if (with_smoothed) stack.S[joint].middleRows(row, rows) = trial.smoothed[joint].middleRows(stretch.begin, rows);
       }
       stack.torque.middleRows(row, rows) = trial.torque.middleRows(stretch.begin, rows);
       stack.torque_rate.middleRows(row, rows) = trial.torque_rate.middleRows(stretch.begin, rows);
@@ -62,6 +64,11 @@ Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purp
     }
   }
   return stack;
+}
+
+/// The rows that judge: recordings that are there for it, or else what was held back of the others.
+Stack judging_rows(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_back) {
+  return held_back.empty() ? stack_rows(trials, Purpose::validation) : stack_rows(held_back, std::nullopt);
 }
 
 /// All joints under each other, each divided by its σ; the columns that are kept and, where wanted, τ̇.
@@ -105,12 +112,18 @@ class RobotFitter {
   void judge(RobotIdentification& found) const;
   void describe(RobotIdentification& found) const;
   void check_inertia(RobotIdentification& found) const;
+  [[nodiscard]] bool is_fixed(Index k) const { return std::ranges::find(options_.fixed, k) != options_.fixed.end(); }
+  /// What any motion could tell apart of the coefficients that are not fixed.
+  [[nodiscard]] int structural_rank() const {
+    const std::vector<Index> kept = structural_columns(model_, options_.fixed).kept;
+    return static_cast<int>(kept.size());
+  }
   [[nodiscard]] bool by_instruments() const { return options_.method == RobotMethod::instrumental_variables; }
   /// Residuals of the rows, N×n.
-  [[nodiscard]] Matrix residuals(const Stack& rows, const std::vector<Matrix>& W) const {
+  [[nodiscard]] Matrix residuals(const Stack& rows) const {
     Matrix e(rows.rows(), rows.torque.cols());
     for (Index joint = 0; joint < e.cols(); ++joint) {
-      e.col(joint) = rows.torque.col(joint) - W[static_cast<std::size_t>(joint)] * theta_ -
+      e.col(joint) = rows.torque.col(joint) - rows.W[static_cast<std::size_t>(joint)] * theta_ -
                      delay_correction_ * rows.torque_rate.col(joint);
     }
     return e;
@@ -126,7 +139,10 @@ class RobotFitter {
   Matrix bread_, covariance_;  ///< of the columns that are kept, and of the delay's where it is estimated
   Matrix residuals_;
   double delay_correction_ = 0, condition_ = 0;
-  numeric::IndependentColumns columns_;
+  Vector fixed_;                                  ///< p, the values that are known, 0 elsewhere
+  std::vector<robot::Coefficient> free_names_;    ///< of those that are not
+  numeric::IndependentColumns columns_;           ///< of those that are not
+  std::vector<Index> kept_;                       ///< coefficients that are found
 };
 
 Result<void> RobotFitter::prepare() {
@@ -134,6 +150,11 @@ Result<void> RobotFitter::prepare() {
   const PreparedDynamics& first = trials_.front();
   n_ = first.torque.cols();
   p_ = first.regressors.front().cols();
+  for (const Index k : options_.fixed) {
+    if (k < 0 || k >= p_ || model_.parameters.size() != p_ || !std::isfinite(model_.parameters[k])) {
+      return bad_usage("a coefficient that is fixed has no value", "state it in the robot's description");
+    }
+  }
   if (p_ == 0) return bad_usage("a robot without coefficients has nothing to be identified");
   for (const auto* list : {&trials_, &held_back_}) {
     for (const PreparedDynamics& trial : *list) {
@@ -157,11 +178,23 @@ Result<void> RobotFitter::prepare() {
   }
   lags_ = static_cast<Index>(std::llround(options_.hac_lag_s / first.sample_time));
   sigma_ = Vector::Ones(n_);
-  std::vector<Index> all(static_cast<std::size_t>(p_));
-  std::iota(all.begin(), all.end(), 0);
+  fixed_ = Vector::Zero(p_);
+  std::vector<Index> all;
+  for (Index k = 0; k < p_; ++k) {
+    if (is_fixed(k)) {
+      fixed_[k] = model_.parameters[k];
+    } else {
+      all.push_back(k);
+    }
+  }
+  free_names_.clear();
+  const std::vector<robot::Coefficient> names = model_.coefficients();
+  for (const Index k : all) free_names_.push_back(names[static_cast<std::size_t>(k)]);
   constexpr double kApart = 1e-6;
   columns_ = numeric::independent_columns(stacked(rows_.W, all, nullptr, sigma_), kApart);
-  if (columns_.kept.empty()) {
+  kept_.clear();
+  for (const Index k : columns_.kept) kept_.push_back(all[static_cast<std::size_t>(k)]);
+  if (kept_.empty()) {
     return bad_data("no joint moved: nothing of the robot's dynamics was excited", "move every joint");
   }
   return {};
@@ -171,14 +204,14 @@ Result<void> RobotFitter::solve() {
   const Matrix* rate = options_.delay ? &rows_.torque_rate : nullptr;
   const int passes = options_.method == RobotMethod::least_squares ? 1 : 6;
   for (int pass = 0; pass < passes; ++pass) {
-    const Matrix Z = stacked(rows_.W, columns_.kept, rate, sigma_);
+    const Matrix Z = stacked(rows_.W, kept_, rate, sigma_);
     Matrix Y(Z.rows(), 1);
     for (Index joint = 0; joint < n_; ++joint) {
-      Y.block(joint * rows_.rows(), 0, rows_.rows(), 1) = rows_.torque.col(joint) / sigma_[joint];
+      Y.block(joint * rows_.rows(), 0, rows_.rows(), 1) = (rows_.torque.col(joint) - rows_.W[static_cast<std::size_t>(joint)] * fixed_) / sigma_[joint];
     }
     Vector free;
     if (by_instruments()) {
-      auto fit = numeric::fit_instrumental_variables(Z, stacked(rows_.R, columns_.kept, rate, sigma_), Y);
+      auto fit = numeric::fit_instrumental_variables(Z, stacked(rows_.R, kept_, rate, sigma_), Y);
       if (!fit) return tl::unexpected(fit.error());
       if (fit->rank < Z.cols()) {
         return bad_data("the instruments cannot tell the coefficients apart",
@@ -193,10 +226,10 @@ Result<void> RobotFitter::solve() {
       bread_ = fit->inverse_gram;
       condition_ = fit->condition;
     }
-    theta_ = Vector::Zero(p_);
-    for (std::size_t k = 0; k < columns_.kept.size(); ++k) theta_[columns_.kept[k]] = free[static_cast<Index>(k)];
+    theta_ = fixed_;
+    for (std::size_t k = 0; k < kept_.size(); ++k) theta_[kept_[k]] = free[static_cast<Index>(k)];
     delay_correction_ = options_.delay ? free[free.size() - 1] : 0.0;
-    residuals_ = residuals(rows_, rows_.W);
+    residuals_ = residuals(rows_);
     if (pass + 1 == passes) break;
     const Vector spread = residuals_.colwise().norm() / std::sqrt(static_cast<double>(rows_.rows()));
     // A joint that the model explains to rounding must not drown the others.
@@ -219,9 +252,9 @@ void RobotFitter::take_covariance() {
     for (Index joint = 0; joint < n_; ++joint) {
       const Vector e = residuals_.col(joint).segment(range.begin, range.size()) / (sigma_[joint] * sigma_[joint]);
       const Matrix& W = of_scores[static_cast<std::size_t>(joint)];
-      for (std::size_t c = 0; c < columns_.kept.size(); ++c) {
+      for (std::size_t c = 0; c < kept_.size(); ++c) {
         scores.row(static_cast<Index>(c)) +=
-            W.col(columns_.kept[c]).segment(range.begin, range.size()).cwiseProduct(e).transpose();
+            W.col(kept_[c]).segment(range.begin, range.size()).cwiseProduct(e).transpose();
       }
       if (rate != nullptr) {
         scores.row(k - 1) += rate->col(joint).segment(range.begin, range.size()).cwiseProduct(e).transpose();
@@ -235,29 +268,22 @@ void RobotFitter::take_covariance() {
 }
 
 void RobotFitter::judge(RobotIdentification& found) const {
-  Stack other;
-  if (!held_back_.empty()) {
-    other = stack_rows(held_back_, std::nullopt);
-    for (const PreparedDynamics& trial : held_back_) {
-      for (const SourceFile& source : trial.sources) found.held_back_files.push_back(source.path);
-    }
-  } else {
-    other = stack_rows(trials_, Purpose::validation);
+  const Stack other = judging_rows(trials_, held_back_);
+  for (const PreparedDynamics& trial : held_back_) {
+    for (const SourceFile& source : trial.sources) found.held_back_files.push_back(source.path);
   }
   found.held_back = other.rows() > 0;
   const Stack& judged = found.held_back ? other : rows_;
-  const Matrix e = residuals(judged, judged.W);
-  const bool smoothed = trials_.front().instrument_motion == InstrumentMotion::smoothed && by_instruments();
-  const Matrix of_smoothed = smoothed ? residuals(judged, judged.R) : Matrix();
+  const Matrix e = residuals(judged);
   for (Index joint = 0; joint < n_; ++joint) {
     TorqueFit fit;
     fit.vaf = numeric::variance_accounted_for(judged.torque.col(joint), e.col(joint));
     fit.rmse = numeric::root_mean_square(e.col(joint));
     fit.vaf_in_sample = numeric::variance_accounted_for(rows_.torque.col(joint), residuals_.col(joint));
     fit.rmse_in_sample = numeric::root_mean_square(residuals_.col(joint));
-    fit.noise = std::sqrt(numeric::variance(residuals_.col(joint)));
-    if (smoothed) {
-      fit.vaf_smoothed = numeric::variance_accounted_for(judged.torque.col(joint), of_smoothed.col(joint));
+    if (!judged.S.empty()) {
+      const Vector left = judged.torque.col(joint) - judged.S[static_cast<std::size_t>(joint)] * theta_;
+      fit.vaf_smoothed = numeric::variance_accounted_for(judged.torque.col(joint), left);
     }
     found.fit.push_back(fit);
   }
@@ -266,22 +292,24 @@ void RobotFitter::judge(RobotIdentification& found) const {
 void RobotFitter::describe(RobotIdentification& found) const {
   const std::vector<robot::Coefficient> names = model_.coefficients();
   found.coefficients.clear();
-  for (const robot::Coefficient& name : names) found.coefficients.push_back({name, 0.0, kUndefined, false, ""});
+  for (Index k = 0; k < p_; ++k) {
+    found.coefficients.push_back({names[static_cast<std::size_t>(k)], fixed_[k], kUndefined, false, is_fixed(k), ""});
+  }
   found.model.covariance = Matrix::Zero(p_, p_);
-  const auto kept = static_cast<Index>(columns_.kept.size());
+  const auto kept = static_cast<Index>(kept_.size());
   for (Index k = 0; k < kept; ++k) {
-    const Index at = columns_.kept[static_cast<std::size_t>(k)];
+    const Index at = kept_[static_cast<std::size_t>(k)];
     RobotCoefficient& one = found.coefficients[static_cast<std::size_t>(at)];
     one.value = theta_[at];
     one.standard_error = std::sqrt(std::max(0.0, covariance_(k, k)));
     one.identified = true;
-    one.together_with = holds(columns_, k, names);
+    one.together_with = holds(columns_, k, free_names_);
   }
-  found.model.covariance(columns_.kept, columns_.kept) = covariance_.topLeftCorner(kept, kept);
+  found.model.covariance(kept_, kept_) = covariance_.topLeftCorner(kept, kept);
   found.rank = static_cast<int>(kept);
-  found.structural_rank = static_cast<int>(structural_columns(model_).kept.size());
+  found.structural_rank = structural_rank();
 
-  const Matrix Z = stacked(rows_.W, columns_.kept, nullptr, sigma_);
+  const Matrix Z = stacked(rows_.W, kept_, nullptr, sigma_);
   const Vector length = Z.colwise().norm();
   const Matrix scaled = Z * length.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled.transpose() * scaled);
@@ -356,7 +384,7 @@ void warn(RobotIdentification& found) {
   if (found.rank < found.structural_rank) {
     std::string missing;
     for (const RobotCoefficient& one : found.coefficients) {
-      if (!one.identified) missing += (missing.empty() ? "" : ", ") + one.coefficient.name;
+      if (!one.identified && !one.fixed) missing += (missing.empty() ? "" : ", ") + one.coefficient.name;
     }
     warnings.push_back({WarningCode::poorly_conditioned,
                         fmt::format("{} of the {} combinations that a motion can show were excited; nothing by itself "
@@ -408,6 +436,7 @@ Result<RobotFit> RobotFitter::fit() {
   if (by_instruments()) {
     found.instrument_motion = trials_.front().instrument_motion;
     found.motion_cutoff = trials_.front().motion_cutoff;
+    found.smoothed_cutoff = (held_back_.empty() ? trials_ : held_back_).front().smoothed_cutoff;
   }
   for (const PreparedDynamics& trial : trials_) {
     found.preparations.push_back(trial.preparation);
@@ -426,7 +455,7 @@ Result<RobotFit> RobotFitter::fit() {
 
 }  // namespace
 
-numeric::IndependentColumns structural_columns(const robot::DynamicModel& model) {
+numeric::IndependentColumns structural_columns(const robot::DynamicModel& model, const std::vector<Index>& fixed) {
   const Index n = model.mechanism->joints();
   const std::vector<robot::JointVector> postures = model.mechanism->postures(5);
   const auto p = static_cast<Index>(model.coefficients().size());
@@ -442,8 +471,10 @@ numeric::IndependentColumns structural_columns(const robot::DynamicModel& model)
       motion.acceleration(i, joint) = random.uniform(-10.0, 10.0);
     }
   }
-  std::vector<Index> all(static_cast<std::size_t>(p));
-  std::iota(all.begin(), all.end(), 0);
+  std::vector<Index> all;
+  for (Index k = 0; k < p; ++k) {
+    if (std::ranges::find(fixed, k) == fixed.end()) all.push_back(k);
+  }
   constexpr double kApart = 1e-8;
   return numeric::independent_columns(stacked(model.regressors(motion), all, nullptr, Vector::Ones(n)), kApart);
 }

@@ -12,6 +12,7 @@ namespace mbk::identify {
 
 struct RobotFitOptions {
   RobotMethod method = RobotMethod::weighted_least_squares;
+  std::vector<Index> fixed;  ///< coefficients that keep the value they have in model.parameters
   bool delay = false;      ///< estimate what is left of the motors' delay too
   double hac_lag_s = 1.0;  ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
 };
@@ -29,6 +30,7 @@ struct RobotFit {
 /// fit again with the torque shifted by it.
 /// With instruments R: θ = (Σ R_jᵀW_j/σ_j²)⁻¹ Σ R_jᵀτ_j/σ_j² (Janot et al. 2014), which noise of the measured motion
 /// does not bias as long as it is not in R.
+/// @param model  its bodies, drives and delay; of its parameters, those that are fixed count
 /// @param held_back  whole recordings that only judge; where there are none, the validation stretches of `trials` do
 /// @fails  no trial; trials of different robots or rates; too few rows; a value is not finite; nothing is excited.
 [[nodiscard]] Result<RobotFit> fit_robot(const std::vector<PreparedDynamics>& trials,
@@ -36,7 +38,8 @@ struct RobotFit {
                                          const robot::DynamicModel& model, const RobotFitOptions& options);
 
 /// What any motion could tell apart of a robot's coefficients, and what the others are made of: its base parameters.
-/// By the regressors of random motions within the limits of the joints, always the same ones.
-[[nodiscard]] numeric::IndependentColumns structural_columns(const robot::DynamicModel& model);
+/// By the regressors of random motions; columns are counted among those that are not `fixed`. The motions are within the limits of the joints, always the same ones.
+[[nodiscard]] numeric::IndependentColumns structural_columns(const robot::DynamicModel& model,
+                                                                const std::vector<Index>& fixed = {});
 
 }  // namespace mbk::identify

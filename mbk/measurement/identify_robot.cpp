@@ -56,12 +56,16 @@ Result<std::vector<Recording>> even(std::span<const Recording> recordings, std::
   return all;
 }
 
-/// The pipeline with everything given.
-Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
-                                    const robot::DynamicModel& model, const RobotOptions& options) {
-  auto trials = prepare_all(recordings, model, options.preprocess);
+/// Both sets of recordings, prepared alike.
+struct Prepared {
+  std::vector<PreparedDynamics> trials, held_back;
+};
+
+Result<Prepared> prepare_both(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+                              const robot::DynamicModel& model, const preprocess::DynamicsOptions& options) {
+  auto trials = prepare_all(recordings, model, options);
   if (!trials) return tl::unexpected(trials.error());
-  preprocess::DynamicsOptions judged = options.preprocess;
+  preprocess::DynamicsOptions judged = options;
   if (const Preparation& how = trials->front().preparation; how.cutoff) {
     judged.signals.cutoff = how.cutoff;
     judged.signals.every = how.every;
@@ -70,7 +74,15 @@ Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, co
   if (trials->front().motion_cutoff > 0.0) judged.motion_cutoff = Hertz(trials->front().motion_cutoff);
   auto others = prepare_all(held_back, model, judged);
   if (!others) return tl::unexpected(others.error());
-  return identify::fit_robot(*trials, *others, model, options.fit);
+  return Prepared{std::move(*trials), std::move(*others)};
+}
+
+/// The pipeline with everything given.
+Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+                                    const robot::DynamicModel& model, const RobotOptions& options) {
+  const auto both = prepare_both(recordings, held_back, model, options.preprocess);
+  if (!both) return tl::unexpected(both.error());
+  return identify::fit_robot(both->trials, both->held_back, model, options.fit);
 }
 
 /// With the delay found where it is wanted.

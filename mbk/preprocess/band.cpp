@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "mbk/dsp/spectrum.h"
 
@@ -10,11 +11,12 @@ namespace mbk::preprocess {
 namespace {
 
 /// Mean of the spectra of all columns and cuts, but for a factor.
-Result<dsp::Spectrum> spectrum_of(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate) {
+Result<dsp::Spectrum> spectrum_of(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate,
+                                  double finest = 0.1) {
   Index shortest = signals.rows();
   for (const Cut& cut : cuts) shortest = std::min(shortest, cut.end - cut.begin);
   // Ten seconds resolve the lines of a multisine; shorter pieces give what they can.
-  const Hertz resolution(std::max(0.1, sample_rate.value / static_cast<double>(std::max<Index>(shortest, 1))));
+  const Hertz resolution(std::max(finest, sample_rate.value / static_cast<double>(std::max<Index>(shortest, 1))));
   dsp::Spectrum sum;
   for (const Cut& cut : cuts) {
     for (Index axis = 0; axis < signals.cols(); ++axis) {
@@ -49,6 +51,26 @@ Result<Hertz> band_top(const Matrix& signals, const std::vector<Cut>& cuts, Hert
   const auto spectrum = spectrum_of(signals, cuts, sample_rate);
   if (!spectrum) return tl::unexpected(spectrum.error());
   return dsp::power_quantile(*spectrum, 0.95, limit_of(sample_rate));
+}
+
+Result<Hertz> motion_top(const Vector& position, const std::vector<Cut>& cuts, Hertz sample_rate, Hertz limit) {
+  const auto spectrum = spectrum_of(position, cuts, sample_rate, 1.0);
+  if (!spectrum) return tl::unexpected(spectrum.error());
+  const auto excited = excited_band(position, cuts, sample_rate);
+  if (!excited) return tl::unexpected(excited.error());
+  const Vector& f = spectrum->frequency;
+  const Vector density = spectrum->density.array() * f.array().pow(4);
+  const auto above = [&f](Hertz edge) { return std::ranges::upper_bound(f, edge.value) - f.begin(); };
+  const Index begin = above(excited->high), end = above(limit);
+  constexpr Index kFewest = 5;
+  if (end - begin < kFewest) return limit;
+  std::vector<double> sorted(density.begin() + begin, density.begin() + end);
+  const auto middle = sorted.begin() + (end - begin) / 2;
+  std::ranges::nth_element(sorted, middle);
+  for (Index i = begin; i < end; ++i) {
+    if (density[i] < 2.0 * *middle) return Hertz(f[i]);
+  }
+  return limit;
 }
 
 }  // namespace mbk::preprocess

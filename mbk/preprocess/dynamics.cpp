@@ -45,7 +45,7 @@ class Maker {
     return {};
   }
 
-  /// [τ τ̇ W₁ … W_n (W₁ … W_n of the instruments)] of a cut.
+  /// [τ τ̇ W₁ … W_n] of a cut, then W₁ … W_n of the instruments and of the smoothed motion where they are wanted.
   Result<Matrix> columns(const Cut& cut, PreparedDynamics& made) const {
     auto joints = smooth_joints(signals_, *model_.mechanism, cut, filters_.smoothing, rate_, model_.delay);
     if (!joints) return tl::unexpected(joints.error());
@@ -56,6 +56,9 @@ class Maker {
       if (!motion) return tl::unexpected(motion.error());
       still(*motion, made.stands);
       for (Matrix& block : model_.regressors(*motion)) blocks.push_back(std::move(block));
+      auto smooth = low_passed(joints->motion, made.smoothed_cutoff);
+      if (!smooth) return tl::unexpected(smooth.error());
+      for (Matrix& block : model_.regressors(*smooth)) blocks.push_back(std::move(block));
     }
     const Index n = model_.mechanism->joints(), p = blocks.front().cols();
     Matrix all(joints->torque.rows(), 2 * n + static_cast<Index>(blocks.size()) * p);
@@ -103,16 +106,18 @@ class Maker {
       }
       return smooth_motion(joints, filters_.smoothing, rate_);
     }
-    auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, Hertz(made.motion_cutoff), rate_);
+    return low_passed(measured, made.motion_cutoff);
+  }
+
+  [[nodiscard]] Result<robot::JointMotion> low_passed(robot::JointMotion motion, double cutoff) const {
+    const auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, Hertz(cutoff), rate_);
     if (!lowpass) return tl::unexpected(lowpass.error());
-    robot::JointMotion smooth;
-    for (const auto part :
-         {&robot::JointMotion::position, &robot::JointMotion::velocity, &robot::JointMotion::acceleration}) {
-      auto filtered = dsp::filter_zero_phase(*lowpass, measured.*part, options_.signals.padding);
+    for (Matrix* part : {&motion.position, &motion.velocity, &motion.acceleration}) {
+      auto filtered = dsp::filter_zero_phase(*lowpass, *part, options_.signals.padding);
       if (!filtered) return tl::unexpected(filtered.error());
-      smooth.*part = std::move(*filtered);
+      *part = std::move(*filtered);
     }
-    return smooth;
+    return motion;
   }
 
   const JointSignals& signals_;
@@ -168,6 +173,13 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
       if (!top) return tl::unexpected(top.error());
       made.motion_cutoff = options.motion_cutoff.value_or(Hertz(top->value / kPassed)).value;
     }
+    const Hertz limit = filters.cutoff.value_or(Hertz(0.1 * rate.value));
+    for (Index joint = 0; joint < signals->position.cols(); ++joint) {
+      const auto top = motion_top(signals->position.col(joint), plan->cuts, rate, limit);
+      if (!top) return tl::unexpected(top.error());
+      // One for all joints: what shakes the links moves them against each other, and must not be let through by one alone.
+      made.smoothed_cutoff = joint == 0 ? top->value : std::min(made.smoothed_cutoff, top->value);
+    }
   }
   Maker maker(*signals, model, options, filters, rate);
   if (auto ok = maker.prepare(); !ok) return tl::unexpected(ok.error());
@@ -205,7 +217,9 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   made.torque_rate = all.middleCols(n, n);
   for (Index joint = 0; joint < n; ++joint) {
     made.regressors.emplace_back(all.middleCols(2 * n + joint * p, p));
-    if (options.instruments) made.instruments.emplace_back(all.middleCols(2 * n + (n + joint) * p, p));
+    if (!options.instruments) continue;
+    made.instruments.emplace_back(all.middleCols(2 * n + (n + joint) * p, p));
+    made.smoothed.emplace_back(all.middleCols(2 * n + (2 * n + joint) * p, p));
   }
 
   Preparation& how = made.preparation;

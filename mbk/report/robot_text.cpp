@@ -68,6 +68,10 @@ std::string robot_text(const RobotIdentification& found) {
   std::string nothing;
   bool combined = false;
   for (const RobotCoefficient& one : found.coefficients) {
+    if (one.fixed) {
+      rows.push_back({one.coefficient.name, fmt::format("{:.6g}", one.value), one.coefficient.unit, "given"});
+      continue;
+    }
     if (!one.identified) {
       nothing += (nothing.empty() ? "" : ", ") + one.coefficient.name;
       continue;
@@ -87,7 +91,7 @@ std::string robot_text(const RobotIdentification& found) {
   rows = {{found.held_back ? "held back" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
   const bool smoothed =
       std::ranges::any_of(found.fit, [](const TorqueFit& fit) { return fit.vaf_smoothed.has_value(); });
-  if (smoothed) rows.front().emplace_back("VAF %, smoothed motion");
+  if (smoothed) rows.front().push_back(fmt::format("VAF %, motion smoothed at {:.3g} Hz", found.smoothed_cutoff));
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     const TorqueFit& fit = found.fit[joint];
     const char* unit = found.model.mechanism->slides(static_cast<int>(joint)) ? "N" : "N·m";

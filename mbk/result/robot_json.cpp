@@ -107,6 +107,7 @@ std::string to_json(const RobotIdentification& found) {
                   {"value", number(one.value)},
                   {"standard_error", number(one.standard_error)},
                   {"identified", one.identified}};
+    if (one.fixed) entry["fixed"] = true;
     if (!one.together_with.empty()) entry["together_with"] = one.together_with;
     json["parameters"].push_back(std::move(entry));
   }
@@ -122,6 +123,7 @@ std::string to_json(const RobotIdentification& found) {
     if (fit.vaf_smoothed) entry["VAF_from_smoothed_motion"] = number(*fit.vaf_smoothed);
     json["fit"].push_back(std::move(entry));
   }
+  if (found.smoothed_cutoff > 0.0) json["smoothed_motion_cutoff_hz"] = found.smoothed_cutoff;
   json["validated_on"] = found.held_back ? "held-back" : "in-sample";
   if (!found.held_back_files.empty()) json["held_back_files"] = found.held_back_files;
   json["excitation"] = {{"rank", found.rank},

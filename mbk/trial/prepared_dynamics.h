@@ -24,6 +24,10 @@ struct PreparedDynamics {
   Matrix torque_rate;               ///< N×n [N·m/s]
   std::vector<Matrix> regressors;   ///< W, N×p for each joint
   std::vector<Matrix> instruments;  ///< the same of `instrument_motion`; empty where there is none
+  /// The same of the motion up to where its acceleration sinks into noise, which predicts the torque better where the
+  /// band is wide; empty where no instruments were asked for.
+  std::vector<Matrix> smoothed;
+  double smoothed_cutoff = 0;  ///< [Hz]
   InstrumentMotion instrument_motion = InstrumentMotion::none;
   double motion_cutoff = 0;        ///< [Hz] of the smoothed motion, where that is it
   std::vector<bool> stands;        ///< n: the joint did not move beyond the steps of its encoder

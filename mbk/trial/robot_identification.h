@@ -36,6 +36,7 @@ struct RobotCoefficient {
   double value = 0;           ///< 0 where it is not identified: its share is in those that are
   double standard_error = 0;  ///< NaN where it is not identified
   bool identified = true;
+  bool fixed = false;  ///< taken as known
   /// What the value holds besides the coefficient itself, as in "+ 0.04·link_2.mass"; empty where it stands for itself.
   std::string together_with;
 };
@@ -44,8 +45,7 @@ struct RobotCoefficient {
 struct TorqueFit {
   double vaf = 0, rmse = 0;                      ///< [%], [N·m or N]; held back where anything was
   double vaf_in_sample = 0, rmse_in_sample = 0;  ///< on the data behind the coefficients
-  std::optional<double> vaf_smoothed;            ///< predicted from the motion smoothed for the instruments, same data
-  double noise = 0;                              ///< standard deviation of what is left in sample [N·m or N]
+  std::optional<double> vaf_smoothed;            ///< of vaf's data, predicted from the smoothed motion
 };
 
 /// Whether the inertia matrix is one in every posture.
@@ -62,6 +62,7 @@ struct RobotIdentification {
   RobotMethod method = RobotMethod::weighted_least_squares;
   InstrumentMotion instrument_motion = InstrumentMotion::none;
   double motion_cutoff = 0;                    ///< [Hz], where the motion was smoothed for it
+  double smoothed_cutoff = 0;                       ///< [Hz] of the motion behind vaf_smoothed, in the first recording that judges
   std::optional<double> delay_standard_error;  ///< [s]; absent where the delay was not estimated
   std::vector<TorqueFit> fit;                  ///< of each joint
   bool held_back = true;                       ///< false: vaf and rmse are in-sample
