@@ -60,7 +60,8 @@ struct Study {
 /// measurement::identify_robot as it is by default: bias and coverage of every coefficient, held-back torque, the
 /// printed Coriolis sign against the right one, and what it does to leave Coulomb friction out. A run is one free
 /// motion with its own phases and noise. Wanted: inertias within 0.5 % and a VAF of 99 % in every run, the truth within
-/// two standard errors in 90 % of all cases, and that the printed sign is worse in every run.
+/// two standard errors in 90 % of all cases, and that the printed sign leaves at least twice as much torque in every
+/// run.
 [[nodiscard]] Result<ValidationTable> robot_study(const StudyOptions& options);
 
 /// Force, stiffness and mass of the rigs of Dyck (2013), table 5.1, without a force sensor (tables 5.4 and 5.5 and
