@@ -170,18 +170,21 @@ Result<ValidationTable> robot_study(const StudyOptions& options) {
   add_fit(runs, table);
   add_printed_sign(runs, *truth, table);
   add_without_coulomb(runs, *viscous_truth, table);
-  table.notes = {
+  table.notes.emplace_back(
       "The robot of table A.1 with 0.03 N·m of Coulomb friction at each joint, in the closed loop of the laboratory "
-      "(ready scenario free_motion); each run has other phases and other noise.",
+      "(ready scenario free_motion); each run has other phases and other noise.");
+  table.notes.emplace_back(
       fmt::format("Encoders of 2 µm at the end of the first link; torques from motor currents with white noise of {:g} "
                   "mN·m and a torque constant that is known. An error of that constant by 1 % would be one of every "
                   "coefficient by 1 %, and no recording of the robot alone could show it.",
-                  1e3 * kTorqueNoise),
+                  1e3 * kTorqueNoise));
+  table.notes.emplace_back(
       "Identified as mbk robot identify does by default: viscous and Coulomb friction and an offset of each joint, the "
-      "delay of the motors found too. A torque that is held over each tick acts half a sample late.",
+      "delay of the motors found too. A torque that is held over each tick acts half a sample late.");
+  table.notes.emplace_back(
       "The printed Coriolis sign is that of (A.6) in Dyck (2013), fitted to the same data. Coulomb friction left out: "
-      "viscous friction alone, as in (A.6).",
-      "The friction of the laboratory has the form of the model. That of a real drive has not."};
+      "viscous friction alone, as in (A.6).");
+  table.notes.emplace_back("The friction of the laboratory has the form of the model. That of a real drive has not.");
   return table;
 }
 

@@ -28,7 +28,8 @@ using RobotModel = std::shared_ptr<const robot::DynamicModel>;
 
 /// Where the force of a measurement comes from: method 2 of the source, its method 1 with three models of the robot's
 /// friction, and the momentum observer, which is causal.
-enum Force { kSensor, kVirtual, kNoCoulomb, kNoFriction, kObserver, kForces };
+enum Force { sensor, virtual_sensor, no_coulomb, no_friction, observer };
+constexpr int kForces = 5;
 
 constexpr std::array<const char*, kForces> kNames = {"sensor", "virtual sensor", "virtual sensor without Coulomb",
                                                      "virtual sensor without friction", "momentum observer"};
@@ -38,8 +39,8 @@ struct Robots {
   std::array<RobotModel, 3> models;  ///< by FrictionModel
 
   [[nodiscard]] RobotModel behind(Force force) const {
-    const FrictionModel friction = force == kNoCoulomb    ? FrictionModel::viscous
-                                   : force == kNoFriction ? FrictionModel::none
+    const FrictionModel friction = force == no_coulomb    ? FrictionModel::viscous
+                                   : force == no_friction ? FrictionModel::none
                                                           : FrictionModel::full;
     return models[static_cast<std::size_t>(friction)];
   }
@@ -130,11 +131,11 @@ Result<Outcome> measured(const Recording& recording, Force force, const Robots& 
   preprocess::Options& signals = options.preprocess;
   signals.cutoff = truth.preparation.cutoff;
   signals.every = truth.preparation.every;
-  if (force != kSensor && force != kObserver) {
+  if (force != sensor && force != observer) {
     signals.force_source = ForceSource::virtual_sensor;
     signals.robot = robots.behind(force);
   }
-  Result<Recording> seen = force == kObserver ? observed(recording, *robots.behind(force)) : recording;
+  Result<Recording> seen = force == observer ? observed(recording, *robots.behind(force)) : recording;
   if (!seen) return tl::unexpected(seen.error());
   const auto trial = prepared(*seen, signals);
   if (!trial) return tl::unexpected(trial.error());
@@ -174,25 +175,25 @@ Result<RigTrial> perform(laboratory::Scenario scenario, const Robots& robots) {
 // --------------------------------------------------------------------------------------------------------
 
 /// Elements of the parameters that table 5.4 has.
-enum Element { kXx, kYy, kS, kMass };
+enum Element { k_xx, k_yy, k_s, mass };
 constexpr std::array<const char*, 4> kElementNames = {"k_xx", "k_yy", "k_s", "m"};
 
 double element_of(const impedance::Model& model, Element element) {
   switch (element) {
-    case kXx:
+    case k_xx:
       return model.K(0, 0);
-    case kYy:
+    case k_yy:
       return model.K(1, 1);
-    case kS:
+    case k_s:
       return model.K(0, 1);
-    case kMass:
+    case mass:
       break;
   }
   return model.M(0, 0);
 }
 
 const char* unit_of(Element element) {
-  return element == kMass ? "kg" : "N/m";
+  return element == mass ? "kg" : "N/m";
 }
 
 /// What the method of the source was off by (Dyck 2013, table 5.4, method 1), as it stands in print.
@@ -204,13 +205,13 @@ double printed_error(const std::string& name, Element element) {
                                                                           {"K5", {-73.52, -5.35, -3.80}}};
   static const std::map<std::string, double> kMasses = {
       {"M1", 0.048}, {"M2", 0.067}, {"M3", 0.081}, {"M4", 0.123}, {"M5", 0.128}};
-  return element == kMass ? kMasses.at(name) : kStiffness.at(name)[static_cast<std::size_t>(element)];
+  return element == mass ? kMasses.at(name) : kStiffness.at(name)[static_cast<std::size_t>(element)];
 }
 
 /// A quarter of that, or about what a sensor is allowed in the study of springs.
 double allowed_error(const std::string& name, Element element) {
   constexpr double kStiffness = 3.0, kMassError = 0.02;  // [N/m], [kg]
-  return std::max(0.25 * std::abs(printed_error(name, element)), element == kMass ? kMassError : kStiffness);
+  return std::max(0.25 * std::abs(printed_error(name, element)), element == mass ? kMassError : kStiffness);
 }
 
 Vector values_of(const Trials& trials, const std::function<bool(const RigTrial&)>& belongs,
@@ -230,18 +231,18 @@ const Outcome& outcome(const RigTrial& trial, Force force) {
   return trial.by[static_cast<std::size_t>(force)];
 }
 
-/// Calls for each element of each stiffness and for each mass: "K1", kXx, the trials that have it.
+/// Calls for each element of each stiffness and for each mass: "K1", k_xx, the trials that have it.
 void for_each_parameter(
     const std::function<void(const std::string&, Element, const std::function<bool(const RigTrial&)>&)>& call) {
   for (int k = 1; k <= 5; ++k) {
     const std::string name = fmt::format("K{}", k);
-    for (const Element element : {kXx, kYy, kS}) {
+    for (const Element element : {k_xx, k_yy, k_s}) {
       call(name, element, [name](const RigTrial& trial) { return trial.stiffness == name; });
     }
   }
   for (int m = 1; m <= 5; ++m) {
     const std::string name = fmt::format("M{}", m);
-    call(name, kMass, [name](const RigTrial& trial) { return trial.mass == name; });
+    call(name, mass, [name](const RigTrial& trial) { return trial.mass == name; });
   }
 }
 
@@ -253,7 +254,7 @@ void add_force_rmse(const Trials& trials, ValidationTable& table) {
           trials, any, [&](const RigTrial& trial) { return outcome(trial, static_cast<Force>(force)).rmse[axis]; });
       table.rows.push_back(at_most_row(
           fmt::format("{}: largest RMSE of F{}", kNames[static_cast<std::size_t>(force)], axis == 0 ? "x" : "y"),
-          rmse.maxCoeff(), force == kVirtual ? std::optional(kRmse) : std::nullopt, "N"));
+          rmse.maxCoeff(), force == virtual_sensor ? std::optional(kRmse) : std::nullopt, "N"));
     }
   }
 }
@@ -267,7 +268,7 @@ void add_errors(const Trials& trials, Force force, bool judged, ValidationTable&
         fmt::format("{}: {} {}", kNames[force], name, kElementNames[static_cast<std::size_t>(element)]);
     ValidationRow row = judged ? bias_row(what, error, allowed_error(name, element), unit_of(element))
                                : reported_row(what, error, unit_of(element));
-    if (force == kSensor || force == kVirtual) {
+    if (force == sensor || force == virtual_sensor) {
       row.coverage = values_of(trials, belongs, [&](const RigTrial& trial) {
                        const Outcome& found = outcome(trial, force);
                        return std::abs(element_of(found.model, element) - element_of(trial.truth, element)) <=
@@ -282,7 +283,7 @@ void add_errors(const Trials& trials, Force force, bool judged, ValidationTable&
 
 /// Mean errors over all rigs, for what need not be seen one by one.
 void add_mean_errors(const Trials& trials, Force force, const char* prefix, ValidationTable& table) {
-  for (const Element element : {kXx, kYy, kS, kMass}) {
+  for (const Element element : {k_xx, k_yy, k_s, mass}) {
     const Vector error = values_of(trials, any, [&](const RigTrial& trial) {
       return element_of(outcome(trial, force).model, element) - element_of(trial.truth, element);
     });
@@ -295,7 +296,8 @@ void add_mean_errors(const Trials& trials, Force force, const char* prefix, Vali
 void add_differences(const Trials& trials, ValidationTable& table) {
   for_each_parameter([&](const std::string& name, Element element, const auto& belongs) {
     const Vector difference = values_of(trials, belongs, [&](const RigTrial& trial) {
-      return element_of(outcome(trial, kVirtual).model, element) - element_of(outcome(trial, kSensor).model, element);
+      return element_of(outcome(trial, virtual_sensor).model, element) -
+             element_of(outcome(trial, sensor).model, element);
     });
     table.rows.push_back(reported_row(
         fmt::format("virtual sensor − sensor: {} {}", name, kElementNames[static_cast<std::size_t>(element)]),
@@ -312,7 +314,7 @@ void add_vaf(const Trials& trials, ValidationTable& table) {
             [&](const RigTrial& trial) {
               return trial.stiffness == fmt::format("K{}", k) && trial.mass == fmt::format("M{}", m);
             },
-            [&](const RigTrial& trial) { return outcome(trial, kVirtual).vaf[axis]; });
+            [&](const RigTrial& trial) { return outcome(trial, virtual_sensor).vaf[axis]; });
         table.rows.push_back(
             reported_row(fmt::format("virtual sensor: K{} M{} VAF {}", k, m, axis == 0 ? "x" : "y"), vaf, "%"));
       }
@@ -321,7 +323,7 @@ void add_vaf(const Trials& trials, ValidationTable& table) {
 }
 
 void add_elastic_drives(const Trials& trials, ValidationTable& table) {
-  for (const Force force : {kSensor, kVirtual}) {
+  for (const Force force : {sensor, virtual_sensor}) {
     for (Index axis = 0; axis < 2; ++axis) {
       const Vector rmse =
           values_of(trials, any, [&](const RigTrial& trial) { return outcome(trial, force).rmse[axis]; });
@@ -337,7 +339,7 @@ ChartSeries series_of(const Trials& trials, Force force, bool masses) {
   ChartSeries marks;
   marks.name = kNames[force];
   for_each_parameter([&](const std::string& /*name*/, Element element, const auto& belongs) {
-    if ((element == kMass) != masses) return;
+    if ((element == mass) != masses) return;
     marks.x.push_back(
         values_of(trials, belongs, [&](const RigTrial& trial) { return element_of(trial.truth, element); }).mean());
     marks.y.push_back(values_of(trials, belongs, [&](const RigTrial& trial) {
@@ -408,42 +410,49 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
   table.runs = options.runs;
   table.seed = options.seed;
   add_force_rmse(all, table);
-  add_errors(all, kVirtual, true, table);
-  add_errors(all, kSensor, false, table);
+  add_errors(all, virtual_sensor, true, table);
+  add_errors(all, sensor, false, table);
   add_differences(all, table);
   add_vaf(all, table);
-  add_errors(all, kNoCoulomb, false, table);
-  add_mean_errors(all, kNoFriction, "", table);
-  add_mean_errors(all, kObserver, "", table);
+  add_errors(all, no_coulomb, false, table);
+  add_mean_errors(all, no_friction, "", table);
+  add_mean_errors(all, observer, "", table);
   add_elastic_drives(elastic, table);
   for (const bool masses : {false, true}) {
     Chart chart = masses ? identified_against_true("Mass of the rigs, by the source of the force", "kg")
                          : identified_against_true("Stiffness of the rigs, by the source of the force", "N/m");
-    for (const Force force : {kSensor, kVirtual, kNoCoulomb}) chart.series.push_back(series_of(all, force, masses));
+    for (const Force force : {sensor, virtual_sensor, no_coulomb})
+      chart.series.push_back(series_of(all, force, masses));
     table.charts.push_back(std::move(chart));
   }
-  table.notes = {
+  table.notes.emplace_back(
       "The rigs of table 5.1 of Dyck (2013) as linear fields, on the robot of table A.1 with 0.03 N·m of Coulomb "
       "friction at each joint. Each run identifies the robot once, from a free motion of its own; the virtual sensor "
-      "knows nothing else of it.",
+      "knows nothing else of it.");
+  table.notes.emplace_back(
       fmt::format("Load cell with 0.02 N of white noise; torques from motor currents with {:g} mN·m of white noise; "
                   "encoders of 2 µm at the end of the first link.",
-                  1e3 * kTorqueNoise),
+                  1e3 * kTorqueNoise));
+  table.notes.emplace_back(
       "Virtual sensor: method 1 of the source, with viscous and Coulomb friction and an offset of each joint; without "
       "Coulomb: viscous friction alone, which is the model of the source; without friction: bodies alone. The "
-      "coefficients that stay are identified with the others left out. Sensor: method 2.",
+      "coefficients that stay are identified with the others left out. Sensor: method 2.");
+  table.notes.emplace_back(
       "Each rig has a damper of 1 N·s/m, which a model of mass and springs has not. It is most of what the model "
       "leaves "
-      "of the force, and widens the intervals.",
+      "of the force, and widens the intervals.");
+  table.notes.emplace_back(
       "RMSE is against the force that acted, behind the same filters, the worst of all rigs and runs. The momentum "
-      "observer comes late, which is its error.",
+      "observer comes late, which is its error.");
+  table.notes.emplace_back(
       "Errors are identified − true. Wanted is a quarter of what stands in table 5.4 for method 1, or 3 N/m and 0.02 "
       "kg "
       "where that is less. The larger errors of the source are put down to electrical cables, Coulomb friction, "
       "elastic capstans and springs that are not linear. Of these the simulation has Coulomb friction, and elastic "
-      "capstans in the last rows.",
+      "capstans in the last rows.");
+  table.notes.emplace_back(
       "Elastic drives: cables of 400 N·m/rad behind motors of 0.015 kg·m², five rigs with the mass M3. The encoders "
-      "sit on the motors, so the hand's place is wrong too, for either force."};
+      "sit on the motors, so the hand's place is wrong too, for either force.");
   return table;
 }
 
