@@ -92,6 +92,9 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
       if (one.alternative && one.disagreement) {
         text += "\n" + report::alternative_text(one.identification, *one.alternative, *one.disagreement);
       }
+      if (one.force_comparison && one.by_sensor) {
+        text += "\n" + report::by_sensor_text(one.identification, *one.by_sensor, *one.force_comparison);
+      }
       if (one.bootstrap) text += "\n" + report::bootstrap_text(*one.bootstrap);
       if (one.passivity) text += "\n" + report::passivity_line(*one.passivity);
     }

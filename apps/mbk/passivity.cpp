@@ -109,6 +109,10 @@ int run(const Arguments& arguments) {
   const auto band = band_of(arguments.band);
   if (!band) return report_error(band.error());
   const bool stored = arguments.files.front().extension() == ".json";
+  if (stored && arguments.sensor.file) {
+    return report_error({ErrorKind::usage, "--sensor needs the voltages of a recording, and a stored result has none",
+                         "leave it out, or name the recording", ""});
+  }
   const auto answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
   if (!answers) return report_error(answers.error());
   std::string shown;

@@ -101,14 +101,17 @@ Action add_workspace(CLI::App& group) {
 }  // namespace
 
 Action add_robot(CLI::App& app) {
-  CLI::App* group = app.add_subcommand("robot", "the robot itself: where its hand can be, its inertia and friction");
+  CLI::App* group = app.add_subcommand("robot", "the robot itself: where its hand can be, its inertia and friction, the force without a sensor");
   group->footer(
       "Examples:\n"
       "  mbk robot workspace --at 300,50\n"
+      "  mbk robot describe my_robot.toml\n"
       "  mbk robot identify free_motion.h5\n");
   group->require_subcommand(1);
   const std::vector<std::pair<std::string, Action>> actions = {{"workspace", add_workspace(*group)},
-                                                               {"identify", add_robot_identify(*group)}};
+                                                               {"describe", add_robot_describe(*group)},
+                                                               {"identify", add_robot_identify(*group)},
+                                                               {"force", add_robot_force(*group)}};
   return [group, actions] {
     for (const auto& [name, action] : actions) {
       if (group->got_subcommand(name)) return action();

@@ -1,39 +1,56 @@
 #include "apps/mbk/robot_file.h"
 
-#include <memory>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/mbk/output.h"
 #include "mbk/result/robot_json.h"
-#include "mbk/robot/planar_mechanism.h"
+#include "mbk/robot_file/robot_file.h"
 
 namespace mbk::app {
 namespace {
 
-robot::DynamicModel thesis_robot() {
-  const robot::PlanarRobot robot;
-  robot::DynamicModel model;
-  model.mechanism = std::make_shared<robot::PlanarMechanism>(robot::PlanarMechanism::Options());
-  model.drive.coulomb = model.drive.offset = false;
-  model.parameters = Vector(5);
-  model.parameters << robot.inertia.alpha1, robot.inertia.alpha2, robot.inertia.alpha3, robot.friction[0].viscous,
-      robot.friction[1].viscous;
-  return model;
+/// The robot that a result describes, with the numbers that it holds.
+Result<robot::RobotDescription> from_result(const std::filesystem::path& file) {
+  const auto text = read_text(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto stored = result::robot_from_json(*text);
+  if (!stored) return tl::unexpected(stored.error().in(file.string()));
+  auto description = stored->description.empty()
+                         ? robot_file::thesis_robot()
+                         : robot_file::parse_robot_description(stored->description, stored->urdf, file.string());
+  if (!description) return description;
+  robot::DynamicModel& model = description->model;
+  model.drive = stored->drive;
+  std::vector<std::string> names;
+  for (const robot::Coefficient& one : model.coefficients()) names.push_back(one.name);
+  if (names != stored->names) {
+    return bad_data("its parameters are not those of the robot that it describes",
+                    "write it anew with 'mbk robot identify --json'", file.string());
+  }
+  model.parameters = stored->parameters;
+  model.covariance = stored->covariance;
+  model.delay = stored->delay;
+  description->source = file.string();
+  description->unstated.clear();
+  return description;
 }
 
 }  // namespace
 
+Result<robot::RobotDescription> describe_robot(const std::optional<std::filesystem::path>& file) {
+  if (!file) return robot_file::thesis_robot();
+  return file->extension() == ".json" ? from_result(*file) : robot_file::read_robot_description(*file);
+}
+
 Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>& file) {
-  robot::DynamicModel model = thesis_robot();
-  if (!file) return model;
-  const auto text = read_text(*file);
-  if (!text) return tl::unexpected(text.error());
-  auto stored = result::robot_from_json(*text);
-  if (!stored) return tl::unexpected(stored.error().in(file->string()));
-  model.drive = stored->drive;
-  model.parameters = stored->parameters;
-  model.covariance = stored->covariance;
-  model.delay = stored->delay;
-  return model;
+  auto description = describe_robot(file);
+  if (!description) return tl::unexpected(description.error());
+  if (!description->unstated.empty()) {
+    return bad_data(fmt::format("it does not say {}", fmt::join(description->unstated, ", ")),
+                    "find them with 'mbk robot identify FILE... --robot ROBOT --json', or state them", file->string());
+  }
+  return std::move(description->model);
 }
 
 }  // namespace mbk::app

@@ -4,13 +4,17 @@
 #include <optional>
 
 #include "mbk/core/result.h"
-#include "mbk/robot/dynamic_model.h"
+#include "mbk/robot/robot_description.h"
 
 namespace mbk::app {
 
-/// The robot that --robot names: what 'mbk robot identify --json' wrote, a description in TOML, or a URDF; without a
+/// The robot that --robot names: a description in TOML, a URDF, or what 'mbk robot identify --json' wrote; without a
 /// file the thesis's robot, with the parameters of table A.1.
 /// @fails  as reading the file; data: its coefficients are not those of the robot that it describes.
+[[nodiscard]] Result<robot::RobotDescription> describe_robot(const std::optional<std::filesystem::path>& file);
+
+/// The same, to compute a force with: every coefficient must be known.
+/// @fails  as describe_robot; data: the file leaves coefficients open (they are named).
 [[nodiscard]] Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>& file);
 
 }  // namespace mbk::app

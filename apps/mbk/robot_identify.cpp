@@ -9,10 +9,10 @@
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_commands.h"
+#include "apps/mbk/robot_file.h"
 #include "mbk/measurement/identify_robot.h"
 #include "mbk/report/robot_text.h"
 #include "mbk/result/robot_json.h"
-#include "mbk/robot/planar_mechanism.h"
 
 namespace mbk::app {
 namespace {
@@ -59,9 +59,8 @@ Result<void> set_terms(const std::string& list, robot::DriveTerms& drive) {
   return {};
 }
 
-Result<robot::DynamicModel> robot_of(const Arguments& arguments, measurement::RobotOptions& options) {
-  robot::DynamicModel model;
-  model.mechanism = std::make_shared<robot::PlanarMechanism>(robot::PlanarMechanism::Options());
+/// The robot's structure with what the options say of its drives.
+Result<void> choose(const Arguments& arguments, robot::DynamicModel& model, measurement::RobotOptions& options) {
   if (!arguments.terms.empty()) {
     if (auto ok = set_terms(arguments.terms, model.drive); !ok) return tl::unexpected(ok.error());
   }
@@ -80,14 +79,16 @@ Result<robot::DynamicModel> robot_of(const Arguments& arguments, measurement::Ro
     options.stribeck_velocity = !*velocity;
     if (*velocity) model.drive.stribeck_velocity = **velocity;
   }
-  return model;
+  return {};
 }
 
 int run(const Arguments& arguments) {
   if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
   measurement::RobotOptions options;
-  const auto model = robot_of(arguments, options);
-  if (!model) return report_error(model.error());
+  auto robot = describe_robot(arguments.robot);
+  if (!robot) return report_error(robot.error());
+  if (!arguments.robot) robot->model.drive.coulomb = robot->model.drive.offset = true;
+  if (auto ok = choose(arguments, robot->model, options); !ok) return report_error(ok.error());
   const auto signals = signal_options(arguments);
   if (!signals) return report_error(signals.error());
   options.preprocess.signals = *signals;
@@ -103,8 +104,10 @@ int run(const Arguments& arguments) {
   others.files = arguments.held_back;
   const auto held_back = read_recordings(others);
   if (!held_back) return report_error(held_back.error());
-  const auto found = measurement::identify_robot(*recordings, *held_back, *model, options);
+  auto found = measurement::identify_robot(*recordings, *held_back, robot->model, options);
   if (!found) return report_error(found.error());
+  found->description = robot->toml;
+  found->urdf = robot->urdf;
   const std::string text = arguments.json ? result::to_json(*found) : report::robot_text(*found);
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
@@ -123,6 +126,8 @@ Action add_robot_identify(CLI::App& group) {
       "      the thesis's robot: alpha1 … alpha3, friction, and how well the torque is explained\n"
       "  mbk robot identify free_1.h5 free_2.h5 --held-back free_3.h5 --json --out robot.json\n"
       "      several recordings in one fit, another to judge it; robot.json is what a virtual force needs\n"
+      "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml\n"
+      "      your own robot, from its URDF\n"
       "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n\n"
       "Record with nothing at the hand, every joint moving, fast and slow, through the places where you will\n"
       "measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
@@ -130,6 +135,11 @@ Action add_robot_identify(CLI::App& group) {
       std::string(kExitCodes));
   add_reading_options(*command, *arguments);
   command->add_option("--held-back", arguments->held_back, "recordings that only judge the fit")->type_name("FILE");
+  command
+      ->add_option("--robot", arguments->robot,
+                   "which robot it is: a description in TOML or a URDF; without it the thesis's robot")
+      ->type_name("FILE")
+      ->check(not_empty());
   add_window_options(*command, *arguments);
   add_filter_options(*command, *arguments);
   const char* const model = "Model";

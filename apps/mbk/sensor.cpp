@@ -71,8 +71,8 @@ Action add_calibrate(CLI::App& sensor) {
       "  mbk sensor calibrate --channels Fx=mass*9.81,Vx=volt x_loads.csv --axes 1\n"
       "      a hung mass in kg, one axis\n"
       "  mbk sensor calibrate trial.csv --json --out cell.json\n"
-      "      a recording of a reference sensor's Fx, Fy beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
-      "Each FILE is a run with a zero of its own; the slopes are those of all runs, the zero is that of the last.");
+      "      a reference sensor's Fx, Fy over time beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
+      "Each FILE is a run with a zero of its own; the slopes come from all runs, the zero from the last.");
   MeasureArguments& reading = arguments->reading;
   add_reading_options(*command, reading);
   command->get_option("--axes")->description("1: each axis by itself; otherwise crosstalk is fitted too");

@@ -409,6 +409,36 @@ std::optional<std::ptrdiff_t> Section::find_word(std::string_view key, std::span
   return std::nullopt;
 }
 
+std::optional<std::vector<std::ptrdiff_t>> Section::find_words(std::string_view key,
+                                                               std::span<const std::string_view> words) const {
+  const Node* node = find(key, Need::optional);
+  if (node == nullptr) return std::nullopt;
+  const List* list = std::get_if<List>(&node->value);
+  if (list == nullptr) {
+    wrong_type(key, *node, "an array of words");
+    return std::nullopt;
+  }
+  std::vector<std::ptrdiff_t> indices;
+  for (const Node& entry : *list) {
+    const auto* text = std::get_if<std::string>(&entry.value);
+    if (text == nullptr) {
+      wrong_type(key, entry, "a text", fmt::format("entry {}: ", indices.size() + 1));
+      return std::nullopt;
+    }
+    const std::ptrdiff_t index = std::ranges::find(words, *text) - words.begin();
+    if (index == std::ssize(words)) {
+      reject(key, fmt::format("{} is not possible", in_quotes(*text)), fmt::format("use {}", fmt::join(words, ", ")));
+      return std::nullopt;
+    }
+    if (std::ranges::find(indices, index) != indices.end()) {
+      reject(key, fmt::format("{} stands there twice", in_quotes(*text)), "keep one");
+      return std::nullopt;
+    }
+    indices.push_back(index);
+  }
+  return indices;
+}
+
 std::optional<std::vector<double>> Section::find_numbers(std::string_view key, Range allowed, std::size_t count,
                                                          Need need) const {
   const Node* node = find(key, need);

@@ -118,6 +118,19 @@ class Section {
     return chosen(key, options, Need::required).value_or(options.begin()->second);
   }
 
+  /// Some of a few words, each at most once: s.choices("axes", {{"x", Axis::x}, {"y", Axis::y}}, {Axis::x})
+  template <class Value>
+  [[nodiscard]] std::vector<Value> choices(std::string_view key, Choices<Value> options,
+                                           std::vector<Value> fallback) const {
+    std::vector<std::string_view> words;
+    for (const auto& option : options) words.push_back(option.first);
+    const auto indices = find_words(key, words);
+    if (!indices) return fallback;
+    std::vector<Value> values;
+    for (const std::ptrdiff_t index : *indices) values.push_back((options.begin() + index)->second);
+    return values;
+  }
+
   /// [1.0, 2.0, ...] in SI units; `allowed` holds for each, `count` is how many there must be (kAnyCount: any).
   static constexpr std::size_t kAnyCount = std::numeric_limits<std::size_t>::max();
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::vector<double> fallback, Range allowed = any(),
@@ -167,6 +180,8 @@ class Section {
   [[nodiscard]] std::optional<std::string> find_text(std::string_view key, Need need) const;
   [[nodiscard]] std::optional<std::ptrdiff_t> find_word(std::string_view key, std::span<const std::string_view> words,
                                                         Need need) const;
+  [[nodiscard]] std::optional<std::vector<std::ptrdiff_t>> find_words(std::string_view key,
+                                                                      std::span<const std::string_view> words) const;
   [[nodiscard]] std::optional<std::vector<double>> find_numbers(std::string_view key, Range allowed, std::size_t count,
                                                                 Need need) const;
   [[nodiscard]] std::optional<Eigen::Vector2d> find_vector2(std::string_view key, Range allowed, Need need) const;

@@ -46,6 +46,22 @@ TEST(Section, GivesNumbersInSiUnits) {
   EXPECT_EQ(problem(document), "");
 }
 
+TEST(Section, GivesSomeOfAFewWords) {
+  const auto chosen = [](const std::string& text) {
+    const Document document = parsed(text);
+    const auto kinds = document.root().choices<Kind>(
+        "kinds", {{"multisine", Kind::multisine}, {"pulses", Kind::pulses}}, {Kind::pulses});
+    return std::pair(kinds, problem(document));
+  };
+  EXPECT_THAT(chosen("").first, ElementsAre(Kind::pulses));
+  EXPECT_THAT(chosen("kinds = []").first, testing::IsEmpty());
+  EXPECT_THAT(chosen("kinds = ['pulses', 'multisine']").first, ElementsAre(Kind::pulses, Kind::multisine));
+  EXPECT_THAT(chosen("kinds = ['chirp']").second, HasSubstr("'chirp' is not possible; use multisine, pulses"));
+  EXPECT_THAT(chosen("kinds = ['pulses', 'pulses']").second, HasSubstr("'pulses' stands there twice"));
+  EXPECT_THAT(chosen("kinds = ['pulses', 1]").second, HasSubstr("entry 2"));
+  EXPECT_THAT(chosen("kinds = 'pulses'").second, HasSubstr("a text where an array of words is wanted"));
+}
+
 TEST(Section, GivesFallbacksInSiUnitsWhereNothingStands) {
   const Document document = parsed("");
   const Section s = document.root().section("perturbation");

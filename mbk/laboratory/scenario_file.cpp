@@ -10,6 +10,7 @@
 
 #include "mbk/config/document.h"
 #include "mbk/laboratory/scenario.h"
+#include "mbk/robot_file/planar_keys.h"
 
 namespace mbk::laboratory {
 namespace {
@@ -24,27 +25,9 @@ using perturbation::Space;
 /// From the shoulder to the test location (Dyck 2013, §3.4.2) [m].
 constexpr double kShoulderDistance = 0.52;
 
-std::array<double, 2> pair_of(const Vector2d& value) {
-  return {value[0], value[1]};
-}
-
 ClosedLoop::Options read_robot(const Section& s) {
   ClosedLoop::Options options;
-  robot::PlanarRobot& robot = options.robot;
-  robot.geometry.d1 = s.number("d1_mm", robot.geometry.d1, above(0));
-  robot.geometry.d2 = s.number("d2_mm", robot.geometry.d2, above(0));
-  const std::vector<double> alpha =
-      s.numbers("alpha_kg_m2", {robot.inertia.alpha1, robot.inertia.alpha2, robot.inertia.alpha3}, config::any(), 3);
-  robot.inertia = {alpha[0], alpha[1], alpha[2]};
-  const auto both = [&](const char* key, double robot::JointFriction::*part, config::Range allowed) {
-    const auto value = pair_of(s.vector2(key, Vector2d(robot.friction[0].*part, robot.friction[1].*part), allowed));
-    for (std::size_t joint = 0; joint < 2; ++joint) robot.friction[joint].*part = value[joint];
-  };
-  both("viscous_Nms_per_rad", &robot::JointFriction::viscous, at_least(0));
-  both("coulomb_Nm", &robot::JointFriction::coulomb, at_least(0));
-  both("breakaway_Nm", &robot::JointFriction::breakaway, at_least(0));
-  both("stribeck_velocity_rad_per_s", &robot::JointFriction::stribeck_velocity, above(0));
-  both("smoothing_rad_per_s", &robot::JointFriction::smoothing, above(0));
+  options.robot = robot_file::read_planar_robot(s);
   options.handle_mass = s.number("handle_mass_kg", options.handle_mass, at_least(0));
   options.steps_per_tick = s.integer("steps_per_tick", options.steps_per_tick, 1, 100);
   if (const Section c = s.section("capstan"); c.given()) {

@@ -11,9 +11,11 @@
 #include "mbk/analyse/diagnostics.h"
 #include "mbk/analyse/ellipses.h"
 #include "mbk/analyse/energy.h"
+#include "mbk/analyse/force_comparison.h"
 #include "mbk/analyse/passivity.h"
 #include "mbk/identify/consistent_fit.h"
 #include "mbk/preprocess/resample.h"
+#include "mbk/preprocess/signals.h"
 #include "mbk/recording/inspection.h"
 
 namespace mbk::measurement {
@@ -99,6 +101,19 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
   warn_of_clipping(source.recorded, *trial);
   if (options.resample) warn_of_resampling(source.recorded, *options.resample, *trial);
   return trial;
+}
+
+/// The computed force beside the sensor's, on one stretch that counts: both filtered alike.
+analyse::ForcePair force_pair(const Source& source, const PreparedTrial& computed, const PreparedTrial& sensed,
+                              const Stretch& stretch) {
+  analyse::ForcePair pair{computed.force_hand_on_robot.middleRows(stretch.begin, stretch.size()),
+                          sensed.force_hand_on_robot.middleRows(stretch.begin, stretch.size()),
+                          Matrix(stretch.size(), source.computed->joint_velocity.cols())};
+  for (Index i = 0; i < stretch.size(); ++i) {
+    pair.joint_velocity.row(i) =
+        source.computed->joint_velocity.row(stretch.first_sample + i * computed.preparation.every);
+  }
+  return pair;
 }
 
 /// Each recording prepared, its reference too; where several are pooled, their rows weigh alike.
@@ -195,6 +210,42 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
   return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
 }
 
+/// Where a sensor recorded the force that was computed: how far both are apart, and what the sensor's force gives.
+Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                                 Options options, result::Measured& measured) {
+  const auto both = [](const Source& source) { return source.computed && source.computed->sensor_force.size() > 0; };
+  if (!std::ranges::all_of(sources, both)) return {};
+  options.preprocess.every = trials.front().preparation.every;
+  std::vector<PreparedTrial> by_sensor;
+  std::vector<analyse::ForcePair> pairs;
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const Source& source = sources[k];
+    Recording sensed = source.computed->recording;
+    for (Index axis = 0; axis < trials[k].axes; ++axis) {
+      const char* const name = preprocess::channel_name(preprocess::Quantity::force, trials[k].axes, axis);
+      for (Channel& channel : sensed.channels) {
+        if (channel.name == name) channel.values = source.computed->sensor_force.col(axis);
+      }
+    }
+    preprocess::Options how = options.preprocess;
+    how.force_source = ForceSource::sensor;
+    how.instruments = true;
+    auto trial = preprocess::prepare(sensed, recording::inspect(sensed), how);
+    if (!trial || trial->time.size() != trials[k].time.size()) return {};  // a sensor that did not work
+    for (const Stretch& stretch : trial->stretches) pairs.push_back(force_pair(source, trials[k], *trial, stretch));
+    by_sensor.push_back(std::move(*trial));
+  }
+  auto comparison = analyse::compare_forces(pairs, trials.front().sample_time);
+  if (!comparison) return tl::unexpected(comparison.error());
+  measured.force_comparison = std::move(*comparison);
+  identify::Options how = options.identify;
+  how.bootstrap = 0;
+  auto identified = identify::identify_impedance(by_sensor, how);
+  if (!identified) return tl::unexpected(identified.error());
+  measured.by_sensor = std::move(*identified);
+  return {};
+}
+
 Result<result::Measured> measure_prepared(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                           const Options& options) {
   auto identified = identify_by_both(trials, options.identify);
@@ -212,6 +263,7 @@ Result<result::Measured> measure_prepared(const std::vector<Source>& sources, co
     if (!bootstrap) return tl::unexpected(bootstrap.error());
     measured.bootstrap = std::move(*bootstrap);
   }
+  if (auto ok = compare_with_sensor(sources, trials, options, measured); !ok) return tl::unexpected(ok.error());
   if (options.passivity) {
     auto passivity = judge_passivity(sources, trials, options, measured);
     if (!passivity) {

@@ -14,6 +14,7 @@
 #include "mbk/preprocess/joint_signals.h"
 #include "mbk/preprocess/signals.h"
 #include "mbk/preprocess/windows.h"
+#include "mbk/robot/observed_force.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -65,6 +66,11 @@ void put(Recording& recording, const std::string& name, const char* unit, const 
 
 }  // namespace
 
+Result<Matrix> VirtualForce::smoothed(const Matrix& force, Hertz rate) const {
+  const Index half = smoothing.half_window();
+  return dsp::savitzky_golay(smoothing, 0, force.middleRows(first - half, last - first + 2 * half), rate);
+}
+
 Result<VirtualForce> virtual_force(const Recording& recording, const Inspection& inspection,
                                    const robot::DynamicModel& model, const Options& options) {
   if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
@@ -106,7 +112,9 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   made.first = cut.begin + filters.smoothing.half_window();
   const Index rows = joints->torque.rows();
   made.last = made.first + rows;
-  const bool sure = model.covariance.size() == 0 || model.covariance.isZero(0.0);
+  made.smoothing = filters.smoothing;
+  const bool observed = options.force_source == ForceSource::observer;
+  const bool sure = observed || model.covariance.size() == 0 || model.covariance.isZero(0.0);
   const std::vector<Matrix> W = model.regressors(joints->motion);
   const Index p = model.parameters.size();
   Matrix of_model(rows, n);
@@ -127,12 +135,22 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
     sensitivity.row(i) = Eigen::Map<const Eigen::RowVectorXd>(at_hand.data(), at_hand.size());
     error.row(i) = (at_hand * model.covariance * at_hand.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt().transpose();
   }
+  if (observed) {
+    const Index length = cut.end - cut.begin;
+    const auto forces =
+        robot::observe_force(model, signals->position.middleRows(cut.begin, length),
+                             signals->torque.middleRows(cut.begin, length), {}, 1.0 / rate.value);
+    if (!forces) return tl::unexpected(forces.error());
+    made.lag = forces->lag;
+    force = forces->force_hand_on_robot.middleRows(filters.smoothing.half_window(), rows);
+  }
   if (auto ok = check_torque_unit(force, joints->torque, of_model, mechanism.slides(0)); !ok) {
     return tl::unexpected(ok.error());
   }
 
   made.recording = recording;
   const Matrix whole = held(force, made.first, samples);
+  made.joint_velocity = held(joints->motion.velocity, made.first, samples);
   if (!sure) {
     made.sensitivity = held(sensitivity, made.first, samples);
     made.standard_error = held(error, made.first, samples);
@@ -161,9 +179,13 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
     }
     put(made.recording, hand, turns ? "rad" : "m", place.col(axis));
   }
-  made.recording.notes.push_back(fmt::format(
-      "the force is not measured: it is what the motors' torques and a model of the robot leave (virtual sensor), q̈ {}",
-      accelerometer ? "from the accelerometer" : "from the joints"));
+  made.recording.notes.push_back(
+      observed ? fmt::format("the force is not measured: a momentum observer makes it of motion, torques and a model of "
+                             "the robot, {:.0f} ms late",
+                             1e3 * made.lag)
+               : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
+                             "(virtual sensor), q̈ {}",
+                             accelerometer ? "from the accelerometer" : "from the joints"));
   return made;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/numeric/statistics.h"
+#include "mbk/report/force_comparison_text.h"
 #include "mbk/report/layout.h"
 
 namespace mbk::report {
@@ -102,6 +103,27 @@ std::string robot_text(const RobotIdentification& found) {
   }
   if (!found.warnings.empty()) text += "\n" + warnings_text(found.warnings);
   if (!found.usable) text += "\n  NOT USABLE: do not use this model; see the warnings above.\n";
+  return text;
+}
+
+std::string force_text(const ForceSummary& force) {
+  const bool observed = force.source == ForceSource::observer;
+  const bool sure = force.standard_error.size() > 0;
+  std::string text;
+  for (const SourceFile& source : force.sources) text += fmt::format("{}   {}\n", source.path, source.format);
+  for (const std::string& note : force.notes) text += paragraph("  ", note);
+  std::vector<std::vector<std::string>> rows = {{"", "RMS", "peak"}};
+  if (sure) rows.front().emplace_back("± of the robot's dynamics");
+  for (Index axis = 0; axis < force.rms.size(); ++axis) {
+    rows.push_back({force.rms.size() == 1 ? "F" : (axis == 0 ? "Fx" : "Fy"), fmt::format("{:.3g} N", force.rms[axis]),
+                    fmt::format("{:.3g} N", force.peak[axis])});
+    if (sure) rows.back().push_back(fmt::format("{:.2g} N", numeric::kNormal95 * force.standard_error[axis]));
+  }
+  text += "\n" + table(rows);
+  if (force.comparison) {
+    text += "\n" + force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor",
+                                         "force sensor");
+  }
   return text;
 }
 

@@ -12,6 +12,7 @@
 #include "mbk/impedance/ellipse.h"
 #include "mbk/numeric/statistics.h"
 #include "mbk/report/chart.h"
+#include "mbk/report/force_comparison_text.h"
 #include "mbk/report/layout.h"
 #include "mbk/report/picture.h"
 
@@ -191,6 +192,14 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
   text += table({{id.fit.held_back ? "fit on held-back data" : "fit on the same data",
                   "VAF " + per_axis(id.fit.vaf, "%", 2), "RMSE " + per_axis(id.fit.rmse, units_of(id.motion).force, 3)},
                  {"fit in sample", "VAF " + per_axis(id.fit.vaf_in_sample, "%", 2)}});
+  if (id.standard_error_of_robot) {
+    const impedance::Model& of_robot = *id.standard_error_of_robot;
+    const Units units = units_of(id.motion);
+    text += table({{"of ±, the robot's dynamics",
+                    fmt::format("M {:.2g} {}, B {:.2g} {}, K {:.2g} {}", numeric::kNormal95 * of_robot.M.maxCoeff(),
+                                units.inertia, numeric::kNormal95 * of_robot.B.maxCoeff(), units.damping,
+                                numeric::kNormal95 * of_robot.K.maxCoeff(), units.stiffness)}});
+  }
   if (id.decimation) {
     text += table({{fmt::format("at {:g} Hz", id.decimation->rate_hz),
                     fmt::format("the model differs by {:.2g} % of each matrix's largest element",
@@ -223,6 +232,21 @@ std::string alternative_text(const Identification& id, const Identification& alt
                                largest)) +
          fmt::format("  by {}, VAF {}\n", other, per_axis(alternative.fit.vaf, "%", 1)) +
          model_table(alternative.model, alternative.standard_error, numeric::kNormal95, alternative.motion);
+}
+
+std::string by_sensor_text(const Identification& computed, const Identification& sensed,
+                           const ForceComparison& comparison) {
+  const bool virtual_sensor = computed.preparations.front().force_source == ForceSource::virtual_sensor;
+  std::string text =
+      force_comparison_text(comparison, virtual_sensor ? "virtual sensor" : "momentum observer", "force sensor");
+  text += fmt::format("\n  by the force sensor, VAF {}\n", per_axis(sensed.fit.vaf, "%", 2));
+  text += model_table(sensed.model, sensed.standard_error, numeric::kNormal95, sensed.motion);
+  const impedance::Model &a = computed.model, &b = sensed.model;
+  const Index n = a.axes();
+  const impedance::Model undefined = impedance::unstacked(
+      Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN()), n);
+  text += "  the computed force less the sensor\n";
+  return text + model_table({a.M - b.M, a.B - b.B, a.K - b.K, a.x0 - b.x0}, undefined, 1.0, computed.motion);
 }
 
 std::string bootstrap_text(const BootstrapFindings& bootstrap) {

@@ -11,6 +11,7 @@
 #include "mbk/trial/chart.h"
 #include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
+#include "mbk/trial/force_comparison.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/inspection.h"
 #include "mbk/trial/recording.h"
@@ -32,6 +33,10 @@ inline constexpr std::size_t kLineColumns = 100;
 /// The other method beside the first: that both agree, or its model and why they differ.
 [[nodiscard]] std::string alternative_text(const Identification& identification, const Identification& alternative,
                                            const Disagreement& disagreement);
+
+/// A computed force against that of the sensor, and what it changes in the model (Dyck 2013, tables 5.3–5.5 in form).
+[[nodiscard]] std::string by_sensor_text(const Identification& computed, const Identification& sensed,
+                                         const ForceComparison& comparison);
 
 /// Every quantity with its interval by the bootstrap and by the delta method.
 [[nodiscard]] std::string bootstrap_text(const BootstrapFindings& bootstrap);

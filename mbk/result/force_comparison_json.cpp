@@ -11,9 +11,8 @@ Json agreement_json(const ForceAgreement& agreement) {
 
 }  // namespace
 
-std::string to_json(const ForceComparison& comparison) {
-  Json json = header("mbk.force_comparison/1");
-  json["duration_s"] = number(comparison.duration);
+Json force_comparison_json(const ForceComparison& comparison) {
+  Json json = {{"duration_s", number(comparison.duration)}};
   json["all"] = agreement_json(comparison.all);
   json["rest"] = agreement_json(comparison.rest);
   json["motion"] = agreement_json(comparison.motion);
@@ -27,7 +26,7 @@ std::string to_json(const ForceComparison& comparison) {
   json["rest_speed"] = number(comparison.rest_speed);
   json["reversal_window_s"] = number(comparison.reversal_window);
   json["longest_lag_s"] = number(comparison.longest_lag);
-  return dumped(json);
+  return json;
 }
 
 }  // namespace mbk::result

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <string>
-
+#include "mbk/result/json_parts.h"
 #include "mbk/trial/force_comparison.h"
 
+/// For the sources of this module only.
 namespace mbk::result {
 
-/// Schema "mbk.force_comparison/1", in SI units; null for what is undefined.
-[[nodiscard]] std::string to_json(const ForceComparison& comparison);
+/// Object `force_comparison` of a result, in SI units; null for what is undefined.
+[[nodiscard]] Json force_comparison_json(const ForceComparison& comparison);
 
 }  // namespace mbk::result

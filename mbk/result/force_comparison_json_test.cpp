@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
 namespace mbk::result {
 namespace {
 
-using nlohmann::json;
+using json = Json;
 
 Vector of(double x, double y) {
   return Eigen::Vector2d(x, y);
@@ -31,8 +30,7 @@ TEST(ForceComparisonJson, HasEveryNumberInSiAndNullForWhatIsUndefined) {
   comparison.rest_speed = 0.02;
   comparison.reversal_window = 0.05;
   comparison.longest_lag = 0.1;
-  const json read = json::parse(to_json(comparison));
-  EXPECT_EQ(read["schema"], "mbk.force_comparison/1");
+  const Json read = force_comparison_json(comparison);
   EXPECT_EQ(read["duration_s"], 12.5);
   EXPECT_EQ(read["all"], (json{{"rows", 12500}, {"bias", {0.01, -0.02}}, {"RMSE", {0.1, 0.2}}}));
   EXPECT_EQ(read["rest"]["rows"], 0);

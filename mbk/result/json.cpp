@@ -10,6 +10,7 @@
 
 #include "mbk/impedance/ellipse.h"
 #include "mbk/impedance/model.h"
+#include "mbk/result/force_comparison_json.h"
 #include "mbk/result/json_parts.h"
 #include "mbk/result/json_reading.h"
 #include "mbk/result/passivity_json.h"
@@ -148,6 +149,15 @@ Json disagreement_json(const Disagreement& disagreement) {
           {"significant", disagreement.significant}};
 }
 
+/// What a force sensor gives, and what the computed force makes of it instead.
+Json by_sensor_json(const Identification& computed, const Identification& sensed) {
+  const impedance::Model &a = computed.model, &b = sensed.model;
+  return {{"model", model_json(b)},
+          {"standard_error", model_json(sensed.standard_error)},
+          {"fit", fit_json(sensed.fit)},
+          {"induced_error", model_json({a.M - b.M, a.B - b.B, a.K - b.K, a.x0 - b.x0})}};
+}
+
 Json result_json(const Measured& measured) {
   const Identification& id = measured.identification;
   Json json = header(kResultSchema);
@@ -174,6 +184,7 @@ Json result_json(const Measured& measured) {
   }
   json["model"] = model_json(id.model);
   json["standard_error"] = model_json(id.standard_error);
+  if (id.standard_error_of_robot) json["standard_error_of_robot"] = model_json(*id.standard_error_of_robot);
   json["fit"] = fit_json(id.fit);
   if (measured.findings) {
     json["ellipses"] = ellipses_json(*measured.findings);
@@ -183,6 +194,8 @@ Json result_json(const Measured& measured) {
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
   json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
+  if (measured.force_comparison) json["force_comparison"] = force_comparison_json(*measured.force_comparison);
+  if (measured.by_sensor) json["by_force_sensor"] = by_sensor_json(id, *measured.by_sensor);
   if (measured.bootstrap) json["bootstrap"] = bootstrap_json(*measured.bootstrap);
   if (measured.consistent) json["consistent_fit"] = consistent_json(*measured.consistent);
   if (measured.passivity) json["passivity"] = passivity_json(*measured.passivity);

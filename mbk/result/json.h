@@ -11,6 +11,7 @@
 #include "mbk/trial/consistent_fit.h"
 #include "mbk/trial/file_contents.h"
 #include "mbk/trial/findings.h"
+#include "mbk/trial/force_comparison.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/inspection.h"
 #include "mbk/trial/passivity.h"
@@ -30,6 +31,9 @@ struct Measured {
   std::optional<BootstrapFindings> bootstrap;  ///< where it was asked for
   std::optional<ConsistentFit> consistent;     ///< nearest to the model that speaks for the limb
   std::optional<Passivity> passivity;
+  /// Where the force was computed and a sensor recorded it too: how both agree, and the model by the sensor.
+  std::optional<ForceComparison> force_comparison;
+  std::optional<Identification> by_sensor;
   std::vector<Energy> energies;  ///< one for each recording, beside the passivity
 };
 

@@ -77,6 +77,7 @@ inline Json preparation_json(const Preparation& how) {
                {"cutoff_rule", how.cutoff_rule},
                {"every", how.every},
                {"excited_band_hz", {how.band_low.value, how.band_high.value}},
+               {"force_source", text(how.force_source)},
                {"acceleration", how.acceleration_from_sensor ? "sensor" : "derivative"},
                {"cut_before_filter", how.cut_before_filter}};
   if (how.split_s) json["split_s"] = *how.split_s;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mbk/result/force_comparison_json.h"
 #include "mbk/result/json_parts.h"
 #include "mbk/result/json_reading.h"
 
@@ -145,6 +146,19 @@ std::string to_json(const RobotIdentification& found) {
   json["notes"] = found.notes;
   json["warnings"] = warnings_json(found.warnings);
   json["usable"] = found.usable;
+  return dumped(json);
+}
+
+std::string to_json(const ForceSummary& force) {
+  Json json = header("mbk.force/1");
+  json["inputs"] = inputs_json(force.sources);
+  json["force_source"] = mbk::text(force.source);
+  json["lag_s"] = number(force.lag);
+  json["RMS"] = list(force.rms);
+  json["peak"] = list(force.peak);
+  if (force.standard_error.size() > 0) json["standard_error_RMS"] = list(force.standard_error);
+  if (force.comparison) json["force_comparison"] = force_comparison_json(*force.comparison);
+  json["notes"] = force.notes;
   return dumped(json);
 }
 

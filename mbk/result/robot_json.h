@@ -6,12 +6,16 @@
 
 #include "mbk/core/result.h"
 #include "mbk/robot/drive_terms.h"
+#include "mbk/trial/force_summary.h"
 #include "mbk/trial/robot_identification.h"
 
 namespace mbk::result {
 
 /// Schema "mbk.robot/1": the dynamics of a robot, with everything that is needed to use them again.
 [[nodiscard]] std::string to_json(const RobotIdentification& found);
+
+/// Schema "mbk.force/1": a computed force in short, beside the sensor's where there is one.
+[[nodiscard]] std::string to_json(const ForceSummary& force);
 
 /// What a stored robot says, by itself: which robot it is stands in its description.
 struct StoredRobot {

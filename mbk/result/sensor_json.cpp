@@ -56,6 +56,11 @@ class Reader {
     const auto found = json.find(name);
     return found != json.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
   }
+  static Index count(const Json& json, const char* name) {
+    constexpr double kMost = 1e15;
+    const double value = maybe(json, name).value_or(0.0);
+    return value >= 0.0 && value <= kMost ? static_cast<Index>(value) : 0;
+  }
   Matrix matrix(const Json& json, const char* name, Index n) {
     Matrix values = Matrix::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
     const auto found = json.find(name);
@@ -100,7 +105,7 @@ SensorAxis axis_from(Reader& reader, const Json& json) {
   axis.rmse = Reader::or_undefined(json, "RMSE");
   axis.full_scale = Reader::or_undefined(json, "full_scale");
   axis.nonlinearity = Reader::or_undefined(json, "nonlinearity");
-  axis.loads = static_cast<Index>(Reader::maybe(json, "loads").value_or(0.0));
+  axis.loads = Reader::count(json, "loads");
   axis.hysteresis = Reader::maybe(json, "hysteresis");
   axis.noise = Reader::maybe(json, "noise_voltage");
   axis.step = Reader::maybe(json, "step_voltage");
@@ -182,6 +187,8 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
     json = Json::parse(text);
   } catch (const Json::parse_error& error) {
     return bad_data(fmt::format("not JSON, at byte {}", error.byte), "give a file of 'mbk sensor calibrate --json'");
+  } catch (const Json::exception&) {
+    return bad_data("a number is beyond what can be said", "give a file of 'mbk sensor calibrate --json'");
   }
   if (!json.is_object() || text_or_empty(json, "schema") != kSchema) {
     return bad_data(fmt::format("not a calibration of schema {}", kSchema),
@@ -208,7 +215,7 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
   calibration.lever_arm = Reader::maybe(json, "lever_arm");
   if (calibration.lever_arm && !(*calibration.lever_arm > 0.0)) reader.wrong("lever_arm", "above 0");
   calibration.delay = Reader::maybe(json, "delay").value_or(0.0);
-  calibration.rows = static_cast<Index>(Reader::maybe(json, "rows").value_or(0.0));
+  calibration.rows = Reader::count(json, "rows");
   calibration.hac_lag_s = Reader::maybe(json, "hac_lag_s").value_or(0.0);
   calibration.continuous = json.value("continuous", Json()) == Json(true);
   read_provenance(calibration, json);

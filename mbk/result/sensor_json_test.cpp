@@ -60,6 +60,7 @@ TEST(SensorJson, NamesWhatIsWrong) {
   EXPECT_THAT(error("{"), HasSubstr("not JSON, at byte"));
   EXPECT_THAT(error("{\"schema\": \"mbk.result/1\"}"), HasSubstr("not a calibration of schema mbk.sensor/1"));
   EXPECT_THAT(error("[]"), HasSubstr("not a calibration"));
+  EXPECT_THAT(error("[1e999]"), HasSubstr("a number is beyond"));
   json document = json::parse(to_json(calibration()));
   const auto with = [&](const char* name, const json& value) {
     json changed = document;

@@ -32,6 +32,12 @@ struct JointMotion {
   [[nodiscard]] Index samples() const { return position.rows(); }
 };
 
+/// Infinite where there is no limit [rad, or m where the joint slides].
+struct JointRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// I(q), Cᵀ(q, q̇) q̇ and g(q) in one state.
 struct JointTerms {
   JointMatrix inertia;              ///< n×n [kg·m²; kg where a joint slides]
@@ -50,6 +56,10 @@ class Mechanism {
 
   /// n, 1 … kMostJoints.
   [[nodiscard]] virtual int joints() const = 0;
+  /// What the joint is called; "1", "2", … where nobody named it.
+  [[nodiscard]] virtual std::string joint_name(int joint) const;
+  /// Where the joint by itself may stand; check_joints may know more.
+  [[nodiscard]] virtual JointRange joint_range(int joint) const = 0;
   /// The joint's coordinate is a length.
   [[nodiscard]] virtual bool slides(int joint) const = 0;
   /// Of the hand: 1 or 2.

@@ -14,6 +14,12 @@ PlanarMechanism::PlanarMechanism(const Options& options) : options_(options) {
   }
 }
 
+JointRange PlanarMechanism::joint_range(int joint) const {
+  const JointLimits& limits = options_.geometry.limits;
+  return joint == 0 ? JointRange{limits.theta1_low, limits.theta1_high}
+                    : JointRange{limits.theta2_low, limits.theta2_high};
+}
+
 void PlanarMechanism::regressor(const JointVector& position, const JointVector& velocity,
                                 const JointVector& acceleration, Eigen::Ref<Matrix> Y) const {
   const double s = 0.5 * std::sin(position[0] - position[1]), c = 0.5 * std::cos(position[0] - position[1]);

@@ -24,6 +24,7 @@ class PlanarMechanism : public Mechanism {
   explicit PlanarMechanism(const Options& options);
 
   [[nodiscard]] int joints() const override { return 2; }
+  [[nodiscard]] JointRange joint_range(int joint) const override;
   [[nodiscard]] bool slides(int /*joint*/) const override { return false; }
   [[nodiscard]] int hand_axes() const override { return 2; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace mbk::robot {
 
 SingleJoint::SingleJoint(const Options& options) : options_(options) {
@@ -35,7 +37,8 @@ Result<void> SingleJoint::check_joints(const JointVector& position) const {
 }
 
 std::vector<JointVector> SingleJoint::postures(int /*per_joint*/) const {
-  return {JointVector::Constant(1, 0.5 * (options_.low + options_.high))};
+  const bool bounded = std::isfinite(options_.high - options_.low);
+  return {JointVector::Constant(1, bounded ? 0.5 * (options_.low + options_.high) : 0.0)};
 }
 
 }  // namespace mbk::robot

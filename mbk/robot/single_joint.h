@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "mbk/robot/mechanism.h"
 
 namespace mbk::robot {
@@ -10,11 +12,13 @@ class SingleJoint : public Mechanism {
  public:
   struct Options {
     bool slides = true;
-    double low = -1e9, high = 1e9;  ///< its limits [m or rad]
+    double low = -std::numeric_limits<double>::infinity();  ///< its limits [m or rad]; infinite where it has none
+    double high = std::numeric_limits<double>::infinity();
   };
   explicit SingleJoint(const Options& options);
 
   [[nodiscard]] int joints() const override { return 1; }
+  [[nodiscard]] JointRange joint_range(int /*joint*/) const override { return {options_.low, options_.high}; }
   [[nodiscard]] bool slides(int /*joint*/) const override { return options_.slides; }
   [[nodiscard]] int hand_axes() const override { return 1; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }

@@ -9,9 +9,10 @@ import unittest
 from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
                      write_csv)
 
-COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "robot", "validate",
+COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
             "completion", "manual", "passivity")
-SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "robot": ("workspace",)}
+SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
+               "robot": ("workspace", "describe", "identify", "force")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
 NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
     "--rate": ("0", "-1", "-1e300"),
@@ -146,7 +147,8 @@ class Effects(Case):
     def test_each_option_of_the_help_is_known_to_these_tests(self):
         options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
         elsewhere = {"--help", "--channels", "--variable", "--parts", "--json", "--out", "--overwrite", "--quiet",
-                     "--pool", "--decimate-check", "--report", "--report-note"}
+                     "--pool", "--decimate-check", "--report", "--report-note",
+                     "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay"}  # sensor_test.py
         self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
 
     def test_mode_and_procedure(self):

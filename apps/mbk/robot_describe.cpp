@@ -1,0 +1,49 @@
+#include <memory>
+#include <string>
+
+#include "apps/mbk/output.h"
+#include "apps/mbk/robot_commands.h"
+#include "mbk/identify/robot_fit.h"
+#include "mbk/report/robot_description_text.h"
+#include "mbk/result/robot_description_json.h"
+#include "mbk/robot_file/robot_file.h"
+
+namespace mbk::app {
+namespace {
+
+struct Arguments {
+  std::filesystem::path file;
+  bool json = false;
+  Output output;
+};
+
+int run(const Arguments& arguments) {
+  if (auto ok = arguments.output.check({arguments.file}); !ok) return report_error(ok.error());
+  const auto description = robot_file::read_robot_description(arguments.file);
+  if (!description) return report_error(description.error());
+  const auto base = identify::structural_columns(description->model);
+  const std::string text =
+      arguments.json ? result::to_json(*description, base) : report::robot_description_text(*description, base);
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_robot_describe(CLI::App& group) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = group.add_subcommand("describe", "what mbk understands of a robot's description or URDF");
+  command->footer(
+      "Examples:\n"
+      "  mbk robot describe my_robot.toml\n"
+      "  mbk robot describe arm.urdf\n"
+      "      the whole chain, from the root of the URDF to its only leaf\n\n"
+      "Look at the limits, and at where the hand is with every joint at zero, before you record.\n"
+      "The keys of a description stand in docs/guide/your_own_robot.md.");
+  command->add_option("FILE", arguments->file, "description of a robot: .toml, or a .urdf by itself")->required();
+  command->add_flag("--json", arguments->json, "for machines: schema mbk.robot_description/1");
+  arguments->output.add_options(*command);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "apps/mbk/measure_options.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/robot_commands.h"
+#include "apps/mbk/robot_file.h"
+#include "mbk/measurement/compute_force.h"
+#include "mbk/recording/write.h"
+#include "mbk/report/robot_text.h"
+#include "mbk/result/robot_json.h"
+
+namespace mbk::app {
+namespace {
+
+struct Arguments : MeasureArguments {
+  std::string source = "virtual";
+};
+
+int run(const Arguments& arguments) {
+  std::optional<recording::Format> format;
+  if (arguments.output.file) {
+    const auto found = recording::format_of(*arguments.output.file);
+    if (!found) return report_error(found.error());
+    format = *found;
+  }
+  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  if (arguments.files.size() > 1 && !arguments.parts) {
+    return report_error({ErrorKind::usage, "one recording at a time", "or join numbered parts with --parts", ""});
+  }
+  const auto signals = signal_options(arguments);
+  if (!signals) return report_error(signals.error());
+  measurement::Options options;
+  options.preprocess = *signals;
+  auto robot = robot_of(arguments.robot);
+  if (!robot) return report_error(robot.error());
+  preprocess::Options& p = options.preprocess;
+  p.robot = std::make_shared<const robot::DynamicModel>(std::move(*robot));
+  p.force_source = arguments.source == "observer" ? ForceSource::observer : ForceSource::virtual_sensor;
+  if (arguments.acceleration == "sensor") p.acceleration = preprocess::AccelerationSource::sensor;
+  if (arguments.resample_hz) options.resample = Hertz(*arguments.resample_hz);
+  const auto recordings = read_recordings(arguments);
+  if (!recordings) return report_error(recordings.error());
+  const auto made = measurement::compute_force(recordings->front(), options);
+  if (!made) return report_error(made.error().in(arguments.files.front().string()));
+  if (format) {
+    if (auto ok = recording::write(made->recording, *arguments.output.file, *format, arguments.output.overwrite); !ok) {
+      return report_error(ok.error());
+    }
+  }
+  fmt::print("{}", arguments.json ? result::to_json(made->summary) : report::force_text(made->summary));
+  return kFine;
+}
+
+}  // namespace
+
+Action add_robot_force(CLI::App& group) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = group.add_subcommand("force", "the force at the hand without a force sensor");
+  command->footer(
+      "Examples:\n"
+      "  mbk robot force log.h5 --robot robot.json\n"
+      "      how large it is, how sure, and beside the force sensor where there is one\n"
+      "  mbk robot force log.h5 --robot robot.json --out with_force.h5\n"
+      "      a recording with force_x and force_y computed; those of a sensor stand in it as sensor_force_x …\n\n"
+      "'mbk measure --force-source virtual' does the same on its way.\n\n"
+      "Exit codes: " +
+      std::string(kExitCodes));
+  add_reading_options(*command, *arguments);
+  command
+      ->add_option("--robot", arguments->robot,
+                   "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
+      ->type_name("FILE")
+      ->check(not_empty());
+  command
+      ->add_option("--force-source", arguments->source,
+                   "virtual: from the whole motion, not causal; observer: as it could be had while the robot runs "
+                   "(virtual)")
+      ->type_name("virtual|observer")
+      ->check(one_of({"virtual", "observer"}));
+  command->add_option("--acceleration", arguments->acceleration, "where the acceleration comes from (derivative)")
+      ->type_name("sensor|derivative")
+      ->check(one_of({"sensor", "derivative"}));
+  add_window_options(*command, *arguments);
+  add_filter_options(*command, *arguments);
+  add_output_options(*command, *arguments, "mbk.force/1");
+  command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

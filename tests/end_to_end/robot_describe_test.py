@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""mbk robot describe: what was understood of a robot's description, and in one line what was not."""
+
+import pathlib
+
+from command import BAD_DATA, WRONG_USAGE, Case, main
+
+ROBOTS = pathlib.Path(__file__).resolve().parents[2] / "examples" / "robots"
+
+
+class Describe(Case):
+    def describe(self, text, urdf=None):
+        """The arguments that describe a robot of these texts."""
+        path = self.folder / "robot.toml"
+        path.write_text(text)
+        if urdf is not None:
+            (self.folder / "arm.urdf").write_text(urdf)
+        return "robot", "describe", path
+
+    def test_every_example(self):
+        for path in sorted(ROBOTS.iterdir()):
+            with self.subTest(path.name):
+                text = self.fine("robot", "describe", path).out
+                self.assert_lines_fit(text)
+                self.assertIn("coefficients", text)
+
+    def test_joints_hand_drives_and_base_parameters(self):
+        text = self.fine("robot", "describe", ROBOTS / "double_pendulum.toml").out
+        for words in ("shoulder  turns  without end", "0.00, -500.00 mm, with every joint at 0", "motor inertia, viscous",
+                      "in −0.2·upper.mass_z + 0.04·upper.inertia_yy", "not stated", "13 of 28 coefficients"):
+            self.assertIn(words, text)
+
+    def test_the_numbers(self):
+        robot = self.fine("robot", "describe", ROBOTS / "double_pendulum.toml", "--json").json
+        self.assertEqual(robot["schema"], "mbk.robot_description/1")
+        self.assertEqual([joint["name"] for joint in robot["joints"]], ["shoulder", "elbow"])
+        self.assertEqual(robot["joints"][0]["limits"], [None, None])
+        self.assertEqual(robot["structural_rank"], 13)
+        self.assertAlmostEqual(robot["hand_at_zero"][1], -0.5, places=12)
+        of = {one["name"]: one for one in robot["coefficients"]}
+        self.assertEqual(of["coulomb_1"], {"name": "coulomb_1", "unit": "N·m", "value": 0.16})
+        self.assertIsNone(of["offset_1"]["value"])
+        self.assertEqual(of["upper.mass"]["part_of"], {})
+        self.assertEqual(set(of["lower.mass"]["part_of"]), {"upper.mass_z", "upper.inertia_yy"})
+        self.assertAlmostEqual(of["lower.mass"]["part_of"]["upper.inertia_yy"], 0.04, places=9)
+
+    def test_a_urdf_by_itself_is_the_whole_chain(self):
+        robot = self.fine("robot", "describe", ROBOTS / "double_pendulum.urdf", "--json").json
+        self.assertEqual(len(robot["joints"]), 2)
+
+    def test_out(self):
+        out = self.folder / "described.json"
+        self.fine("robot", "describe", ROBOTS / "emps.toml", "--json", "--out", out)
+        self.assertIn("mbk.robot_description/1", out.read_text())
+        self.refused(WRONG_USAGE, "robot", "describe", ROBOTS / "emps.toml", "--out", out, says="--overwrite")
+
+    def test_what_is_no_robot(self):
+        self.refused(WRONG_USAGE, "robot", "describe", says="FILE")
+        self.refused(BAD_DATA, "robot", "describe", self.folder / "gone.toml", says="cannot be read")
+        self.refused(BAD_DATA, "robot", "describe", self.folder, says="cannot be read")
+        self.refused(BAD_DATA, *self.describe("[robot]\nkind = 'crane'\n"), says="planar, one_axis, urdf")
+        self.refused(BAD_DATA, *self.describe("[robot]\nkind = 'planar'\nd1_m = 'x'\n"), says="d1_mm")
+        urdf = "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\n"
+        self.refused(BAD_DATA, *self.describe(urdf), says=["arm.urdf", "cannot be read"])
+        self.refused(BAD_DATA, *self.describe(urdf, "<robot"), says=["arm.urdf", "no URDF"])
+        self.refused(BAD_DATA, *self.describe(urdf, "\0\1\2"), says=["arm.urdf", "no URDF"])
+        pendulum = (ROBOTS / "double_pendulum.urdf").read_text()
+        self.refused(BAD_DATA, *self.describe(urdf + "tip_link = 'foot'\n", pendulum), says=["foot", "'hand'"])
+        self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace('"0 -1 0"', '"0 0 0"', 1)), says="shoulder")
+        self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace("continuous", "floating", 1)), says="floating")
+        self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace('value="0.62', 'value="heavy', 1)), says="heavy")
+
+
+if __name__ == "__main__":
+    main()
