@@ -16,7 +16,6 @@
 #include "mbk/numeric/statistics.h"
 #include "mbk/preprocess/prepare.h"
 #include "mbk/recording/inspection.h"
-#include "mbk/robot/observed_force.h"
 #include "mbk/validation/robot_trials.h"
 #include "mbk/validation/simulated_trials.h"
 #include "mbk/validation/study.h"
@@ -83,21 +82,6 @@ Recording with_force(Recording recording, const Matrix& force) {
   return recording;
 }
 
-Matrix of_joints(const Recording& recording, const char* first, const char* second) {
-  Matrix values(recording.samples(), 2);
-  values << recording.find(first)->values, recording.find(second)->values;
-  return values;
-}
-
-/// What the observer would have said during the trial, in the place of the sensor's force.
-Result<Recording> observed(const Recording& recording, const robot::DynamicModel& robot) {
-  const double sample_time = recording::inspect(recording).interval_median;
-  const auto observed = robot::observe_force(robot, of_joints(recording, "joint_1", "joint_2"),
-                                             of_joints(recording, "torque_1", "torque_2"), {}, sample_time);
-  if (!observed) return tl::unexpected(observed.error());
-  return with_force(recording, observed->force_hand_on_robot);
-}
-
 Result<PreparedTrial> prepared(const Recording& recording, const preprocess::Options& options) {
   const Inspection inspection = recording::inspect(recording);
   if (options.force_source == ForceSource::sensor) return preprocess::prepare(recording, inspection, options);
@@ -131,17 +115,15 @@ Result<Outcome> measured(const Recording& recording, Force force, const Robots& 
   preprocess::Options& signals = options.preprocess;
   signals.cutoff = truth.preparation.cutoff;
   signals.every = truth.preparation.every;
-  if (force != sensor && force != observer) {
-    signals.force_source = ForceSource::virtual_sensor;
+  if (force != sensor) {
+    signals.force_source = force == observer ? ForceSource::observer : ForceSource::virtual_sensor;
     signals.robot = robots.behind(force);
   }
-  Result<Recording> seen = force == observer ? observed(recording, *robots.behind(force)) : recording;
-  if (!seen) return tl::unexpected(seen.error());
-  const auto trial = prepared(*seen, signals);
+  const auto trial = prepared(recording, signals);
   if (!trial) return tl::unexpected(trial.error());
   const auto rmse = force_rmse(*trial, truth);
   if (!rmse) return tl::unexpected(rmse.error());
-  const auto found = measurement::measure({&*seen, 1}, options);
+  const auto found = measurement::measure({&recording, 1}, options);
   if (!found) return tl::unexpected(found.error());
   const Identification& identification = found->identification;
   return Outcome{identification.model, identification.standard_error, identification.fit.vaf, *rmse};
