@@ -48,7 +48,7 @@ std::vector<std::string> study_names() {
 std::string study_lines() {
   std::string lines;
   for (const validation::Study& study : validation::studies()) {
-    lines += fmt::format("  {:<12} {}; {} runs\n", study.name, study.what, study.runs);
+    lines += fmt::format("  {:<15} {}; {} runs\n", study.name, study.what, study.runs);
   }
   return lines;
 }

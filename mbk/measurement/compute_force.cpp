@@ -46,7 +46,7 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
   made.summary.peak = pair.estimated.cwiseAbs().colwise().maxCoeff().transpose();
   if (force->standard_error.size() > 0) {
     made.summary.standard_error = force->standard_error.middleRows(force->first, rows).colwise().norm().transpose() /
-                          std::sqrt(static_cast<double>(rows));
+                                  std::sqrt(static_cast<double>(rows));
   }
   if (force->sensor_force.size() > 0) {
     auto smoothed = force->smoothed(force->sensor_force, Hertz(inspection.rate_hz));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -28,6 +29,47 @@ robot::JointVector joints_at(const robot::Mechanism& mechanism, const robot::Joi
     q += inverse->transpose() * (hand - mechanism.hand_position(q));
   }
   return q;
+}
+
+/// Standard deviation of the white noise of positions, the noisiest joint's: by sixth differences, to which a motion of
+/// a few hertz gives nothing.
+double position_noise(const Matrix& position, const std::vector<Cut>& cuts) {
+  constexpr std::array kWeights = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
+  constexpr double kSquares = 924.0;  // of the weights
+  Vector sum = Vector::Zero(position.cols());
+  Index count = 0;
+  for (const Cut& cut : cuts) {
+    const Index rows = cut.end - cut.begin - static_cast<Index>(kWeights.size()) + 1;
+    if (rows < 1) continue;
+    Matrix difference = Matrix::Zero(rows, position.cols());
+    for (std::size_t k = 0; k < kWeights.size(); ++k) {
+      difference += kWeights[k] * position.middleRows(cut.begin + static_cast<Index>(k), rows);
+    }
+    sum += difference.colwise().squaredNorm().transpose();
+    count += rows;
+  }
+  return count == 0 ? 0.0 : std::sqrt(sum.maxCoeff() / (kSquares * static_cast<double>(count)));
+}
+
+/// The shortest window, no longer than that of `plan`, whose velocity has no more noise than a share of the velocity
+/// over which dry friction changes its sign. A longer one rounds off the velocity where a joint turns back, and the
+/// friction of that is not the friction that acted; all other noise the low-pass takes, on both sides alike.
+Result<int> window_for_dry_friction(const dsp::SavitzkyGolay& plan, double noise, double smoothing, Hertz rate) {
+  constexpr double kShare = 0.05;
+  const double most = kShare * smoothing / (rate.value * noise);  // of the weights' length
+  int shortest = (plan.order + 3) | 1, longest = plan.window;
+  while (shortest < longest) {
+    const int middle = (shortest + (longest - shortest) / 2) | 1;
+    const int tried = middle < longest ? middle : shortest;
+    const auto weights = dsp::savitzky_golay_weights({plan.order, tried}, 1);
+    if (!weights) return tl::unexpected(weights.error());
+    if (weights->norm() <= most) {
+      longest = tried;
+    } else {
+      shortest = tried + 2;
+    }
+  }
+  return longest;
 }
 
 /// One cut after another, filtered and thinned.
@@ -161,7 +203,14 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   if (!band) return tl::unexpected(band.error());
   Index shortest = recording.samples();
   for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
-  const FilterPlan filters = improved_filters(options.signals, *band, rate, shortest);
+  FilterPlan filters = improved_filters(options.signals, *band, rate, shortest);
+  const bool dry = (model.drive.coulomb || model.drive.stribeck) && model.drive.smoothing > 0.0;
+  if (dry && filters.cutoff && !options.signals.smoothing_window) {
+    const double noise = position_noise(signals->position, plan->cuts);
+    const auto window = window_for_dry_friction(filters.smoothing, noise, model.drive.smoothing, rate);
+    if (!window) return tl::unexpected(window.error());
+    filters.smoothing.window = *window;
+  }
 
   if (options.instruments) {
     made.instrument_motion = signals->joint_reference.size() > 0  ? InstrumentMotion::joint_reference

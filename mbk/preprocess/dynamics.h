@@ -19,8 +19,10 @@ struct DynamicsOptions {
 
 /// Torques and regressors of a robot that moves with nothing at its hand. Motion and torque are smoothed, the
 /// regressors are made of the smoothed motion, and then every column, torques included, passes the same low-pass: what
-/// friction makes of a reversal loses to the filter on both sides alike (Gautier 1997). A joint that stands still has
-/// neither velocity nor acceleration, whatever its encoder flickers.
+/// friction makes of a reversal loses to the filter on both sides alike (Gautier 1997). So the smoothing before it is
+/// short where there is dry friction: just long enough that the velocity has less noise than a twentieth of the
+/// velocity over which friction changes its sign. A joint that stands still has neither velocity nor acceleration,
+/// whatever its encoder flickers.
 /// @param model  its bodies, drives and delay; the parameters do not matter
 /// @fails  as prepare; data: a joint beyond its limits, with the time; no torque.
 [[nodiscard]] Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Inspection& inspection,

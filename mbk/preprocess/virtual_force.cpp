@@ -137,9 +137,8 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   }
   if (observed) {
     const Index length = cut.end - cut.begin;
-    const auto forces =
-        robot::observe_force(model, signals->position.middleRows(cut.begin, length),
-                             signals->torque.middleRows(cut.begin, length), {}, 1.0 / rate.value);
+    const auto forces = robot::observe_force(model, signals->position.middleRows(cut.begin, length),
+                                             signals->torque.middleRows(cut.begin, length), {}, 1.0 / rate.value);
     if (!forces) return tl::unexpected(forces.error());
     made.lag = forces->lag;
     force = forces->force_hand_on_robot.middleRows(filters.smoothing.half_window(), rows);
@@ -180,12 +179,13 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
     put(made.recording, hand, turns ? "rad" : "m", place.col(axis));
   }
   made.recording.notes.push_back(
-      observed ? fmt::format("the force is not measured: a momentum observer makes it of motion, torques and a model of "
-                             "the robot, {:.0f} ms late",
-                             1e3 * made.lag)
-               : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
-                             "(virtual sensor), q̈ {}",
-                             accelerometer ? "from the accelerometer" : "from the joints"));
+      observed
+          ? fmt::format("the force is not measured: a momentum observer makes it of motion, torques and a model of "
+                        "the robot, {:.0f} ms late",
+                        1e3 * made.lag)
+          : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
+                        "(virtual sensor), q̈ {}",
+                        accelerometer ? "from the accelerometer" : "from the joints"));
   return made;
 }
 

@@ -15,10 +15,10 @@ struct VirtualForce {
   Matrix joint_velocity;  ///< N×n [rad/s or m/s]
   double lag = 0;         ///< by which slow forces come late [s]; 0 where the future is known too
   Matrix sensor_force;    ///< N×axes, what was recorded as force; empty where there was none
-  Matrix sensitivity;   ///< N×(axes·p), ∂F/∂θ axis by axis [N per unit of θ]; empty where θ has no covariance
-  Matrix standard_error;      ///< N×axes [N], of the robot's coefficients alone; empty likewise
+  Matrix sensitivity;  ///< N×(axes·p), ∂F/∂θ axis by axis [N per unit of θ]; empty where θ has no covariance
+  Matrix standard_error;         ///< N×axes [N], of the robot's coefficients alone; empty likewise
   dsp::SavitzkyGolay smoothing;  ///< that motion and torque passed
-  Index first = 0, last = 0;  ///< samples [first, last) at which the force was computed; before and after it is held
+  Index first = 0, last = 0;     ///< samples [first, last) at which the force was computed; before and after it is held
 
   /// Another force through the same filter, rows [first, last).
   [[nodiscard]] Result<Matrix> smoothed(const Matrix& force, Hertz rate) const;

@@ -125,8 +125,8 @@ std::string force_text(const ForceSummary& force) {
   }
   text += "\n" + table(rows);
   if (force.comparison) {
-    text += "\n" + force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor",
-                                         "force sensor");
+    text += "\n" +
+            force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor", "force sensor");
   }
   return text;
 }

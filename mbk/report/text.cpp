@@ -243,8 +243,8 @@ std::string by_sensor_text(const Identification& computed, const Identification&
   text += model_table(sensed.model, sensed.standard_error, numeric::kNormal95, sensed.motion);
   const impedance::Model &a = computed.model, &b = sensed.model;
   const Index n = a.axes();
-  const impedance::Model undefined = impedance::unstacked(
-      Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN()), n);
+  const impedance::Model undefined =
+      impedance::unstacked(Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN()), n);
   text += "  the computed force less the sensor\n";
   return text + model_table({a.M - b.M, a.B - b.B, a.K - b.K, a.x0 - b.x0}, undefined, 1.0, computed.motion);
 }

@@ -69,4 +69,25 @@ ValidationRow bias_row(std::string what, const Vector& errors, double allowed, s
   return row;
 }
 
+std::pair<std::string, std::string> rig_names(const std::string& trial) {
+  const auto cut = trial.find("_M");
+  if (cut == std::string::npos) return {trial, trial};
+  return {trial.substr(0, cut), trial.substr(cut + 1)};
+}
+
+measurement::Options mass_and_springs() {
+  measurement::Options options;
+  options.identify.structure = Structure::mass_spring;
+  return options;
+}
+
+Chart identified_against_true(std::string title, const std::string& unit) {
+  Chart chart;
+  chart.title = std::move(title);
+  chart.x = {"true", unit};
+  chart.y = {"identified", unit};
+  chart.identity = true;
+  return chart;
+}
+
 }  // namespace mbk::validation

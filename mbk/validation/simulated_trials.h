@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mbk/laboratory/scenario.h"
@@ -35,5 +37,14 @@ struct TrialPlan {
 
 /// The mean of errors over runs, with its 99 % interval and their spread; wanted is a mean within ±`allowed`.
 [[nodiscard]] ValidationRow bias_row(std::string what, const Vector& errors, double allowed, std::string unit);
+
+/// "K5" and "M3" of a rig's trial "K5_M3": its stiffness and its mass; the whole name twice where it has no "_M".
+[[nodiscard]] std::pair<std::string, std::string> rig_names(const std::string& trial);
+
+/// The measurement of a payload on springs.
+[[nodiscard]] measurement::Options mass_and_springs();
+
+/// A chart that waits for its points.
+[[nodiscard]] Chart identified_against_true(std::string title, const std::string& unit);
 
 }  // namespace mbk::validation

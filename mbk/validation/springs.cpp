@@ -33,19 +33,6 @@ struct Errors {
   }
 };
 
-measurement::Options mass_and_springs() {
-  measurement::Options options;
-  options.identify.structure = Structure::mass_spring;
-  return options;
-}
-
-/// "K5" of "K5_M3": the stiffness of a trial; "M3", its mass; both the whole name where it has no "_M".
-std::pair<std::string, std::string> rig_names(const std::string& trial) {
-  const auto cut = trial.find("_M");
-  if (cut == std::string::npos) return {trial, trial};
-  return {trial.substr(0, cut), trial.substr(cut + 1)};
-}
-
 ValidationRow row_of(const std::string& what, const Errors& errors) {
   const auto count = static_cast<Index>(errors.identified.size());
   const Vector error =
@@ -66,15 +53,6 @@ ChartSeries series_of(const char* name, const NamedErrors& all, const std::strin
     marks.y.push_back(Eigen::Map<const Vector>(errors.identified.data(), count).mean());
   }
   return marks;
-}
-
-Chart empty_chart(const char* title, const char* unit) {
-  Chart chart;
-  chart.title = title;
-  chart.x = {"true", unit};
-  chart.y = {"identified", unit};
-  chart.identity = true;
-  return chart;
 }
 
 Result<void> add_file(const RigFile& file, const StudyOptions& options, std::vector<TrialPlan>& plans) {
@@ -106,8 +84,8 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
   table.unit = "error";
   table.runs = options.runs;
   table.seed = options.seed;
-  Chart stiffnesses = empty_chart("Stiffness of the rigs: k_xx, k_yy and k_s", "N/m");
-  Chart masses = empty_chart("Mass of the rigs", "kg");
+  Chart stiffnesses = identified_against_true("Stiffness of the rigs: k_xx, k_yy and k_s", "N/m");
+  Chart masses = identified_against_true("Mass of the rigs", "kg");
   for (const RigFile& file : kFiles) {
     NamedErrors all;  // in the order of the file
     const auto errors_of = [&](const std::string& what) -> Errors& {

@@ -13,6 +13,8 @@ std::span<const Study> studies() {
       Study{"closed-loop", "least squares, instrumental variables and energy of an arm that acts back", 20,
             closed_loop_study},
       Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", 3, springs_study},
+      Study{"robot", "dynamics of the robot, from its free motion", 50, robot_study},
+      Study{"virtual-sensor", "force, stiffness and mass without a force sensor", 4, virtual_sensor_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
   };
   return kStudies;

@@ -56,4 +56,18 @@ struct Study {
 /// multisine, of the same with the voluntary controller off, and under 2 N pulses.
 [[nodiscard]] Result<ValidationTable> closed_loop_study(const StudyOptions& options);
 
+/// The dynamics of the robot of Dyck (2013), table A.1, with Coulomb friction, identified from its free motion by
+/// measurement::identify_robot as it is by default: bias and coverage of every coefficient, held-back torque, the
+/// printed Coriolis sign against the right one, and what it does to leave Coulomb friction out. A run is one free
+/// motion with its own phases and noise. Wanted: inertias within 0.5 % and a VAF of 99 % in every run, the truth within
+/// two standard errors in 90 % of all cases, and that the printed sign leaves at least twice as much torque in every
+/// run.
+[[nodiscard]] Result<ValidationTable> robot_study(const StudyOptions& options);
+
+/// Force, stiffness and mass of the rigs of Dyck (2013), table 5.1, without a force sensor (tables 5.4 and 5.5 and
+/// fig. 5.4 in form): against the truth and the sensor, with the robot's friction in the model and left out, by the
+/// momentum observer, and with elastic drives. A run is one identified robot and one seed of each rig. Wanted: a force
+/// within 0.05 N (RMSE) for every rig, stiffness and mass within a quarter of the errors in table 5.4.
+[[nodiscard]] Result<ValidationTable> virtual_sensor_study(const StudyOptions& options);
+
 }  // namespace mbk::validation

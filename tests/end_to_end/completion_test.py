@@ -24,7 +24,7 @@ TYPED = {  # what has been typed → what is offered
     ("springs", ""): ["calibrate", "field", "find"],
     ("springs", "field", "--sp"): ["--spring"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
-    ("validate", ""): ["closed-loop", "coverage", "participant", "recovery", "springs"],
+    ("validate", ""): ["closed-loop", "coverage", "participant", "recovery", "robot", "springs", "virtual-sensor"],
     ("completion", ""): ["bash", "fish", "zsh"],
 }
 
