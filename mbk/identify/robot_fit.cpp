@@ -139,10 +139,10 @@ class RobotFitter {
   Matrix bread_, covariance_;  ///< of the columns that are kept, and of the delay's where it is estimated
   Matrix residuals_;
   double delay_correction_ = 0, condition_ = 0;
-  Vector fixed_;                                  ///< p, the values that are known, 0 elsewhere
-  std::vector<robot::Coefficient> free_names_;    ///< of those that are not
-  numeric::IndependentColumns columns_;           ///< of those that are not
-  std::vector<Index> kept_;                       ///< coefficients that are found
+  Vector fixed_;                                ///< p, the values that are known, 0 elsewhere
+  std::vector<robot::Coefficient> free_names_;  ///< of those that are not
+  numeric::IndependentColumns columns_;         ///< of those that are not
+  std::vector<Index> kept_;                     ///< coefficients that are found
 };
 
 Result<void> RobotFitter::prepare() {
@@ -207,7 +207,8 @@ Result<void> RobotFitter::solve() {
     const Matrix Z = stacked(rows_.W, kept_, rate, sigma_);
     Matrix Y(Z.rows(), 1);
     for (Index joint = 0; joint < n_; ++joint) {
-      Y.block(joint * rows_.rows(), 0, rows_.rows(), 1) = (rows_.torque.col(joint) - rows_.W[static_cast<std::size_t>(joint)] * fixed_) / sigma_[joint];
+      Y.block(joint * rows_.rows(), 0, rows_.rows(), 1) =
+          (rows_.torque.col(joint) - rows_.W[static_cast<std::size_t>(joint)] * fixed_) / sigma_[joint];
     }
     Vector free;
     if (by_instruments()) {

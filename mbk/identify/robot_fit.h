@@ -13,8 +13,8 @@ namespace mbk::identify {
 struct RobotFitOptions {
   RobotMethod method = RobotMethod::weighted_least_squares;
   std::vector<Index> fixed;  ///< coefficients that keep the value they have in model.parameters
-  bool delay = false;      ///< estimate what is left of the motors' delay too
-  double hac_lag_s = 1.0;  ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
+  bool delay = false;        ///< estimate what is left of the motors' delay too
+  double hac_lag_s = 1.0;    ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
 };
 
 /// The fit, and how far the delay that was assumed is from what these data say.
@@ -38,8 +38,9 @@ struct RobotFit {
                                          const robot::DynamicModel& model, const RobotFitOptions& options);
 
 /// What any motion could tell apart of a robot's coefficients, and what the others are made of: its base parameters.
-/// By the regressors of random motions; columns are counted among those that are not `fixed`. The motions are within the limits of the joints, always the same ones.
+/// By the regressors of random motions; columns are counted among those that are not `fixed`. The motions are within
+/// the limits of the joints, always the same ones.
 [[nodiscard]] numeric::IndependentColumns structural_columns(const robot::DynamicModel& model,
-                                                                const std::vector<Index>& fixed = {});
+                                                             const std::vector<Index>& fixed = {});
 
 }  // namespace mbk::identify

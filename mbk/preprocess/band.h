@@ -26,9 +26,10 @@ struct Band {
 [[nodiscard]] Result<Hertz> band_top(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate);
 
 /// Where a motion sinks into noise: the spectral density of its acceleration, 1 Hz fine, first falls below twice its
-/// floor, which is the median of the lines from the top of the excited band to `limit`. There signal and noise weigh the
-/// same.
-/// @param position N, of one joint or axis    @returns `limit` where fewer than five lines lie between, or none is below
+/// floor, which is the median of the lines from the top of the excited band to `limit`. There signal and noise weigh
+/// the same.
+/// @param position N, of one joint or axis    @returns `limit` where fewer than five lines lie between, or none is
+/// below
 /// @fails  as excited_band.
 [[nodiscard]] Result<Hertz> motion_top(const Vector& position, const std::vector<Cut>& cuts, Hertz sample_rate,
                                        Hertz limit);

@@ -51,6 +51,28 @@ double position_noise(const Matrix& position, const std::vector<Cut>& cuts) {
   return count == 0 ? 0.0 : std::sqrt(sum.maxCoeff() / (kSquares * static_cast<double>(count)));
 }
 
+/// Root mean square of the velocity of the slowest joint that moves at all, by differences over the window.
+double usual_velocity(const Matrix& position, const std::vector<Cut>& cuts, const dsp::SavitzkyGolay& plan,
+                      Hertz rate) {
+  const Index reach = 2 * plan.half_window();
+  Vector squares = Vector::Zero(position.cols());
+  Index count = 0;
+  for (const Cut& cut : cuts) {
+    const Index rows = cut.end - cut.begin - reach;
+    if (rows < 1) continue;
+    squares += (position.middleRows(cut.begin + reach, rows) - position.middleRows(cut.begin, rows))
+                   .colwise()
+                   .squaredNorm()
+                   .transpose();
+    count += rows;
+  }
+  double slowest = 0.0;
+  for (const double sum : squares) {
+    if (sum > 0.0 && (slowest == 0.0 || sum < slowest)) slowest = sum;
+  }
+  return std::sqrt(slowest / static_cast<double>(std::max<Index>(count, 1))) * rate.value / static_cast<double>(reach);
+}
+
 /// The shortest window, no longer than that of `plan`, whose velocity has no more noise than a share of the velocity
 /// over which dry friction changes its sign. A longer one rounds off the velocity where a joint turns back, and the
 /// friction of that is not the friction that acted; all other noise the low-pass takes, on both sides alike.
@@ -204,10 +226,14 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   Index shortest = recording.samples();
   for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
   FilterPlan filters = improved_filters(options.signals, *band, rate, shortest);
-  const bool dry = (model.drive.coulomb || model.drive.stribeck) && model.drive.smoothing > 0.0;
+  const bool dry = model.drive.coulomb || model.drive.stribeck;
   if (dry && filters.cutoff && !options.signals.smoothing_window) {
     const double noise = position_noise(signals->position, plan->cuts);
-    const auto window = window_for_dry_friction(filters.smoothing, noise, model.drive.smoothing, rate);
+    // A sign that changes at once stands for one that changes within a twentieth of the usual velocity.
+    const double turn = model.drive.smoothing > 0.0
+                            ? model.drive.smoothing
+                            : 0.05 * usual_velocity(signals->position, plan->cuts, filters.smoothing, rate);
+    const auto window = window_for_dry_friction(filters.smoothing, noise, turn, rate);
     if (!window) return tl::unexpected(window.error());
     filters.smoothing.window = *window;
   }
@@ -226,7 +252,8 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
     for (Index joint = 0; joint < signals->position.cols(); ++joint) {
       const auto top = motion_top(signals->position.col(joint), plan->cuts, rate, limit);
       if (!top) return tl::unexpected(top.error());
-      // One for all joints: what shakes the links moves them against each other, and must not be let through by one alone.
+      // One for all joints: what shakes the links moves them against each other, and must not be let through by one
+      // alone.
       made.smoothed_cutoff = joint == 0 ? top->value : std::min(made.smoothed_cutoff, top->value);
     }
   }

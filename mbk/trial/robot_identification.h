@@ -61,8 +61,8 @@ struct RobotIdentification {
   std::vector<RobotCoefficient> coefficients;
   RobotMethod method = RobotMethod::weighted_least_squares;
   InstrumentMotion instrument_motion = InstrumentMotion::none;
-  double motion_cutoff = 0;                    ///< [Hz], where the motion was smoothed for it
-  double smoothed_cutoff = 0;                       ///< [Hz] of the motion behind vaf_smoothed, in the first recording that judges
+  double motion_cutoff = 0;    ///< [Hz], where the motion was smoothed for it
+  double smoothed_cutoff = 0;  ///< [Hz] of the motion behind vaf_smoothed, in the first recording that judges
   std::optional<double> delay_standard_error;  ///< [s]; absent where the delay was not estimated
   std::vector<TorqueFit> fit;                  ///< of each joint
   bool held_back = true;                       ///< false: vaf and rmse are in-sample
