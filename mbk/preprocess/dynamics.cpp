@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -29,26 +28,6 @@ robot::JointVector joints_at(const robot::Mechanism& mechanism, const robot::Joi
     q += inverse->transpose() * (hand - mechanism.hand_position(q));
   }
   return q;
-}
-
-/// Standard deviation of the white noise of positions, the noisiest joint's: by sixth differences, to which a motion of
-/// a few hertz gives nothing.
-double position_noise(const Matrix& position, const std::vector<Cut>& cuts) {
-  constexpr std::array kWeights = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
-  constexpr double kSquares = 924.0;  // of the weights
-  Vector sum = Vector::Zero(position.cols());
-  Index count = 0;
-  for (const Cut& cut : cuts) {
-    const Index rows = cut.end - cut.begin - static_cast<Index>(kWeights.size()) + 1;
-    if (rows < 1) continue;
-    Matrix difference = Matrix::Zero(rows, position.cols());
-    for (std::size_t k = 0; k < kWeights.size(); ++k) {
-      difference += kWeights[k] * position.middleRows(cut.begin + static_cast<Index>(k), rows);
-    }
-    sum += difference.colwise().squaredNorm().transpose();
-    count += rows;
-  }
-  return count == 0 ? 0.0 : std::sqrt(sum.maxCoeff() / (kSquares * static_cast<double>(count)));
 }
 
 /// Root mean square of the velocity of the slowest joint that moves at all, by differences over the window.
@@ -228,7 +207,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   FilterPlan filters = improved_filters(options.signals, *band, rate, shortest);
   const bool dry = model.drive.coulomb || model.drive.stribeck;
   if (dry && filters.cutoff && !options.signals.smoothing_window) {
-    const double noise = position_noise(signals->position, plan->cuts);
+    const double noise = position_noise(signals->position, plan->cuts).maxCoeff();  // of the noisiest joint
     // A sign that changes at once stands for one that changes within a twentieth of the usual velocity.
     const double turn = model.drive.smoothing > 0.0
                             ? model.drive.smoothing
