@@ -161,7 +161,8 @@ class Wrong(Case):
                               (("--motor-delay", "2000"), ("delay", "2 s")),
                               (("--stribeck-velocity", "auto"), ("--stribeck-velocity", "--terms")),
                               (("--terms", "stribeck", "--stribeck-velocity", "-1"), "--stribeck-velocity"),
-                              (("--method", "gls"), ("--method", "'gls'")), (("--motion-cutoff", "0"), "--motion-cutoff")):
+                              (("--method", "gls"), ("--method", "'gls'")),
+                              (("--motion-cutoff", "0"), "--motion-cutoff")):
             with self.subTest(options):
                 self.refused(WRONG_USAGE, "robot", "identify", free_motion(), *options, says=says)
 
@@ -177,7 +178,8 @@ class Emps(Case):
         found = run("robot", "identify", data_folder("emps", "DATA_EMPS.mat"), "--robot", ROBOTS / "emps.toml",
                     "--channels", "q1=qm:m,tau1=vir*35.15065188:N,time=t", "--cutoff", "100", "--json")
         self.assertEqual(found.code, 0, found)
-        for name, value, share in (("mass", 95.1089, 0.005), ("viscous_1", 203.5034, 0.03), ("coulomb_1", 20.3935, 0.03)):
+        published = (("mass", 95.1089, 0.005), ("viscous_1", 203.5034, 0.03), ("coulomb_1", 20.3935, 0.03))
+        for name, value, share in published:
             self.assertAlmostEqual(values(found.json)[name], value, delta=share * value, msg=name)
         self.assertGreaterEqual(found.json["fit"][0]["VAF_in_sample"], 99.7)
 
