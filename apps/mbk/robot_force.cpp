@@ -64,7 +64,7 @@ Action add_robot_force(CLI::App& group) {
       "  mbk robot force log.h5 --robot robot.json\n"
       "      how large it is, how sure, and beside the force sensor where there is one\n"
       "  mbk robot force log.h5 --robot robot.json --out with_force.h5\n"
-      "      a recording with force_x and force_y computed; those of a sensor stand in it as sensor_force_x …\n\n"
+      "      a recording with force_x and force_y computed; those of a sensor become sensor_force_x …\n\n"
       "'mbk measure --force-source virtual' does the same on its way.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));

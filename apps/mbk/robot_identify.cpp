@@ -175,8 +175,8 @@ Action add_robot_identify(CLI::App& group) {
       "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml\n"
       "      your own robot, from its URDF\n"
       "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n\n"
-      "Record with nothing at the hand, every joint moving, fast and slow, through the places where you will\n"
-      "measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
+      "Record with nothing at the hand, every joint moving, fast and slow, through the places where you\n"
+      "will measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(*command, *arguments);
