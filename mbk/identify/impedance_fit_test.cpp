@@ -80,7 +80,7 @@ TEST(IdentifyImpedance, CarriesTheUncertaintyOfARobotIntoTheModelAsRefitsDo) {
     const PreparedTrial made = of_robot(false);
     const Options options{.structure = structure};
     const Identification id = identified({made}, options);
-    Matrix slope(16, 2);
+    Matrix slope(14, 2);
     constexpr double kStep = 1e-5;
     for (Index k = 0; k < 2; ++k) {
       const Vector step = kStep * Vector::Unit(2, k);
@@ -112,7 +112,7 @@ TEST(IdentifyImpedance, SpreadsOverRobotsAsItsStandardErrorSays) {
   const Matrix root = made.robot_covariance.llt().matrixL();
   numeric::Random random(3);
   constexpr int kRobots = 300;
-  Vector squares = Vector::Zero(16);
+  Vector squares = Vector::Zero(14);
   for (int k = 0; k < kRobots; ++k) {
     const Vector error = root * Eigen::Vector2d(random.normal(), random.normal());
     squares += (flat(identified({with_error(made, error)}).model) - flat(arm())).cwiseAbs2();
