@@ -64,7 +64,7 @@ Action add_robot_force(CLI::App& group) {
       "  mbk robot force log.h5 --robot robot.json\n"
       "      how large it is, how sure, and beside the force sensor where there is one\n"
       "  mbk robot force log.h5 --robot robot.json --out with_force.h5\n"
-      "      a recording with force_x and force_y computed; those of a sensor stand in it as sensor_force_x …\n\n"
+      "      a recording with force_x and force_y computed; those of a sensor become sensor_force_x …\n\n"
       "'mbk measure --force-source virtual' does the same on its way.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
@@ -85,6 +85,12 @@ Action add_robot_force(CLI::App& group) {
       ->check(one_of({"sensor", "derivative"}));
   add_window_options(*command, *arguments);
   add_filter_options(*command, *arguments);
+  // The force is only smoothed here; whoever fits a model to it low-passes it, and holds data back.
+  for (const char* const name : {"--split", "--extension", "--padding", "--every"}) {
+    command->remove_option(command->get_option(name));
+  }
+  command->get_option("--cutoff")->description(
+      "the band that the smoothing leaves as it is; otherwise by the excited band");
   add_output_options(*command, *arguments, "mbk.force/1");
   command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");
   return [arguments] { return run(*arguments); };

@@ -319,8 +319,7 @@ void RobotFitter::describe(RobotIdentification& found) const {
     constexpr double kShare = 0.3;
     const double share = eigen.eigenvectors()(k, 0);
     if (std::abs(share) >= kShare) {
-      found.weakest.emplace_back(names[static_cast<std::size_t>(columns_.kept[static_cast<std::size_t>(k)])].name,
-                                 share);
+      found.weakest.emplace_back(names[static_cast<std::size_t>(kept_[static_cast<std::size_t>(k)])].name, share);
     }
   }
 }

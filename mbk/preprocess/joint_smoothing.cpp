@@ -1,31 +1,12 @@
 #include "mbk/preprocess/joint_smoothing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "mbk/preprocess/joint_signals.h"
 
 namespace mbk::preprocess {
 namespace {
-
-/// Standard deviation of the white noise of positions, the noisiest joint's: by sixth differences, to which a motion of
-/// a few hertz gives nothing.
-double position_noise(const Matrix& position, const std::vector<Cut>& cuts) {
-  constexpr std::array kWeights = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
-  constexpr double kSquares = 924.0;  // of the weights
-  Vector sum = Vector::Zero(position.cols());
-  Index count = 0;
-  for (const Cut& cut : cuts) {
-    const Index rows = cut.end - cut.begin - static_cast<Index>(kWeights.size()) + 1;
-    if (rows < 1) continue;
-    Matrix difference = Matrix::Zero(rows, position.cols());
-    for (std::size_t k = 0; k < kWeights.size(); ++k) {
-      difference += kWeights[k] * position.middleRows(cut.begin + static_cast<Index>(k), rows);
-    }
-    sum += difference.colwise().squaredNorm().transpose();
-    count += rows;
-  }
-  return count == 0 ? 0.0 : std::sqrt(sum.maxCoeff() / (kSquares * static_cast<double>(count)));
-}
 
 /// Root mean square of the velocity of the slowest joint that moves at all, by differences over the window.
 double usual_velocity(const Matrix& position, const std::vector<Cut>& cuts, const dsp::SavitzkyGolay& plan,
@@ -75,7 +56,7 @@ Result<dsp::SavitzkyGolay> smoothing_of_joints(const dsp::SavitzkyGolay& plan, c
                                                Hertz rate) {
   if (!drive.coulomb && !drive.stribeck) return plan;
   const double turn = drive.smoothing > 0.0 ? drive.smoothing : 0.05 * usual_velocity(position, cuts, plan, rate);
-  const auto window = window_for_dry_friction(plan, position_noise(position, cuts), turn, rate);
+  const auto window = window_for_dry_friction(plan, position_noise(position, cuts).maxCoeff(), turn, rate);
   if (!window) return tl::unexpected(window.error());
   return dsp::SavitzkyGolay{plan.order, *window};
 }

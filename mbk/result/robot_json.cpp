@@ -55,13 +55,22 @@ robot::DriveTerms drive_from(const Json& json) {
       if (name != term.name) continue;
       drive.*term.flag = known = true;
     }
-    if (!known) throw Malformed{fmt::format("there is no term '{}'", name.dump())};
+    if (!known) throw Malformed{fmt::format("there is no term {}", name.dump())};
   }
   drive.smoothing = json.value("smoothing", drive.smoothing);
   drive.stribeck_velocity = json.value("stribeck_velocity", drive.stribeck_velocity);
   if (!(drive.smoothing >= 0.0) || !(drive.stribeck_velocity > 0.0))
     throw Malformed{"a velocity of friction is negative"};
   return drive;
+}
+
+/// Finite, symmetric and without a negative variance or a correlation above 1, but for rounding.
+bool is_covariance(const Matrix& V) {
+  constexpr double kRounding = 1e-9;
+  if (!V.allFinite() || !(V.diagonal().array() >= 0.0).all()) return false;
+  const Vector sigma = V.diagonal().cwiseSqrt();
+  const Eigen::ArrayXXd largest = (1.0 + kRounding) * (sigma * sigma.transpose()).array();
+  return (V.array().abs() <= largest).all() && ((V - V.transpose()).array().abs() <= kRounding * largest).all();
 }
 
 StoredRobot stored_from(const Json& json) {
@@ -80,9 +89,9 @@ StoredRobot stored_from(const Json& json) {
   }
   if (!stored.parameters.allFinite()) throw Malformed{"a parameter is not a number"};
   stored.covariance = matrix_from(json, "covariance", count, count);
-  if (!stored.covariance.allFinite()) throw Malformed{"the covariance is not finite"};
+  if (!is_covariance(stored.covariance)) throw Malformed{"'covariance' is not that of any numbers"};
   stored.delay = number_from(json.at("motor_delay_s"));
-  if (!std::isfinite(stored.delay)) throw Malformed{"the motor delay is not a number"};
+  if (!(std::abs(stored.delay) < 1.0)) throw Malformed{"the motor delay is not a number of seconds below 1"};
   return stored;
 }
 
