@@ -89,8 +89,8 @@ Action add_robot_force(CLI::App& group) {
   for (const char* const name : {"--split", "--extension", "--padding", "--every"}) {
     command->remove_option(command->get_option(name));
   }
-  command->get_option("--cutoff")->description(
-      "the band that the smoothing leaves as it is; otherwise by the excited band");
+  command->get_option("--cutoff")
+      ->description("the band that the smoothing leaves as it is; otherwise by the excited band");
   add_output_options(*command, *arguments, "mbk.force/1");
   command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");
   return [arguments] { return run(*arguments); };
