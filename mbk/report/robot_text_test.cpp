@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 
 #include "mbk/robot/single_joint.h"
@@ -68,6 +69,12 @@ TEST(RobotText, NamesInstrumentsAndWhatTheSmoothedMotionPredicts) {
   EXPECT_THAT(text, HasSubstr("from the motion, low-passed at 5 Hz"));
   EXPECT_THAT(text, HasSubstr("motion smoothed at 6 Hz"));
   EXPECT_THAT(text, HasSubstr("97.25"));
+}
+
+TEST(RobotText, HasADashWhereNoTorqueCounts) {
+  RobotIdentification found = identified();
+  found.fit[0] = {std::nan(""), 0.0, std::nan(""), 0.0, {}};
+  EXPECT_THAT(robot_text(found), ::testing::ContainsRegex("torque of joint 1 +– +0 N +– +0 N\n"));
 }
 
 TEST(RobotText, SaysHowSureADelayIsThatWasFound) {
