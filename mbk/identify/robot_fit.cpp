@@ -402,7 +402,7 @@ void warn(RobotIdentification& found) {
   }
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     constexpr double kPoor = 80.0;
-    if (found.fit[joint].vaf >= kPoor) continue;
+    if (!(found.fit[joint].vaf < kPoor)) continue;  // nor where there was no torque to explain
     warnings.push_back({found.held_back ? WarningCode::held_back_fit_poor : WarningCode::fit_poor,
                         fmt::format("only {:.1f} % of the torque of joint {} is explained{}", found.fit[joint].vaf,
                                     joint + 1, found.held_back ? " on held-back data" : ""),

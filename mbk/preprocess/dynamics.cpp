@@ -129,6 +129,19 @@ class Maker {
   dsp::SectionCascade lowpass_;
 };
 
+/// Dry friction that holds a joint takes any value: what its motor does says nothing.
+void leave_out_held_joints(PreparedDynamics& made) {
+  for (std::size_t joint = 0; joint < made.stands.size(); ++joint) {
+    if (!made.stands[joint]) continue;
+    made.torque.col(static_cast<Index>(joint)).setZero();
+    made.torque_rate.col(static_cast<Index>(joint)).setZero();
+    for (auto* const part : {&made.regressors, &made.instruments, &made.smoothed}) {
+      if (!part->empty()) (*part)[joint].setZero();
+    }
+    made.notes.push_back(fmt::format("joint {} stands still, held by friction: its torque does not count", joint + 1));
+  }
+}
+
 }  // namespace
 
 Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Inspection& inspection,
@@ -228,6 +241,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
     made.instruments.emplace_back(all.middleCols(2 * n + (n + joint) * p, p));
     made.smoothed.emplace_back(all.middleCols(2 * n + (2 * n + joint) * p, p));
   }
+  if (dry) leave_out_held_joints(made);
 
   Preparation& how = made.preparation;
   how.protocol_rule = "a robot by itself";

@@ -218,9 +218,11 @@ class DoublePendulum(Case):
         self.assertGreaterEqual(by_instruments[1]["VAF_from_smoothed_motion"], 90)
 
     def test_what_a_joint_that_stands_still_cannot_show_is_named(self):
-        found = self.identify("C1_20230629-143906.csv")
+        found = self.identify("C1_20230629-143906.csv", code=NOT_USABLE)
+        self.assertIn("joint 2 stands still", " ".join(found["notes"]))
+        self.assertIsNone(found["fit"][1]["VAF"])
         missing = {one["name"] for one in found["parameters"] if not one["identified"] and not one.get("fixed")}
-        self.assertLessEqual({"motor_inertia_2", "viscous_2", "coulomb_2"}, missing)
+        self.assertLessEqual({"lower.inertia_yy", "motor_inertia_2", "viscous_2", "coulomb_2", "offset_2"}, missing)
         self.assertLess(found["excitation"]["rank"], found["excitation"]["structural_rank"])
         warning = next(one["message"] for one in found["warnings"] if one["code"] == "poorly-conditioned")
         for name in ("motor_inertia_2", "viscous_2", "coulomb_2"):
