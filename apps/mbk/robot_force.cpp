@@ -85,12 +85,8 @@ Action add_robot_force(CLI::App& group) {
       ->check(one_of({"sensor", "derivative"}));
   add_window_options(*command, *arguments);
   add_filter_options(*command, *arguments);
-  // The force is only smoothed here; whoever fits a model to it low-passes it, and holds data back.
-  for (const char* const name : {"--split", "--extension", "--padding", "--every"}) {
-    command->remove_option(command->get_option(name));
-  }
-  command->get_option("--cutoff")
-      ->description("the band that the smoothing leaves as it is; otherwise by the excited band");
+  command->remove_option(command->get_option("--split"));  // nothing is held back here
+  command->remove_option(command->get_option("--every"));
   add_output_options(*command, *arguments, "mbk.force/1");
   command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");
   return [arguments] { return run(*arguments); };

@@ -1,8 +1,10 @@
 #include "mbk/measurement/identify_robot.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "mbk/preprocess/resample.h"
@@ -120,42 +122,27 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
 
   // Between the velocity at which the sign is smooth and a hundred times that.
   const double low = std::log(std::max(1.5 * model.drive.smoothing, 1e-4)), high = low + std::log(100.0);
-  constexpr double kGolden = 0.6180339887498949;
   robot::DynamicModel tried = model;
   Result<RobotIdentification> best = bad_data("not tried");
   double least = std::numeric_limits<double>::infinity();
-  const auto at = [&](double log_velocity) -> Result<double> {
+  std::optional<Error> failure;
+  const auto left = [&](double log_velocity) {
     tried.drive.stribeck_velocity = std::exp(log_velocity);
     auto found = fit_delay(*trials, *others, tried, all);
-    if (!found) return tl::unexpected(found.error());
-    const double left = unexplained(*found);
-    if (left < least) {
-      least = left;
+    if (!found) {
+      failure = found.error();
+      return std::numeric_limits<double>::max();
+    }
+    const double value = unexplained(*found);
+    if (value < least) {
+      least = value;
       best = std::move(found);
     }
-    return left;
+    return value;
   };
-  double a = low, b = high, c = b - kGolden * (b - a), d = a + kGolden * (b - a);
-  auto at_c = at(c);
-  auto at_d = at(d);
-  constexpr double kNear = 0.02;  // of the velocity
-  while (at_c && at_d && b - a > kNear) {
-    if (*at_c < *at_d) {
-      b = d;
-      d = c;
-      at_d = at_c;
-      c = b - kGolden * (b - a);
-      at_c = at(c);
-    } else {
-      a = c;
-      c = d;
-      at_c = at_d;
-      d = a + kGolden * (b - a);
-      at_d = at(d);
-    }
-  }
-  if (!at_c) return tl::unexpected(at_c.error());
-  if (!at_d) return tl::unexpected(at_d.error());
+  constexpr int kBits = 8;  // of the logarithm's range: 2 % of the velocity
+  boost::math::tools::brent_find_minima(left, low, high, kBits);
+  if (failure) return tl::unexpected(*failure);
   return best;
 }
 

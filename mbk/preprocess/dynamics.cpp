@@ -13,6 +13,7 @@
 #include "mbk/preprocess/clock.h"
 #include "mbk/preprocess/filters.h"
 #include "mbk/preprocess/joint_signals.h"
+#include "mbk/preprocess/joint_smoothing.h"
 #include "mbk/preprocess/windows.h"
 
 namespace mbk::preprocess {
@@ -28,49 +29,6 @@ robot::JointVector joints_at(const robot::Mechanism& mechanism, const robot::Joi
     q += inverse->transpose() * (hand - mechanism.hand_position(q));
   }
   return q;
-}
-
-/// Root mean square of the velocity of the slowest joint that moves at all, by differences over the window.
-double usual_velocity(const Matrix& position, const std::vector<Cut>& cuts, const dsp::SavitzkyGolay& plan,
-                      Hertz rate) {
-  const Index reach = 2 * plan.half_window();
-  Vector squares = Vector::Zero(position.cols());
-  Index count = 0;
-  for (const Cut& cut : cuts) {
-    const Index rows = cut.end - cut.begin - reach;
-    if (rows < 1) continue;
-    squares += (position.middleRows(cut.begin + reach, rows) - position.middleRows(cut.begin, rows))
-                   .colwise()
-                   .squaredNorm()
-                   .transpose();
-    count += rows;
-  }
-  double slowest = 0.0;
-  for (const double sum : squares) {
-    if (sum > 0.0 && (slowest == 0.0 || sum < slowest)) slowest = sum;
-  }
-  return std::sqrt(slowest / static_cast<double>(std::max<Index>(count, 1))) * rate.value / static_cast<double>(reach);
-}
-
-/// The shortest window, no longer than that of `plan`, whose velocity has no more noise than a share of the velocity
-/// over which dry friction changes its sign. A longer one rounds off the velocity where a joint turns back, and the
-/// friction of that is not the friction that acted; all other noise the low-pass takes, on both sides alike.
-Result<int> window_for_dry_friction(const dsp::SavitzkyGolay& plan, double noise, double smoothing, Hertz rate) {
-  constexpr double kShare = 0.05;
-  const double most = kShare * smoothing / (rate.value * noise);  // of the weights' length
-  int shortest = (plan.order + 3) | 1, longest = plan.window;
-  while (shortest < longest) {
-    const int middle = (shortest + (longest - shortest) / 2) | 1;
-    const int tried = middle < longest ? middle : shortest;
-    const auto weights = dsp::savitzky_golay_weights({plan.order, tried}, 1);
-    if (!weights) return tl::unexpected(weights.error());
-    if (weights->norm() <= most) {
-      longest = tried;
-    } else {
-      shortest = tried + 2;
-    }
-  }
-  return longest;
 }
 
 /// One cut after another, filtered and thinned.
@@ -218,16 +176,10 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   Index shortest = recording.samples();
   for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
   FilterPlan filters = improved_filters(options.signals, *band, rate, shortest);
-  const bool dry = model.drive.coulomb || model.drive.stribeck;
-  if (dry && filters.cutoff && !options.signals.smoothing_window) {
-    const double noise = position_noise(signals->position, plan->cuts).maxCoeff();  // of the noisiest joint
-    // A sign that changes at once stands for one that changes within a twentieth of the usual velocity.
-    const double turn = model.drive.smoothing > 0.0
-                            ? model.drive.smoothing
-                            : 0.05 * usual_velocity(signals->position, plan->cuts, filters.smoothing, rate);
-    const auto window = window_for_dry_friction(filters.smoothing, noise, turn, rate);
-    if (!window) return tl::unexpected(window.error());
-    filters.smoothing.window = *window;
+  if (filters.cutoff && !options.signals.smoothing_window) {
+    const auto smoothing = smoothing_of_joints(filters.smoothing, signals->position, plan->cuts, model.drive, rate);
+    if (!smoothing) return tl::unexpected(smoothing.error());
+    filters.smoothing = *smoothing;
   }
 
   if (options.instruments) {

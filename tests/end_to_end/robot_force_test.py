@@ -166,7 +166,7 @@ class Force(Case):
                      says=["--force-source", "'sensor'"])
         self.refused(WRONG_USAGE, "robot", "force", rig(), "--robot", robot(), "--out", self.folder / "force.txt",
                      says="'.txt'")
-        for option in ("--split", "--every", "--padding"):  # of fits, which it does not make
+        for option in ("--split", "--every"):  # of fits, which it does not make
             self.refused(WRONG_USAGE, "robot", "force", rig(), option, "20", says=option)
 
     def test_nothing_is_overwritten_unasked(self):
