@@ -140,8 +140,16 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
     }
     return value;
   };
+  // There may be several minima: the best of a coarse grid, then down to the bottom of that one.
+  constexpr int kGrid = 8;
+  const double step = (high - low) / kGrid;
+  double nearest = low;
+  for (int k = 0; k <= kGrid; ++k) {
+    const double before = least;
+    if (left(low + k * step); least < before) nearest = low + k * step;
+  }
   constexpr int kBits = 8;  // of the logarithm's range: 2 % of the velocity
-  boost::math::tools::brent_find_minima(left, low, high, kBits);
+  boost::math::tools::brent_find_minima(left, std::max(low, nearest - step), std::min(high, nearest + step), kBits);
   if (failure) return tl::unexpected(*failure);
   return best;
 }

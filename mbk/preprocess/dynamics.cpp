@@ -241,7 +241,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
     made.instruments.emplace_back(all.middleCols(2 * n + (n + joint) * p, p));
     made.smoothed.emplace_back(all.middleCols(2 * n + (2 * n + joint) * p, p));
   }
-  if (dry) leave_out_held_joints(made);
+  if (model.drive.coulomb || model.drive.stribeck) leave_out_held_joints(made);
 
   Preparation& how = made.preparation;
   how.protocol_rule = "a robot by itself";

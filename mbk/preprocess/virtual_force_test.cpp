@@ -175,8 +175,9 @@ TEST(VirtualForce, IsHeldBeforeAndAfterTheSamplesAtWhichItIsKnown) {
   options.window.from_s = 2.0;
   options.window.to_s = 7.0;
   const VirtualForce made = computed(recorded(model), model, options).value();
-  EXPECT_EQ(made.first, 2000 + made.smoothing.half_window());
-  EXPECT_NEAR(static_cast<double>(made.last), 7000.0 - static_cast<double>(made.smoothing.half_window()), 1.0);
+  constexpr Index kHalfWindow = 10;
+  EXPECT_EQ(made.first, 2000 + kHalfWindow);
+  EXPECT_NEAR(static_cast<double>(made.last), 7000.0 - kHalfWindow, 1.0);
   const Vector x = made.recording.find("force_x")->values;
   EXPECT_EQ(x[0], x[made.first]);
   EXPECT_EQ(x[made.first - 1], x[made.first]);
@@ -196,9 +197,6 @@ TEST(VirtualForce, TakesThePlaceOfTheSensorsAndKeepsThem) {
   EXPECT_EQ(made.recording.channels.size(), recording.channels.size() + 2);  // the hand's place was not recorded
   const Vector q = motion_of_joints().position.row(77).transpose();
   EXPECT_NEAR(made.recording.find("hand_y")->values[77], model.mechanism->hand_position(q)[1], 1e-12);
-  const Matrix smoothed = made.smoothed(sensed, Hertz(kRate)).value();
-  EXPECT_EQ(smoothed.rows(), made.last - made.first);
-  EXPECT_LT((smoothed - sensed.middleRows(made.first, smoothed.rows())).cwiseAbs().maxCoeff(), kSmoothing);
   EXPECT_THAT(made.recording.notes.back(), HasSubstr("the force is not measured"));
 }
 
