@@ -138,7 +138,7 @@ class RobotFitter {
   Vector sigma_, theta_;
   Matrix bread_, covariance_;  ///< of the columns that are kept, and of the delay's where it is estimated
   Matrix residuals_;
-  double delay_correction_ = 0, condition_ = 0;
+  double delay_correction_ = 0;
   Vector fixed_;                                ///< p, the values that are known, 0 elsewhere
   std::vector<robot::Coefficient> free_names_;  ///< of those that are not
   numeric::IndependentColumns columns_;         ///< of those that are not
@@ -225,7 +225,6 @@ Result<void> RobotFitter::solve() {
       if (!fit) return tl::unexpected(fit.error());
       free = fit->free;
       bread_ = fit->inverse_gram;
-      condition_ = fit->condition;
     }
     theta_ = fixed_;
     for (std::size_t k = 0; k < kept_.size(); ++k) theta_[kept_[k]] = free[static_cast<Index>(k)];
