@@ -55,7 +55,6 @@ std::vector<RadPerSec> frequencies(const FrequencyGrid& grid) {
 
 Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, const FrequencyGrid& grid, Port port,
                                             const Rational& a) {
-  using enum StabilityCondition;
   if (auto ok = check_poles(teleoperator); !ok) return tl::unexpected(ok.error());
   const auto at_once = teleoperator.without_delay().with_shortage(port, Polynomial{a}).at(0);
   if (!at_once) return tl::unexpected(at_once.error());
@@ -80,8 +79,8 @@ Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, co
   result.form = text(Form::z);
   result.conditions = {poles.conditions[0],
                        poles.conditions[1],
-                       on_grid(resistance_1, omega, r11, r11),
-                       on_grid(resistance_2, omega, r22, r22),
+                       on_grid(StabilityCondition::resistance_1, omega, r11, r11),
+                       on_grid(StabilityCondition::resistance_2, omega, r22, r22),
                        on_grid(StabilityCondition::product, omega, product, third),
                        on_grid(StabilityCondition::squares, omega, squares, third)};
   bool holds = true;
