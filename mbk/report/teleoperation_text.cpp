@@ -118,16 +118,16 @@ std::string admissible_text(const AdmissibleSet& set, bool with_operator) {
 }
 
 std::string shortage_text(const LargestShortage& largest, bool on_grid) {
-  const char* const who = largest.port == 1 ? "port 1 (master, the hand's side)" : "port 2 (slave, the environment's side)";
-  if (!largest.exists) return fmt::format("{}: none; no excess of passivity would be enough", who);
-  return fmt::format("{}: a ≤ {:.12g} N·s/m{}", who, largest.value(), on_grid ? ", on the grid" : "");
+  if (!largest.exists) return fmt::format("port {}: none; no excess of passivity would be enough", largest.port);
+  return fmt::format("port {}: a ≤ {:.12g} N·s/m{}", largest.port, largest.value(), on_grid ? ", on the grid" : "");
 }
 
 }  // namespace
 
 std::string teleoperation_text(const TeleoperationFinding& finding) {
   std::string result = fmt::format("{}: {}{}\n", finding.file, finding.kind,
-                                   finding.name.empty() ? "" : ", " + finding.name);
+                                   finding.name.empty() ? "" : fmt::format(" ({})", finding.name));
+  if (!finding.matrix.empty()) result += "  port 1: the master and the hand; port 2: the slave and the environment\n";
   for (const std::string& line : finding.matrix) result += "  " + line + "\n";
   if (!finding.parameters.empty()) {
     std::vector<std::vector<std::string>> rows;
