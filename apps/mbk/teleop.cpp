@@ -1,5 +1,4 @@
-#include <fmt/format.h>
-
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -32,10 +31,14 @@ std::filesystem::path chart_file(const Arguments& arguments, std::size_t chart) 
 Result<void> check(const Arguments& arguments) {
   std::vector<std::filesystem::path> inputs = {arguments.design};
   if (!arguments.operator_result.empty()) inputs.push_back(arguments.operator_result);
+  if (arguments.output.overwrite && !arguments.output.file && arguments.charts.empty()) {
+    return bad_usage("--overwrite requires --out or --charts", "name a file to write");
+  }
   if (auto ok = arguments.output.check(inputs); !ok) return ok;
   if (arguments.charts.empty()) return {};
   for (std::size_t i = 0; i < kChartNames.size(); ++i) {
-    if (auto ok = check_new_file(chart_file(arguments, i), "--charts", arguments.output.overwrite, inputs); !ok) return ok;
+    if (auto ok = check_new_file(chart_file(arguments, i), "--charts", arguments.output.overwrite, inputs); !ok)
+      return ok;
   }
   return {};
 }
@@ -80,8 +83,7 @@ int run(const Arguments& arguments) {
 
 Action add_teleop(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
+  CLI::App* command = app.add_subcommand("teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
   command->footer(
       "Examples:\n"
       "  mbk teleop design.toml\n"
@@ -107,6 +109,9 @@ Action add_teleop(CLI::App& app) {
       ->check(not_empty());
   command->add_flag("--json", arguments->json, "for machines: schema mbk.teleop/1");
   arguments->output.add_options(*command);
+  CLI::Option* const overwrite = command->get_option("--overwrite");
+  overwrite->remove_needs(command->get_option("--out"));
+  overwrite->description("replace the files of --out and --charts where they are there");
   return [arguments] { return run(*arguments); };
 }
 

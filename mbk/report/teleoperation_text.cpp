@@ -25,10 +25,9 @@ std::string in_hz(RadPerSec omega) {
 std::string band_text(const ViolatedBand& band) {
   if (band.low == band.high && !band.detail.empty()) return band.detail;
   if (band.low == band.high) return fmt::format("at {} rad/s", value_text(band.low.value));
-  const std::string range = std::isinf(band.high.value)
-                                ? fmt::format("above {} rad/s", value_text(band.low.value))
-                                : fmt::format("from {} to {} rad/s", value_text(band.low.value),
-                                              value_text(band.high.value));
+  const std::string range = std::isinf(band.high.value) ? fmt::format("above {} rad/s", value_text(band.low.value))
+                                                        : fmt::format("from {} to {} rad/s", value_text(band.low.value),
+                                                                      value_text(band.high.value));
   return fmt::format("{}, worst near {:.4g} rad/s ({})", range, band.worst.value, in_hz(band.worst));
 }
 
@@ -113,8 +112,9 @@ std::string admissible_text(const AdmissibleSet& set, bool with_operator) {
     for (const double value : set.undecided) values.push_back(fmt::format("{:.10g}", value));
     result += paragraph("  ", fmt::format("not decided at the single values {}", fmt::join(values, ", ")));
   }
-  return result + paragraph("  ", "all boundaries are roots of polynomials; between two of them every value has the same "
-                                  "answer");
+  return result + paragraph("  ",
+                            "all boundaries are roots of polynomials; between two of them every value has the same "
+                            "answer");
 }
 
 std::string shortage_text(const LargestShortage& largest, bool on_grid) {
@@ -125,8 +125,8 @@ std::string shortage_text(const LargestShortage& largest, bool on_grid) {
 }  // namespace
 
 std::string teleoperation_text(const TeleoperationFinding& finding) {
-  std::string result = fmt::format("{}: {}{}\n", finding.file, finding.kind,
-                                   finding.name.empty() ? "" : fmt::format(" ({})", finding.name));
+  std::string result = finding.file + "\n";
+  result += paragraph("  ", finding.kind + (finding.name.empty() ? "" : ": " + finding.name));
   if (!finding.matrix.empty()) result += "  port 1: the master and the hand; port 2: the slave and the environment\n";
   for (const std::string& line : finding.matrix) result += "  " + line + "\n";
   if (!finding.parameters.empty()) {
@@ -136,10 +136,9 @@ std::string teleoperation_text(const TeleoperationFinding& finding) {
     }
     result += "\n" + table(rows);
   }
-  const std::string where =
-      finding.grid ? fmt::format(" on {} points from {:g} to {:g} rad/s", finding.grid->points, finding.grid->low.value,
-                                 finding.grid->high.value)
-                   : "";
+  const std::string where = finding.grid ? fmt::format(" on {} points from {:g} to {:g} rad/s", finding.grid->points,
+                                                       finding.grid->low.value, finding.grid->high.value)
+                                         : "";
   result += fmt::format("\nLlewellyn's criterion (r = Re {0}, p = {0}12 {0}21): {1}\n", finding.stability.form,
                         verdict_line(finding.stability, where.c_str()));
   result += conditions_table(finding.stability);

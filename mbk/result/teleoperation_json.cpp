@@ -10,8 +10,8 @@
 namespace mbk::result {
 namespace {
 
-constexpr std::array<const char*, 6> kConditionNames = {"right_poles",  "axis_poles", "r11",
-                                                        "r22", "product", "squares"};
+constexpr std::array<const char*, 6> kConditionNames = {"right_poles", "axis_poles", "r11",
+                                                        "r22",         "product",    "squares"};
 
 Json stability_json(const AbsoluteStability& stability) {
   Json json = {{"form", stability.form},
@@ -50,12 +50,9 @@ Json end_json(const AdmissibleEnd& end) {
 }
 
 Json admissible_json(const AdmissibleSet& set) {
-  Json json = {{"parameter", set.parameter},
-               {"unit", set.unit},
-               {"range", {number(set.low), number(set.high)}},
-               {"intervals", Json::array()},
-               {"undecided", set.undecided},
-               {"critical", set.critical}};
+  Json json = {
+      {"parameter", set.parameter}, {"unit", set.unit},           {"range", {number(set.low), number(set.high)}},
+      {"intervals", Json::array()}, {"undecided", set.undecided}, {"critical", set.critical}};
   for (const AdmissibleInterval& interval : set.intervals) {
     json["intervals"].push_back({{"low", end_json(interval.low)}, {"high", end_json(interval.high)}});
   }
@@ -89,7 +86,8 @@ std::string to_json(const TeleoperationFinding& finding) {
   for (const DesignParameter& p : finding.parameters) json["parameters"][p.name] = number(p.value);
   json["decided"] = finding.grid ? "on the grid" : "exactly";
   if (finding.grid) {
-    json["grid"] = {{"from", finding.grid->low.value}, {"to", finding.grid->high.value}, {"points", finding.grid->points}};
+    json["grid"] = {
+        {"from", finding.grid->low.value}, {"to", finding.grid->high.value}, {"points", finding.grid->points}};
   }
   json["llewellyn"] = stability_json(finding.stability);
   if (finding.with_operator) {
@@ -133,10 +131,11 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
     return bad_data("no result of mbk: its schema is neither mbk.result/1 nor mbk.passivity/1", remedy);
   }
   if (const auto excess = pair_at(json, "/passivity/eop/interval95")) {
-    return OperatorShortage{0.0 - excess->first,
-                            fmt::format("minus the lower end of the 95 % interval of the excess of passivity, {:.4g} to "
-                                        "{:.4g} N·s/m",
-                                        excess->first, excess->second)};
+    return OperatorShortage{
+        0.0 - excess->first,
+        fmt::format("minus the lower end of the 95 % interval of the excess of passivity, {:.4g} to "
+                    "{:.4g} N·s/m",
+                    excess->first, excess->second)};
   }
   const auto index = pair_at(json, "/passivity/models/0/min_index_interval95");
   const auto band = pair_at(json, "/passivity/models/0/band_hz");
@@ -146,9 +145,10 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
   }
   return OperatorShortage{
       0.0 - index->first,
-      fmt::format("minus the lower end of the 95 % interval of the smallest passivity index, {:.4g} to {:.4g} N·s/m, over "
-                  "{:.3g} to {:.3g} Hz only: the model has no excess over all frequencies",
-                  index->first, index->second, band->first, band->second)};
+      fmt::format(
+          "minus the lower end of the 95 % interval of the smallest passivity index, {:.4g} to {:.4g} N·s/m, over "
+          "{:.3g} to {:.3g} Hz only: the model has no excess over all frequencies",
+          index->first, index->second, band->first, band->second)};
 }
 
 }  // namespace mbk::result

@@ -124,7 +124,8 @@ Result<void> add_poles(const Ratio& ratio, CriticalValues& critical) {
   if (ratio.numerator.is_zero() || ratio.denominator.degree() < 1) return {};
   critical.add(eliminate(ratio.numerator, ratio.denominator).resultant, true);
   const auto [even, odd] = axis_parts(without_roots_at_zero(ratio.denominator));
-  // a polynomial of s without roots at 0 has an even part; without an odd one all of its roots lie symmetric to the axis
+  // a polynomial of s without roots at 0 has an even part; without an odd one all of its roots lie symmetric to the
+  // axis
   const Elimination axis = odd.is_zero() ? Elimination{even, {}} : eliminate(even, odd);
   if (axis.common.degree() > 0) {
     return fail(ErrorKind::not_usable, "the network has undamped poles for every value of the parameter",
@@ -181,9 +182,8 @@ std::vector<Boundary> boundaries(const CriticalValues& critical, const Rational&
   const auto lower = [](const Boundary& a, const Boundary& b) { return a.bracket.low < b.bracket.low; };
   std::ranges::sort(found, lower);
   for (int bits = 2 * kBits;; bits *= 2) {
-    const auto touching = std::ranges::adjacent_find(found, [](const Boundary& a, const Boundary& b) {
-      return !(a.bracket.high < b.bracket.low);
-    });
+    const auto touching = std::ranges::adjacent_find(
+        found, [](const Boundary& a, const Boundary& b) { return !(a.bracket.high < b.bracket.low); });
     if (touching == found.end()) return found;
     for (Boundary& boundary : found) {
       if (!boundary.fraction) boundary.bracket = lti::refine(boundary.of, boundary.bracket, bits);

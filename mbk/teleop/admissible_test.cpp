@@ -42,8 +42,12 @@ TEST(AdmissibleSet, MayBeASingleValue) {
 TEST(AdmissibleSet, MayBeOneGainOfTheTransparentTeleoperator) {
   Teleoperator t = position_position(1, 2, 10, 100, 20, 300);
   t.architecture = Architecture::four_channel;
-  t.values.insert({{"channels.force_to_master", 1}, {"channels.force_to_slave", 1}, {"channels.to_slave_d", 22},
-                   {"channels.to_slave_k", 300}, {"channels.to_master_d", 11}, {"channels.to_master_k", 100}});
+  t.values.insert({{"channels.force_to_master", 1},
+                   {"channels.force_to_slave", 1},
+                   {"channels.to_slave_d", 22},
+                   {"channels.to_slave_k", 300},
+                   {"channels.to_master_d", 11},
+                   {"channels.to_master_k", 100}});
   const auto set = admissible_set(t.equations("channels.force_to_master"), 0, 3);
   ASSERT_TRUE(set) << set.error().line();
   ASSERT_EQ(set->intervals.size(), 1u);
@@ -56,16 +60,20 @@ TEST(AdmissibleSet, AgreesWithDecisionsOfSingleValues) {
   delayed.values.insert({{"delay.to_slave", {1, 200}}, {"delay.to_master", {1, 200}}});
   delayed.pade_order = 1;
   const Teleoperator plain = position_position(1, 1, 10, 100, 20, 200);
-  for (const auto& [teleoperator, parameter, high] :
-       {std::tuple{plain, "slave.d", 100}, {plain, "slave.b", 10}, {plain, "master.k", 1000},
-        {delayed, "slave.k", 2000}, {delayed, "master.b", 10}, {delayed, "delay.to_slave", 1}}) {
+  for (const auto& [teleoperator, parameter, high] : {std::tuple{plain, "slave.d", 100},
+                                                      {plain, "slave.b", 10},
+                                                      {plain, "master.k", 1000},
+                                                      {delayed, "slave.k", 2000},
+                                                      {delayed, "master.b", 10},
+                                                      {delayed, "delay.to_slave", 1}}) {
     const auto set = admissible_set(teleoperator.equations(parameter), 0, high);
     ASSERT_TRUE(set) << parameter << set.error().line();
     for (int i = 0; i < 60; ++i) {
       const Rational k(high * (2 * i + 1), 120);
       Teleoperator at = teleoperator;
       at.values.insert_or_assign(parameter, k);
-      EXPECT_EQ(contains(*set, lti::to_double(k)), is_absolutely_stable(*at.equations().at(0))) << parameter << " " << k;
+      EXPECT_EQ(contains(*set, lti::to_double(k)), is_absolutely_stable(*at.equations().at(0)))
+          << parameter << " " << k;
     }
   }
 }

@@ -131,18 +131,17 @@ PortEquations Teleoperator::without_delay(std::string_view parameter) const {
   const ParametricPolynomial Cs = impedance(value("slave.k"), value("slave.d"), {});
   const ParametricPolynomial Zm = impedance({}, value("master.b"), value("master.m"));
   const ParametricPolynomial Zs = impedance({}, value("slave.b"), value("slave.m"));
-  const ParametricPolynomial C1 =
-      channel("channels.to_slave_m", "channels.to_slave_d", "channels.to_slave_k", Cs);
+  const ParametricPolynomial C1 = channel("channels.to_slave_m", "channels.to_slave_d", "channels.to_slave_k", Cs);
   const ParametricPolynomial minus_C4 =
       architecture == Architecture::position_force
           ? ParametricPolynomial()
           : channel("channels.to_master_m", "channels.to_master_d", "channels.to_master_k", Cm);
   const Polynomial one{1};
   const ParametricPolynomial zero;
-  return {{{{gain(one + value("master.local_force_gain")), gain(value("channels.force_to_master")), zero - Zm - Cm,
-             minus_C4},
-            {gain(value("channels.force_to_slave")), gain(one + value("slave.local_force_gain")), C1,
-             zero - Zs - Cs}}}};
+  return {
+      {{{gain(one + value("master.local_force_gain")), gain(value("channels.force_to_master")), zero - Zm - Cm,
+         minus_C4},
+        {gain(value("channels.force_to_slave")), gain(one + value("slave.local_force_gain")), C1, zero - Zs - Cs}}}};
 }
 
 PortEquations Teleoperator::equations(std::string_view parameter) const {

@@ -15,8 +15,8 @@
 namespace mbk::teleop {
 
 /// Master and slave are masses with a damper, Z_m = m_m s + b_m and Z_s = m_s s + b_s; their controllers act on
-/// positions, as impedances C_m = d_m + k_m/s and C_s = d_s + k_s/s. Port 1 is the master: V₁ is the force of the hand on
-/// it, I₁ = v_m. Port 2 is the slave: V₂ is the force of the environment on it, I₂ = v_s. D₁ delays what goes to the
+/// positions, as impedances C_m = d_m + k_m/s and C_s = d_s + k_s/s. Port 1 is the master: V₁ is the force of the hand
+/// on it, I₁ = v_m. Port 2 is the slave: V₂ is the force of the environment on it, I₂ = v_s. D₁ delays what goes to the
 /// slave, D₂ what goes to the master. Every architecture is a case of the four-channel one (Lawrence 1993;
 /// Hashtrudi-Zaad & Salcudean 2001):
 ///   (1 + C₆) V₁ + D₂ C₂ V₂ = (Z_m + C_m) I₁ + D₂ C₄ I₂

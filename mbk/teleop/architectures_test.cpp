@@ -51,10 +51,14 @@ TEST(Teleoperator, OfPositionForceHasTheDocumentedHybridMatrix) {
 TEST(Teleoperator, OfFourChannelsIsTransparentWithLawrencesLaws) {
   Teleoperator t = position_position(1, 2, 10, 100, 20, 200);
   t.architecture = Architecture::four_channel;
-  t.values.insert({{"master.local_force_gain", {1, 2}}, {"slave.local_force_gain", 2},
-                   {"channels.force_to_master", {3, 2}}, {"channels.force_to_slave", 3},
-                   {"channels.to_slave_d", 22}, {"channels.to_slave_k", 200},
-                   {"channels.to_master_d", 11}, {"channels.to_master_k", 100}});
+  t.values.insert({{"master.local_force_gain", {1, 2}},
+                   {"slave.local_force_gain", 2},
+                   {"channels.force_to_master", {3, 2}},
+                   {"channels.force_to_slave", 3},
+                   {"channels.to_slave_d", 22},
+                   {"channels.to_slave_k", 200},
+                   {"channels.to_master_d", 11},
+                   {"channels.to_master_k", 100}});
   const auto h = t.equations().at(0);
   ASSERT_TRUE(h);
   EXPECT_EQ(h->form, Form::h);

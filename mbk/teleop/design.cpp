@@ -27,11 +27,12 @@ config::Range allowed(std::string_view key) {
 Teleoperator read_teleoperator(const Document& document) {
   using enum Architecture;
   Teleoperator result;
-  result.architecture = document.root().section("architecture").required_choice<Architecture>(
-      "kind", {{text(position_position), position_position},
-               {text(position_force), position_force},
-               {text(three_channel), three_channel},
-               {text(four_channel), four_channel}});
+  result.architecture = document.root()
+                            .section("architecture")
+                            .required_choice<Architecture>("kind", {{text(position_position), position_position},
+                                                                    {text(position_force), position_force},
+                                                                    {text(three_channel), three_channel},
+                                                                    {text(four_channel), four_channel}});
   for (const Parameter& parameter : all_parameters()) {
     const Need needed = need(result.architecture, parameter.name);
     if (needed == Need::none) continue;
@@ -63,8 +64,7 @@ Polynomial read_polynomial(const Section& entry, std::string_view key, std::vect
 
 TwoPort read_two_port(const Section& section) {
   TwoPort result;
-  result.form =
-      section.required_choice<Form>("form", {{"z", Form::z}, {"y", Form::y}, {"h", Form::h}, {"g", Form::g}});
+  result.form = section.required_choice<Form>("form", {{"z", Form::z}, {"y", Form::y}, {"h", Form::h}, {"g", Form::g}});
   for (const Index i : {0, 1}) {
     for (const Index j : {0, 1}) {
       const std::string name = fmt::format("{}{}{}", text(result.form), i + 1, j + 1);

@@ -55,7 +55,8 @@ TEST(ParseDesign, AsksForWhatAnArchitectureNeedsAndNothingElse) {
       "controller_damping_N_s_per_m = 1\ncontroller_stiffness_N_per_m = 1\n";
   EXPECT_THAT(line_of("[architecture]\nkind = \"position-position\"\n" + robots),
               HasSubstr("[master] has no 'controller_damping_N_s_per_m'"));
-  EXPECT_THAT(line_of("[architecture]\nkind = \"position-force\"\n" + robots), HasSubstr("[channels] has no 'force_to_master'"));
+  EXPECT_THAT(line_of("[architecture]\nkind = \"position-force\"\n" + robots),
+              HasSubstr("[channels] has no 'force_to_master'"));
   const std::string force = "[channels]\nforce_to_master = 1\n";
   EXPECT_EQ(line_of("[architecture]\nkind = \"position-force\"\n" + robots + force), "");
   EXPECT_THAT(line_of("[architecture]\nkind = \"position-force\"\n" + robots + force + "force_to_slave = 1\n"),

@@ -88,8 +88,8 @@ std::vector<Chart> charts(const Immittance& immittance, const std::vector<RadPer
   };
   return {chart("First condition: r11 must not be negative", resistance(1), std::move(r11)),
           chart("Second condition: r22 must not be negative", resistance(2), std::move(r22)),
-          chart("Third condition: 2 r11 r22 − Re p − |p| must not be negative",
-                {"over 2 |r11 r22| + |Re p| + |p|", ""}, std::move(third))};
+          chart("Third condition: 2 r11 r22 − Re p − |p| must not be negative", {"over 2 |r11 r22| + |Re p| + |p|", ""},
+                std::move(third))};
 }
 
 /// How a design is judged, exactly or on a grid, with a shortage at a port.
@@ -131,12 +131,14 @@ void describe(const Design& design, TeleoperationFinding& finding) {
   }
   if (design.exact_delay) {
     finding.grid = design.exact_delay;
-    finding.notes.push_back("the delay is exact and the verdict holds on the grid only: a violation between two of its "
-                            "points is not seen; with pade instead of exact it would be decided for every frequency");
+    finding.notes.push_back(
+        "the delay is exact and the verdict holds on the grid only: a violation between two of its "
+        "points is not seen; with pade instead of exact it would be decided for every frequency");
   } else if (teleoperator.has_delay()) {
-    finding.notes.push_back(fmt::format("each delay is a Padé approximation of order {}: the verdict is exact for that, "
-                                        "and the phase of a true delay differs beyond about {}/T rad/s",
-                                        teleoperator.pade_order, 2 * teleoperator.pade_order));
+    finding.notes.push_back(
+        fmt::format("each delay is a Padé approximation of order {}: the verdict is exact for that, "
+                    "and the phase of a true delay differs beyond about {}/T rad/s",
+                    teleoperator.pade_order, 2 * teleoperator.pade_order));
   }
 }
 
@@ -161,8 +163,7 @@ Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, 
   if (design.exact_delay) {
     return bad_usage("--parameter: with an exact delay there are no polynomials to solve", "use pade in [delay]");
   }
-  const PortEquations equations =
-      design.equations(asked.parameter).with_shortage(design.operator_port, Polynomial{a});
+  const PortEquations equations = design.equations(asked.parameter).with_shortage(design.operator_port, Polynomial{a});
   auto set = admissible_set(equations, asked.low, asked.high);
   if (set) {
     set->parameter = asked.parameter;
@@ -232,8 +233,7 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
   }
   const FrequencyGrid range =
       design.exact_delay ? *design.exact_delay : range_of_charts(passive->two_port, passive->stability);
-  finding.charts =
-      charts(immittance, chart_frequencies(range, passive->stability), passive->stability.form);
+  finding.charts = charts(immittance, chart_frequencies(range, passive->stability), passive->stability.form);
   finding.stability = std::move(passive->stability);
   return finding;
 }

@@ -76,9 +76,9 @@ std::vector<ViolatedBand> right_poles(const RationalMatrix& m, std::string_view 
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       if (roots[i].imag() < 0.0) continue;
       const double imaginary = roots[i].imag();
-      violated.push_back(at_pole(imaginary, fmt::format("{} has a pole at s = {:.6g}{}", name_of(form, entry),
-                                                        roots[i].real(),
-                                                        imaginary > 0.0 ? fmt::format(" ± {:.6g} j", imaginary) : "")));
+      violated.push_back(
+          at_pole(imaginary, fmt::format("{} has a pole at s = {:.6g}{}", name_of(form, entry), roots[i].real(),
+                                         imaginary > 0.0 ? fmt::format(" ± {:.6g} j", imaginary) : "")));
     }
   }
   return violated;
@@ -96,8 +96,8 @@ void judge_diagonal(const RationalMatrix& m, Index i, std::string_view form, std
   note(lti::PositiveRealCondition::residues, "a pole without a positive residue");
 }
 
-/// k₁₁ k₂₂ ≥ k₁₂ k₂₁ at every pole on the axis: m₁₁ m₂₂ − m₁₂ m₂₁ has no pole of third order there, and where it has one
-/// of second order, (s − jω₀)² times it is not negative.
+/// k₁₁ k₂₂ ≥ k₁₂ k₂₁ at every pole on the axis: m₁₁ m₂₂ − m₁₂ m₂₁ has no pole of third order there, and where it has
+/// one of second order, (s − jω₀)² times it is not negative.
 std::vector<ViolatedBand> joint_residues(const RationalMatrix& m) {
   const char* const detail = "k11 k22 < k12 k21";
   const RationalFunction delta = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
@@ -106,8 +106,8 @@ std::vector<ViolatedBand> joint_residues(const RationalMatrix& m) {
   for (std::size_t k = 1; k < factors.size(); ++k) {
     if (factors[k].degree() < 1) continue;
     const Polynomial axis = lti::square_free(lti::axis_roots(factors[k]));
-    const ComplexPolynomial scaled = lti::on_axis(delta.numerator()) *
-                                     lti::conjugate(lti::on_axis(delta.denominator().derivative().derivative()));
+    const ComplexPolynomial scaled =
+        lti::on_axis(delta.numerator()) * lti::conjugate(lti::on_axis(delta.denominator().derivative().derivative()));
     const auto judge = [&](const RootBracket& omega) {
       if (k == 1 && lti::sign_at_root(scaled.re, axis, omega) >= 0) return;
       violated.push_back(at_pole(lti::approximate(axis, omega), detail));
@@ -126,7 +126,8 @@ std::vector<ViolatedBand> joint_residues(const RationalMatrix& m) {
 void find_worst(const RationalMatrix& m, StabilityCondition condition, ViolatedBand& band) {
   constexpr int kPoints = 400;
   constexpr double kReach = 100.0;  // how far beyond the other end an open band is looked at, by a factor
-  const double high = std::isinf(band.high.value) ? kReach * std::max(band.low.value, band.worst.value) : band.high.value;
+  const double high =
+      std::isinf(band.high.value) ? kReach * std::max(band.low.value, band.worst.value) : band.high.value;
   const double low = band.low.value > 0.0 ? band.low.value : std::min(high, band.worst.value) / kReach;
   band.value = kInfinity;
   const auto look = [&](double omega) {

@@ -10,12 +10,11 @@ namespace mbk::teleop {
 /// criterion (1952; theorem 4.1 of Dyck 2013), r_ij = Re m_ij(jω) and p = m₁₂ m₂₁ of any immittance matrix m:
 ///   no pole has Re s > 0;  poles of m₁₁ and m₂₂ on the axis are simple, with positive residues;
 ///   r₁₁ ≥ 0,  r₂₂ ≥ 0,  2 r₁₁ r₂₂ − Re p ≥ 0,  4 r₁₁ r₂₂ (r₁₁ r₂₂ − Re p) − (Im p)² ≥ 0  for all ω > 0,
-/// the last two of which say 2 r₁₁ r₂₂ − Re p − |p| ≥ 0. Three things that the theorem does not name are needed too, and
-/// are asked for: the axis includes ∞; m₁₂ and m₂₁ have no pole on the right; and where the axis has a pole, with
-/// residues k_ij, k₁₁ k₂₂ ≥ k₁₂ k₂₁ ([[1, 2], [2, 1]]/s passes all of the above, and a spring of −3 is what port 1 shows
-/// when port 2 is free to move).
-/// Everything is decided exactly, in rational arithmetic by Sturm's theorem; only the frequencies and values that are
-/// returned are rounded.
+/// the last two of which say 2 r₁₁ r₂₂ − Re p − |p| ≥ 0. Three things that the theorem does not name are needed too,
+/// and are asked for: the axis includes ∞; m₁₂ and m₂₁ have no pole on the right; and where the axis has a pole, with
+/// residues k_ij, k₁₁ k₂₂ ≥ k₁₂ k₂₁ ([[1, 2], [2, 1]]/s passes all of the above, and a spring of −3 is what port 1
+/// shows when port 2 is free to move). Everything is decided exactly, in rational arithmetic by Sturm's theorem; only
+/// the frequencies and values that are returned are rounded.
 /// @returns  each condition with the bands in which it is violated and the worst frequency there
 [[nodiscard]] AbsoluteStability llewellyn(const TwoPort& two_port);
 

@@ -38,7 +38,8 @@ TEST(Llewellyn, OfTheIdealTeleoperatorIsMarginalEverywhere) {
 }
 
 TEST(Llewellyn, OfPositionPositionWithoutDampingNeedsEqualTimeConstants) {
-  for (const auto& [k_s, expected] : {std::pair{200, StabilityVerdict::marginal}, {210, StabilityVerdict::unstable},
+  for (const auto& [k_s, expected] : {std::pair{200, StabilityVerdict::marginal},
+                                      {210, StabilityVerdict::unstable},
                                       {190, StabilityVerdict::unstable}}) {
     EXPECT_EQ(llewellyn(*position_position(0, 0, 10, 100, 20, k_s).equations().at(0)).verdict, expected) << k_s;
   }

@@ -141,8 +141,8 @@ Elimination eliminate(const ParametricPolynomial& first, const ParametricPolynom
 ParametricPolynomial quotient(const ParametricPolynomial& a, const ParametricPolynomial& b) {
   ParametricPolynomial rest = a, result;
   while (!rest.is_zero()) {
-    const ParametricPolynomial term = shifted(
-        ParametricPolynomial({lti::divide(rest.leading(), b.leading()).quotient}), rest.degree() - b.degree());
+    const ParametricPolynomial term =
+        shifted(ParametricPolynomial({lti::divide(rest.leading(), b.leading()).quotient}), rest.degree() - b.degree());
     result = result + term;
     rest = rest - term * b;
   }

@@ -52,7 +52,8 @@ struct Elimination {
 };
 [[nodiscard]] Elimination eliminate(const ParametricPolynomial& a, const ParametricPolynomial& b);
 
-/// a/b. b must divide a over the fractions of k and have no content; then the quotient has no fractions (Gauss's lemma).
+/// a/b. b must divide a over the fractions of k and have no content; then the quotient has no fractions (Gauss's
+/// lemma).
 [[nodiscard]] ParametricPolynomial quotient(const ParametricPolynomial& a, const ParametricPolynomial& b);
 
 /// E and O of p(jω) = E(X) + jω O(X), X = ω².

@@ -41,8 +41,13 @@ inline Teleoperator position_position(const Rational& b_m, const Rational& b_s, 
 inline Teleoperator position_force(const Rational& gain) {
   Teleoperator result;
   result.architecture = Architecture::position_force;
-  result.values = {{"master.m", {1, 2}}, {"slave.m", {4, 5}}, {"master.b", 2},   {"slave.b", 3},
-                   {"slave.d", 40},      {"slave.k", 400},    {"channels.force_to_master", gain}};
+  result.values = {{"master.m", {1, 2}},
+                   {"slave.m", {4, 5}},
+                   {"master.b", 2},
+                   {"slave.b", 3},
+                   {"slave.d", 40},
+                   {"slave.k", 400},
+                   {"channels.force_to_master", gain}};
   return result;
 }
 

@@ -12,8 +12,8 @@ namespace mbk {
 
 /// What absolute stability asks of a two-port, in the order in which it is decided.
 enum class StabilityCondition {
-  right_poles,   ///< no pole with Re s > 0
-  axis_poles,    ///< poles on the axis, ∞ included: simple, residues k₁₁ ≥ 0, k₂₂ ≥ 0, k₁₁ k₂₂ ≥ k₁₂ k₂₁
+  right_poles,  ///< no pole with Re s > 0
+  axis_poles,  ///< poles on the axis, ∞ included: simple, residues k₁₁ ≥ 0, k₂₂ ≥ 0, k₁₁ k₂₂ ≥ k₁₂ k₂₁
   resistance_1,  ///< r₁₁ ≥ 0
   resistance_2,  ///< r₂₂ ≥ 0
   product,       ///< 2 r₁₁ r₂₂ − Re p ≥ 0
@@ -41,10 +41,10 @@ enum class StabilityCondition {
 
 /// Frequencies at which a condition is violated; one frequency where low = high (a pole).
 struct ViolatedBand {
-  RadPerSec low, high;   ///< high may be infinite
-  RadPerSec worst;       ///< where the condition is furthest from holding, by search in double
-  double value = 0;      ///< of the condition there: r_ii, or (2 r₁₁ r₂₂ − Re p − |p|) over the sum of the sizes
-  std::string detail;    ///< which entry has the pole; empty for bands
+  RadPerSec low, high;  ///< high may be infinite
+  RadPerSec worst;      ///< where the condition is furthest from holding, by search in double
+  double value = 0;  ///< of the condition there: r_ii, or (2 r₁₁ r₂₂ − Re p − |p|) over the sum of the sizes
+  std::string detail;  ///< which entry has the pole; empty for bands
 };
 
 struct StabilityOutcome {
@@ -92,9 +92,9 @@ struct LargestShortage {
 
 /// One end of an interval of a parameter.
 struct AdmissibleEnd {
-  double value = 0;               ///< may be infinite
-  std::optional<bool> included;   ///< absent: not decided
-  bool limit_of_search = false;   ///< the range that was asked for ends here
+  double value = 0;              ///< may be infinite
+  std::optional<bool> included;  ///< absent: not decided
+  bool limit_of_search = false;  ///< the range that was asked for ends here
 };
 
 struct AdmissibleInterval {
@@ -104,7 +104,7 @@ struct AdmissibleInterval {
 /// All values of one parameter with which the design is absolutely stable.
 struct AdmissibleSet {
   std::string parameter, unit;
-  double low = 0, high = 0;  ///< the range that was asked for
+  double low = 0, high = 0;                   ///< the range that was asked for
   std::vector<AdmissibleInterval> intervals;  ///< ascending, disjoint
   std::vector<double> undecided;              ///< single values between values that fail; not decided
   std::vector<double> critical;               ///< where the answer could have changed
@@ -133,8 +133,8 @@ struct TeleoperationFinding {
   std::string file, name, kind;     ///< of the architecture, or "two-port z"
   std::vector<std::string> matrix;  ///< what the architecture's matrix is, one line each
   std::vector<DesignParameter> parameters;
-  AbsoluteStability stability;                              ///< Llewellyn
-  std::optional<FrequencyGrid> grid;                        ///< where it was judged on a grid only
+  AbsoluteStability stability;        ///< Llewellyn
+  std::optional<FrequencyGrid> grid;  ///< where it was judged on a grid only
   int operator_port = 1;
   std::optional<OperatorShortage> operator_shortage;
   std::optional<AbsoluteStability> with_operator;  ///< modified Llewellyn, with that a

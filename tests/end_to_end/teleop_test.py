@@ -125,6 +125,8 @@ class Teleop(Case):
         for name in ("r11", "r22", "third"):
             self.assertIn("</svg>", (self.folder / f"c_{name}.svg").read_text(encoding="utf-8"))
         self.refused(WRONG_USAGE, "teleop", self.design(), "--charts", prefix, says=["c_r11.svg", "--overwrite"])
+        self.fine("teleop", self.design(), "--charts", prefix, "--overwrite")
+        self.refused(WRONG_USAGE, "teleop", self.design(), "--overwrite", says="--charts")
 
     def test_malformed_two_ports_name_the_entry(self):
         good = dict(form="z", n11="[1]", n12="[0]", n21="[0]", n22="[1]")
