@@ -109,6 +109,10 @@ Result<Design> design_of(const Document& document, std::string_view file) {
   if (two_port.given() && root.section("architecture").given()) {
     return tl::unexpected(two_port.error("form", "there is an [architecture] too", "keep one of the two"));
   }
+  if (!two_port.given() && !root.section("architecture").given()) {
+    return tl::unexpected(root.error("architecture", "is missing, and there is no [two_port] either",
+                                     "write [architecture] with kind = \"position-position\""));
+  }
   if (two_port.given()) {
     design.network = read_two_port(two_port);
   } else {

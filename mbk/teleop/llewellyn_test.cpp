@@ -11,8 +11,6 @@
 namespace mbk::teleop {
 namespace {
 
-using lti::RationalFunction;
-using lti::RationalMatrix;
 using enum StabilityCondition;
 
 const StabilityOutcome& outcome(const AbsoluteStability& stability, StabilityCondition condition) {
