@@ -10,7 +10,7 @@ from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, mak
                      write_csv)
 
 COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
-            "completion", "manual", "passivity")
+            "completion", "manual", "passivity", "teleop")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
                "robot": ("workspace", "describe", "identify", "force")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
