@@ -87,7 +87,7 @@ Action add_teleop(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  mbk teleop design.toml\n"
-      "      every condition of Llewellyn's criterion, where it is violated, and how much an operator may lack\n"
+      "      Llewellyn's conditions, where they are violated, and how much an operator may lack\n"
       "  mbk teleop design.toml --operator result.json\n"
       "      the modified criterion, with the excess or shortage of passivity that 'mbk measure --json' found\n"
       "  mbk teleop design.toml --parameter slave.k=0:1000\n"
