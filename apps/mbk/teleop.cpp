@@ -89,7 +89,7 @@ Action add_teleop(CLI::App& app) {
       "  mbk teleop design.toml\n"
       "      Llewellyn's conditions, where they are violated, and how much an operator may lack\n"
       "  mbk teleop design.toml --operator result.json\n"
-      "      the modified criterion, with the excess or shortage of passivity that 'mbk measure --json' found\n"
+      "      the modified criterion, with the excess of passivity that 'mbk measure --json' found\n"
       "  mbk teleop design.toml --parameter slave.k=0:1000\n"
       "      every value of the slave's stiffness in N/m that is stable, as intervals\n\n"
       "Complete designs stand in examples/teleop; docs/guide/teleoperation.md has every key.");
