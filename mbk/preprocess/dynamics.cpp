@@ -222,13 +222,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
     const Index rows = pieces[k].rows(), first = cut.begin + lost;
     all.middleRows(row, rows) = pieces[k];
     made.time.segment(row, rows) = recording.time(Eigen::seqN(first, rows, every)).array() - recording.time[0];
-    for (const Stretch& keep : cut.keep) {
-      const auto row_at = [&](Index sample) {
-        return std::clamp<Index>((sample - first + every - 1) / every, 0, rows);
-      };
-      const Index begin = row_at(keep.begin), end = row_at(keep.end);
-      if (begin < end) made.stretches.push_back({row + begin, row + end, keep.purpose, first + begin * every});
-    }
+    append_stretches(cut, first, every, row, rows, made.stretches);
     row += rows;
   }
   if (made.stretches.empty()) return bad_data("no sample is left after filtering", "record longer");
