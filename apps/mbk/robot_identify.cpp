@@ -15,6 +15,7 @@
 #include "mbk/measurement/identify_robot.h"
 #include "mbk/report/robot_text.h"
 #include "mbk/result/robot_json.h"
+#include "mbk/robot/drive_term_names.h"
 
 namespace mbk::app {
 namespace {
@@ -42,23 +43,17 @@ Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) 
   robot::DriveTerms& drive = model.drive;
   const std::vector<robot::Coefficient> before = model.coefficients();
   const Vector values = model.parameters;
-  const std::pair<const char*, bool robot::DriveTerms::*> known[] = {
-      {"viscous", &robot::DriveTerms::viscous},   {"coulomb", &robot::DriveTerms::coulomb},
-      {"stribeck", &robot::DriveTerms::stribeck}, {"cable", &robot::DriveTerms::cable},
-      {"offset", &robot::DriveTerms::offset},     {"motor_inertia", &robot::DriveTerms::motor_inertia}};
-  for (const auto& [name, flag] : known) drive.*flag = false;
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.wanted = false;
   for (std::size_t begin = 0; list != "none" && begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string word = list.substr(begin, end - begin);
     begin = end + 1;
-    bool found = false;
-    for (const auto& [name, flag] : known) {
-      if (word == name) drive.*flag = found = true;
-    }
-    if (!found) {
+    const auto term = std::ranges::find(robot::kDriveTermNames, word, &robot::DriveTermName::word);
+    if (term == robot::kDriveTermNames.end()) {
       return bad_usage(fmt::format("--terms: there is no term {}", quoted(word)),
                        "take of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none");
     }
+    drive.*term->wanted = true;
   }
   if (drive.cable) drive.offset = true;  // k (q − q₀) has a constant
   const std::vector<robot::Coefficient> after = model.coefficients();

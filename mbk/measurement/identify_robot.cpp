@@ -46,14 +46,13 @@ Result<std::vector<PreparedDynamics>> prepare_all(std::span<const Recording> rec
   return trials;
 }
 
-/// Recordings on an even clock, where that was asked.
-Result<std::vector<Recording>> even(std::span<const Recording> recordings, std::optional<Hertz> rate) {
-  std::vector<Recording> all(recordings.begin(), recordings.end());
-  if (!rate) return all;
-  for (Recording& recording : all) {
-    auto resampled = preprocess::resample(recording, *rate);
+/// Recordings on an even clock.
+Result<std::vector<Recording>> even(std::span<const Recording> recordings, Hertz rate) {
+  std::vector<Recording> all;
+  for (const Recording& recording : recordings) {
+    auto resampled = preprocess::resample(recording, rate);
     if (!resampled) return tl::unexpected(resampled.error());
-    recording = std::move(*resampled);
+    all.push_back(std::move(*resampled));
   }
   return all;
 }
@@ -63,7 +62,7 @@ struct Prepared {
   std::vector<PreparedDynamics> trials, held_back;
 };
 
-Result<Prepared> prepare_both(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+Result<Prepared> prepare_both(std::span<const Recording> recordings, std::span<const Recording> held_back,
                               const robot::DynamicModel& model, const preprocess::DynamicsOptions& options) {
   auto trials = prepare_all(recordings, model, options);
   if (!trials) return tl::unexpected(trials.error());
@@ -80,7 +79,7 @@ Result<Prepared> prepare_both(const std::vector<Recording>& recordings, const st
 }
 
 /// The pipeline with everything given.
-Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+Result<identify::RobotFit> fit_once(std::span<const Recording> recordings, std::span<const Recording> held_back,
                                     const robot::DynamicModel& model, const RobotOptions& options) {
   const auto both = prepare_both(recordings, held_back, model, options.preprocess);
   if (!both) return tl::unexpected(both.error());
@@ -88,7 +87,7 @@ Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, co
 }
 
 /// With the delay found where it is wanted.
-Result<RobotIdentification> fit_delay(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+Result<RobotIdentification> fit_delay(std::span<const Recording> recordings, std::span<const Recording> held_back,
                                       robot::DynamicModel model, const RobotOptions& options) {
   constexpr int kMostPasses = 8;
   constexpr double kSettled = 1e-5;  // [s], a hundredth of a sample at 1 kHz
@@ -114,11 +113,15 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
                                            const robot::DynamicModel& model, const RobotOptions& options) {
   RobotOptions all = options;
   all.preprocess.instruments = options.fit.method == RobotMethod::instrumental_variables;
-  const auto trials = even(recordings, options.resample);
-  if (!trials) return tl::unexpected(trials.error());
-  const auto others = even(held_back, options.resample);
-  if (!others) return tl::unexpected(others.error());
-  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(*trials, *others, model, all);
+  if (options.resample) {
+    all.resample.reset();
+    const auto trials = even(recordings, *options.resample);
+    if (!trials) return tl::unexpected(trials.error());
+    const auto others = even(held_back, *options.resample);
+    if (!others) return tl::unexpected(others.error());
+    return identify_robot(*trials, *others, model, all);
+  }
+  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(recordings, held_back, model, all);
 
   // Between the velocity at which the sign is smooth and a hundred times that.
   const double low = std::log(std::max(1.5 * model.drive.smoothing, 1e-4)), high = low + std::log(100.0);
@@ -128,7 +131,7 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
   std::optional<Error> failure;
   const auto left = [&](double log_velocity) {
     tried.drive.stribeck_velocity = std::exp(log_velocity);
-    auto found = fit_delay(*trials, *others, tried, all);
+    auto found = fit_delay(recordings, held_back, tried, all);
     if (!found) {
       failure = found.error();
       return std::numeric_limits<double>::max();

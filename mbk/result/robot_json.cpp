@@ -5,6 +5,7 @@
 #include "mbk/result/force_comparison_json.h"
 #include "mbk/result/json_parts.h"
 #include "mbk/result/json_reading.h"
+#include "mbk/robot/drive_term_names.h"
 
 namespace mbk::result {
 namespace {
@@ -25,22 +26,10 @@ const char* text(InstrumentMotion motion) {
   return "none";
 }
 
-/// The terms of the drives by their names, in the order in which they stand for each joint.
-struct TermFlag {
-  const char* name;
-  bool robot::DriveTerms::*flag;
-};
-constexpr TermFlag kTerms[] = {{"motor_inertia", &robot::DriveTerms::motor_inertia},
-                               {"viscous", &robot::DriveTerms::viscous},
-                               {"coulomb", &robot::DriveTerms::coulomb},
-                               {"stribeck", &robot::DriveTerms::stribeck},
-                               {"cable", &robot::DriveTerms::cable},
-                               {"offset", &robot::DriveTerms::offset}};
-
 Json drive_json(const robot::DriveTerms& drive) {
   Json json = {{"terms", Json::array()}, {"smoothing", drive.smoothing}};
-  for (const TermFlag& term : kTerms) {
-    if (drive.*term.flag) json["terms"].push_back(term.name);
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) {
+    if (drive.*term.wanted) json["terms"].push_back(term.word);
   }
   if (drive.stribeck) json["stribeck_velocity"] = drive.stribeck_velocity;
   return json;
@@ -48,12 +37,12 @@ Json drive_json(const robot::DriveTerms& drive) {
 
 robot::DriveTerms drive_from(const Json& json) {
   robot::DriveTerms drive;
-  for (const TermFlag& term : kTerms) drive.*term.flag = false;
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.wanted = false;
   for (const Json& name : json.at("terms")) {
     bool known = false;
-    for (const TermFlag& term : kTerms) {
-      if (name != term.name) continue;
-      drive.*term.flag = known = true;
+    for (const robot::DriveTermName& term : robot::kDriveTermNames) {
+      if (name != term.word) continue;
+      drive.*term.wanted = known = true;
     }
     if (!known) throw Malformed{fmt::format("there is no term {}", name.dump())};
   }
