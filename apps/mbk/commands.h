@@ -21,6 +21,8 @@ Action add_passivity(CLI::App& app);
 Action add_info(CLI::App& app);
 Action add_convert(CLI::App& app);
 Action add_simulate(CLI::App& app);
+Action add_run(CLI::App& app);
+Action add_recover(CLI::App& app);
 Action add_springs(CLI::App& app);
 Action add_sensor(CLI::App& app);
 Action add_teleop(CLI::App& app);

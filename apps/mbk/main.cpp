@@ -69,6 +69,8 @@ int main(int argc, char** argv) {
       {"info", mbk::app::add_info(app)},
       {"convert", mbk::app::add_convert(app)},
       {"simulate", mbk::app::add_simulate(app)},
+      {"run", mbk::app::add_run(app)},
+      {"recover", mbk::app::add_recover(app)},
       {"springs", mbk::app::add_springs(app)},
       {"teleop", mbk::app::add_teleop(app)},
       {"sensor", mbk::app::add_sensor(app)},

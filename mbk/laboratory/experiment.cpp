@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 
@@ -13,86 +12,6 @@ namespace mbk::laboratory {
 namespace {
 
 using perturbation::Quantity;
-using perturbation::Schedule;
-using perturbation::Space;
-
-/// One control law with the schedule behind it: from measured angles to torques, and what is recorded as reference.
-class Command {
- public:
-  static Result<Command> create(const Experiment& experiment, const Vector2d& home_angles) {
-    const bool position = std::holds_alternative<PositionMode>(experiment.control);
-    if (position != (experiment.schedule.quantity() == Quantity::position)) {
-      return bad_usage(position ? "position control cannot follow a force perturbation"
-                                : "force control cannot follow a position perturbation",
-                       "let control and perturbation speak of the same quantity");
-    }
-    if (!position && experiment.schedule.space() == Space::joint) {
-      return bad_usage("a perturbation of the joints' torques cannot be exerted at the hand", "give it as a force");
-    }
-    Command command(experiment, home_angles);
-    const double sample_time = 1.0 / experiment.rate.value;
-    if (const auto* mode = std::get_if<PositionMode>(&experiment.control)) {
-      auto law = control::JointPositionControl::create(mode->gains, sample_time);
-      if (!law) return tl::unexpected(law.error());
-      command.law_ = *law;
-    } else if (const auto* line_mode = std::get_if<LineMode>(&experiment.control)) {
-      control::LineConstraint::Options line = line_mode->line;
-      line.through = experiment.home;
-      auto law = control::LineConstraint::create(line, command.geometry_, sample_time);
-      if (!law) return tl::unexpected(law.error());
-      command.law_ = *law;
-    }
-    return command;
-  }
-
-  /// τ [N·m] for the time t.
-  Vector2d torque(double t, const Vector2d& measured) {
-    const perturbation::Jet<Vector2d> now = schedule_->at(t);
-    if (auto* follow = std::get_if<control::JointPositionControl>(&law_)) {
-      if (schedule_->space() == Space::joint) return follow->step(measured, home_angles_ + now.value, now.first);
-      const auto angles = robot::joint_angles(geometry_, home_ + now.value);
-      if (angles) angles_ = *angles;  // the schedule was checked to stay within reach
-      return follow->step(measured, angles_, robot::jacobian(geometry_, angles_).inverse() * now.first);
-    }
-    if (auto* line = std::get_if<control::LineConstraint>(&law_)) return line->step(measured, now.value);
-    return std::get<control::ForceControl>(law_).step(measured, now.value);
-  }
-
-  /// What stands in the recording: the hand's place behind a position, or the force [m or N].
-  [[nodiscard]] Vector2d reference(double t) const {
-    const Vector2d value = schedule_->reference(t);
-    if (schedule_->quantity() == Quantity::force) return value;
-    if (schedule_->space() == Space::hand) return home_ + value;
-    return robot::hand_position(geometry_, home_angles_ + value);
-  }
-
-  /// Place of the hand that the schedule asks for, where it asks for one.
-  [[nodiscard]] Vector2d place(const Vector2d& value) const {
-    return schedule_->space() == Space::hand ? Vector2d(home_ + value)
-                                             : robot::hand_position(geometry_, home_angles_ + value);
-  }
-
- private:
-  Command(const Experiment& experiment, const Vector2d& home_angles)
-      : schedule_(&experiment.schedule),
-        geometry_(experiment.robot.robot.geometry),
-        home_(experiment.home),
-        home_angles_(home_angles),
-        angles_(home_angles),
-        law_(control::ForceControl(geometry_)) {}
-
-  const Schedule* schedule_;
-  robot::Geometry geometry_;
-  Vector2d home_, home_angles_, angles_;
-  std::variant<control::ForceControl, control::JointPositionControl, control::LineConstraint> law_;
-};
-
-Result<Vector2d> checked_home(const Experiment& experiment) {
-  const robot::Geometry& geometry = experiment.robot.robot.geometry;
-  auto angles = robot::check_hand(geometry, experiment.home);
-  if (!angles) return tl::unexpected(angles.error().in("home"));
-  return angles;
-}
 
 /// The truth is asked for at every so many ticks.
 constexpr Index kTruthTicks = 100;
@@ -146,20 +65,10 @@ Result<Performance> perform(const Experiment& experiment, participant::Load& loa
     return bad_usage(fmt::format("sample rate {:g} Hz is not above 0", experiment.rate.value));
   }
   const double sample_time = 1.0 / experiment.rate.value;
-  const auto home_angles = checked_home(experiment);
-  if (!home_angles) return tl::unexpected(home_angles.error());
-  auto command = Command::create(experiment, *home_angles);
-  if (!command) return tl::unexpected(command.error());
   const robot::Geometry& geometry = experiment.robot.robot.geometry;
-  if (experiment.schedule.quantity() == Quantity::position) {
-    perturbation::Limits limits;
-    limits.reachable = [&](const Vector2d& value) -> Result<void> {
-      const auto angles = robot::check_hand(geometry, command->place(value));
-      if (!angles) return tl::unexpected(angles.error());
-      return {};
-    };
-    if (auto ok = experiment.schedule.check(limits); !ok) return tl::unexpected(ok.error().in("perturbation"));
-  }
+  auto command =
+      control::TrialControl::create(experiment.control, experiment.schedule, geometry, experiment.home, sample_time);
+  if (!command) return tl::unexpected(command.error());
   auto loop = ClosedLoop::create(experiment.robot, experiment.home, load, sample_time);
   if (!loop) return tl::unexpected(loop.error());
   auto sensors = SensorSuite::create(experiment.sensors, geometry, sample_time, experiment.seed);

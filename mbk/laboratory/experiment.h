@@ -2,9 +2,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <variant>
 
-#include "mbk/control/laws.h"
+#include "mbk/control/trial_control.h"
 #include "mbk/core/result.h"
 #include "mbk/core/units.h"
 #include "mbk/laboratory/closed_loop.h"
@@ -14,25 +13,16 @@
 
 namespace mbk::laboratory {
 
-/// The joints follow a reference; the schedule commands positions.
-struct PositionMode {
-  control::JointPositionControl::Gains gains;
-};
-
-/// The motors exert a force, open loop; the schedule commands forces.
-struct ForceMode {};
-
-/// Force along one line, held on it; the schedule commands forces. The line goes through home.
-struct LineMode {
-  control::LineConstraint::Options line;
-};
+using control::ForceMode;
+using control::LineMode;
+using control::PositionMode;
 
 /// One trial of the planar robot: everything but what hangs at its handle.
 struct Experiment {
   ClosedLoop::Options robot;
   Vector2d home = {0.3, -0.05};  ///< the test location: where the hand starts and the schedule is about [m], base frame
   perturbation::Schedule schedule;
-  std::variant<PositionMode, ForceMode, LineMode> control;
+  control::Mode control;
   SensorOptions sensors;
   Hertz rate{1000.0};                             ///< of control and recording
   std::uint64_t seed = 1;                         ///< of the sensors' noise
@@ -46,9 +36,8 @@ struct Experiment {
 /// truth: truth_M, truth_B, truth_K, truth_x0 (the load's intrinsic impedance about home, without the handle, averaged
 /// over the trial, as JSON arrays with 12 digits), truth_energy_absorbed_J and truth_force_delay_s of the sensor; and
 /// handle_mass_kg, rate_hz, and force_samples_clipped where there are any. Nothing that measures reads them.
-/// @fails  usage: control and schedule speak of different quantities; the schedule is of torques; the schedule leaves
-/// the workspace; as ClosedLoop,
-///         SensorSuite and the control laws. data: the hand leaves the workspace or the motion does not stay finite,
+/// @fails  usage: as TrialControl, ClosedLoop and SensorSuite. data: the hand leaves the workspace or the motion does
+/// not stay finite,
 ///         with the time.
 [[nodiscard]] Result<Performance> perform(const Experiment& experiment, participant::Load& load);
 

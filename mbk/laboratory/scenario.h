@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,10 @@
 #include "mbk/perturbation/random_binary.h"
 #include "mbk/perturbation/underdamped_pulse.h"
 #include "mbk/trial/springs.h"
+
+namespace mbk::config {
+class Section;
+}
 
 namespace mbk::laboratory {
 
@@ -88,7 +93,7 @@ struct NoLoad {};
 struct PlanarTrial {
   ClosedLoop::Options robot;
   Vector2d home = {0.3, -0.05};
-  std::variant<PositionMode, ForceMode, LineMode> control;
+  control::Mode control;
   std::variant<NoLoad, participant::ArmOptions, participant::ToneRobot::Options, RigPlan> load;
   SensorOptions sensors;
 };
@@ -118,6 +123,14 @@ struct Scenario {
 /// @fails  data: with file, line, key, value and what is allowed.
 [[nodiscard]] Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file);
 
+/// One trial out of its sections; who asks calls finish() of the document. file_name and trial_name stay empty.
+[[nodiscard]] Scenario read_scenario(const config::Section& root);
+
+/// What a recording of the scenario says of it: truth_scenario, truth_trial, truth_condition, truth_seed and
+/// truth_note; and of an arm of two links what anyone in the room could measure: shoulder_x_m, shoulder_y_m,
+/// upper_arm_m, forearm_m, elbow.
+[[nodiscard]] std::map<std::string, std::string> scenario_metadata(const Scenario& scenario);
+
 /// Said wherever something is shown that a participant who corrects position or force had a part in.
 inline constexpr const char* kTunedGains = "the gains of the participant's will are tuned, not fitted to anyone";
 
@@ -127,8 +140,7 @@ struct SimulateOptions {
 };
 
 /// Runs a scenario. The same scenario and seed give the same recording, to the bit. To what `perform` writes into the
-/// metadata come the scenario's name, trial, condition and seed (truth_…), and for an arm of two links where its
-/// shoulder is and how long it is: shoulder_x_m, shoulder_y_m, upper_arm_m, forearm_m, elbow.
+/// metadata comes scenario_metadata.
 /// @fails  usage: control and perturbation speak of different quantities; as make_schedule and both `perform`.
 [[nodiscard]] Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options = {});
 

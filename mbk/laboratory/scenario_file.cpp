@@ -40,7 +40,7 @@ ClosedLoop::Options read_robot(const Section& s) {
   return options;
 }
 
-std::variant<PositionMode, ForceMode, LineMode> read_control(const Section& s) {
+control::Mode read_control(const Section& s) {
   enum class Kind { position, force, line };
   const auto kind =
       s.required_choice<Kind>("kind", {{"position", Kind::position}, {"force", Kind::force}, {"line", Kind::line}});
@@ -520,6 +520,8 @@ void along_one_axis(PerturbationPlan& plan) {
   }
 }
 
+}  // namespace
+
 Scenario read_scenario(const Section& root) {
   Scenario scenario;
   const Section recording = root.section("recording");
@@ -538,8 +540,6 @@ Scenario read_scenario(const Section& root) {
   }
   return scenario;
 }
-
-}  // namespace
 
 Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file) {
   const auto document = config::Document::parse(text, file.string());

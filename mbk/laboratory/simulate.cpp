@@ -1,60 +1,15 @@
 #include <map>
-#include <memory>
 #include <string>
 
-#include "mbk/laboratory/scenario.h"
-#include "mbk/laboratory/spring_rig.h"
+#include "mbk/laboratory/make_load.h"
 #include "mbk/laboratory/truth_text.h"
 
 namespace mbk::laboratory {
 namespace {
 
-using participant::Load;
-
-/// Nothing at the handle.
-class EmptyHandle : public Load {
- public:
-  [[nodiscard]] participant::LoadDynamics dynamics(const participant::HandState& /*hand*/) const override { return {}; }
-  [[nodiscard]] impedance::Model impedance(const Vector2d& hand) const override {
-    return {Matrix2d::Zero(), Matrix2d::Zero(), Matrix2d::Zero(), hand};
-  }
-};
-
-template <class Kind>
-Result<std::unique_ptr<Load>> owned(Result<Kind> load, const char* section) {
-  if (!load) return tl::unexpected(load.error().in(section));
-  return std::make_unique<Kind>(std::move(*load));
-}
-
-struct MakeLoad {
-  const Scenario& scenario;
-  const PlanarTrial& trial;
-
-  Result<std::unique_ptr<Load>> operator()(const NoLoad& /*nothing*/) const { return std::make_unique<EmptyHandle>(); }
-
-  Result<std::unique_ptr<Load>> operator()(participant::ArmOptions arm) const {
-    arm.seed = scenario.seed;
-    return owned(participant::Arm::create(arm, 1.0 / scenario.rate.value), "participant");
-  }
-
-  Result<std::unique_ptr<Load>> operator()(const participant::ToneRobot::Options& tone) const {
-    return owned(participant::ToneRobot::create(tone), "participant");
-  }
-
-  Result<std::unique_ptr<Load>> operator()(const RigPlan& rig) const {
-    if (!rig.springs.empty()) {
-      const auto angles = robot::joint_angles(trial.robot.robot.geometry, trial.home);
-      if (!angles) return tl::unexpected(angles.error().in("home"));
-      return owned(SpringRig::create(rig.springs, rig.mass, rig.damping, (*angles)[1], trial.home), "rig");
-    }
-    const impedance::Model field{rig.mass * Matrix2d::Identity(), rig.damping, rig.stiffness, rig.equilibrium};
-    return owned(participant::LinearLimb::create(field), "rig");
-  }
-};
-
 Result<Performance> run(const PlanarTrial& trial, const Scenario& scenario, const SimulateOptions& options,
                         perturbation::Schedule schedule) {
-  auto load = std::visit(MakeLoad{scenario, trial}, trial.load);
+  auto load = make_load(scenario, trial);
   if (!load) return tl::unexpected(load.error());
   return perform(Experiment{trial.robot, trial.home, std::move(schedule), trial.control, trial.sensors, scenario.rate,
                             scenario.seed, options.progress, options.watch},
@@ -107,14 +62,19 @@ Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& op
   auto performance = std::visit([&](const auto& trial) { return run(trial, scenario, options, std::move(*schedule)); },
                                 scenario.trial);
   if (!performance) return performance;
-  auto& metadata = performance->recording.metadata;
+  performance->recording.metadata.merge(scenario_metadata(scenario));
+  return performance;
+}
+
+std::map<std::string, std::string> scenario_metadata(const Scenario& scenario) {
+  std::map<std::string, std::string> metadata;
   if (const auto* arm = arm_of(scenario)) add_geometry(*arm, metadata);
   metadata["truth_scenario"] = scenario.file_name;
   if (!scenario.trial_name.empty()) metadata["truth_trial"] = scenario.trial_name;
   if (!scenario.condition.empty()) metadata["truth_condition"] = scenario.condition;
   if (has_will(scenario)) metadata["truth_note"] = kTunedGains;
   metadata["truth_seed"] = std::to_string(scenario.seed);
-  return performance;
+  return metadata;
 }
 
 Recording without_truth(Recording recording) {

@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
+#include "apps/mbk/scenario_argument.h"
+#include "mbk/laboratory/simulated_device.h"
+#include "mbk/measurement/measure.h"
+#include "mbk/recording/read.h"
+#include "mbk/report/schedule_text.h"
+#include "mbk/report/text.h"
+#include "mbk/session/session.h"
+
+namespace mbk::app {
+namespace {
+
+namespace fs = std::filesystem;
+using session::Session;
+using session::Trial;
+
+constexpr int kSafetyStop = 5;
+
+struct Arguments {
+  std::string experiment;
+  std::vector<std::string> trials;
+  fs::path out;
+  std::optional<std::uint64_t> seed;
+  std::optional<int> person;
+  std::optional<double> speed;
+  bool as_fast_as_possible = false, dry_run = false, measure = true, quiet = false;
+};
+
+/// Where Ctrl-C goes while a trial runs.
+std::atomic<session::Signals*> running{nullptr};
+
+extern "C" void on_interrupt(int /*signal*/) {
+  if (session::Signals* signals = running.load()) signals->operator_stop = true;
+}
+
+/// While it lives, Ctrl-C stops the robot instead of the program.
+class StopByKey {
+ public:
+  explicit StopByKey(session::Signals& signals) {
+    running = &signals;
+    struct sigaction action {};
+    action.sa_handler = on_interrupt;
+    sigaction(SIGINT, &action, &before_);
+    sigaction(SIGTERM, &action, &before_term_);
+  }
+  StopByKey(const StopByKey&) = delete;
+  StopByKey& operator=(const StopByKey&) = delete;
+  ~StopByKey() {
+    sigaction(SIGINT, &before_, nullptr);
+    sigaction(SIGTERM, &before_term_, nullptr);
+    running = nullptr;
+  }
+
+ private:
+  struct sigaction before_ {};
+  struct sigaction before_term_ {};
+};
+
+Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
+  std::string text;
+  fs::path file = arguments.experiment;
+  if (const auto* ready = laboratory::find_ready_scenario(arguments.experiment)) {
+    text = ready->text;
+    file += ".toml";
+  } else {
+    auto read = read_text(file);
+    if (!read) return tl::unexpected(read.error());
+    text = std::move(*read);
+  }
+  auto trials = session::read_experiment(text, file);
+  if (!trials) return trials;
+  std::vector<Trial> chosen;
+  for (const std::string& name : arguments.trials) {
+    const auto found = std::ranges::find(*trials, name, &Trial::name);
+    if (found == trials->end()) {
+      return bad_usage(fmt::format("there is no trial '{}'", name), "see the [[trial]] names in the file");
+    }
+    chosen.push_back(*found);
+  }
+  if (chosen.empty()) chosen = std::move(*trials);
+  for (Trial& trial : chosen) {
+    if (arguments.seed) trial.scenario.seed = *arguments.seed;
+    if (arguments.person) trial.person.number = *arguments.person;
+  }
+  return chosen;
+}
+
+/// relaxed.h5 → relaxed_NAME.h5 where there are several trials.
+fs::path target_of(const Arguments& arguments, const Trial& trial, bool several) {
+  const fs::path out = arguments.out.empty() ? fs::path(trial.protocol + ".h5") : arguments.out;
+  if (!several) return out;
+  return out.parent_path() / fmt::format("{}_{}{}", out.stem().string(), trial.name, out.extension().string());
+}
+
+/// One line on standard error, written over itself where that is a terminal; else one a second.
+class StatusLine {
+ public:
+  StatusLine(std::string_view trial, bool quiet)
+      : trial_(trial), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+  void show(std::span<const journal::Tick> ticks) {
+    const journal::Tick& tick = ticks.back();
+    const auto now = std::chrono::steady_clock::now();
+    if (quiet_ || now < next_) return;
+    next_ = now + std::chrono::milliseconds(terminal_ ? 100 : 1000);
+    const auto phase = static_cast<control::Phase>(tick.phase);
+    const std::string line = fmt::format("{}{:6.1f} s  {}  |F| {:4.1f} N  torque {:+.2f} {:+.2f} N·m",
+                                         trial_.empty() ? "" : trial_ + ": ", tick.time, control::text(phase),
+                                         std::hypot(tick.force[0], tick.force[1]), tick.torque[0], tick.torque[1]);
+    fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "", line, terminal_ ? "" : "\n");
+    shown_ = true;
+  }
+
+  ~StatusLine() {
+    if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
+  }
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+ private:
+  std::string trial_;
+  bool quiet_, terminal_, shown_ = false;
+  std::chrono::steady_clock::time_point next_;
+};
+
+std::string time_text(const realtime::CycleRecord& record) {
+  return fmt::format("median {:.1f} µs, p99.9 {:.1f} µs, worst {:.1f} µs", 1e-3 * record.quantile(0.5),
+                     1e-3 * record.quantile(0.999), 1e-3 * static_cast<double>(record.worst()));
+}
+
+std::string outcome_text(const session::TrialOutcome& outcome, const session::Pace& pace) {
+  std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ending.how);
+  if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
+  text += fmt::format("\n  {} ticks, {} dropped; compute per tick: {}\n", outcome.times.ticks, outcome.ending.dropped,
+                      time_text(outcome.times.compute));
+  if (!pace.virtual_clock) {
+    text += fmt::format("  lateness: {}; {} ticks missed\n", time_text(outcome.times.lateness), outcome.times.missed);
+    if (!outcome.setup.refused.empty()) text += fmt::format("  {}\n", outcome.setup.refused);
+  }
+  return text;
+}
+
+int run(const Arguments& arguments) {
+  const auto trials = trials_of(arguments);
+  if (!trials) return report_error(trials.error());
+  session::Pace pace;
+  pace.virtual_clock = arguments.as_fast_as_possible || arguments.speed.has_value();
+  pace.speed = arguments.speed.value_or(0.0);
+  for (const Trial& trial : *trials) {
+    if (auto ok = session::check_plan(trial); !ok) return report_error(ok.error().in(arguments.experiment));
+  }
+  Session session(pace);
+  for (const Trial& trial : *trials) {
+    auto robot = laboratory::SimulatedDevice::create(trial.scenario);
+    if (!robot) return report_error(robot.error());
+    const fs::path target = target_of(arguments, trial, trials->size() > 1);
+    const auto outcome = [&] {
+      const StopByKey stop(session.signals());
+      StatusLine line(trial.name, arguments.quiet);
+      return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) { line.show(ticks); });
+    }();
+    if (!outcome) return report_error(outcome.error());
+    if (auto ok = Output().write(outcome_text(*outcome, pace)); !ok) return report_error(ok.error());
+    if (outcome->trip.reason != safety::Reason::none) return kSafetyStop;
+  }
+  return kFine;
+}
+
+}  // namespace
+
+Action add_run(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("run", "run an experiment at 1 kHz: perturb, record, measure");
+  command->footer(
+      "Examples:\n"
+      "  mbk run relaxed_sinusoidal --out relaxed.h5\n"
+      "      a simulated robot and participant, in real time; needs nothing\n"
+      "  mbk run mine.toml --dry-run\n"
+      "      schedule, peaks, duration and limits, before anyone sits down\n"
+      "  mbk run mine.toml --participant 7 --out p07.h5\n"
+      "      every [[trial]] of the file in turn: p07_NAME.h5\n"
+      "  mbk run relaxed_sinusoidal --fast --out relaxed.h5\n"
+      "      the same on a virtual clock, as fast as the machine can; --speed 20 for twenty times\n\n"
+      "Ctrl-C stops the robot. What is recorded goes to NAME.h5.journal first; 'mbk recover' makes a recording\n"
+      "of it where the program or the machine went down.\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable, 5 safety stop.");
+  command->add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
+      ->required()
+      ->check(suggests(ready_scenario_names()));
+  command->add_option("--out", arguments->out, "the recording to write (NAME.h5); several trials get suffixes")
+      ->type_name("REC")
+      ->check(not_empty());
+  command->add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
+      ->type_name("NAME");
+  command->add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the experiment's")
+      ->type_name("N")
+      ->check(whole_number(0, std::numeric_limits<long>::max()));
+  command->add_option("--participant", arguments->person, "number of the person, instead of the file's")
+      ->type_name("N")
+      ->check(whole_number(1, 999'999));
+  command->add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: as fast as the machine can");
+  command->add_option("--speed", arguments->speed, "virtual clock: so many seconds for each second")->type_name("X");
+  command->add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
+  command->add_flag("--quiet", arguments->quiet, "no status line");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace mbk::realtime {
+
+/// What the operating system granted to the calling thread.
+struct ThreadSetup {
+  bool fifo = false;           ///< scheduled first in, first out, before everything that is not
+  bool locked_memory = false;  ///< no page of the process is ever fetched from disk
+  std::string refused;         ///< what was refused, why, and what would allow it; empty where nothing was
+};
+
+/// Asks for SCHED_FIFO at `priority` (1–99) for the calling thread and for locked memory for the process, and touches
+/// the stack so that it is there. What is refused is said, never an error: a simulation needs neither.
+[[nodiscard]] ThreadSetup prepare_thread(int priority = 80);
+
+}  // namespace mbk::realtime

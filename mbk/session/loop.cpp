@@ -1,0 +1,98 @@
+#include "mbk/session/loop.h"
+
+#include <ctime>
+
+namespace mbk::session {
+namespace {
+
+using realtime::monotonic_ns;
+
+constexpr std::int64_t kLongestWait = 2'000'000'000;  // [ns]
+
+/// False where the recorder makes no room in time.
+bool wait_for_room(const realtime::BoundedRing<journal::Tick>& ticks) noexcept {
+  if (ticks.room() > 0) return true;
+  const std::int64_t until = monotonic_ns() + kLongestWait;
+  constexpr timespec kNap{0, 200'000};
+  while (ticks.room() < ticks.capacity() / 2) {
+    if (monotonic_ns() > until) return false;
+    nanosleep(&kNap, nullptr);
+  }
+  return true;
+}
+
+std::array<double, 2> pair(const Eigen::Vector2d& v) noexcept {
+  return {v[0], v[1]};
+}
+
+}  // namespace
+
+void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
+              realtime::BoundedRing<journal::Tick>& ticks, Signals& signals, LoopTimes& times) noexcept {
+  const device::Facts& facts = robot.facts();
+  device::State state;
+  std::uint64_t last_sequence = 0;
+  double compute = 0.0, first_time = 0.0;
+  bool link = true;
+  clock.start();
+  for (std::uint64_t number = 0;; ++number) {
+    const double late = clock.wait();
+    const std::int64_t begin = monotonic_ns();
+    link = robot.read(state) && link;
+    if (signals.end_trial.load(std::memory_order_relaxed)) sequence.end_early();
+    const control::Sequencer::Step step = gate.tripped() ? control::Sequencer::Step{} : sequence.step(state.joint);
+
+    safety::Observation seen;
+    seen.time = clock.now();
+    if (number == 0) first_time = seen.time;
+    seen.time -= first_time;
+    seen.fresh = state.sequence != last_sequence;
+    seen.link = link;
+    seen.stop_button = state.stop;
+    seen.operator_stop = signals.operator_stop.load(std::memory_order_relaxed);
+    seen.recording = signals.recording.load(std::memory_order_relaxed) &&
+                     (facts.keeps_time ? ticks.room() > ticks.capacity() / 4 : wait_for_room(ticks));
+    seen.late = facts.keeps_time ? late : 0.0;
+    seen.joint = state.joint;
+    seen.force = state.force;
+    seen.acceleration = state.acceleration;
+    seen.has_force = facts.has_force;
+    seen.has_acceleration = facts.has_acceleration;
+    seen.follows = step.follows;
+    seen.joint_reference = step.joint_reference;
+    seen.perturbing = step.phase == control::Phase::perturbing;
+    const safety::Gate::Decision decision = gate.step(seen, step.torque);
+    link = robot.write({number, decision.torque, decision.enabled}) && link;
+    last_sequence = state.sequence;
+
+    journal::Tick tick;
+    tick.number = number;
+    tick.time = seen.time;
+    tick.late = late;
+    tick.perturbation_time = step.perturbation_time;
+    tick.joint = pair(state.joint);
+    tick.force = pair(state.force);
+    tick.acceleration = pair(state.acceleration);
+    tick.reference = pair(step.reference);
+    tick.asked = pair(step.torque);
+    tick.torque = pair(decision.torque);
+    tick.sequence = state.sequence;
+    tick.compute = static_cast<float>(compute);
+    tick.phase = static_cast<std::uint8_t>(step.phase);
+    tick.reason = static_cast<std::uint8_t>(gate.trip().reason);
+    tick.enabled = decision.enabled ? 1 : 0;
+    tick.cut = decision.cut ? 1 : 0;
+    ticks.push(tick);
+
+    const std::int64_t took = monotonic_ns() - begin;
+    compute = 1e-9 * static_cast<double>(took);
+    times.compute.add(took);
+    times.lateness.add(static_cast<std::int64_t>(1e9 * late));
+    ++times.ticks;
+    if (gate.off() || (!gate.tripped() && step.phase == control::Phase::done)) break;
+  }
+  times.missed += clock.missed();
+  robot.stop();
+}
+
+}  // namespace mbk::session

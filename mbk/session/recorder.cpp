@@ -1,0 +1,116 @@
+#include "mbk/session/recorder.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+
+namespace mbk::session {
+namespace {
+
+using namespace std::chrono_literals;
+using journal::Tick;
+
+constexpr auto kBlockTime = 50ms;
+constexpr std::size_t kBlock = 256;               // ticks, where there are many
+constexpr std::size_t kMostPending = 1 << 20;     // ticks kept for a disk that does not take them
+constexpr std::uintmax_t kLeastSpace = 16 << 20;  // [bytes] beside what is reserved
+
+}  // namespace
+
+Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch)
+    : ticks_(ticks), writer_(std::move(writer)), signals_(signals), watch_(std::move(watch)) {
+  recording_ = std::thread([this] { record(); });
+  syncing_ = std::thread([this] { keep_syncing(); });
+}
+
+Recorder::~Recorder() {
+  stop_threads();
+}
+
+void Recorder::stop_threads() {
+  over_ = true;
+  if (recording_.joinable()) recording_.join();
+  {
+    const std::scoped_lock lock(mutex_);
+    closing_ = true;
+  }
+  wake_.notify_all();
+  if (syncing_.joinable()) syncing_.join();
+}
+
+bool Recorder::drain() {
+  const std::size_t before = pending_.size();
+  pending_.resize(before + kBlock);
+  const std::size_t came = ticks_.pop(pending_.data() + before, kBlock);
+  pending_.resize(before + came);
+  if (watch_ && came > 0) watch_(std::span(pending_).subspan(before));
+  return came == kBlock;
+}
+
+void Recorder::write_pending() {
+  if (pending_.empty()) return;
+  if (auto ok = writer_.append(pending_); !ok) {
+    failure_ = ok.error();
+    signals_.recording = false;
+    if (pending_.size() > kMostPending) pending_.erase(pending_.begin(), pending_.end() - kMostPending);
+    return;
+  }
+  pending_.clear();
+  failure_.reset();
+  {
+    const std::scoped_lock lock(mutex_);
+    dirty_ = true;
+  }
+  wake_.notify_all();
+}
+
+void Recorder::record() {
+  using Clock = std::chrono::steady_clock;
+  auto next_block = Clock::now() + kBlockTime, next_look = Clock::now();
+  while (!over_) {
+    const bool more = drain();
+    if (more || Clock::now() >= next_block) {
+      write_pending();
+      next_block = Clock::now() + kBlockTime;
+    }
+    if (Clock::now() >= next_look) {
+      next_look = Clock::now() + 1s;
+      std::error_code error;
+      const auto space = std::filesystem::space(
+          writer_.file().parent_path().empty() ? std::filesystem::path(".") : writer_.file().parent_path(), error);
+      if (!error && space.available < kLeastSpace) signals_.recording = false;
+    }
+    if (!more) std::this_thread::sleep_for(5ms);
+  }
+  while (drain()) {
+  }
+  write_pending();
+}
+
+void Recorder::keep_syncing() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [&] { return dirty_ || closing_; });
+    if (!dirty_) return;
+    dirty_ = false;
+    lock.unlock();
+    if (!writer_.sync()) signals_.recording = false;
+    lock.lock();
+  }
+}
+
+Result<void> Recorder::finish(journal::Ending ending) {
+  stop_threads();
+  write_pending();
+  ending.dropped = ticks_.dropped() + pending_.size();
+  const auto ended = writer_.end(ending);
+  if (!pending_.empty() && failure_) {
+    Error error = *failure_;
+    error.message = fmt::format("{} ticks were not written: {}", pending_.size(), error.message);
+    return tl::unexpected(error);
+  }
+  return ended;
+}
+
+}  // namespace mbk::session

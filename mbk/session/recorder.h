@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "mbk/journal/journal.h"
+#include "mbk/realtime/bounded_ring.h"
+#include "mbk/session/loop.h"
+
+namespace mbk::session {
+
+/// Called with ticks as they are recorded, from the recorder's thread, in their order. Must not block for long.
+using Watch = std::function<void(std::span<const journal::Tick>)>;
+
+/// Takes the loop's ticks to the journal from a thread of its own: a block at least every 50 ms, and a third thread
+/// that waits for the disk, so that a slow disk holds nobody up. Free space is looked at once a second. Where the file
+/// fails, Signals::recording falls, and what could not be written is tried again at the end.
+class Recorder {
+ public:
+  Recorder(realtime::BoundedRing<journal::Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch);
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  ~Recorder();
+
+  /// Takes what is left, writes the ending and closes the journal. The loop is over.
+  /// @fails  data: ticks could not be written; the message says how many and why.
+  [[nodiscard]] Result<void> finish(journal::Ending ending);
+
+ private:
+  void record();
+  void keep_syncing();
+  bool drain();
+  void write_pending();
+  void stop_threads();
+
+  realtime::BoundedRing<journal::Tick>& ticks_;
+  journal::Writer writer_;
+  Signals& signals_;
+  Watch watch_;
+  std::vector<journal::Tick> pending_;
+  std::optional<Error> failure_;
+  std::atomic<bool> over_{false};
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool dirty_ = false, closing_ = false;
+  std::thread recording_, syncing_;
+};
+
+}  // namespace mbk::session

@@ -1,0 +1,173 @@
+#include "mbk/session/session.h"
+
+#include <fmt/format.h>
+
+#include <ctime>
+
+#include "mbk/core/version.h"
+#include "mbk/recording/write.h"
+
+namespace mbk::session {
+namespace {
+
+namespace fs = std::filesystem;
+using journal::Header;
+using journal::Tick;
+
+/// Two seconds at 1 kHz: longer than any stall that a machine fit for this work has.
+constexpr std::size_t kRing = 4096;
+
+std::string now_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                     utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+Header header_of(const Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
+  Header header;
+  header.metadata = metadata_of(trial.person);
+  header.metadata.merge(laboratory::scenario_metadata(trial.scenario));
+  header.metadata["protocol"] = trial.protocol;
+  if (!trial.name.empty()) header.metadata["trial"] = trial.name;
+  if (!trial.scenario.condition.empty()) header.metadata["condition"] = trial.scenario.condition;
+  header.metadata["robot"] = facts.name;
+  header.metadata["seed"] = std::to_string(trial.scenario.seed);
+  header.metadata["handle_mass_kg"] = fmt::format("{:.12g}", trial.planar().robot.handle_mass);
+  header.metadata["software"] = fmt::format("mbk {}", version());
+  header.metadata["began"] = now_text();
+  header.geometry = trial.planar().robot.robot.geometry;
+  header.rate = trial.scenario.rate.value;
+  header.reference_unit = schedule.quantity() == perturbation::Quantity::force ? "N" : "m";
+  header.has_force = facts.has_force;
+  header.has_acceleration = facts.has_acceleration;
+  header.force_latency = facts.force_latency;
+  for (const auto& event : schedule.events()) header.events.push_back({event.time, event.name, event.value});
+  return header;
+}
+
+struct Plan {
+  perturbation::Schedule schedule;
+  control::TrialControl control;
+};
+
+Result<Plan> plan_of(const Trial& trial) {
+  auto schedule = laboratory::make_schedule(trial.scenario.perturbation, trial.scenario.seed);
+  if (!schedule) return tl::unexpected(schedule.error());
+  const laboratory::PlanarTrial& planar = trial.planar();
+  auto control = control::TrialControl::create(planar.control, *schedule, planar.robot.robot.geometry, planar.home,
+                                               1.0 / trial.scenario.rate.value);
+  if (!control) return tl::unexpected(control.error());
+  return Plan{std::move(*schedule), std::move(*control)};
+}
+
+journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
+  journal::Ending ending;
+  ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
+  if (gate.tripped()) ending.detail = safety::sentence(gate.trip());
+  ending.overruns = times.missed;
+  return ending;
+}
+
+}  // namespace
+
+fs::path journal_of(const fs::path& recording) {
+  return recording.string() + ".journal";
+}
+
+Result<void> Session::reset() {
+  if (gate_) {
+    if (auto ok = gate_->reset(); !ok) return ok;
+  }
+  signals_->operator_stop = false;
+  signals_->recording = true;
+  return {};
+}
+
+Result<void> check_plan(const Trial& trial) {
+  const auto plan = plan_of(trial);
+  if (!plan) return tl::unexpected(plan.error());
+  return {};
+}
+
+Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial, const fs::path& target,
+                                      const Watch& watch) {
+  if (trial.person.withdrawn) {
+    return bad_usage("the person has withdrawn: no further trial is begun", "see [person] withdrawn");
+  }
+  if (gate_ && gate_->tripped()) {
+    return bad_usage("the gate is tripped: " + safety::sentence(gate_->trip()), "see to the reason, then reset");
+  }
+  if (fs::exists(target)) {
+    return fail(ErrorKind::usage, "is there already", "choose another name, or move it away", target.string());
+  }
+  const auto plan = plan_of(trial);
+  if (!plan) return tl::unexpected(plan.error());
+  const double sample_time = 1.0 / trial.scenario.rate.value;
+  const laboratory::PlanarTrial& planar = trial.planar();
+  auto sequence = control::Sequencer::create(plan->control, trial.sequence, planar.robot.robot.geometry, sample_time);
+  if (!sequence) return tl::unexpected(sequence.error());
+  auto gate = safety::Gate::create(trial.limits, planar.robot.robot.geometry, planar.home, sample_time);
+  if (!gate) return tl::unexpected(gate.error());
+
+  TrialOutcome outcome;
+  outcome.recording = target;
+  outcome.journal = journal_of(target);
+  const auto expected = static_cast<std::uint64_t>(sequence->duration(0.5) / sample_time);
+  auto writer = journal::Writer::create(outcome.journal, header_of(trial, robot.facts(), plan->schedule), expected);
+  if (!writer) return tl::unexpected(writer.error());
+  if (auto ok = robot.start(); !ok) {
+    std::error_code ignored;
+    fs::remove(outcome.journal, ignored);
+    return tl::unexpected(ok.error());
+  }
+
+  gate_ = std::move(*gate);
+  signals_->end_trial = false;
+  signals_->recording = true;
+  realtime::BoundedRing<Tick> ring(kRing);
+  Recorder recorder(ring, std::move(*writer), *signals_, watch);
+  std::thread loop([&] {
+    if (pace_.virtual_clock) {
+      realtime::VirtualClock clock(sample_time, pace_.speed);
+      run_loop(robot, *sequence, *gate_, clock, ring, *signals_, outcome.times);
+    } else {
+      outcome.setup = realtime::prepare_thread();
+      realtime::WallClock clock(sample_time);
+      run_loop(robot, *sequence, *gate_, clock, ring, *signals_, outcome.times);
+    }
+  });
+  loop.join();
+
+  outcome.trip = gate_->trip();
+  outcome.ending = ending_of(*gate_, *signals_, outcome.times);
+  auto closed = recorder.finish(outcome.ending);
+  outcome.ending.dropped = ring.dropped();
+  if (!closed) {
+    Error error = closed.error();
+    error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
+    return tl::unexpected(error);
+  }
+  if (auto recording = recover(outcome.journal, target, false, false); !recording) {
+    return tl::unexpected(recording.error());
+  }
+  return outcome;
+}
+
+Result<Recording> recover(const fs::path& file, const fs::path& target, bool overwrite, bool keep) {
+  auto journal = journal::read(file);
+  if (!journal) return tl::unexpected(journal.error());
+  auto recording = journal::to_recording(*journal);
+  if (!recording) return tl::unexpected(recording.error().in(file.string()));
+  const auto format = recording::format_of(target);
+  if (!format) return tl::unexpected(format.error());
+  if (auto ok = recording::write(*recording, target, *format, overwrite); !ok) return tl::unexpected(ok.error());
+  if (!keep) {
+    std::error_code ignored;
+    fs::remove(file, ignored);
+  }
+  return recording;
+}
+
+}  // namespace mbk::session

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "mbk/core/result.h"
+#include "mbk/device/device.h"
+#include "mbk/realtime/thread_setup.h"
+#include "mbk/session/experiment.h"
+#include "mbk/session/loop.h"
+#include "mbk/session/recorder.h"
+
+namespace mbk::session {
+
+/// How time passes.
+struct Pace {
+  bool virtual_clock = false;  ///< ticks come as fast as the machine can, or `speed` times as fast as real ones
+  double speed = 0.0;          ///< of a virtual clock; 0: as fast as it can
+};
+
+/// A trial that is over.
+struct TrialOutcome {
+  std::filesystem::path recording;  ///< absent file where it could not be made: the journal then still is
+  std::filesystem::path journal;    ///< removed once the recording is there
+  journal::Ending ending;
+  safety::Trip trip;  ///< Reason::none where nothing tripped
+  LoopTimes times;
+  realtime::ThreadSetup setup;
+};
+
+/// Runs trials one after the other. A trip outlives its trial: none begins before `reset`.
+class Session {
+ public:
+  explicit Session(const Pace& pace = {}) : pace_(pace) {}
+
+  /// Everything that can be known to fail is asked before the robot moves.
+  /// @param target  of the recording (.h5); the journal stands beside it as NAME.h5.journal
+  /// @param watch  see Recorder; may be empty
+  /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; a limit or check
+  ///         failed, which the message names. data: the robot does not answer; the folder, space or disk.
+  [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const Trial& trial,
+                                             const std::filesystem::path& target, const Watch& watch = {});
+
+  /// For other threads, and for signal handlers: a stop, or an early end, of the trial that runs.
+  [[nodiscard]] Signals& signals() { return *signals_; }
+
+  /// Of the last trial; null before the first.
+  [[nodiscard]] const safety::Gate* gate() const { return gate_ ? &*gate_ : nullptr; }
+
+  /// By the operator, after a trip.   @fails  as Gate::reset
+  [[nodiscard]] Result<void> reset();
+
+ private:
+  Pace pace_;
+  std::optional<safety::Gate> gate_;
+  std::unique_ptr<Signals> signals_ = std::make_unique<Signals>();
+};
+
+/// What `perform` asks before anything moves: that the schedule keeps the gate's limits and the workspace.
+/// @fails  usage: with the limit, the value and what to change.
+[[nodiscard]] Result<void> check_plan(const Trial& trial);
+
+/// The journal beside a recording: NAME.h5 → NAME.h5.journal.
+[[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& recording);
+
+/// Makes the recording that a journal holds, and removes the journal once it is on the disk.
+/// @param keep  leaves the journal where it is
+/// @fails  usage: the target is there and `overwrite` is false. data: as journal::read; the recording cannot be
+/// written.
+[[nodiscard]] Result<Recording> recover(const std::filesystem::path& journal, const std::filesystem::path& target,
+                                        bool overwrite, bool keep);
+
+}  // namespace mbk::session
