@@ -52,7 +52,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   const auto options = measurement_options(arguments);
   if (!options) return report_error(options.error());
   if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
-  const auto recordings = read_recordings(arguments);
+  const auto recordings = read_perturbations(arguments);
   if (!recordings) return report_error(recordings.error());
 
   std::vector<Result<Examined>> results;

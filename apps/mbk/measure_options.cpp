@@ -6,6 +6,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
+#include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/channel_map.h"
 #include "mbk/report/html.h"
 
@@ -318,6 +319,13 @@ Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments
   for (const std::filesystem::path& file : arguments.files) {
     if (auto ok = add(recording::read(file, *options), file); !ok) return tl::unexpected(ok.error());
   }
+  return recordings;
+}
+
+Result<std::vector<Recording>> read_perturbations(const MeasureArguments& arguments) {
+  auto recordings = read_recordings(arguments);
+  if (!recordings) return recordings;
+  for (Recording& recording : *recordings) recording = preprocess::perturbation_only(std::move(recording));
   return recordings;
 }
 

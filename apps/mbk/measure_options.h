@@ -72,4 +72,7 @@ void add_report_options(CLI::App& command, MeasureArguments& arguments);
 /// voltages.
 [[nodiscard]] Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments);
 
+/// The same, of sessions' recordings only the perturbation.
+[[nodiscard]] Result<std::vector<Recording>> read_perturbations(const MeasureArguments& arguments);
+
 }  // namespace mbk::app

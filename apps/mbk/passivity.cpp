@@ -53,7 +53,7 @@ Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const st
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
-  const auto recordings = read_recordings(arguments);
+  const auto recordings = read_perturbations(arguments);
   if (!recordings) return tl::unexpected(recordings.error());
   std::vector<Answer> answers;
   const std::span<const Recording> all(*recordings);
