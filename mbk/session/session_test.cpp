@@ -1,0 +1,228 @@
+#include "mbk/session/session.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "mbk/laboratory/simulated_device.h"
+#include "mbk/recording/read.h"
+#include "tests/support/allocations.h"
+
+namespace mbk::session {
+namespace {
+
+namespace fs = std::filesystem;
+using laboratory::SimulatedDevice;
+
+constexpr const char* kExperiment = R"(
+[recording]
+condition = "relaxed"
+[robot]
+handle_mass_kg = 0.194
+[control]
+kind = "position"
+[perturbation]
+kind = "multisine"
+duration_s = 6
+moving_in_s = 2
+[participant]
+kind = "arm"
+number = 1
+[person]
+number = 7
+age_years = 31
+handedness = "right"
+consent = "C-12"
+)";
+
+class SessionFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              (std::string("mbk_session_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    target_ = folder_ / "trial.h5";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static Trial trial(std::string_view text = kExperiment) {
+    auto trials = read_experiment(text, "experiment.toml");
+    EXPECT_TRUE(trials) << trials.error().line();
+    return trials->front();
+  }
+
+  static constexpr Pace kFast{true, 0.0};
+  fs::path folder_, target_;
+};
+
+TEST_F(SessionFolder, RecordsATrialFromBeginningToEnd) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  Session session(kFast);
+  std::uint64_t watched = 0;
+  const auto outcome =
+      session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) { watched += ticks.size(); });
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->ending.how, "completed");
+  EXPECT_EQ(outcome->ending.dropped, 0U);
+  EXPECT_EQ(watched, outcome->times.ticks);
+  EXPECT_FALSE(fs::exists(outcome->journal));
+  const auto recording = recording::read(target_, {});
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
+  EXPECT_EQ(recording->metadata.at("participant"), "7");
+  EXPECT_EQ(recording->metadata.at("consent"), "C-12");
+  EXPECT_EQ(recording->metadata.at("ended"), "completed");
+  EXPECT_NE(recording->find("torque_2"), nullptr);
+}
+
+TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  Session session(kFast);
+  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+    if (ticks.back().time > 1.5) session.signals().operator_stop = true;
+  });
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->trip.reason, safety::Reason::operator_stop);
+  const auto recording = recording::read(target_, {});
+  EXPECT_EQ(recording->metadata.at("ended"), "safety stop");
+  EXPECT_NE(recording->metadata.at("ended_detail").find("operator"), std::string::npos);
+  const Vector& torque = recording->find("torque_1")->values;
+  EXPECT_EQ(torque[torque.size() - 1], 0.0);
+
+  auto second = SimulatedDevice::create(t.scenario).value();
+  const auto refused = session.perform(*second, t, folder_ / "second.h5");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().line().find("reset"), std::string::npos);
+  ASSERT_TRUE(session.reset());
+  EXPECT_TRUE(session.perform(*second, t, folder_ / "second.h5"));
+}
+
+TEST_F(SessionFolder, EndsEarlyWhenAsked) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  Session session(kFast);
+  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+    if (ticks.back().time > 4.0) session.signals().end_trial = true;
+  });
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->ending.how, "ended early by the operator");
+  EXPECT_EQ(outcome->trip.reason, safety::Reason::none);
+}
+
+TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
+  Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  const auto refusal = [&](const Trial& one) {
+    Session session(kFast);
+    const auto outcome = session.perform(*robot, one, target_);
+    EXPECT_FALSE(outcome);
+    return outcome ? std::string() : outcome.error().line();
+  };
+  t.person.withdrawn = true;
+  EXPECT_NE(refusal(t).find("withdrawn"), std::string::npos);
+  t = trial();
+  t.limits.handle_force = 0.0;
+  EXPECT_NE(refusal(t).find("handle force"), std::string::npos);
+  t = trial();
+  std::get<laboratory::PlanarTrial>(t.scenario.trial).home = {2.0, 0.0};
+  EXPECT_NE(refusal(t).find("home"), std::string::npos);
+  EXPECT_FALSE(fs::exists(journal_of(target_)));
+  t = trial();
+  {
+    Session session(kFast);
+    ASSERT_TRUE(session.perform(*robot, t, target_));
+  }
+  EXPECT_NE(refusal(t).find("is there already"), std::string::npos);
+}
+
+TEST_F(SessionFolder, AnUnfinishedJournalIsRecovered) {
+  const Trial t = trial();
+  {
+    auto writer = journal::Writer::create(journal_of(target_), journal::Header{}, 10).value();
+    std::vector<journal::Tick> ticks(500);
+    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = 1e-3 * static_cast<double>(i);
+    ASSERT_TRUE(writer.append(ticks));
+  }
+  const auto recovered = recover(journal_of(target_), target_, false, false);
+  ASSERT_TRUE(recovered) << recovered.error().line();
+  EXPECT_EQ(recovered->samples(), 500);
+  EXPECT_EQ(recording::read(target_, {})->metadata.at("ended"), "interrupted");
+  EXPECT_FALSE(fs::exists(journal_of(target_)));
+}
+
+TEST(ExperimentFile, RefusesNames) {
+  for (const char* key : {"name", "initials"}) {
+    const std::string text = std::string(kExperiment) + key + " = \"Ann\"\n";
+    const auto trials = read_experiment(text, "experiment.toml");
+    ASSERT_FALSE(trials);
+    EXPECT_NE(trials.error().line().find(key), std::string::npos);
+    EXPECT_NE(trials.error().line().find("line 20"), std::string::npos) << trials.error().line();
+  }
+}
+
+TEST(ExperimentFile, EveryReadyPlanarScenarioIsAnExperiment) {
+  for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) {
+    const auto trials = read_experiment(one.text, std::string(one.name) + ".toml");
+    if (trials) {
+      for (const Trial& trial : *trials) EXPECT_TRUE(check_plan(trial)) << one.name;
+    } else {
+      EXPECT_NE(trials.error().line().find("one-axis"), std::string::npos) << trials.error().line();
+    }
+  }
+}
+
+/// Counts what the loop allocates between its first and its last tick.
+class CountingDevice : public device::Device {
+ public:
+  explicit CountingDevice(device::Device& inner, bool allocate) : inner_(&inner), allocate_(allocate) {}
+  [[nodiscard]] const device::Facts& facts() const override { return inner_->facts(); }
+  [[nodiscard]] Result<void> start() override { return inner_->start(); }
+  bool read(device::State& state) noexcept override {
+    if (first_ < 0) first_ = testing_support::allocations();
+    return inner_->read(state);
+  }
+  bool write(const device::Command& command) noexcept override {
+    if (allocate_ && command.tick == 1000) planted_ = std::make_unique<int>(3);
+    const bool fine = inner_->write(command);
+    last_ = testing_support::allocations();
+    return fine;
+  }
+  void stop() noexcept override { inner_->stop(); }
+  [[nodiscard]] long counted() const { return last_ - first_; }
+
+ private:
+  device::Device* inner_;
+  bool allocate_;
+  std::unique_ptr<int> planted_;
+  long first_ = -1, last_ = 0;
+};
+
+TEST(Loop, DoesNotAllocateAndAPlantedAllocationIsSeen) {
+  for (const bool planted : {false, true}) {
+    const Trial t = read_experiment(kExperiment, "experiment.toml")->front();
+    auto robot = SimulatedDevice::create(t.scenario).value();
+    CountingDevice counting(*robot, planted);
+    const laboratory::PlanarTrial& planar = t.planar();
+    const robot::Geometry& geometry = planar.robot.robot.geometry;
+    const auto schedule = laboratory::make_schedule(t.scenario.perturbation, 1).value();
+    auto sequence = control::Sequencer::create(
+                        control::TrialControl::create(planar.control, schedule, geometry, planar.home, 1e-3).value(),
+                        t.sequence, geometry, 1e-3)
+                        .value();
+    auto gate = safety::Gate::create(t.limits, geometry, planar.home, 1e-3).value();
+    realtime::VirtualClock clock(1e-3);
+    realtime::BoundedRing<journal::Tick> ring(100'000);
+    Signals signals;
+    LoopTimes times;
+    run_loop(counting, sequence, gate, clock, ring, signals, times);
+    EXPECT_FALSE(gate.tripped()) << safety::sentence(gate.trip());
+    EXPECT_GT(times.ticks, 9000U);
+    EXPECT_EQ(counting.counted(), planted ? 1 : 0);
+  }
+}
+
+}  // namespace
+}  // namespace mbk::session
