@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -12,9 +13,10 @@
 #include "apps/mbk/scenario_argument.h"
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/measurement/measure.h"
+#include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/read.h"
-#include "mbk/report/schedule_text.h"
 #include "mbk/report/text.h"
+#include "mbk/session/plan.h"
 #include "mbk/session/session.h"
 
 namespace mbk::app {
@@ -150,28 +152,107 @@ std::string outcome_text(const session::TrialOutcome& outcome, const session::Pa
   return text;
 }
 
+int dry_run(const std::vector<Trial>& trials, const std::string& experiment) {
+  for (const Trial& trial : trials) {
+    const auto plan = session::make_plan(trial);
+    if (!plan) return report_error(plan.error().in(experiment));
+    const auto rehearsal = session::rehearse(trial);
+    if (!rehearsal) return report_error(rehearsal.error().in(experiment));
+    if (auto ok = Output().write(session::plan_text(trial, *plan, *rehearsal)); !ok) return report_error(ok.error());
+    if (rehearsal->trip.reason != safety::Reason::none) return kSafetyStop;
+  }
+  return kFine;
+}
+
+/// Share of the force's variance that a model has to explain on every axis before nobody is asked to repeat [%].
+constexpr double kPoor = 50.0;
+
+/// What was measured in a trial, and whether it is worth repeating.
+struct Measured {
+  std::string text;
+  bool poor = false;
+};
+
+Measured measure(const session::TrialOutcome& outcome, const Trial& trial) {
+  auto recording = recording::read(outcome.recording, {});
+  if (!recording) return {recording.error().line() + "\n", true};
+  const Recording perturbed = preprocess::perturbation_only(std::move(*recording));
+  measurement::Options options;
+  options.identify.handle_mass = trial.planar().robot.handle_mass;
+  const auto measured = measurement::measure({&perturbed, 1}, options);
+  if (!measured) return {fmt::format("not measured: {}\n", measured.error().line()), true};
+  const Identification& identification = measured->identification;
+  return {report::result_text(identification, std::nullopt),
+          !identification.usable || identification.fit.vaf.minCoeff() < kPoor};
+}
+
+/// At a terminal: whether the trial shall be done again.
+bool ask_to_repeat() {
+  fmt::print(stderr, "The data are poor. Repeat the trial? [y/N] ");
+  std::string answer;
+  return std::getline(std::cin, answer) && !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
+}
+
+/// relaxed.h5 → relaxed_2.h5, the first that is not there yet.
+fs::path next_free(const fs::path& target) {
+  fs::path free = target;
+  for (int k = 2; fs::exists(free); ++k) {
+    free = target.parent_path() / fmt::format("{}_{}{}", target.stem().string(), k, target.extension().string());
+  }
+  return free;
+}
+
+/// One trial: on the robot, into the file, and measured.   @returns  an exit code; kFine where the next may follow
+int perform(Session& session, const Trial& trial, const fs::path& target, const session::Pace& pace,
+            const Arguments& arguments, bool& repeat) {
+  repeat = false;
+  auto robot = laboratory::SimulatedDevice::create(trial.scenario);
+  if (!robot) return report_error(robot.error());
+  const auto outcome = [&] {
+    const StopByKey stop(session.signals());
+    StatusLine line(trial.name, arguments.quiet);
+    return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) { line.show(ticks); });
+  }();
+  if (!outcome) return report_error(outcome.error());
+  std::string text = outcome_text(*outcome, pace);
+  const bool stopped = outcome->trip.reason != safety::Reason::none;
+  Measured measured;
+  if (!stopped && arguments.measure) {
+    measured = measure(*outcome, trial);
+    text += measured.text;
+  }
+  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (stopped) return kSafetyStop;
+  if (measured.poor && isatty(STDIN_FILENO) == 1) repeat = ask_to_repeat();
+  if (measured.poor && isatty(STDIN_FILENO) == 0) {
+    fmt::print(stderr, "mbk: the data of {} are poor; think of repeating the trial\n", target.string());
+  }
+  return kFine;
+}
+
 int run(const Arguments& arguments) {
   const auto trials = trials_of(arguments);
   if (!trials) return report_error(trials.error());
+  if (arguments.dry_run) return dry_run(*trials, arguments.experiment);
   session::Pace pace;
   pace.virtual_clock = arguments.as_fast_as_possible || arguments.speed.has_value();
   pace.speed = arguments.speed.value_or(0.0);
   for (const Trial& trial : *trials) {
-    if (auto ok = session::check_plan(trial); !ok) return report_error(ok.error().in(arguments.experiment));
+    if (auto plan = session::make_plan(trial); !plan) return report_error(plan.error().in(arguments.experiment));
+    const fs::path target = target_of(arguments, trial, trials->size() > 1);
+    if (fs::exists(target)) {
+      return report_error(
+          {ErrorKind::usage, "is there already", "choose another --out, or move it away", target.string()});
+    }
   }
   Session session(pace);
   for (const Trial& trial : *trials) {
-    auto robot = laboratory::SimulatedDevice::create(trial.scenario);
-    if (!robot) return report_error(robot.error());
     const fs::path target = target_of(arguments, trial, trials->size() > 1);
-    const auto outcome = [&] {
-      const StopByKey stop(session.signals());
-      StatusLine line(trial.name, arguments.quiet);
-      return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) { line.show(ticks); });
-    }();
-    if (!outcome) return report_error(outcome.error());
-    if (auto ok = Output().write(outcome_text(*outcome, pace)); !ok) return report_error(ok.error());
-    if (outcome->trip.reason != safety::Reason::none) return kSafetyStop;
+    for (bool repeat = true; repeat;) {
+      if (const int code = perform(session, trial, next_free(target), pace, arguments, repeat); code != kFine) {
+        return code;
+      }
+    }
   }
   return kFine;
 }
@@ -211,6 +292,7 @@ Action add_run(CLI::App& app) {
   command->add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: as fast as the machine can");
   command->add_option("--speed", arguments->speed, "virtual clock: so many seconds for each second")->type_name("X");
   command->add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
+  command->add_flag("!--no-measure", arguments->measure, "record only");
   command->add_flag("--quiet", arguments->quiet, "no status line");
   return [arguments] { return run(*arguments); };
 }

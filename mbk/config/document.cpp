@@ -127,6 +127,7 @@ class Reading {
   std::shared_ptr<const Node> tree;
   const Node* overlay = nullptr;                   ///< table of a trial, in `tree`
   std::map<std::string, Keys, std::less<>> asked;  ///< section → keys
+  Keys left_to_others;                             ///< tables whose keys nobody here judges
   std::optional<Error> problem;                    ///< the first
   std::optional<Missing> missing;                  ///< the first required key that is not there
   std::vector<std::shared_ptr<Reading>> trials;
@@ -182,6 +183,7 @@ class Reading {
     for (const auto& [key, value] : *table) {
       const std::string path = joined(section, key);
       if (path == kTrialKey && !trials.empty()) continue;
+      if (std::ranges::any_of(family(), [&](const Reading* r) { return r->left_to_others.contains(path); })) continue;
       if (!known.contains(key)) {
         if (!first || value.line < first->line) first = UnknownKey{section, key, value.line, nearest(key, known)};
       } else if (const List* list = std::get_if<List>(&value.value)) {
@@ -306,6 +308,11 @@ Section Section::section(std::string_view key) const {
   }
   return {reading_, joined(path_, key), table_of(over) != nullptr ? over : nullptr,
           table_of(base) != nullptr ? base : nullptr};
+}
+
+void Section::leave_to_others(std::string_view key) const {
+  reading_->ask(path_, key);
+  reading_->left_to_others.emplace(joined(path_, key));
 }
 
 std::vector<Section> Section::sections(std::string_view key) const {

@@ -144,6 +144,8 @@ class Section {
   [[nodiscard]] Eigen::Matrix2d required_matrix2(std::string_view key, Range allowed = any()) const;
 
   [[nodiscard]] Section section(std::string_view key) const;
+  /// The table of that name is another reader's: its keys are not judged here.
+  void leave_to_others(std::string_view key) const;
   /// The tables of [[key]], in the order of the file.
   [[nodiscard]] std::vector<Section> sections(std::string_view key) const;
 

@@ -479,5 +479,14 @@ TEST(Document, QuotesADamagedTextOnOneLine) {
   EXPECT_EQ(document.error().line().find('\n'), std::string::npos) << document.error().line();
 }
 
+TEST(Document, ATableLeftToOthersIsNotJudged) {
+  const auto document = Document::parse("[mine]\nknown = 1\n[theirs]\nanything = 2\n[theirs.inner]\nmore = 3\n", "f");
+  const Section root = document->root();
+  EXPECT_EQ(root.section("mine").number("known", 0.0), 1.0);
+  EXPECT_FALSE(document->finish());
+  root.leave_to_others("theirs");
+  EXPECT_TRUE(document->finish());
+}
+
 }  // namespace
 }  // namespace mbk::config

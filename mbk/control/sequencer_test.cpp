@@ -73,7 +73,9 @@ TEST(Sequencer, MovesWithoutAJumpBelowItsSpeedAndInsideTheLimits) {
     if (step.phase == Phase::done) break;
     const Vector2d hand = robot::hand_position(geometry(), step.joint_reference);
     EXPECT_TRUE(robot::check_joints(geometry().limits, step.joint_reference));
-    if (step.phase == Phase::moving) EXPECT_LT((hand - last).norm() / kTick, 1.02 * 0.05);
+    if (step.phase == Phase::moving) {
+      EXPECT_LT((hand - last).norm() / kTick, 1.02 * 0.05);
+    }
     EXPECT_LT((hand - last).norm() / kTick, 0.3);
     last = hand;
   }
@@ -83,7 +85,9 @@ TEST(Sequencer, MovesWithoutAJumpBelowItsSpeedAndInsideTheLimits) {
 TEST(Sequencer, HoldsTheTestLocationBeforeThePerturbation) {
   Sequencer sequence = sequencer(PositionMode{}, pulses(Quantity::position, 0.01));
   for (const auto& step : follow(sequence)) {
-    if (step.phase == Phase::settling) EXPECT_LT((step.reference - kHome).norm(), 1e-9);
+    if (step.phase == Phase::settling) {
+      EXPECT_LT((step.reference - kHome).norm(), 1e-9);
+    }
     EXPECT_EQ(step.perturbation_time >= 0.0, step.phase == Phase::perturbing);
   }
 }
@@ -95,7 +99,9 @@ TEST(Sequencer, GainsGrowFromNothingAndFadeToIt) {
   double largest = 0.0, last = 0.0;
   for (int i = 1; i < 999; ++i) {
     const double torque = std::abs(sequence.step(pushed).torque[0]);
-    if (i > 50) EXPECT_GE(torque, last - 1e-9);  // the velocity estimate of the first push has died away
+    if (i > 50) {
+      EXPECT_GE(torque, last - 1e-9);  // the velocity estimate of the first push has died away
+    }
     last = torque;
     largest = std::max(largest, torque);
   }
@@ -107,7 +113,9 @@ TEST(Sequencer, AForceTrialHandsOverFromHoldingAndGripsAgain) {
   const auto steps = follow(sequence);
   for (const auto& step : steps) {
     EXPECT_EQ(step.follows, step.phase != Phase::perturbing && step.phase != Phase::done);
-    if (step.phase != Phase::perturbing) EXPECT_EQ(step.reference, Vector2d::Zero());
+    if (step.phase != Phase::perturbing) {
+      EXPECT_EQ(step.reference, Vector2d::Zero());
+    }
   }
 }
 

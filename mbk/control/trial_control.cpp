@@ -39,7 +39,7 @@ Result<TrialControl> TrialControl::create(const Mode& mode, const Schedule& sche
     control.law_ = *law;
     perturbation::Limits limits;
     limits.reachable = [&](const Vector2d& displacement) -> Result<void> {
-      const auto angles = robot::check_hand(geometry, control.place(displacement));
+      const auto angles = robot::check_hand(geometry, control.displaced(displacement));
       if (!angles) return tl::unexpected(angles.error());
       return {};
     };
@@ -71,10 +71,14 @@ Vector2d TrialControl::torque(double t, const Vector2d& measured) noexcept {
 
 Vector2d TrialControl::reference(double t) const noexcept {
   const Vector2d value = schedule_.reference(t);
-  return schedule_.quantity() == Quantity::force ? value : place(value);
+  return schedule_.quantity() == Quantity::force ? value : displaced(value);
 }
 
-Vector2d TrialControl::place(const Vector2d& displacement) const {
+Vector2d TrialControl::place(double t) const noexcept {
+  return schedule_.quantity() == Quantity::force ? home_ : displaced(schedule_.at(t).value);
+}
+
+Vector2d TrialControl::displaced(const Vector2d& displacement) const {
   return schedule_.space() == Space::hand ? Vector2d(home_ + displacement)
                                           : robot::hand_position(geometry_, home_angles_ + displacement);
 }

@@ -42,6 +42,9 @@ class TrialControl {
   /// What stands in the recording: the hand's place behind a position, or the force [m or N].
   [[nodiscard]] Vector2d reference(double t) const noexcept;
 
+  /// Where the schedule wants the hand at t [m]; home where it commands a force.
+  [[nodiscard]] Vector2d place(double t) const noexcept;
+
   /// The angles that the law last held the joints to [rad]; home's where it does not follow a position.
   [[nodiscard]] const Vector2d& joint_reference() const { return angles_; }
 
@@ -52,7 +55,7 @@ class TrialControl {
  private:
   TrialControl(const perturbation::Schedule& schedule, const robot::Geometry& geometry, const Vector2d& home,
                const Vector2d& home_angles);
-  [[nodiscard]] Vector2d place(const Vector2d& displacement) const;
+  [[nodiscard]] Vector2d displaced(const Vector2d& displacement) const;
 
   perturbation::Schedule schedule_;
   robot::Geometry geometry_;

@@ -48,7 +48,9 @@ class JournalFile : public testing::Test {
     auto writer = Writer::create(file_, header(), 1000);
     ASSERT_TRUE(writer) << writer.error().line();
     for (int b = 0; b < blocks; ++b) ASSERT_TRUE(writer->append(ticks(50 * b, 50 * b + 50)));
-    if (end) ASSERT_TRUE(writer->end({"completed", "", 3, 2}));
+    if (end) {
+      ASSERT_TRUE(writer->end({"completed", "", 3, 2}));
+    }
   }
 
   std::string bytes() const {
@@ -56,9 +58,7 @@ class JournalFile : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  void set_bytes(const std::string& bytes) const {
-    std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes;
-  }
+  void set_bytes(const std::string& bytes) const { std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes; }
 
   fs::path folder_, file_;
 };

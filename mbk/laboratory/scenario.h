@@ -118,7 +118,8 @@ struct Scenario {
   std::uint64_t seed = 1;  ///< of phases, decisions and noise
 };
 
-/// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors.
+/// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors. The
+/// sections [session], [safety], [person] and [device] of an experiment may stand in it and are not looked at.
 /// @param file  how messages call it
 /// @fails  data: with file, line, key, value and what is allowed.
 [[nodiscard]] Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file);

@@ -22,6 +22,9 @@ using config::Section;
 using perturbation::Quantity;
 using perturbation::Space;
 
+/// What an experiment file says beside the scenario (session/experiment.h): for whoever runs it.
+constexpr std::array kSectionsOfExperiments = {"session", "safety", "person", "device"};
+
 /// From the shoulder to the test location (Dyck 2013, §3.4.2) [m].
 constexpr double kShoulderDistance = 0.52;
 
@@ -548,7 +551,9 @@ Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::f
   if (!trials) return tl::unexpected(trials.error());
   std::vector<Scenario> scenarios;
   for (const config::Trial& trial : *trials) {
-    Scenario scenario = read_scenario(trial.document.root());
+    const Section root = trial.document.root();
+    for (const char* section : kSectionsOfExperiments) root.leave_to_others(section);
+    Scenario scenario = read_scenario(root);
     if (auto ok = trial.document.finish(); !ok) return tl::unexpected(ok.error());
     scenario.file_name = file.stem().string();
     scenario.trial_name = trial.name;

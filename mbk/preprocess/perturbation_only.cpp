@@ -10,8 +10,8 @@ namespace mbk::preprocess {
 Recording perturbation_only(Recording recording) {
   const auto start = std::ranges::find(recording.events, "perturbation_start", &Event::name);
   if (start == recording.events.end()) return recording;
-  const auto end = std::find_if(start, recording.events.end(),
-                                [](const Event& event) { return event.name == "perturbation_end"; });
+  const auto end =
+      std::find_if(start, recording.events.end(), [](const Event& event) { return event.name == "perturbation_end"; });
   const double from = start->time,
                to = end == recording.events.end() ? std::numeric_limits<double>::infinity() : end->time;
   const double* const times = recording.time.data();

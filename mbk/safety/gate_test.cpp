@@ -106,9 +106,14 @@ INSTANTIATE_TEST_SUITE_P(
               [](Observation& o, Vector2d&, int) { o.acceleration[0] = kNotANumber; }},
         Fault{Reason::encoder_jump, 0, [](Observation& o, Vector2d&, int) { o.joint[1] += 0.03; }},
         Fault{Reason::force_jump, 0, [](Observation& o, Vector2d&, int) { o.force[0] += 25.0; }},
-        Fault{Reason::force_frozen, 260, [](Observation& o, Vector2d&, int) { o.force = {1.0, 2.0}; }},
+        Fault{Reason::force_frozen, 260,
+              [](Observation& o, Vector2d&, int) {
+                o.force = {1.0, 2.0};
+              }},
         Fault{Reason::accelerometer_frozen, 260,
-              [](Observation& o, Vector2d&, int) { o.acceleration = {0.1, 0.1}; }},
+              [](Observation& o, Vector2d&, int) {
+                o.acceleration = {0.1, 0.1};
+              }},
         Fault{Reason::encoder_frozen, 300,
               [](Observation& o, Vector2d&, int) {
                 o.joint[0] = moving(600).joint[0];
@@ -117,17 +122,18 @@ INSTANTIATE_TEST_SUITE_P(
               }},
         Fault{Reason::accelerometer_disagrees, 60,
               [](Observation& o, Vector2d&, int) { o.acceleration += Vector2d(6.0, 0.0); }},
-        Fault{Reason::measured_force, 300,
-              [](Observation& o, Vector2d&, int k) { o.force[0] += 0.2 * k; }},
+        Fault{Reason::measured_force, 300, [](Observation& o, Vector2d&, int k) { o.force[0] += 0.2 * k; }},
         Fault{Reason::tracking, 0, [](Observation& o, Vector2d&, int) { o.joint_reference[1] += 0.3; }},
-        Fault{Reason::limited_too_long, 110, [](Observation&, Vector2d& a, int) { a = {40.0, 40.0}; }}));
+        Fault{Reason::limited_too_long, 110, [](Observation&, Vector2d& a, int) {
+                a = {40.0, 40.0};
+              }}));
 
 /// The hand leaves along a straight line, faster and faster, with an accelerometer that says so.
 int ticks_until_it_is_too_far(Gate& g, double acceleration) {
   return ticks_to_trip(g, [&](Observation& seen, Vector2d&, int k) {
     const double t = k * kTick;
-    const Vector2d away = robot::hand_position(geometry(), moving(600 + k).joint) +
-                          Vector2d(0.0, 0.5 * acceleration * t * t);
+    const Vector2d away =
+        robot::hand_position(geometry(), moving(600 + k).joint) + Vector2d(0.0, 0.5 * acceleration * t * t);
     const auto angles = robot::joint_angles(geometry(), away);
     if (angles) seen.joint = *angles;
     seen.acceleration[1] += acceleration;
@@ -157,7 +163,8 @@ TEST(Gate, StopsAHandThatLeavesItsPlace) {
   EXPECT_EQ(boxed.trip().reason, Reason::workspace) << sentence(boxed.trip());
 
   limits.workspace_high = {1.0, 1.0};
-  limits.joint_margin = 0.75;
+  limits.speed = 10.0;
+  limits.joint_margin = 0.45;  // there are 0.52 rad at home
   Gate jointed = gate(limits);
   ASSERT_GE(ticks_until_it_is_too_far(jointed, 0.4), 0);
   EXPECT_EQ(jointed.trip().reason, Reason::joint_margin) << sentence(jointed.trip());

@@ -6,6 +6,7 @@
 
 #include "mbk/core/version.h"
 #include "mbk/recording/write.h"
+#include "mbk/session/plan.h"
 
 namespace mbk::session {
 namespace {
@@ -47,21 +48,6 @@ Header header_of(const Trial& trial, const device::Facts& facts, const perturbat
   return header;
 }
 
-struct Plan {
-  perturbation::Schedule schedule;
-  control::TrialControl control;
-};
-
-Result<Plan> plan_of(const Trial& trial) {
-  auto schedule = laboratory::make_schedule(trial.scenario.perturbation, trial.scenario.seed);
-  if (!schedule) return tl::unexpected(schedule.error());
-  const laboratory::PlanarTrial& planar = trial.planar();
-  auto control = control::TrialControl::create(planar.control, *schedule, planar.robot.robot.geometry, planar.home,
-                                               1.0 / trial.scenario.rate.value);
-  if (!control) return tl::unexpected(control.error());
-  return Plan{std::move(*schedule), std::move(*control)};
-}
-
 journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
   journal::Ending ending;
   ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
@@ -85,12 +71,6 @@ Result<void> Session::reset() {
   return {};
 }
 
-Result<void> check_plan(const Trial& trial) {
-  const auto plan = plan_of(trial);
-  if (!plan) return tl::unexpected(plan.error());
-  return {};
-}
-
 Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial, const fs::path& target,
                                       const Watch& watch) {
   if (trial.person.withdrawn) {
@@ -102,19 +82,14 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   if (fs::exists(target)) {
     return fail(ErrorKind::usage, "is there already", "choose another name, or move it away", target.string());
   }
-  const auto plan = plan_of(trial);
+  auto plan = make_plan(trial);
   if (!plan) return tl::unexpected(plan.error());
   const double sample_time = 1.0 / trial.scenario.rate.value;
-  const laboratory::PlanarTrial& planar = trial.planar();
-  auto sequence = control::Sequencer::create(plan->control, trial.sequence, planar.robot.robot.geometry, sample_time);
-  if (!sequence) return tl::unexpected(sequence.error());
-  auto gate = safety::Gate::create(trial.limits, planar.robot.robot.geometry, planar.home, sample_time);
-  if (!gate) return tl::unexpected(gate.error());
 
   TrialOutcome outcome;
   outcome.recording = target;
   outcome.journal = journal_of(target);
-  const auto expected = static_cast<std::uint64_t>(sequence->duration(0.5) / sample_time);
+  const auto expected = static_cast<std::uint64_t>(plan->sequence.duration(0.5) / sample_time);
   auto writer = journal::Writer::create(outcome.journal, header_of(trial, robot.facts(), plan->schedule), expected);
   if (!writer) return tl::unexpected(writer.error());
   if (auto ok = robot.start(); !ok) {
@@ -123,7 +98,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
     return tl::unexpected(ok.error());
   }
 
-  gate_ = std::move(*gate);
+  gate_ = std::move(plan->gate);
   signals_->end_trial = false;
   signals_->recording = true;
   realtime::BoundedRing<Tick> ring(kRing);
@@ -131,11 +106,11 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   std::thread loop([&] {
     if (pace_.virtual_clock) {
       realtime::VirtualClock clock(sample_time, pace_.speed);
-      run_loop(robot, *sequence, *gate_, clock, ring, *signals_, outcome.times);
+      run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
     } else {
       outcome.setup = realtime::prepare_thread();
       realtime::WallClock clock(sample_time);
-      run_loop(robot, *sequence, *gate_, clock, ring, *signals_, outcome.times);
+      run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
     }
   });
   loop.join();

@@ -58,10 +58,6 @@ class Session {
   std::unique_ptr<Signals> signals_ = std::make_unique<Signals>();
 };
 
-/// What `perform` asks before anything moves: that the schedule keeps the gate's limits and the workspace.
-/// @fails  usage: with the limit, the value and what to change.
-[[nodiscard]] Result<void> check_plan(const Trial& trial);
-
 /// The journal beside a recording: NAME.h5 → NAME.h5.journal.
 [[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& recording);
 

@@ -6,6 +6,7 @@
 
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/recording/read.h"
+#include "mbk/session/plan.h"
 #include "tests/support/allocations.h"
 
 namespace mbk::session {
@@ -167,7 +168,7 @@ TEST(ExperimentFile, EveryReadyPlanarScenarioIsAnExperiment) {
   for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) {
     const auto trials = read_experiment(one.text, std::string(one.name) + ".toml");
     if (trials) {
-      for (const Trial& trial : *trials) EXPECT_TRUE(check_plan(trial)) << one.name;
+      for (const Trial& trial : *trials) EXPECT_TRUE(make_plan(trial)) << one.name;
     } else {
       EXPECT_NE(trials.error().line().find("one-axis"), std::string::npos) << trials.error().line();
     }
@@ -205,20 +206,13 @@ TEST(Loop, DoesNotAllocateAndAPlantedAllocationIsSeen) {
     const Trial t = read_experiment(kExperiment, "experiment.toml")->front();
     auto robot = SimulatedDevice::create(t.scenario).value();
     CountingDevice counting(*robot, planted);
-    const laboratory::PlanarTrial& planar = t.planar();
-    const robot::Geometry& geometry = planar.robot.robot.geometry;
-    const auto schedule = laboratory::make_schedule(t.scenario.perturbation, 1).value();
-    auto sequence = control::Sequencer::create(
-                        control::TrialControl::create(planar.control, schedule, geometry, planar.home, 1e-3).value(),
-                        t.sequence, geometry, 1e-3)
-                        .value();
-    auto gate = safety::Gate::create(t.limits, geometry, planar.home, 1e-3).value();
+    Plan plan = make_plan(t).value();
     realtime::VirtualClock clock(1e-3);
     realtime::BoundedRing<journal::Tick> ring(100'000);
     Signals signals;
     LoopTimes times;
-    run_loop(counting, sequence, gate, clock, ring, signals, times);
-    EXPECT_FALSE(gate.tripped()) << safety::sentence(gate.trip());
+    run_loop(counting, plan.sequence, plan.gate, clock, ring, signals, times);
+    EXPECT_FALSE(plan.gate.tripped()) << safety::sentence(plan.gate.trip());
     EXPECT_GT(times.ticks, 9000U);
     EXPECT_EQ(counting.counted(), planted ? 1 : 0);
   }
