@@ -89,5 +89,115 @@ TEST(Srivc, MeetsThePublishedMeansAndSpreads) {
   }
 }
 
+TEST(Srivc, FitsSeveralExperimentsThatDidNotBeginAtRest) {
+  const SignalPair whole = rao_garnier(1e300, 1);
+  const auto part = [&](Index begin, Index count, double offset) {
+    SignalPair pair = whole;
+    pair.time = whole.time.segment(begin, count);
+    pair.input = whole.input.segment(begin, count);
+    pair.output = whole.output.segment(begin, count).array() + offset;
+    return pair;
+  };
+  const auto fit = fit_continuous({part(500, 2000, 3.0), part(4000, 1500, -7.0)}, order_4_1());
+  ASSERT_TRUE(fit.has_value() && fit->converged);
+  const Vector truth = RaoGarnier().theta;
+  EXPECT_LT(((both(*fit) - truth).array() / truth.array()).abs().maxCoeff(), 1e-6) << both(*fit).transpose();
+}
+
+TEST(Srivc, TakesAnUnevenClockAsItIs) {
+  SignalPair pair = experiment(7, 0.01);
+  numeric::Random random(3);
+  pair.step.reset();
+  for (Index i = 1; i < pair.time.size(); ++i) pair.time[i] = pair.time[i - 1] + random.uniform(0.004, 0.016);
+  const RaoGarnier truth;
+  pair.output = simulate_continuous(truth.a, truth.b, pair);
+  const auto fit = fit_continuous({pair}, order_4_1());
+  ASSERT_TRUE(fit.has_value() && fit->converged);
+  EXPECT_LT(((both(*fit) - truth.theta).array() / truth.theta.array()).abs().maxCoeff(), 1e-8);
+}
+
+TEST(Srivc, RefusesAModelThatIsUnstable) {
+  // y grows by itself: e^{0.05 t} behind 1/(s − 0.05).
+  SignalPair pair = experiment(20, 0.01);
+  pair.output = Vector::Zero(pair.time.size());
+  for (Index i = 1; i < pair.time.size(); ++i) {
+    pair.output[i] = std::exp(0.0005) * pair.output[i - 1] + 0.01 * pair.input[i - 1];
+  }
+  ContinuousFitOptions options;
+  options.poles = 1;
+  const auto fit = fit_continuous({pair}, options);
+  EXPECT_TRUE(!fit || !fit->converged);
+}
+
+TEST(Srivc, WithANoiseModelIsSharperUnderColouredNoise) {
+  constexpr int kRuns = 12;
+  double plain = 0.0, modelled = 0.0;
+  const RaoGarnier truth;
+  for (int run = 0; run < kRuns; ++run) {
+    const SignalPair pair = rao_garnier(10.0, 300 + run, 0.95);
+    ContinuousFitOptions options = order_4_1();
+    const auto srivc = fit_continuous({pair}, options);
+    options.most_noise_order = 5;
+    const auto rivc = fit_continuous({pair}, options);
+    ASSERT_TRUE(srivc && srivc->converged && rivc && rivc->converged) << run;
+    ASSERT_GE(rivc->noise.size(), 2);
+    EXPECT_NEAR(rivc->noise[1], -0.95, 0.1);
+    plain += ((both(*srivc) - truth.theta).array() / truth.theta.array()).square().sum();
+    modelled += ((both(*rivc) - truth.theta).array() / truth.theta.array()).square().sum();
+  }
+  EXPECT_LT(modelled, 0.7 * plain);
+}
+
+TEST(Srivc, InClosedLoopNeedsTheReference) {
+  // y = 1/(s + 1) u + e, u = r − 3 y, with e white behind a slow filter: the loop carries e into u.
+  constexpr Index kSamples = 20000;
+  SignalPair pair;
+  pair.step = 0.02;
+  pair.time = Vector::LinSpaced(kSamples, 0.0, static_cast<double>(kSamples - 1)) * 0.02;
+  pair.input = pair.output = pair.reference = Vector::Zero(kSamples);
+  numeric::Random random(5);
+  // Over a straight line of the input from u₀ to u₁: x₁ = E x₀ + (1 − E) u₀ + (1 − (1 − E)/h)(u₁ − u₀).
+  const double h = 0.02, E = std::exp(-h), ramp = 1.0 - (1.0 - E) / h;
+  double x = 0.0, e = 0.0;
+  for (Index i = 1; i < kSamples; ++i) {
+    e = 0.98 * e + 0.1 * random.normal();
+    pair.reference[i] = i % 25 == 0 ? (random.uniform() < 0.5 ? -1.0 : 1.0) : pair.reference[i - 1];
+    // u₁ = r₁ − 3 (x₁ + e), and x₁ holds u₁.
+    const double known = E * x + (1.0 - E - ramp) * pair.input[i - 1];
+    pair.input[i] = (pair.reference[i] - 3.0 * (known + e)) / (1.0 + 3.0 * ramp);
+    x = known + ramp * pair.input[i];
+    pair.output[i] = x + e;
+  }
+  ContinuousFitOptions options;
+  options.poles = 1;
+  const auto open = fit_continuous({pair}, options);
+  options.reference_instruments = true;
+  options.hac_lag_s = 5.0;
+  const auto closed = fit_continuous({pair}, options);
+  ASSERT_TRUE(closed.has_value() && closed->converged);
+  EXPECT_NEAR(closed->a[0], 1.0, 4.0 * std::sqrt(closed->covariance(0, 0)));
+  EXPECT_NEAR(closed->b[0], 1.0, 4.0 * std::sqrt(closed->covariance(1, 1)));
+  EXPECT_LT(std::sqrt(closed->covariance(0, 0)), 0.2);
+  EXPECT_TRUE(!open || !open->converged || std::abs(open->a[0] - 1.0) > 2.0 * std::abs(closed->a[0] - 1.0));
+}
+
+TEST(Srivc, SaysWhatIsWrongWithItsData) {
+  SignalPair pair = rao_garnier(10.0, 1);
+  pair.output[17] = std::nan("");
+  auto fit = fit_continuous({pair}, order_4_1());
+  ASSERT_FALSE(fit.has_value());
+  EXPECT_NE(fit.error().message.find("sample 18"), std::string::npos);
+  pair = rao_garnier(10.0, 1);
+  pair.input.setOnes();
+  fit = fit_continuous({pair}, order_4_1());
+  ASSERT_FALSE(fit.has_value());
+  EXPECT_NE(fit.error().message.find("constant"), std::string::npos);
+  ContinuousFitOptions options;
+  options.poles = 1;
+  options.zeros = 2;
+  EXPECT_EQ(fit_continuous({pair}, options).error().kind, ErrorKind::usage);
+  EXPECT_EQ(fit_continuous({}, order_4_1()).error().kind, ErrorKind::usage);
+}
+
 }  // namespace
 }  // namespace mbk::identify

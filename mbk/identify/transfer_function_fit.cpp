@@ -252,13 +252,13 @@ void Identifier::describe(const ContinuousFit& fit) {
   gradient[n] = 1.0 / fit.a[0];
   found_.gain_standard_error = std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
   if (!found_.even) return;
-  // Where 99 % of the input's power lies: beyond it, what is said rests on the form of the model.
+  // Where 96 % of the input's power lies: beyond it, what is said rests on the form of the model.
   const SignalPair& longest = *std::ranges::max_element(experiments_, {}, &SignalPair::samples);
   const Hertz rate(1.0 / *longest.step);
   const auto spectrum = dsp::welch(longest.input.tail(longest.samples()), rate,
                                    Hertz(8.0 * rate.value / static_cast<double>(longest.samples())));
   if (!spectrum) return;
-  constexpr double kBelow = 0.005;
+  constexpr double kBelow = 0.02;
   found_.band_low = dsp::power_quantile(*spectrum, kBelow, Hertz(0.5 * rate.value)).value;
   found_.band_high = dsp::power_quantile(*spectrum, 1.0 - kBelow, Hertz(0.5 * rate.value)).value;
   for (auto* roots : {&found_.poles, &found_.zeros}) {
@@ -331,7 +331,7 @@ void Identifier::warn() {
   }
   if (!outside.empty()) {
     warnings.push_back({WarningCode::pole_outside_band,
-                        fmt::format("poles at {} lie beyond {:.4g} Hz, up to which 99 % of the input's power is: they "
+                        fmt::format("poles at {} lie beyond {:.4g} Hz, up to which 98 % of the input's power is: they "
                                     "rest on the form of the model",
                                     outside, found_.band_high),
                         "excite the system there, or do not use them"});

@@ -144,7 +144,7 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
                                                     : fmt::format("unevenly spaced, about every {:.6g} ms",
                                                                   1e3 * found.sample_time))});
   if (found.band_high > 0.0) {
-    rows.push_back({"excited", fmt::format("{:.3g} to {:.3g} Hz hold 99 % of the input's power", found.band_low,
+    rows.push_back({"excited", fmt::format("{:.3g} to {:.3g} Hz hold 96 % of the input's power", found.band_low,
                                            found.band_high)});
   }
   rows.push_back({"starts", starts_text(found)});
