@@ -42,8 +42,9 @@ std::optional<Index> take_number(std::string_view& text) {
 Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given) {
   constexpr Index kMost = 12;
   std::vector<std::pair<Index, Index>> orders;
-  const auto wrong = bad_usage(fmt::format("--orders: {} is neither FROM:TO nor POLES/ZEROS,…", quoted(given)),
-                               fmt::format("as in 2:5 or 4/1,4/2,5/2, with 1 to {} poles and at most as many zeros", kMost));
+  const auto wrong =
+      bad_usage(fmt::format("--orders: {} is neither FROM:TO nor POLES/ZEROS,…", quoted(given)),
+                fmt::format("as in 2:5 or 4/1,4/2,5/2, with 1 to {} poles and at most as many zeros", kMost));
   std::string_view rest = given;
   for (bool more = true; more;) {
     const auto first = take_number(rest);
@@ -75,7 +76,8 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
   options.window = signals->window;
   identify::TransferFunctionOptions& fit = options.fit;
   if (!a.orders.empty()) {
-    if (a.poles || a.zeros) return bad_usage("--orders chooses poles and zeros by itself", "leave --poles and --zeros out");
+    if (a.poles || a.zeros)
+      return bad_usage("--orders chooses poles and zeros by itself", "leave --poles and --zeros out");
     auto orders = orders_of(a.orders);
     if (!orders) return tl::unexpected(orders.error());
     fit.orders = std::move(*orders);
@@ -85,8 +87,9 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
     fit.poles = *a.poles;
     fit.zeros = a.zeros.value_or(*a.poles - 1);
     if (fit.zeros > fit.poles) {
-      return bad_usage(fmt::format("{} zeros beside {} poles: a system that ends has at most as many", fit.zeros, fit.poles),
-                       "exchange input and output, or take fewer zeros");
+      return bad_usage(
+          fmt::format("{} zeros beside {} poles: a system that ends has at most as many", fit.zeros, fit.poles),
+          "exchange input and output, or take fewer zeros");
     }
   }
   if (a.method == "rivc") fit.method = TransferFunctionMethod::rivc;
@@ -243,9 +246,10 @@ Action add_tf(CLI::App& app) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group(model);
-  command->add_flag("--from-rest", arguments->from_rest,
-                    "the system is at rest at zero where a stretch begins; otherwise an initial state and an offset are "
-                    "found for each")
+  command
+      ->add_flag("--from-rest", arguments->from_rest,
+                 "the system is at rest at zero where a stretch begins; otherwise an initial state and an offset are "
+                 "found for each")
       ->group(model);
   command->add_option("--noise-order", arguments->noise_order, "greatest order of the noise model of rivc (8)")
       ->type_name("N")

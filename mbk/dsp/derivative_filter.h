@@ -38,7 +38,7 @@ class DerivativeFilter {
   Index n_;
   double last_input_ = 0.0;
   double step_ = 0.0;
-  Matrix transition_;           // Φ
+  Matrix transition_;             // Φ
   Vector from_last_, from_next_;  // Γ₀, Γ₁
 };
 

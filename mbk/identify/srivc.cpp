@@ -102,11 +102,11 @@ struct Layout {
 
 /// One experiment's rows with the free motion projected out.
 struct Reduced {
-  Matrix M, S;              ///< ZᵀX, ZᵀZ
-  Vector g;                 ///< Zᵀe
-  double ee = 0;            ///< eᵀe
+  Matrix M, S;                  ///< ZᵀX, ZᵀZ
+  Vector g;                     ///< Zᵀe
+  double ee = 0;                ///< eᵀe
   Matrix free_of_x, free_of_z;  ///< (NᵀN)⁺NᵀX, (NᵀN)⁺NᵀZ
-  Vector free_of_e;         ///< (NᵀN)⁺Nᵀe
+  Vector free_of_e;             ///< (NᵀN)⁺Nᵀe
 };
 
 /// Pseudo-inverse of a Gram matrix, columns scaled to unit length.
@@ -214,7 +214,8 @@ void Fitter::blocks(std::size_t experiment, const Iterate& at, const Layout& lay
       pass.run(begin, count, signal, input.leftCols(count));
       now.middleRows(row, std::min(q_, n_)) = input.leftCols(count).topRows(std::min(q_, n_));
       if (q_ <= n_) return;
-      now.row(row + n_) = Eigen::Map<const Eigen::RowVectorXd>(signal, count) - at.a.transpose() * input.leftCols(count);
+      now.row(row + n_) =
+          Eigen::Map<const Eigen::RowVectorXd>(signal, count) - at.a.transpose() * input.leftCols(count);
     };
     y.run(begin, count, from(pair.output), now.topRows(n_));
     now.topRows(n_) = -now.topRows(n_);
@@ -389,11 +390,13 @@ std::vector<Vector> Fitter::residuals(const Iterate& at) const {
 Result<void> Fitter::check() const {
   if (n_ < 1 || n_ > kMostPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMostPoles));
   if (q_ < 1 || q_ > n_ + 1) {
-    return bad_usage(fmt::format("{} zeros beside {} poles: a model may have as many zeros as poles, not more", q_ - 1, n_));
+    return bad_usage(
+        fmt::format("{} zeros beside {} poles: a model may have as many zeros as poles, not more", q_ - 1, n_));
   }
   if (experiments_.empty()) return bad_usage("no experiment to fit");
   for (const double pole : options_.start_poles) {
-    if (!(pole > 0.0) || !std::isfinite(pole)) return bad_usage(fmt::format("start pole {} rad/s is not above 0", pole));
+    if (!(pole > 0.0) || !std::isfinite(pole))
+      return bad_usage(fmt::format("start pole {} rad/s is not above 0", pole));
   }
   Index samples = 0;
   for (const SignalPair& pair : experiments_) {
@@ -475,8 +478,7 @@ void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
     const Matrix middle = numeric::long_run_covariance(p, ranges, lags, [&](const numeric::RowRange& range) {
       return Matrix(scores.middleCols(range.begin, range.size()));
     });
-    const double widening =
-        numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(last.samples));
+    const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(last.samples));
     made.covariance = widening * widening * bread * middle * bread.transpose();
   }
   Vector physical(p);

@@ -8,29 +8,29 @@
 namespace mbk::identify {
 
 struct ContinuousFitOptions {
-  Index poles = 2, zeros = 0;       ///< n ≥ 1 and 0 ≤ m ≤ n
-  std::vector<double> start_poles;  ///< [rad/s] of the first filter; empty: a few over the band of the samples
-  bool only_given_starts = false;   ///< otherwise those over the band are tried beside them
-  bool free_start = true;           ///< an initial state and an offset of the output for each experiment
-  Index most_noise_order = 0;       ///< RIVC: autoregressive noise model up to this order, by BIC; 0: SRIVC
+  Index poles = 2, zeros = 0;          ///< n ≥ 1 and 0 ≤ m ≤ n
+  std::vector<double> start_poles;     ///< [rad/s] of the first filter; empty: a few over the band of the samples
+  bool only_given_starts = false;      ///< otherwise those over the band are tried beside them
+  bool free_start = true;              ///< an initial state and an offset of the output for each experiment
+  Index most_noise_order = 0;          ///< RIVC: autoregressive noise model up to this order, by BIC; 0: SRIVC
   bool reference_instruments = false;  ///< closed loop: instruments from the reference alone
-  double hac_lag_s = 0.0;           ///< reach of the residual's correlation in the covariance [s]; 0: white
-  double tolerance = 1e-4;          ///< largest relative change of a coefficient at which the search has settled
+  double hac_lag_s = 0.0;              ///< reach of the residual's correlation in the covariance [s]; 0: white
+  double tolerance = 1e-4;             ///< largest relative change of a coefficient at which the search has settled
   int most_iterations = 100;
-  bool refine = true;               ///< go on to rounding once it has settled
-  unsigned threads = 0;             ///< for the starts; 0: as many as there are cores
+  bool refine = true;    ///< go on to rounding once it has settled
+  unsigned threads = 0;  ///< for the starts; 0: as many as there are cores
 };
 
 /// What a search found, from the best start that settled on a stable model, or from the best one where none did.
 struct ContinuousFit {
-  Vector a, b;               ///< a₀ … a_{n−1} and b₀ … b_m, physical time
-  bool converged = false;    ///< settled, and the solution itself is stable
+  Vector a, b;             ///< a₀ … a_{n−1} and b₀ … b_m, physical time
+  bool converged = false;  ///< settled, and the solution itself is stable
   bool stable = true;
-  Matrix covariance;         ///< of [a; b]
-  Matrix white_covariance;   ///< the same as if what is left were white
-  double variance = 0;       ///< of what is left (with a noise model: of its innovations)
-  double fit = 0;            ///< R_T² = 1 − Σe²/Σ(y − ȳ)²
-  Vector noise;              ///< 1, c₁ … of the noise model; [1] without one
+  Matrix covariance;              ///< of [a; b]
+  Matrix white_covariance;        ///< the same as if what is left were white
+  double variance = 0;            ///< of what is left (with a noise model: of its innovations)
+  double fit = 0;                 ///< R_T² = 1 − Σe²/Σ(y − ȳ)²
+  Vector noise;                   ///< 1, c₁ … of the noise model; [1] without one
   std::vector<Vector> residuals;  ///< y − x̂ of each experiment
   std::vector<SearchStart> starts;
   Index samples = 0;

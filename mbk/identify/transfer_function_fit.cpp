@@ -304,11 +304,13 @@ void Identifier::warn() {
   auto& warnings = found_.warnings;
   constexpr double kPoor = 0.8;
   if (found_.held_back_fit && *found_.held_back_fit < kPoor) {
-    warnings.push_back({WarningCode::held_back_fit_poor,
-                        fmt::format("only {:.1f} % of the held-back output is explained", 100.0 * *found_.held_back_fit),
-                        "try more poles (--orders), a delay (--delay auto), or look whether the system changes"});
+    warnings.push_back(
+        {WarningCode::held_back_fit_poor,
+         fmt::format("only {:.1f} % of the held-back output is explained", 100.0 * *found_.held_back_fit),
+         "try more poles (--orders), a delay (--delay auto), or look whether the system changes"});
   } else if (found_.fit < kPoor) {
-    warnings.push_back({WarningCode::fit_poor, fmt::format("only {:.1f} % of the output is explained", 100.0 * found_.fit),
+    warnings.push_back({WarningCode::fit_poor,
+                        fmt::format("only {:.1f} % of the output is explained", 100.0 * found_.fit),
                         "try more poles (--orders) and a delay (--delay auto); noise may be the rest"});
   }
   if (held_back_.empty()) {
@@ -420,8 +422,7 @@ ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::ve
     largest = std::max(largest, z);
   }
   tests.cross_correlation_outside = static_cast<double>(outside) / static_cast<double>(lags + 1);
-  tests.cross_p =
-      std::min(1.0, 2.0 * static_cast<double>(lags + 1) * numeric::normal_probability(-largest));
+  tests.cross_p = std::min(1.0, 2.0 * static_cast<double>(lags + 1) * numeric::normal_probability(-largest));
   return tests;
 }
 

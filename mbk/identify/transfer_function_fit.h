@@ -11,14 +11,14 @@ struct TransferFunctionOptions {
   TransferFunctionMethod method = TransferFunctionMethod::srivc;
   Index poles = 2, zeros = 1;
   std::vector<std::pair<Index, Index>> orders;  ///< poles and zeros to choose from; empty: those above
-  std::vector<double> start_poles;  ///< [rad/s], tried beside those that the method takes by itself
-  double delay = 0.0;               ///< τ [s] ≥ 0
-  bool find_delay = false;          ///< instead of the one above, up to most_delay
-  double most_delay = 0.1;          ///< [s]
-  bool free_start = true;           ///< an initial state and an offset of the output for each experiment
-  Index most_noise_order = 8;       ///< of the noise model, where the method has one
-  double hac_lag_s = 1.0;           ///< reach of the residual's correlation in the standard errors [s]
-  unsigned threads = 0;             ///< 0: as many as there are cores
+  std::vector<double> start_poles;              ///< [rad/s], tried beside those that the method takes by itself
+  double delay = 0.0;                           ///< τ [s] ≥ 0
+  bool find_delay = false;                      ///< instead of the one above, up to most_delay
+  double most_delay = 0.1;                      ///< [s]
+  bool free_start = true;                       ///< an initial state and an offset of the output for each experiment
+  Index most_noise_order = 8;                   ///< of the noise model, where the method has one
+  double hac_lag_s = 1.0;                       ///< reach of the residual's correlation in the standard errors [s]
+  unsigned threads = 0;                         ///< 0: as many as there are cores
 };
 
 /// One transfer function behind all experiments, with intervals of its coefficients, poles, zeros and gain, the table

@@ -23,7 +23,8 @@ bool is_even(const Vector& time, Piece piece) {
   if (n < 2) return true;
   const double step = (time[piece.end - 1] - time[piece.begin]) / static_cast<double>(n - 1);
   for (Index i = 0; i < n; ++i) {
-    if (std::abs(time[piece.begin + i] - time[piece.begin] - step * static_cast<double>(i)) > kUneven * step) return false;
+    if (std::abs(time[piece.begin + i] - time[piece.begin] - step * static_cast<double>(i)) > kUneven * step)
+      return false;
   }
   return true;
 }

@@ -115,10 +115,9 @@ std::string left_text(const ResidualTests& tests) {
   Rows rows = {{"what is left", fmt::format("{}, p = {:.2g}; {:.0f} % of {} lags beyond the 99 % limit",
                                             tests.white() ? "like white noise" : "coloured", tests.whiteness_p,
                                             100.0 * tests.autocorrelation_outside, tests.lags)}};
-  rows.push_back({"against the input",
-                  fmt::format("{}, p = {:.2g}; {:.0f} % of the lags beyond the 99 % limit",
-                              tests.independent() ? "no relation left" : "a relation is left", tests.cross_p,
-                              100.0 * tests.cross_correlation_outside)});
+  rows.push_back({"against the input", fmt::format("{}, p = {:.2g}; {:.0f} % of the lags beyond the 99 % limit",
+                                                   tests.independent() ? "no relation left" : "a relation is left",
+                                                   tests.cross_p, 100.0 * tests.cross_correlation_outside)});
   return table(rows);
 }
 
@@ -138,11 +137,11 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
   for (const SourceFile& source : found.sources) text += fmt::format("{}   {}\n", source.path, source.format);
   Rows rows = {{"from, to", name_of(found.input, found.input_unit) + " → " + name_of(found.output, found.output_unit)},
                {"method", method_text(found.method)}};
-  rows.push_back({"samples", fmt::format("{} in {} stretch{}, {}", found.samples, found.experiments,
-                                         found.experiments == 1 ? "" : "es",
-                                         found.even ? fmt::format("every {:.6g} ms", 1e3 * found.sample_time)
-                                                    : fmt::format("unevenly spaced, about every {:.6g} ms",
-                                                                  1e3 * found.sample_time))});
+  rows.push_back(
+      {"samples",
+       fmt::format("{} in {} stretch{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "es",
+                   found.even ? fmt::format("every {:.6g} ms", 1e3 * found.sample_time)
+                              : fmt::format("unevenly spaced, about every {:.6g} ms", 1e3 * found.sample_time))});
   if (found.band_high > 0.0) {
     rows.push_back({"excited", fmt::format("{:.3g} to {:.3g} Hz hold 96 % of the input's power", found.band_low,
                                            found.band_high)});

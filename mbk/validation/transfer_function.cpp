@@ -96,9 +96,10 @@ Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
   for (Index k = 0; k < kTruth.size(); ++k) {
     const Vector error = of_runs([&](const Run& run) { return 100.0 * (run.theta[k] / kTruth[k] - 1.0); });
     ValidationRow row = bias_row(fmt::format("bias of {}", kNames[k]), error, kBias, "%");
-    row.coverage = of_runs([&](const Run& run) {
-                     return std::abs(run.theta[k] - kTruth[k]) <= numeric::kNormal95 * run.standard_error[k] ? 1.0 : 0.0;
-                   }).mean();
+    row.coverage =
+        of_runs([&](const Run& run) {
+          return std::abs(run.theta[k] - kTruth[k]) <= numeric::kNormal95 * run.standard_error[k] ? 1.0 : 0.0;
+        }).mean();
     table.rows.push_back(std::move(row));
   }
   constexpr double kOrder = 90.0;  // [%]
