@@ -77,6 +77,15 @@ struct Iterate {
     both << a, b;
     return both;
   }
+  /// What the coefficients are to be multiplied with for time in seconds.
+  [[nodiscard]] Vector to_seconds() const {
+    const auto n = static_cast<double>(a.size());
+    Vector factors(a.size() + b.size());
+    for (Index k = 0; k < a.size(); ++k) factors[k] = std::pow(scale, n - static_cast<double>(k));
+    for (Index k = 0; k < b.size(); ++k) factors[a.size() + k] = std::pow(scale, n - static_cast<double>(k));
+    return factors;
+  }
+  [[nodiscard]] Vector physical() const { return theta().cwiseProduct(to_seconds()); }
 };
 
 /// Where the rows of a block stand.
@@ -167,6 +176,7 @@ class Fitter {
     Iterate at;
     Vector noise = Vector::Ones(1);
     double variance = std::numeric_limits<double>::infinity();
+    Sums last;  ///< at the end
   };
 
   [[nodiscard]] Result<void> check() const;
@@ -352,18 +362,19 @@ Fitter::Search Fitter::search(double pole) const {
   // With a noise model: what is left is modelled, and the fit repeated, until neither changes.
   constexpr int kMostNoisePasses = 30;
   for (int pass = 0; options_.most_noise_order > 0 && found.start.converged && pass < kMostNoisePasses; ++pass) {
-    const Vector before = found.at.theta() * 1.0;
-    const double scale = found.at.scale;
+    const Vector before = found.at.physical();
     found.noise = autoregression(residuals(found.at), options_.most_noise_order);
     iterate(found);
-    const Vector after = found.at.theta();
-    if (scale == found.at.scale || !found.start.converged) break;
+    const Vector after = found.at.physical();
     if (((after - before).array().abs() <= options_.tolerance * after.array().abs()).all()) break;
   }
-  const Sums last = sums(found.at, layout(true), found.noise);
-  found.variance = last.ee / static_cast<double>(std::max<Index>(last.samples - n_ - q_, 1));
-  double squares = 0.0;
-  for (const Vector& e : residuals(found.at)) squares += e.squaredNorm();
+  found.last = sums(found.at, layout(true), found.noise);
+  found.variance = found.last.ee / static_cast<double>(std::max<Index>(found.last.samples - n_ - q_, 1));
+  double squares = found.last.ee;
+  if (found.noise.size() > 1) {
+    squares = 0.0;
+    for (const Vector& e : residuals(found.at)) squares += e.squaredNorm();
+  }
   found.start.fit = 1.0 - squares / output_squares_;
   return found;
 }
@@ -444,7 +455,7 @@ std::vector<double> Fitter::start_poles() const {
 
 void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
   const Layout rows = layout(true);
-  const Sums last = sums(best.at, rows, best.noise);
+  const Sums& last = best.last;
   const Index p = n_ + q_;
   const Matrix bread =
       options_.reference_instruments ? Matrix(last.M.inverse()) : Matrix(last.S.ldlt().solve(Matrix::Identity(p, p)));
@@ -481,10 +492,7 @@ void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
     const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(last.samples));
     made.covariance = widening * widening * bread * middle * bread.transpose();
   }
-  Vector physical(p);
-  const auto n = static_cast<double>(n_);
-  for (Index k = 0; k < n_; ++k) physical[k] = std::pow(best.at.scale, n - static_cast<double>(k));
-  for (Index k = 0; k < q_; ++k) physical[n_ + k] = std::pow(best.at.scale, n - static_cast<double>(k));
+  const Vector physical = best.at.to_seconds();
   made.a = best.at.a.cwiseProduct(physical.head(n_));
   made.b = best.at.b.cwiseProduct(physical.tail(q_));
   made.covariance = physical.asDiagonal() * made.covariance * physical.asDiagonal();
