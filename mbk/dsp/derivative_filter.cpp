@@ -26,10 +26,10 @@ void DerivativeFilter::set_step(double step) {
   from_last_ = E.col(n_).head(n_) - from_next_;
 }
 
-template <int n>
+template <int N>
 void DerivativeFilter::run_fixed(const double* input, Index count, double* states, Index stride) {
-  using State = Eigen::Matrix<double, n, 1>;
-  const Eigen::Matrix<double, n, n> transition = transition_;
+  using State = Eigen::Matrix<double, N, 1>;
+  const Eigen::Matrix<double, N, N> transition = transition_;
   const State from_last = from_last_, from_next = from_next_;
   State x = x_;
   double last = last_input_;

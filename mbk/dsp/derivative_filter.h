@@ -31,7 +31,7 @@ class DerivativeFilter {
 
  private:
   void set_step(double step);
-  template <int n>
+  template <int N>
   void run_fixed(const double* input, Index count, double* states, Index stride);
 
   Vector a_, x_;
