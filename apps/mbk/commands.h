@@ -24,6 +24,7 @@ Action add_convert(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_springs(CLI::App& app);
 Action add_sensor(CLI::App& app);
+Action add_teleop(CLI::App& app);
 Action add_validate(CLI::App& app);
 Action add_robot(CLI::App& app);
 

@@ -71,6 +71,7 @@ int main(int argc, char** argv) {
       {"convert", mbk::app::add_convert(app)},
       {"simulate", mbk::app::add_simulate(app)},
       {"springs", mbk::app::add_springs(app)},
+      {"teleop", mbk::app::add_teleop(app)},
       {"sensor", mbk::app::add_sensor(app)},
       {"robot", mbk::app::add_robot(app)},
       {"validate", mbk::app::add_validate(app)},

@@ -101,8 +101,7 @@ Action add_workspace(CLI::App& group) {
 }  // namespace
 
 Action add_robot(CLI::App& app) {
-  CLI::App* group = app.add_subcommand(
-      "robot", "the robot itself: where its hand can be, its inertia and friction, the force without a sensor");
+  CLI::App* group = app.add_subcommand("robot", "its workspace, its inertia and friction, force without a sensor");
   group->footer(
       "Examples:\n"
       "  mbk robot workspace --at 300,50\n"

@@ -44,7 +44,11 @@ Result<robot::RobotDescription> describe_robot(const std::optional<std::filesyst
 }
 
 Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>& file) {
-  auto description = describe_robot(file);
+  // Table A.1 has viscous friction, and says nothing of what else may resist.
+  auto description =
+      file ? describe_robot(file)
+           : robot_file::parse_robot_description("[robot]\nkind = \"planar\"\n[drive]\nterms = [\"viscous\"]\n", "",
+                                                 "the robot of the thesis");
   if (!description) return tl::unexpected(description.error());
   if (!description->unstated.empty()) {
     return bad_data(fmt::format("it does not say {}", fmt::join(description->unstated, ", ")),

@@ -64,7 +64,7 @@ Action add_robot_force(CLI::App& group) {
       "  mbk robot force log.h5 --robot robot.json\n"
       "      how large it is, how sure, and beside the force sensor where there is one\n"
       "  mbk robot force log.h5 --robot robot.json --out with_force.h5\n"
-      "      a recording with force_x and force_y computed; those of a sensor stand in it as sensor_force_x …\n\n"
+      "      a recording with force_x and force_y computed; those of a sensor become sensor_force_x …\n\n"
       "'mbk measure --force-source virtual' does the same on its way.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
@@ -85,6 +85,8 @@ Action add_robot_force(CLI::App& group) {
       ->check(one_of({"sensor", "derivative"}));
   add_window_options(*command, *arguments);
   add_filter_options(*command, *arguments);
+  command->remove_option(command->get_option("--split"));  // nothing is held back here
+  command->remove_option(command->get_option("--every"));
   add_output_options(*command, *arguments, "mbk.force/1");
   command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");
   return [arguments] { return run(*arguments); };

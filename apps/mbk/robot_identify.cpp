@@ -15,6 +15,7 @@
 #include "mbk/measurement/identify_robot.h"
 #include "mbk/report/robot_text.h"
 #include "mbk/result/robot_json.h"
+#include "mbk/robot/drive_term_names.h"
 
 namespace mbk::app {
 namespace {
@@ -36,39 +37,47 @@ Result<std::optional<double>> number_or_auto(const std::string& given, const cha
   return value;
 }
 
-/// Sets the terms that a list names; the bodies keep their values.
-Result<void> set_terms(const std::string& list, robot::DynamicModel& model) {
+/// Sets the terms that a list names; a coefficient that stays keeps its value.
+Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) {
+  robot::DynamicModel& model = robot.model;
   robot::DriveTerms& drive = model.drive;
-  const std::pair<const char*, bool robot::DriveTerms::*> known[] = {
-      {"viscous", &robot::DriveTerms::viscous},   {"coulomb", &robot::DriveTerms::coulomb},
-      {"stribeck", &robot::DriveTerms::stribeck}, {"cable", &robot::DriveTerms::cable},
-      {"offset", &robot::DriveTerms::offset},     {"motor_inertia", &robot::DriveTerms::motor_inertia}};
-  for (const auto& [name, flag] : known) drive.*flag = false;
+  const std::vector<robot::Coefficient> before = model.coefficients();
+  const Vector values = model.parameters;
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.wanted = false;
   for (std::size_t begin = 0; list != "none" && begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string word = list.substr(begin, end - begin);
     begin = end + 1;
-    bool found = false;
-    for (const auto& [name, flag] : known) {
-      if (word == name) drive.*flag = found = true;
-    }
-    if (!found) {
+    const auto term = std::ranges::find(robot::kDriveTermNames, word, &robot::DriveTermName::word);
+    if (term == robot::kDriveTermNames.end()) {
       return bad_usage(fmt::format("--terms: there is no term {}", quoted(word)),
                        "take of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none");
     }
+    drive.*term->wanted = true;
   }
   if (drive.cable) drive.offset = true;  // k (q − q₀) has a constant
-  const Vector of_bodies = model.parameters.head(static_cast<Index>(model.mechanism->coefficients().size()));
-  model.parameters.setZero(static_cast<Index>(model.coefficients().size()));
-  model.parameters.head(of_bodies.size()) = of_bodies;
+  const std::vector<robot::Coefficient> after = model.coefficients();
+  model.parameters.setZero(static_cast<Index>(after.size()));
+  std::vector<std::string> unstated;
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const auto old = std::ranges::find(before, after[k].name, &robot::Coefficient::name);
+    if (old == before.end() || std::ranges::find(robot.unstated, after[k].name) != robot.unstated.end()) {
+      unstated.push_back(after[k].name);
+    } else {
+      model.parameters[static_cast<Index>(k)] = values[old - before.begin()];
+    }
+  }
+  robot.unstated = std::move(unstated);
   return {};
 }
 
 /// The robot's structure with what the options say of its drives.
-Result<void> choose(const Arguments& arguments, robot::DynamicModel& model, measurement::RobotOptions& options) {
-  if (!arguments.terms.empty()) {
-    if (auto ok = set_terms(arguments.terms, model); !ok) return tl::unexpected(ok.error());
+Result<void> choose(const Arguments& arguments, robot::RobotDescription& robot, measurement::RobotOptions& options) {
+  const bool usual = !arguments.robot && arguments.terms.empty();
+  if (usual || !arguments.terms.empty()) {
+    if (auto ok = set_terms(usual ? "viscous,coulomb,offset" : arguments.terms, robot); !ok) return ok;
   }
+  robot::DynamicModel& model = robot.model;
   if (arguments.smoothing) model.drive.smoothing = *arguments.smoothing;
   const auto delay = number_or_auto(arguments.delay, "--motor-delay");
   if (!delay) return tl::unexpected(delay.error());
@@ -103,6 +112,10 @@ Result<std::vector<Index>> indices_of(const std::string& list, const robot::Robo
       return bad_usage(fmt::format("--fix: the robot has no coefficient {}", quoted(name)),
                        fmt::format("there are {}", fmt::join(names, ", ")));
     }
+    if (std::ranges::find(robot.unstated, name) != robot.unstated.end()) {
+      return bad_usage(fmt::format("--fix: the description of the robot has no value of {}", quoted(name)),
+                       "state it in the file of --robot");
+    }
     indices.push_back(found - known.begin());
   }
   return indices;
@@ -113,10 +126,7 @@ int run(const Arguments& arguments) {
   measurement::RobotOptions options;
   auto robot = describe_robot(arguments.robot);
   if (!robot) return report_error(robot.error());
-  if (!arguments.robot && arguments.terms.empty()) {
-    if (auto ok = set_terms("viscous,coulomb,offset", robot->model); !ok) return report_error(ok.error());
-  }
-  if (auto ok = choose(arguments, robot->model, options); !ok) return report_error(ok.error());
+  if (auto ok = choose(arguments, *robot, options); !ok) return report_error(ok.error());
   const auto fixed = indices_of(arguments.fixed, *robot);
   if (!fixed) return report_error(fixed.error());
   options.fit.fixed = *fixed;
@@ -160,8 +170,8 @@ Action add_robot_identify(CLI::App& group) {
       "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml\n"
       "      your own robot, from its URDF\n"
       "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n\n"
-      "Record with nothing at the hand, every joint moving, fast and slow, through the places where you will\n"
-      "measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
+      "Record with nothing at the hand, every joint moving, fast and slow, through the places where you\n"
+      "will measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(*command, *arguments);

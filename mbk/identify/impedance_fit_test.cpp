@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
 #include "mbk/identify/test_trials.h"
+#include "mbk/numeric/random.h"
 
 namespace mbk::identify {
 namespace {
@@ -51,6 +53,73 @@ TEST(IdentifyImpedance, RecoversOneAxisExactly) {
   expect_model(id.model, arm(1), kExact);
   EXPECT_EQ(id.parameters, (std::vector<std::string>{"m", "b", "k", "x0"}));
   EXPECT_EQ(id.covariance.rows(), 4);
+}
+
+/// A trial whose force rests on two coefficients of a robot, and what is known of them.
+PreparedTrial of_robot(bool exact) {
+  PreparedTrial made = trial(arm(), {.samples = 2000, .sample_time = 0.02, .noise = exact ? 0.0 : 0.2});
+  made.robot_covariance = (Matrix(2, 2) << 4e-4, -1e-4, -1e-4, 9e-4).finished();
+  made.force_sensitivity.resize(made.time.size(), 4);
+  made.force_sensitivity.col(0) = 3.0 * made.acceleration.col(0) + made.velocity.col(1);
+  made.force_sensitivity.col(1) = (20.0 * made.velocity.col(0).array()).tanh();
+  made.force_sensitivity.col(2) = made.acceleration.col(1) - made.acceleration.col(0);
+  made.force_sensitivity.col(3) = 0.3 + (20.0 * made.velocity.col(1).array()).tanh();
+  return made;
+}
+
+/// The same where the robot's coefficients are off by `error`.
+PreparedTrial with_error(PreparedTrial made, const Vector& error) {
+  for (Index axis = 0; axis < 2; ++axis) {
+    made.force_hand_on_robot.col(axis) += made.force_sensitivity.middleCols(2 * axis, 2) * error;
+  }
+  return made;
+}
+
+TEST(IdentifyImpedance, CarriesTheUncertaintyOfARobotIntoTheModelAsRefitsDo) {
+  for (const Structure structure : {Structure::full, Structure::symmetric}) {
+    const PreparedTrial made = of_robot(false);
+    const Options options{.structure = structure};
+    const Identification id = identified({made}, options);
+    Matrix slope(14, 2);
+    constexpr double kStep = 1e-5;
+    for (Index k = 0; k < 2; ++k) {
+      const Vector step = kStep * Vector::Unit(2, k);
+      slope.col(k) = (flat(identified({with_error(made, step)}, options).model) -
+                      flat(identified({with_error(made, -step)}, options).model)) /
+                     (2.0 * kStep);
+    }
+    const Vector wanted = (slope * made.robot_covariance * slope.transpose()).diagonal().cwiseSqrt();
+    ASSERT_TRUE(id.standard_error_of_robot);
+    EXPECT_LE((flat(*id.standard_error_of_robot) - wanted).cwiseAbs().maxCoeff(), 1e-6 * wanted.maxCoeff());
+  }
+}
+
+TEST(IdentifyImpedance, AddsTheUncertaintyOfARobotToThatOfTheNoise) {
+  PreparedTrial made = of_robot(false);
+  const Identification whole = identified({made});
+  ASSERT_TRUE(whole.standard_error_of_robot);
+  made.force_sensitivity.resize(0, 0);
+  const Identification noise_alone = identified({made});
+  EXPECT_FALSE(noise_alone.standard_error_of_robot);
+  const Vector squares =
+      flat(noise_alone.standard_error).cwiseAbs2() + flat(*whole.standard_error_of_robot).cwiseAbs2();
+  EXPECT_LE((flat(whole.standard_error).cwiseAbs2() - squares).cwiseAbs().maxCoeff(), 1e-12 * squares.maxCoeff());
+}
+
+TEST(IdentifyImpedance, SpreadsOverRobotsAsItsStandardErrorSays) {
+  const PreparedTrial made = of_robot(true);
+  const Vector said = flat(identified({made}).standard_error_of_robot.value());
+  const Matrix root = made.robot_covariance.llt().matrixL();
+  numeric::Random random(3);
+  constexpr int kRobots = 300;
+  Vector squares = Vector::Zero(14);
+  for (int k = 0; k < kRobots; ++k) {
+    const Vector error = root * Eigen::Vector2d(random.normal(), random.normal());
+    squares += (flat(identified({with_error(made, error)}).model) - flat(arm())).cwiseAbs2();
+  }
+  const Vector spread = (squares / kRobots).cwiseSqrt();
+  constexpr double kScatter = 0.15;  // 1/√(2·300) is 4 %
+  for (Index k = 0; k < 12; ++k) EXPECT_NEAR(spread[k], said[k], kScatter * said[k] + kExact) << k;
 }
 
 TEST(IdentifyImpedance, SymmetricStructureRecoversASymmetricArmAndTiesItsElements) {

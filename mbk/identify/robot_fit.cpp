@@ -138,7 +138,7 @@ class RobotFitter {
   Vector sigma_, theta_;
   Matrix bread_, covariance_;  ///< of the columns that are kept, and of the delay's where it is estimated
   Matrix residuals_;
-  double delay_correction_ = 0, condition_ = 0;
+  double delay_correction_ = 0;
   Vector fixed_;                                ///< p, the values that are known, 0 elsewhere
   std::vector<robot::Coefficient> free_names_;  ///< of those that are not
   numeric::IndependentColumns columns_;         ///< of those that are not
@@ -225,7 +225,6 @@ Result<void> RobotFitter::solve() {
       if (!fit) return tl::unexpected(fit.error());
       free = fit->free;
       bread_ = fit->inverse_gram;
-      condition_ = fit->condition;
     }
     theta_ = fixed_;
     for (std::size_t k = 0; k < kept_.size(); ++k) theta_[kept_[k]] = free[static_cast<Index>(k)];
@@ -319,8 +318,7 @@ void RobotFitter::describe(RobotIdentification& found) const {
     constexpr double kShare = 0.3;
     const double share = eigen.eigenvectors()(k, 0);
     if (std::abs(share) >= kShare) {
-      found.weakest.emplace_back(names[static_cast<std::size_t>(columns_.kept[static_cast<std::size_t>(k)])].name,
-                                 share);
+      found.weakest.emplace_back(names[static_cast<std::size_t>(kept_[static_cast<std::size_t>(k)])].name, share);
     }
   }
 }
@@ -403,7 +401,7 @@ void warn(RobotIdentification& found) {
   }
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     constexpr double kPoor = 80.0;
-    if (found.fit[joint].vaf >= kPoor) continue;
+    if (!(found.fit[joint].vaf < kPoor)) continue;  // nor where there was no torque to explain
     warnings.push_back({found.held_back ? WarningCode::held_back_fit_poor : WarningCode::fit_poor,
                         fmt::format("only {:.1f} % of the torque of joint {} is explained{}", found.fit[joint].vaf,
                                     joint + 1, found.held_back ? " on held-back data" : ""),

@@ -10,11 +10,11 @@ namespace mbk::measurement {
 /// A recording with the force at the hand computed, as a recording.
 struct ComputedForce {
   /// The samples at which the force could be computed. To the channels of the recording come force_x, force_y (the
-  /// computed force; what a sensor recorded moves to sensor_force_x, sensor_force_y) and, where the robot's
-  /// coefficients have a covariance, their part of the force's standard error, force_error_x, force_error_y; with one
-  /// axis reaction, sensor_reaction, reaction_error.
+  /// computed force, smoothed but not low-passed; what a sensor recorded moves as it is to sensor_force_x,
+  /// sensor_force_y) and, where the robot's coefficients have a covariance, their part of the force's standard error,
+  /// force_error_x, force_error_y; with one axis reaction, sensor_reaction, reaction_error.
   Recording recording;
-  ForceSummary summary;  ///< the comparison sample by sample, smoothed alike
+  ForceSummary summary;  ///< sample by sample, through the filters of a measurement
 };
 
 /// Of the options, those of preprocess and `resample` count.

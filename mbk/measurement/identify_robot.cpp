@@ -1,8 +1,10 @@
 #include "mbk/measurement/identify_robot.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "mbk/preprocess/resample.h"
@@ -44,14 +46,13 @@ Result<std::vector<PreparedDynamics>> prepare_all(std::span<const Recording> rec
   return trials;
 }
 
-/// Recordings on an even clock, where that was asked.
-Result<std::vector<Recording>> even(std::span<const Recording> recordings, std::optional<Hertz> rate) {
-  std::vector<Recording> all(recordings.begin(), recordings.end());
-  if (!rate) return all;
-  for (Recording& recording : all) {
-    auto resampled = preprocess::resample(recording, *rate);
+/// Recordings on an even clock.
+Result<std::vector<Recording>> even(std::span<const Recording> recordings, Hertz rate) {
+  std::vector<Recording> all;
+  for (const Recording& recording : recordings) {
+    auto resampled = preprocess::resample(recording, rate);
     if (!resampled) return tl::unexpected(resampled.error());
-    recording = std::move(*resampled);
+    all.push_back(std::move(*resampled));
   }
   return all;
 }
@@ -61,7 +62,7 @@ struct Prepared {
   std::vector<PreparedDynamics> trials, held_back;
 };
 
-Result<Prepared> prepare_both(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+Result<Prepared> prepare_both(std::span<const Recording> recordings, std::span<const Recording> held_back,
                               const robot::DynamicModel& model, const preprocess::DynamicsOptions& options) {
   auto trials = prepare_all(recordings, model, options);
   if (!trials) return tl::unexpected(trials.error());
@@ -78,7 +79,7 @@ Result<Prepared> prepare_both(const std::vector<Recording>& recordings, const st
 }
 
 /// The pipeline with everything given.
-Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+Result<identify::RobotFit> fit_once(std::span<const Recording> recordings, std::span<const Recording> held_back,
                                     const robot::DynamicModel& model, const RobotOptions& options) {
   const auto both = prepare_both(recordings, held_back, model, options.preprocess);
   if (!both) return tl::unexpected(both.error());
@@ -86,7 +87,7 @@ Result<identify::RobotFit> fit_once(const std::vector<Recording>& recordings, co
 }
 
 /// With the delay found where it is wanted.
-Result<RobotIdentification> fit_delay(const std::vector<Recording>& recordings, const std::vector<Recording>& held_back,
+Result<RobotIdentification> fit_delay(std::span<const Recording> recordings, std::span<const Recording> held_back,
                                       robot::DynamicModel model, const RobotOptions& options) {
   constexpr int kMostPasses = 8;
   constexpr double kSettled = 1e-5;  // [s], a hundredth of a sample at 1 kHz
@@ -112,50 +113,47 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
                                            const robot::DynamicModel& model, const RobotOptions& options) {
   RobotOptions all = options;
   all.preprocess.instruments = options.fit.method == RobotMethod::instrumental_variables;
-  const auto trials = even(recordings, options.resample);
-  if (!trials) return tl::unexpected(trials.error());
-  const auto others = even(held_back, options.resample);
-  if (!others) return tl::unexpected(others.error());
-  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(*trials, *others, model, all);
+  if (options.resample) {
+    all.resample.reset();
+    const auto trials = even(recordings, *options.resample);
+    if (!trials) return tl::unexpected(trials.error());
+    const auto others = even(held_back, *options.resample);
+    if (!others) return tl::unexpected(others.error());
+    return identify_robot(*trials, *others, model, all);
+  }
+  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(recordings, held_back, model, all);
 
   // Between the velocity at which the sign is smooth and a hundred times that.
   const double low = std::log(std::max(1.5 * model.drive.smoothing, 1e-4)), high = low + std::log(100.0);
-  constexpr double kGolden = 0.6180339887498949;
   robot::DynamicModel tried = model;
   Result<RobotIdentification> best = bad_data("not tried");
   double least = std::numeric_limits<double>::infinity();
-  const auto at = [&](double log_velocity) -> Result<double> {
+  std::optional<Error> failure;
+  const auto left = [&](double log_velocity) {
     tried.drive.stribeck_velocity = std::exp(log_velocity);
-    auto found = fit_delay(*trials, *others, tried, all);
-    if (!found) return tl::unexpected(found.error());
-    const double left = unexplained(*found);
-    if (left < least) {
-      least = left;
+    auto found = fit_delay(recordings, held_back, tried, all);
+    if (!found) {
+      failure = found.error();
+      return std::numeric_limits<double>::max();
+    }
+    const double value = unexplained(*found);
+    if (value < least) {
+      least = value;
       best = std::move(found);
     }
-    return left;
+    return value;
   };
-  double a = low, b = high, c = b - kGolden * (b - a), d = a + kGolden * (b - a);
-  auto at_c = at(c);
-  auto at_d = at(d);
-  constexpr double kNear = 0.02;  // of the velocity
-  while (at_c && at_d && b - a > kNear) {
-    if (*at_c < *at_d) {
-      b = d;
-      d = c;
-      at_d = at_c;
-      c = b - kGolden * (b - a);
-      at_c = at(c);
-    } else {
-      a = c;
-      c = d;
-      at_c = at_d;
-      d = a + kGolden * (b - a);
-      at_d = at(d);
-    }
+  // There may be several minima: the best of a coarse grid, then down to the bottom of that one.
+  constexpr int kGrid = 8;
+  const double step = (high - low) / kGrid;
+  double nearest = low;
+  for (int k = 0; k <= kGrid; ++k) {
+    const double before = least;
+    if (left(low + k * step); least < before) nearest = low + k * step;
   }
-  if (!at_c) return tl::unexpected(at_c.error());
-  if (!at_d) return tl::unexpected(at_d.error());
+  constexpr int kBits = 8;  // of the logarithm's range: 2 % of the velocity
+  boost::math::tools::brent_find_minima(left, std::max(low, nearest - step), std::min(high, nearest + step), kBits);
+  if (failure) return tl::unexpected(*failure);
   return best;
 }
 

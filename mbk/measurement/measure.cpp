@@ -200,7 +200,8 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
   }
   std::vector<ModelPassivity> models;
   for (const Identification* id : {first, other}) {
-    if (id == nullptr || !id->model.M.allFinite()) continue;
+    // A model without damping was not asked whether the limb has any.
+    if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
     auto model = analyse::model_passivity(*id, band);
     if (!model) return tl::unexpected(model.error());
     models.push_back(std::move(*model));

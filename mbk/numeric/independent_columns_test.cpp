@@ -21,8 +21,6 @@ TEST(IndependentColumns, DoesNotDependOnTheScaleOfAColumn) {
   Z.col(3) = Z.col(0) + Z.col(2);
   Z.col(1) *= 1e-9;
   Z.col(0) *= 1e7;
-  EXPECT_EQ(independent_columns(Z, 1e-6).kept.size(), 4U);  // column 3 is then far from 1e7 · column 0 + column 2
-  Z.col(3) = Z.col(0) * 1e-7 + Z.col(2);
   EXPECT_EQ(independent_columns(Z, 1e-6).kept, (std::vector<Index>{0, 1, 2}));
 }
 

@@ -92,5 +92,34 @@ TEST(ExcitedBand, OfNoMotionIsZero) {
   EXPECT_EQ(band.high.value, 0.0);
 }
 
+TEST(BandTop, IsWhereTheSignalsOwnPowerEnds) {
+  Matrix signals(50000, 2);
+  signals.col(0) = multisine(50000, {10});        // 1 Hz
+  signals.col(1) = 0.5 * multisine(50000, {70});  // 7 Hz with a fifth of the power of both
+  EXPECT_NEAR(band_top(signals, whole(signals), kRate)->value, 7.0, 0.11);
+  signals.col(1) *= 0.2;  // below 5 % of it
+  EXPECT_NEAR(band_top(signals, whole(signals), kRate)->value, 1.0, 0.21);
+  EXPECT_FALSE(band_top(signals, {Cut{0, 7, {}}}, kRate));
+}
+
+TEST(MotionTop, IsWhereTheAccelerationSinksIntoItsFloor) {
+  // Acceleration of one size up to 8 Hz, and of a fifth of it up to 40 Hz, which stands for noise.
+  Vector position = Vector::Zero(50000);
+  for (int line = 1; line <= 80; ++line) {
+    const double omega = 2.0 * std::numbers::pi * 0.5 * line, amplitude = (line <= 16 ? 1.0 : 0.2) / (omega * omega);
+    for (Index i = 0; i < position.size(); ++i) {
+      position[i] += amplitude * std::sin(omega * static_cast<double>(i) / kRate.value + line * line);
+    }
+  }
+  const double top = motion_top(position, whole(position), kRate, Hertz(40.0))->value;
+  EXPECT_GT(top, 8.0);
+  EXPECT_LT(top, 10.1);  // a Hann window of 1 s leaks into two lines of 1 Hz
+}
+
+TEST(MotionTop, IsTheLimitWhereTooFewLinesLieBetween) {
+  const Vector motion = multisine(50000, {10, 20, 40});
+  EXPECT_EQ(motion_top(motion, whole(motion), kRate, Hertz(7.0))->value, 7.0);
+}
+
 }  // namespace
 }  // namespace mbk::preprocess

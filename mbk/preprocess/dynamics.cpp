@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "mbk/preprocess/clock.h"
 #include "mbk/preprocess/filters.h"
 #include "mbk/preprocess/joint_signals.h"
+#include "mbk/preprocess/joint_smoothing.h"
 #include "mbk/preprocess/windows.h"
 
 namespace mbk::preprocess {
@@ -29,69 +29,6 @@ robot::JointVector joints_at(const robot::Mechanism& mechanism, const robot::Joi
     q += inverse->transpose() * (hand - mechanism.hand_position(q));
   }
   return q;
-}
-
-/// Standard deviation of the white noise of positions, the noisiest joint's: by sixth differences, to which a motion of
-/// a few hertz gives nothing.
-double position_noise(const Matrix& position, const std::vector<Cut>& cuts) {
-  constexpr std::array kWeights = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
-  constexpr double kSquares = 924.0;  // of the weights
-  Vector sum = Vector::Zero(position.cols());
-  Index count = 0;
-  for (const Cut& cut : cuts) {
-    const Index rows = cut.end - cut.begin - static_cast<Index>(kWeights.size()) + 1;
-    if (rows < 1) continue;
-    Matrix difference = Matrix::Zero(rows, position.cols());
-    for (std::size_t k = 0; k < kWeights.size(); ++k) {
-      difference += kWeights[k] * position.middleRows(cut.begin + static_cast<Index>(k), rows);
-    }
-    sum += difference.colwise().squaredNorm().transpose();
-    count += rows;
-  }
-  return count == 0 ? 0.0 : std::sqrt(sum.maxCoeff() / (kSquares * static_cast<double>(count)));
-}
-
-/// Root mean square of the velocity of the slowest joint that moves at all, by differences over the window.
-double usual_velocity(const Matrix& position, const std::vector<Cut>& cuts, const dsp::SavitzkyGolay& plan,
-                      Hertz rate) {
-  const Index reach = 2 * plan.half_window();
-  Vector squares = Vector::Zero(position.cols());
-  Index count = 0;
-  for (const Cut& cut : cuts) {
-    const Index rows = cut.end - cut.begin - reach;
-    if (rows < 1) continue;
-    squares += (position.middleRows(cut.begin + reach, rows) - position.middleRows(cut.begin, rows))
-                   .colwise()
-                   .squaredNorm()
-                   .transpose();
-    count += rows;
-  }
-  double slowest = 0.0;
-  for (const double sum : squares) {
-    if (sum > 0.0 && (slowest == 0.0 || sum < slowest)) slowest = sum;
-  }
-  return std::sqrt(slowest / static_cast<double>(std::max<Index>(count, 1))) * rate.value / static_cast<double>(reach);
-}
-
-/// The shortest window, no longer than that of `plan`, whose velocity has no more noise than a share of the velocity
-/// over which dry friction changes its sign. A longer one rounds off the velocity where a joint turns back, and the
-/// friction of that is not the friction that acted; all other noise the low-pass takes, on both sides alike.
-Result<int> window_for_dry_friction(const dsp::SavitzkyGolay& plan, double noise, double smoothing, Hertz rate) {
-  constexpr double kShare = 0.05;
-  const double most = kShare * smoothing / (rate.value * noise);  // of the weights' length
-  int shortest = (plan.order + 3) | 1, longest = plan.window;
-  while (shortest < longest) {
-    const int middle = (shortest + (longest - shortest) / 2) | 1;
-    const int tried = middle < longest ? middle : shortest;
-    const auto weights = dsp::savitzky_golay_weights({plan.order, tried}, 1);
-    if (!weights) return tl::unexpected(weights.error());
-    if (weights->norm() <= most) {
-      longest = tried;
-    } else {
-      shortest = tried + 2;
-    }
-  }
-  return longest;
 }
 
 /// One cut after another, filtered and thinned.
@@ -192,6 +129,19 @@ class Maker {
   dsp::SectionCascade lowpass_;
 };
 
+/// Dry friction that holds a joint takes any value: what its motor does says nothing.
+void leave_out_held_joints(PreparedDynamics& made) {
+  for (std::size_t joint = 0; joint < made.stands.size(); ++joint) {
+    if (!made.stands[joint]) continue;
+    made.torque.col(static_cast<Index>(joint)).setZero();
+    made.torque_rate.col(static_cast<Index>(joint)).setZero();
+    for (auto* const part : {&made.regressors, &made.instruments, &made.smoothed}) {
+      if (!part->empty()) (*part)[joint].setZero();
+    }
+    made.notes.push_back(fmt::format("joint {} stands still, held by friction: its torque does not count", joint + 1));
+  }
+}
+
 }  // namespace
 
 Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Inspection& inspection,
@@ -226,16 +176,10 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   Index shortest = recording.samples();
   for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
   FilterPlan filters = improved_filters(options.signals, *band, rate, shortest);
-  const bool dry = model.drive.coulomb || model.drive.stribeck;
-  if (dry && filters.cutoff && !options.signals.smoothing_window) {
-    const double noise = position_noise(signals->position, plan->cuts);
-    // A sign that changes at once stands for one that changes within a twentieth of the usual velocity.
-    const double turn = model.drive.smoothing > 0.0
-                            ? model.drive.smoothing
-                            : 0.05 * usual_velocity(signals->position, plan->cuts, filters.smoothing, rate);
-    const auto window = window_for_dry_friction(filters.smoothing, noise, turn, rate);
-    if (!window) return tl::unexpected(window.error());
-    filters.smoothing.window = *window;
+  if (filters.cutoff && !options.signals.smoothing_window) {
+    const auto smoothing = smoothing_of_joints(filters.smoothing, signals->position, plan->cuts, model.drive, rate);
+    if (!smoothing) return tl::unexpected(smoothing.error());
+    filters.smoothing = *smoothing;
   }
 
   if (options.instruments) {
@@ -278,13 +222,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
     const Index rows = pieces[k].rows(), first = cut.begin + lost;
     all.middleRows(row, rows) = pieces[k];
     made.time.segment(row, rows) = recording.time(Eigen::seqN(first, rows, every)).array() - recording.time[0];
-    for (const Stretch& keep : cut.keep) {
-      const auto row_at = [&](Index sample) {
-        return std::clamp<Index>((sample - first + every - 1) / every, 0, rows);
-      };
-      const Index begin = row_at(keep.begin), end = row_at(keep.end);
-      if (begin < end) made.stretches.push_back({row + begin, row + end, keep.purpose, first + begin * every});
-    }
+    append_stretches(cut, first, every, row, rows, made.stretches);
     row += rows;
   }
   if (made.stretches.empty()) return bad_data("no sample is left after filtering", "record longer");
@@ -297,6 +235,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
     made.instruments.emplace_back(all.middleCols(2 * n + (n + joint) * p, p));
     made.smoothed.emplace_back(all.middleCols(2 * n + (2 * n + joint) * p, p));
   }
+  if (model.drive.coulomb || model.drive.stribeck) leave_out_held_joints(made);
 
   Preparation& how = made.preparation;
   how.protocol_rule = "a robot by itself";

@@ -22,7 +22,8 @@ struct DynamicsOptions {
 /// friction makes of a reversal loses to the filter on both sides alike (Gautier 1997). So the smoothing before it is
 /// short where there is dry friction: just long enough that the velocity has less noise than a twentieth of the
 /// velocity over which friction changes its sign. A joint that stands still has neither velocity nor acceleration,
-/// whatever its encoder flickers.
+/// whatever its encoder flickers; where the model has dry friction, which holds it, its rows are zero, so that they
+/// count for nothing.
 /// @param model  its bodies, drives and delay; the parameters do not matter
 /// @fails  as prepare; data: a joint beyond its limits, with the time; no torque.
 [[nodiscard]] Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Inspection& inspection,

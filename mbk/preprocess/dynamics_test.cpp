@@ -71,5 +71,19 @@ TEST(PrepareDynamics, LeavesAWindowThatWasChosen) {
   EXPECT_EQ(window_of(kFine, {}, options), 77);
 }
 
+TEST(PrepareDynamics, LeavesOutTheTorqueOfAJointThatFrictionHolds) {
+  Recording recording = swing_recording(kFine);
+  testing_support::values_of(recording, "joint_2").setConstant(0.9);
+  const auto prepared = [&](const robot::DriveTerms& drive) {
+    return prepare_dynamics(recording, testing_support::facts_of(recording), planar_model(drive), {}).value();
+  };
+  const PreparedDynamics held = prepared({}), loose = prepared({.coulomb = false});
+  EXPECT_TRUE(held.torque.col(1).isZero(0.0) && held.regressors[1].isZero(0.0));
+  EXPECT_FALSE(held.torque.col(0).isZero(0.0) || held.regressors[0].isZero(0.0));
+  EXPECT_EQ(held.notes.back(), "joint 2 stands still, held by friction: its torque does not count");
+  EXPECT_FALSE(loose.torque.col(1).isZero(0.0) || loose.regressors[1].isZero(0.0));
+  EXPECT_TRUE(loose.notes.empty());
+}
+
 }  // namespace
 }  // namespace mbk::preprocess

@@ -34,6 +34,16 @@ FilterPlan with_choices(FilterPlan plan, const Options& options) {
   return plan;
 }
 
+Result<dsp::FilterChain> chain_of(const FilterPlan& filters, const dsp::Padding& padding, Hertz rate) {
+  dsp::FilterChain chain{filters.smoothing, {}, padding};
+  if (filters.cutoff) {
+    auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, *filters.cutoff, rate);
+    if (!lowpass) return tl::unexpected(lowpass.error());
+    chain.lowpass = std::move(*lowpass);
+  }
+  return chain;
+}
+
 }  // namespace
 
 FilterPlan reference_filters(const Options& options) {
@@ -77,12 +87,8 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
                                 filters.cutoff ? fmt::format(" and a padding of {}", padding.samples) : ""),
                     "record longer, or choose a smaller --sg-window or --padding");
   }
-  dsp::FilterChain chain{filters.smoothing, {}, padding};
-  if (filters.cutoff) {
-    auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, *filters.cutoff, rate);
-    if (!lowpass) return tl::unexpected(lowpass.error());
-    chain.lowpass = std::move(*lowpass);
-  }
+  const auto chain = chain_of(filters, padding, rate);
+  if (!chain) return tl::unexpected(chain.error());
   std::vector<dsp::Column> columns;
   std::vector<const Matrix*> quantities = {&signals.position, &signals.force_hand_on_robot, &signals.acceleration};
   if (with_reference) quantities.push_back(&signals.reference);
@@ -109,7 +115,20 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   }
   const Index computed = signals.force_sensitivity.cols();
   for (Index k = 0; k < computed; ++k) wanted.push_back({static_cast<Index>(columns.size()) - computed + k, 0});
-  return dsp::smooth_then_lowpass(chain, columns, wanted, rate, filters.every);
+  return dsp::smooth_then_lowpass(*chain, columns, wanted, rate, filters.every);
+}
+
+Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,
+                             const dsp::Padding& padding) {
+  const auto chain = chain_of(filters, padding, rate);
+  if (!chain) return tl::unexpected(chain.error());
+  std::vector<dsp::Column> columns;
+  std::vector<dsp::Wanted> wanted;
+  for (Index k = 0; k < signals.cols(); ++k) {
+    columns.emplace_back(signals.col(k).data(), signals.rows());
+    wanted.push_back({k, 0});
+  }
+  return dsp::smooth_then_lowpass(*chain, columns, wanted, rate);
 }
 
 }  // namespace mbk::preprocess

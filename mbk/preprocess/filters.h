@@ -38,4 +38,9 @@ struct FilterPlan {
 [[nodiscard]] Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,
                                         Hertz rate, const dsp::Padding& padding, bool with_reference);
 
+/// Signals through both filters, sample by sample, without their derivatives: row i belongs to sample half window + i.
+/// @fails  as filter_cut
+[[nodiscard]] Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,
+                                           const dsp::Padding& padding);
+
 }  // namespace mbk::preprocess

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -141,8 +142,27 @@ Result<void> check_joint_signals(const JointSignals& signals, const robot::Mecha
   return {};
 }
 
+Vector position_noise(const Matrix& position, const std::vector<Cut>& cuts) {
+  constexpr std::array kWeights = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
+  constexpr double kSquares = 924.0;  // of the weights
+  Vector sum = Vector::Zero(position.cols());
+  Index count = 0;
+  for (const Cut& cut : cuts) {
+    const Index rows = cut.end - cut.begin - static_cast<Index>(kWeights.size()) + 1;
+    if (rows < 1) continue;
+    Matrix difference = Matrix::Zero(rows, position.cols());
+    for (std::size_t k = 0; k < kWeights.size(); ++k) {
+      difference += kWeights[k] * position.middleRows(cut.begin + static_cast<Index>(k), rows);
+    }
+    sum += difference.colwise().squaredNorm().transpose();
+    count += rows;
+  }
+  return (sum / (kSquares * static_cast<double>(std::max<Index>(count, 1)))).cwiseSqrt();
+}
+
 std::vector<bool> standing_joints(const JointSignals& signals, const WindowPlan& plan) {
   constexpr double kStepsEnough = 20.0;
+  const Vector noise = position_noise(signals.position, plan.cuts);
   std::vector<bool> stands;
   for (Index joint = 0; joint < signals.position.cols(); ++joint) {
     double step = std::numeric_limits<double>::infinity(), motion = 0.0;
@@ -154,7 +174,7 @@ std::vector<bool> standing_joints(const JointSignals& signals, const WindowPlan&
         if (change > 0.0) step = std::min(step, change);
       }
     }
-    stands.push_back(motion < kStepsEnough * step);
+    stands.push_back(motion < kStepsEnough * std::max(step, std::sqrt(12.0) * noise[joint]));
   }
   return stands;
 }

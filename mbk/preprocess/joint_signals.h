@@ -30,7 +30,13 @@ struct JointSignals {
 [[nodiscard]] Result<void> check_joint_signals(const JointSignals& signals, const robot::Mechanism& mechanism,
                                                const Clock& clock, const WindowPlan& plan);
 
-/// Which joints stand still: they move by less than twenty steps of their encoder (standard deviation).
+/// Standard deviation of the white noise of each joint's position: by sixth differences, to which a motion of a few
+/// hertz gives nothing.
+[[nodiscard]] Vector position_noise(const Matrix& position, const std::vector<Cut>& cuts);
+
+/// Which joints stand still: they move by less than twenty steps of their encoder (standard deviation). A step is the
+/// smallest change, or √12 times the white noise where that is more: samples that were put on another clock have
+/// smaller ones.
 [[nodiscard]] std::vector<bool> standing_joints(const JointSignals& signals, const WindowPlan& plan);
 
 /// A cut of them through the smoothing filter alone: row i belongs to sample cut.begin + half window + i.

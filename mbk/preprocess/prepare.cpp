@@ -121,13 +121,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
       trial.force_sensitivity.middleRows(row, rows) = piece.rightCols(trial.force_sensitivity.cols());
     }
     if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference(kept, Eigen::all);
-    for (const Stretch& keep : cut.keep) {
-      const auto row_at = [&](Index sample) {
-        return std::clamp<Index>((sample - first + every - 1) / every, 0, rows);
-      };
-      const Index begin = row_at(keep.begin), end = row_at(keep.end);
-      if (begin < end) trial.stretches.push_back({row + begin, row + end, keep.purpose, first + begin * every});
-    }
+    append_stretches(cut, first, every, row, rows, trial.stretches);
     row += rows;
   }
   if (trial.stretches.empty()) return bad_data("no sample is left after filtering", "record longer");

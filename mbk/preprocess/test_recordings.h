@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,13 @@ inline Vector& values_of(Recording& recording, const std::string& name) {
     if (channel.name == name) return channel.values;
   }
   return recording.time;
+}
+
+/// About a standard normal number, the same on every platform: the sum of twelve uniform ones.
+inline double normal(std::mt19937& random) {
+  double sum = -6.0;
+  for (int k = 0; k < 12; ++k) sum += static_cast<double>(random()) / 4294967296.0;
+  return sum;
 }
 
 /// What `prepare` reads of an inspection, counted plainly.

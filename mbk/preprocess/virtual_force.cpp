@@ -12,6 +12,7 @@
 #include "mbk/preprocess/clock.h"
 #include "mbk/preprocess/filters.h"
 #include "mbk/preprocess/joint_signals.h"
+#include "mbk/preprocess/joint_smoothing.h"
 #include "mbk/preprocess/signals.h"
 #include "mbk/preprocess/windows.h"
 #include "mbk/robot/observed_force.h"
@@ -66,11 +67,6 @@ void put(Recording& recording, const std::string& name, const char* unit, const 
 
 }  // namespace
 
-Result<Matrix> VirtualForce::smoothed(const Matrix& force, Hertz rate) const {
-  const Index half = smoothing.half_window();
-  return dsp::savitzky_golay(smoothing, 0, force.middleRows(first - half, last - first + 2 * half), rate);
-}
-
 Result<VirtualForce> virtual_force(const Recording& recording, const Inspection& inspection,
                                    const robot::DynamicModel& model, const Options& options) {
   if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
@@ -105,14 +101,20 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
     if (!band) return tl::unexpected(band.error());
     filters = improved_filters(options, *band, rate, cut.end - cut.begin);
   }
-  const auto joints = smooth_joints(*signals, mechanism, cut, filters.smoothing, rate, model.delay);
+  dsp::SavitzkyGolay smoothing = filters.smoothing;
+  if (filters.cutoff && !published && !options.smoothing_window) {
+    const auto shorter = smoothing_of_joints(filters.smoothing, signals->position, plan->cuts, model.drive, rate);
+    if (!shorter) return tl::unexpected(shorter.error());
+    smoothing = *shorter;
+  }
+  const auto joints = smooth_joints(*signals, mechanism, cut, smoothing, rate, model.delay);
   if (!joints) return tl::unexpected(joints.error());
 
   VirtualForce made;
-  made.first = cut.begin + filters.smoothing.half_window();
+  made.first = cut.begin + smoothing.half_window();
   const Index rows = joints->torque.rows();
   made.last = made.first + rows;
-  made.smoothing = filters.smoothing;
+  made.filters = filters;
   const bool observed = options.force_source == ForceSource::observer;
   const bool sure = observed || model.covariance.size() == 0 || model.covariance.isZero(0.0);
   const std::vector<Matrix> W = model.regressors(joints->motion);
@@ -141,7 +143,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
                                              signals->torque.middleRows(cut.begin, length), {}, 1.0 / rate.value);
     if (!forces) return tl::unexpected(forces.error());
     made.lag = forces->lag;
-    force = forces->force_hand_on_robot.middleRows(filters.smoothing.half_window(), rows);
+    force = forces->force_hand_on_robot.middleRows(smoothing.half_window(), rows);
   }
   if (auto ok = check_torque_unit(force, joints->torque, of_model, mechanism.slides(0)); !ok) {
     return tl::unexpected(ok.error());

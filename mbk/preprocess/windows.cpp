@@ -209,4 +209,16 @@ Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, 
   return plan;
 }
 
+void append_stretches(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,
+                      std::vector<Stretch>& stretches) {
+  const auto row_at = [&](Index sample) {
+    return std::clamp<Index>((sample - first_sample + every - 1) / every, 0, rows);
+  };
+  for (const Stretch& keep : cut.keep) {
+    const Index begin = row_at(keep.begin), end = row_at(keep.end);
+    if (begin >= end) continue;
+    stretches.push_back({first_row + begin, first_row + end, keep.purpose, first_sample + begin * every});
+  }
+}
+
 }  // namespace mbk::preprocess

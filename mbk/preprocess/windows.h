@@ -55,4 +55,10 @@ struct ProtocolFinding {
 [[nodiscard]] Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
                                                   const WindowLimits& limits);
 
+/// The stretches of a cut as rows of what was made of it, behind those that are there.
+/// @param first_sample  that the first of its rows belongs to   @param every  samples between rows
+/// @param rows  of the cut, beginning at `first_row`
+void append_stretches(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,
+                      std::vector<Stretch>& stretches);
+
 }  // namespace mbk::preprocess

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "mbk/numeric/statistics.h"
@@ -36,6 +37,10 @@ std::string instruments_text(const RobotIdentification& found) {
       break;
   }
   return "none";
+}
+
+std::string percent(double vaf) {
+  return std::isfinite(vaf) ? fmt::format("{:.2f}", vaf) : "–";
 }
 
 std::string how_found(const RobotIdentification& found) {
@@ -95,10 +100,10 @@ std::string robot_text(const RobotIdentification& found) {
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     const TorqueFit& fit = found.fit[joint];
     const char* unit = found.model.mechanism->slides(static_cast<int>(joint)) ? "N" : "N·m";
-    rows.push_back({fmt::format("torque of joint {}", joint + 1), fmt::format("{:.2f}", fit.vaf),
-                    fmt::format("{:.3g} {}", fit.rmse, unit), fmt::format("{:.2f}", fit.vaf_in_sample),
+    rows.push_back({fmt::format("torque of joint {}", joint + 1), percent(fit.vaf),
+                    fmt::format("{:.3g} {}", fit.rmse, unit), percent(fit.vaf_in_sample),
                     fmt::format("{:.3g} {}", fit.rmse_in_sample, unit)});
-    if (fit.vaf_smoothed) rows.back().push_back(fmt::format("{:.2f}", *fit.vaf_smoothed));
+    if (fit.vaf_smoothed) rows.back().push_back(percent(*fit.vaf_smoothed));
   }
   text += "\n" + table(rows);
   if (found.inertia.smallest > 0.0) {

@@ -60,6 +60,11 @@ std::string how_made(const Identification& id) {
   rows.push_back({"protocol", fmt::format("{} ({})", text(how.protocol), how.protocol_rule)});
   rows.push_back({"window", how.window_rule});
   rows.push_back({"filters", filters_text(how)});
+  if (how.force_source != ForceSource::sensor) {
+    rows.push_back({"force", how.force_source == ForceSource::observer
+                                 ? "by a momentum observer, from motion, torques and a model of the robot"
+                                 : "from motion, torques and a model of the robot (virtual sensor)"});
+  }
   rows.push_back(
       {"acceleration", how.acceleration_from_sensor ? "from the accelerometer" : "second derivative of position"});
   std::string data = fmt::format("{:.1f} s", id.excitation.duration);

@@ -287,5 +287,24 @@ TEST(ValidationText, NotesAndChartsFollowTheTable) {
   EXPECT_LT(text.find("The springs are those"), text.find("Springs, found and made"));
 }
 
+TEST(BySensorText, HasTheSensorsModelAndWhatTheComputedForceMakesOfIt) {
+  Identification computed = identification(1), sensed = identification(1);
+  computed.preparations[0].force_source = ForceSource::observer;
+  computed.model.K(0, 0) = 123.5;  // of 120
+  const ForceAgreement none{0, Vector::Zero(1), Vector::Zero(1)};
+  ForceComparison comparison{.all = none, .reversals = none, .rest = none, .motion = none};
+  for (Vector* part : {&comparison.measured_rms, &comparison.vaf, &comparison.correlation, &comparison.gain,
+                       &comparison.lag, &comparison.correlation_at_lag}) {
+    *part = Vector::Ones(1);
+  }
+  const std::string text = by_sensor_text(computed, sensed, comparison);
+  EXPECT_THAT(text, HasSubstr("momentum observer against force sensor"));
+  const std::size_t by_sensor = text.find("by the force sensor"),
+                    less = text.find("the computed force less the sensor");
+  ASSERT_NE(less, std::string::npos);
+  EXPECT_THAT(line_with(text.substr(by_sensor), "stiffness K"), HasSubstr("120"));
+  EXPECT_THAT(line_with(text.substr(less), "stiffness K"), HasSubstr("3.5"));
+}
+
 }  // namespace
 }  // namespace mbk::report

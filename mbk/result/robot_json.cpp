@@ -5,6 +5,7 @@
 #include "mbk/result/force_comparison_json.h"
 #include "mbk/result/json_parts.h"
 #include "mbk/result/json_reading.h"
+#include "mbk/robot/drive_term_names.h"
 
 namespace mbk::result {
 namespace {
@@ -25,22 +26,10 @@ const char* text(InstrumentMotion motion) {
   return "none";
 }
 
-/// The terms of the drives by their names, in the order in which they stand for each joint.
-struct TermFlag {
-  const char* name;
-  bool robot::DriveTerms::*flag;
-};
-constexpr TermFlag kTerms[] = {{"motor_inertia", &robot::DriveTerms::motor_inertia},
-                               {"viscous", &robot::DriveTerms::viscous},
-                               {"coulomb", &robot::DriveTerms::coulomb},
-                               {"stribeck", &robot::DriveTerms::stribeck},
-                               {"cable", &robot::DriveTerms::cable},
-                               {"offset", &robot::DriveTerms::offset}};
-
 Json drive_json(const robot::DriveTerms& drive) {
   Json json = {{"terms", Json::array()}, {"smoothing", drive.smoothing}};
-  for (const TermFlag& term : kTerms) {
-    if (drive.*term.flag) json["terms"].push_back(term.name);
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) {
+    if (drive.*term.wanted) json["terms"].push_back(term.word);
   }
   if (drive.stribeck) json["stribeck_velocity"] = drive.stribeck_velocity;
   return json;
@@ -48,20 +37,29 @@ Json drive_json(const robot::DriveTerms& drive) {
 
 robot::DriveTerms drive_from(const Json& json) {
   robot::DriveTerms drive;
-  for (const TermFlag& term : kTerms) drive.*term.flag = false;
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.wanted = false;
   for (const Json& name : json.at("terms")) {
     bool known = false;
-    for (const TermFlag& term : kTerms) {
-      if (name != term.name) continue;
-      drive.*term.flag = known = true;
+    for (const robot::DriveTermName& term : robot::kDriveTermNames) {
+      if (name != term.word) continue;
+      drive.*term.wanted = known = true;
     }
-    if (!known) throw Malformed{fmt::format("there is no term '{}'", name.dump())};
+    if (!known) throw Malformed{fmt::format("there is no term {}", name.dump())};
   }
   drive.smoothing = json.value("smoothing", drive.smoothing);
   drive.stribeck_velocity = json.value("stribeck_velocity", drive.stribeck_velocity);
   if (!(drive.smoothing >= 0.0) || !(drive.stribeck_velocity > 0.0))
     throw Malformed{"a velocity of friction is negative"};
   return drive;
+}
+
+/// Finite, symmetric and without a negative variance or a correlation above 1, but for rounding.
+bool is_covariance(const Matrix& V) {
+  constexpr double kRounding = 1e-9;
+  if (!V.allFinite() || !(V.diagonal().array() >= 0.0).all()) return false;
+  const Vector sigma = V.diagonal().cwiseSqrt();
+  const Eigen::ArrayXXd largest = (1.0 + kRounding) * (sigma * sigma.transpose()).array();
+  return (V.array().abs() <= largest).all() && ((V - V.transpose()).array().abs() <= kRounding * largest).all();
 }
 
 StoredRobot stored_from(const Json& json) {
@@ -80,9 +78,9 @@ StoredRobot stored_from(const Json& json) {
   }
   if (!stored.parameters.allFinite()) throw Malformed{"a parameter is not a number"};
   stored.covariance = matrix_from(json, "covariance", count, count);
-  if (!stored.covariance.allFinite()) throw Malformed{"the covariance is not finite"};
+  if (!is_covariance(stored.covariance)) throw Malformed{"'covariance' is not that of any numbers"};
   stored.delay = number_from(json.at("motor_delay_s"));
-  if (!std::isfinite(stored.delay)) throw Malformed{"the motor delay is not a number"};
+  if (!(std::abs(stored.delay) < 1.0)) throw Malformed{"the motor delay is not a number of seconds below 1"};
   return stored;
 }
 

@@ -37,6 +37,7 @@ class ThreePointMasses : public Mechanism {
   [[nodiscard]] int joints() const override { return 3; }
   [[nodiscard]] bool slides(int /*joint*/) const override { return false; }
   [[nodiscard]] int hand_axes() const override { return 2; }
+  [[nodiscard]] JointRange joint_range(int /*joint*/) const override { return {-3.0, 3.0}; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
 
   /// Of mass k: J_kᵀ (J_k q̈ + J̇_k q̇ + [0, g]).

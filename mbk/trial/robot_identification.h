@@ -41,7 +41,7 @@ struct RobotCoefficient {
   std::string together_with;
 };
 
-/// How well the torque of one joint is explained.
+/// How well the torque of one joint is explained; NaN where no torque of it counts.
 struct TorqueFit {
   double vaf = 0, rmse = 0;                      ///< [%], [N·m or N]; held back where anything was
   double vaf_in_sample = 0, rmse_in_sample = 0;  ///< on the data behind the coefficients

@@ -23,6 +23,7 @@ TYPED = {  # what has been typed → what is offered
     ("measure", "--cutoff", ""): ["none"],
     ("springs", ""): ["calibrate", "field", "find"],
     ("springs", "field", "--sp"): ["--spring"],
+    ("teleop", "--op"): ["--operator"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
     ("validate", ""): ["closed-loop", "coverage", "participant", "recovery", "robot", "springs",
                        "transfer-function", "virtual-sensor"],

@@ -10,7 +10,7 @@ from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, mak
                      write_csv)
 
 COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
-            "completion", "manual", "passivity")
+            "completion", "manual", "passivity", "teleop")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
                "robot": ("workspace", "describe", "identify", "force")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
@@ -35,7 +35,7 @@ NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
 WORDS = {"--mode": "default|reference", "--procedure": "chapter3|chapter5",
          "--protocol": "auto|sinusoidal|underdamped|free", "--method": "ls|iv", "--extension": "odd|even|constant",
          "--acceleration": "sensor|derivative", "--structure": "full|symmetric|mass-spring",
-         "--parameters-from": "identification|all"}
+         "--parameters-from": "identification|all", "--force-source": "sensor|virtual|observer"}
 
 
 class Values(Case):
@@ -148,7 +148,8 @@ class Effects(Case):
         options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
         elsewhere = {"--help", "--channels", "--variable", "--parts", "--json", "--out", "--overwrite", "--quiet",
                      "--pool", "--decimate-check", "--report", "--report-note",
-                     "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay"}  # sensor_test.py
+                     "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay",  # sensor_test.py
+                     "--robot"}  # robot_force_test.py
         self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
 
     def test_mode_and_procedure(self):

@@ -46,6 +46,7 @@ export interface Preparation {
   cutoff_hz: Value;
   cutoff_rule: string;
   excited_band_hz: [Value, Value];
+  force_source?: string;
   acceleration: string;
   cut_before_filter: boolean;
 }

@@ -107,6 +107,14 @@ function preparationFacts(trial: Trial): HTMLElement[] {
         ["Smoothing", `Savitzky–Golay, order ${how.savitzky_golay.order}, window ${how.savitzky_golay.window} samples`],
         ["Low-pass", how.cutoff_hz === null ? "none" : `zero-phase Butterworth of order 5, ${plain(how.cutoff_hz, 4)} Hz: ${how.cutoff_rule}`],
         ["Excited band", `${plain(how.excited_band_hz[0], 3)} to ${plain(how.excited_band_hz[1], 3)} Hz`],
+        [
+          "Force",
+          how.force_source === "virtual"
+            ? "not measured: from motion, motor torques and a model of the robot"
+            : how.force_source === "observer"
+              ? "not measured: by a momentum observer, from motion, motor torques and a model of the robot"
+              : "from the force sensor",
+        ],
         ["Acceleration", how.acceleration === "sensor" ? "from the accelerometer" : "second derivative of the position"],
         ["Order", how.cut_before_filter ? "cut into windows, then filtered" : "filtered, then cut into windows"],
       ])));

@@ -66,6 +66,10 @@ export const plainWarnings: Record<string, { title: string; meaning: string }> =
     title: "The result depends on the sample rate",
     meaning: "There is something fast in the signals that does not belong to the limb.",
   },
+  "torque-unit": {
+    title: "The torques are probably in another unit",
+    meaning: "As they are read, the robot would be a thousand times too heavy or too light.",
+  },
 };
 
 /** The verdict of passivity: a sign and a word, so that nothing hangs on colour, and what it means. */

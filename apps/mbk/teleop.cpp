@@ -1,0 +1,118 @@
+#include <array>
+#include <filesystem>
+#include <memory>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
+#include "mbk/report/chart.h"
+#include "mbk/report/teleoperation_text.h"
+#include "mbk/result/teleoperation_json.h"
+#include "mbk/teleop/judge.h"
+
+namespace mbk::app {
+namespace {
+
+struct Arguments {
+  std::filesystem::path design;
+  std::filesystem::path operator_result;
+  std::string parameter;
+  std::filesystem::path charts;
+  bool json = false;
+  Output output;
+};
+
+constexpr std::array kChartNames = {"r11", "r22", "third"};
+
+std::filesystem::path chart_file(const Arguments& arguments, std::size_t chart) {
+  return arguments.charts.string() + "_" + kChartNames[chart] + ".svg";
+}
+
+Result<void> check(const Arguments& arguments) {
+  std::vector<std::filesystem::path> inputs = {arguments.design};
+  if (!arguments.operator_result.empty()) inputs.push_back(arguments.operator_result);
+  if (arguments.output.overwrite && !arguments.output.file && arguments.charts.empty()) {
+    return bad_usage("--overwrite requires --out or --charts", "name a file to write");
+  }
+  if (auto ok = arguments.output.check(inputs); !ok) return ok;
+  if (arguments.charts.empty()) return {};
+  for (std::size_t i = 0; i < kChartNames.size(); ++i) {
+    if (auto ok = check_new_file(chart_file(arguments, i), "--charts", arguments.output.overwrite, inputs); !ok)
+      return ok;
+  }
+  return {};
+}
+
+Result<TeleoperationFinding> find(const Arguments& arguments) {
+  teleop::Question question;
+  if (!arguments.parameter.empty()) {
+    auto sweep = teleop::parse_sweep(arguments.parameter);
+    if (!sweep) return tl::unexpected(sweep.error());
+    question.sweep = std::move(*sweep);
+  }
+  if (!arguments.operator_result.empty()) {
+    const auto text = read_text(arguments.operator_result);
+    if (!text) return tl::unexpected(text.error());
+    auto shortage = result::operator_shortage_from_json(*text);
+    if (!shortage) return tl::unexpected(shortage.error().in(arguments.operator_result.string()));
+    shortage->rule = arguments.operator_result.string() + ": " + shortage->rule;
+    question.operator_shortage = std::move(*shortage);
+  }
+  const auto design = teleop::read_design(arguments.design);
+  if (!design) return tl::unexpected(design.error());
+  return teleop::judge(*design, question);
+}
+
+int run(const Arguments& arguments) {
+  if (auto ok = check(arguments); !ok) return report_error(ok.error());
+  const auto finding = find(arguments);
+  if (!finding) return report_error(finding.error());
+  std::string shown = arguments.json ? result::to_json(*finding) : report::teleoperation_text(*finding);
+  if (!arguments.json) {
+    for (const Chart& chart : finding->charts) shown += "\n" + report::chart_text(chart);
+  }
+  for (std::size_t i = 0; i < finding->charts.size() && !arguments.charts.empty(); ++i) {
+    const Output file{chart_file(arguments, i), arguments.output.overwrite};
+    if (auto ok = file.write(report::chart_svg(finding->charts[i])); !ok) return report_error(ok.error());
+  }
+  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_teleop(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
+  command->footer(
+      "Examples:\n"
+      "  mbk teleop design.toml\n"
+      "      Llewellyn's conditions, where they are violated, and how much an operator may lack\n"
+      "  mbk teleop design.toml --operator result.json\n"
+      "      the modified criterion, with the excess of passivity that 'mbk measure --json' found\n"
+      "  mbk teleop design.toml --parameter slave.k=0:1000\n"
+      "      every value of the slave's stiffness in N/m that is stable, as intervals\n\n"
+      "Complete designs stand in examples/teleop; docs/guide/teleoperation.md has every key.");
+  command->add_option("DESIGN.toml", arguments->design, "an [architecture] or a [two_port]")->required();
+  command
+      ->add_option("--operator", arguments->operator_result,
+                   "result of the operator's arm: a is minus the lower bound of its excess of passivity")
+      ->type_name("RESULT.json")
+      ->check(not_empty());
+  command
+      ->add_option("--parameter", arguments->parameter,
+                   "find all values of one parameter, in SI units, that are stable, as in slave.k=0:1000")
+      ->type_name("NAME=LOW:HIGH")
+      ->check(not_empty());
+  command->add_option("--charts", arguments->charts, "also write the charts: PREFIX_r11.svg, _r22.svg, _third.svg")
+      ->type_name("PREFIX")
+      ->check(not_empty());
+  command->add_flag("--json", arguments->json, "for machines: schema mbk.teleop/1");
+  arguments->output.add_options(*command);
+  CLI::Option* const overwrite = command->get_option("--overwrite");
+  overwrite->remove_needs(command->get_option("--out"));
+  overwrite->description("replace the files of --out and --charts where they are there");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,165 @@
+#include "mbk/report/teleoperation_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "mbk/report/layout.h"
+
+namespace mbk::report {
+namespace {
+
+constexpr std::size_t kMostPlaces = 5;  // bands or frequencies that are named in one cell
+
+std::string value_text(double value) {
+  if (std::isinf(value)) return value > 0.0 ? "infinity" : "minus infinity";
+  return fmt::format("{:.7g}", value);
+}
+
+std::string in_hz(RadPerSec omega) {
+  return fmt::format("{:.4g} Hz", omega.value / (2.0 * std::numbers::pi));
+}
+
+std::string band_text(const ViolatedBand& band) {
+  if (band.low == band.high && !band.detail.empty()) return band.detail;
+  if (band.low == band.high) return fmt::format("at {} rad/s", value_text(band.low.value));
+  const std::string range = std::isinf(band.high.value) ? fmt::format("above {} rad/s", value_text(band.low.value))
+                                                        : fmt::format("from {} to {} rad/s", value_text(band.low.value),
+                                                                      value_text(band.high.value));
+  return fmt::format("{}, worst near {:.4g} rad/s ({})", range, band.worst.value, in_hz(band.worst));
+}
+
+std::string outcome_text(const StabilityOutcome& outcome) {
+  if (outcome.violated.empty()) return "holds";
+  std::vector<std::string> places;
+  for (const ViolatedBand& band : outcome.violated) {
+    if (places.size() == kMostPlaces) {
+      places.push_back(fmt::format("and {} more", outcome.violated.size() - kMostPlaces));
+      break;
+    }
+    places.push_back(band_text(band));
+  }
+  return fmt::format("VIOLATED {}", fmt::join(places, "; "));
+}
+
+std::string conditions_table(const AbsoluteStability& stability) {
+  std::vector<std::vector<std::string>> rows;
+  for (const StabilityOutcome& outcome : stability.conditions) {
+    rows.push_back({text(outcome.condition), outcome_text(outcome)});
+  }
+  return table(rows);
+}
+
+std::string verdict_line(const AbsoluteStability& stability, const char* where) {
+  switch (stability.verdict) {
+    case StabilityVerdict::stable:
+      return fmt::format("absolutely stable{}", where);
+    case StabilityVerdict::marginal:
+      return fmt::format("marginal{}: absolutely stable, with nothing to spare", where);
+    case StabilityVerdict::unstable:
+      break;
+  }
+  return fmt::format("NOT absolutely stable{}", where);
+}
+
+std::string touches_text(const AbsoluteStability& stability) {
+  if (stability.touches_everywhere) return "a condition holds with equality at every frequency";
+  std::vector<std::string> places;
+  for (const RadPerSec omega : stability.touches) places.push_back(value_text(omega.value));
+  if (places.size() > kMostPlaces) places.resize(kMostPlaces);
+  return fmt::format("a condition holds with equality at {} rad/s", fmt::join(places, ", "));
+}
+
+std::string meaning(const AbsoluteStability& stability) {
+  if (stability.verdict == StabilityVerdict::unstable) {
+    return "some passive hand and some passive environment make the whole oscillate or run away; near the worst "
+           "frequency is where to look";
+  }
+  std::string words = "no passive hand and no passive environment can make the whole unstable";
+  if (stability.verdict == StabilityVerdict::marginal) words += "; " + touches_text(stability);
+  return words;
+}
+
+std::string end_text(const AdmissibleEnd& end) {
+  return fmt::format("{:.10g}", end.value);
+}
+
+std::string interval_text(const AdmissibleInterval& interval) {
+  if (interval.low.value == interval.high.value) return "only " + end_text(interval.low);
+  const auto side = [](const AdmissibleEnd& end) {
+    if (end.limit_of_search) return " (the range ends there)";
+    if (!end.included) return " (itself not decided)";
+    return *end.included ? "" : " (not itself)";
+  };
+  return fmt::format("{}{} to {}{}", end_text(interval.low), side(interval.low), end_text(interval.high),
+                     side(interval.high));
+}
+
+std::string admissible_text(const AdmissibleSet& set, bool with_operator) {
+  std::string result = fmt::format("\n{} between {:g} and {:g}{}: ", set.parameter, set.low, set.high,
+                                   set.unit.empty() ? "" : " " + set.unit);
+  const char* const what = with_operator ? "stable with that operator" : "absolutely stable";
+  if (set.intervals.empty()) {
+    result += fmt::format("never {}\n", what);
+  } else {
+    result += fmt::format("{} for\n", what);
+    for (const AdmissibleInterval& interval : set.intervals) result += "  " + interval_text(interval) + "\n";
+  }
+  if (!set.undecided.empty()) {
+    std::vector<std::string> values;
+    for (const double value : set.undecided) values.push_back(fmt::format("{:.10g}", value));
+    result += paragraph("  ", fmt::format("not decided at the single values {}", fmt::join(values, ", ")));
+  }
+  return result + paragraph("  ",
+                            "all boundaries are roots of polynomials; between two of them every value has the same "
+                            "answer");
+}
+
+std::string shortage_text(const LargestShortage& largest, bool on_grid) {
+  if (!largest.exists) return fmt::format("port {}: none; no excess of passivity would be enough", largest.port);
+  return fmt::format("port {}: a ≤ {:.12g} N·s/m{}", largest.port, largest.value(), on_grid ? ", on the grid" : "");
+}
+
+}  // namespace
+
+std::string teleoperation_text(const TeleoperationFinding& finding) {
+  std::string result = finding.file + "\n";
+  result += paragraph("  ", finding.kind + (finding.name.empty() ? "" : ": " + finding.name));
+  if (!finding.matrix.empty()) result += "  port 1: the master and the hand; port 2: the slave and the environment\n";
+  for (const std::string& line : finding.matrix) result += "  " + line + "\n";
+  if (!finding.parameters.empty()) {
+    std::vector<std::vector<std::string>> rows;
+    for (const DesignParameter& p : finding.parameters) {
+      rows.push_back({p.name, fmt::format("{:g}", p.value), p.unit, p.meaning});
+    }
+    result += "\n" + table(rows);
+  }
+  const std::string where = finding.grid ? fmt::format(" on {} points from {:g} to {:g} rad/s", finding.grid->points,
+                                                       finding.grid->low.value, finding.grid->high.value)
+                                         : "";
+  result += fmt::format("\nLlewellyn's criterion (r = Re {0}, p = {0}12 {0}21): {1}\n", finding.stability.form,
+                        verdict_line(finding.stability, where.c_str()));
+  result += conditions_table(finding.stability);
+  result += paragraph("  meaning  ", meaning(finding.stability));
+  if (finding.with_operator) {
+    const double a = finding.operator_shortage->a;
+    result += fmt::format("\nWith the operator at port {}, Re z ≥ {:g} N·s/m, a = {:g} ({} of passivity): {}\n",
+                          finding.operator_port, 0.0 - a, a, a > 0.0 ? "shortage" : "excess",
+                          verdict_line(*finding.with_operator, where.c_str()));
+    result += conditions_table(*finding.with_operator);
+    result += paragraph("  operator  ", finding.operator_shortage->rule);
+  }
+  result += "\nHow much a termination may lack in passivity, the other one being passive:\n";
+  for (const LargestShortage& largest : finding.largest_shortages) {
+    result += paragraph("  ", shortage_text(largest, finding.grid.has_value()));
+  }
+  result += paragraph("  ", "a < 0 means that it must have that much excess (Re z ≥ −a at every frequency)");
+  if (finding.admissible) result += admissible_text(*finding.admissible, finding.with_operator.has_value());
+  if (!finding.notes.empty()) result += "\n";
+  for (const std::string& note : finding.notes) result += paragraph("  note  ", note);
+  return result;
+}
+
+}  // namespace mbk::report

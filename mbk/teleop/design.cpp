@@ -1,0 +1,147 @@
+#include "mbk/teleop/design.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "mbk/config/document.h"
+
+namespace mbk::teleop {
+namespace {
+
+using config::Document;
+using config::Section;
+
+/// The decimal that stands in the file, exactly. The document has refused what is not finite.
+Rational fraction(double value) {
+  return lti::exact(value).value();
+}
+
+config::Range allowed(std::string_view key) {
+  const bool never_negative = key.ends_with("_kg") || key.ends_with("_ms");
+  return never_negative ? config::at_least(0.0) : config::any();
+}
+
+Teleoperator read_teleoperator(const Document& document) {
+  using enum Architecture;
+  Teleoperator result;
+  result.architecture = document.root()
+                            .section("architecture")
+                            .required_choice<Architecture>("kind", {{text(position_position), position_position},
+                                                                    {text(position_force), position_force},
+                                                                    {text(three_channel), three_channel},
+                                                                    {text(four_channel), four_channel}});
+  for (const Parameter& parameter : all_parameters()) {
+    const Need needed = need(result.architecture, parameter.name);
+    if (needed == Need::none) continue;
+    const Section section = document.root().section(parameter.section);
+    const auto value = needed == Need::required
+                           ? std::optional(section.required_number(parameter.key, allowed(parameter.key)))
+                           : section.optional_number(parameter.key, allowed(parameter.key));
+    if (value) result.values.emplace(parameter.name, fraction(*value));
+  }
+  return result;
+}
+
+/// "numerator" or "denominator" of an entry: coefficients, that of the highest power of s first.
+Polynomial read_polynomial(const Section& entry, std::string_view key, std::vector<double> fallback) {
+  constexpr std::size_t kMost = 13;  // degree 12: two-ports beyond that take minutes
+  std::vector<double> coefficients = entry.numbers(key, std::move(fallback));
+  if (coefficients.empty()) {
+    entry.reject(key, "has no coefficients", "list them, that of the highest power of s first: [1, 0.5] is s + 0.5");
+  }
+  if (coefficients.size() > kMost) {
+    entry.reject(key, fmt::format("has {} coefficients, more than {}", coefficients.size(), kMost),
+                 "reduce the order of the model");
+    coefficients.clear();
+  }
+  std::vector<Rational> ascending;
+  for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c) ascending.push_back(fraction(*c));
+  return Polynomial(std::move(ascending));
+}
+
+TwoPort read_two_port(const Section& section) {
+  TwoPort result;
+  result.form = section.required_choice<Form>("form", {{"z", Form::z}, {"y", Form::y}, {"h", Form::h}, {"g", Form::g}});
+  for (const Index i : {0, 1}) {
+    for (const Index j : {0, 1}) {
+      const std::string name = fmt::format("{}{}{}", text(result.form), i + 1, j + 1);
+      const Section entry = section.section(name);
+      if (!section.has(name)) {
+        section.reject(name, "is missing", fmt::format("write {} = {{numerator = [1], denominator = [1, 0]}}", name));
+        continue;
+      }
+      const Polynomial numerator = read_polynomial(entry, "numerator", {});
+      const Polynomial denominator = read_polynomial(entry, "denominator", {1.0});
+      auto function = lti::RationalFunction::of(numerator, denominator);
+      if (function) {
+        result.matrix(i, j) = std::move(*function);
+      } else {
+        entry.reject("denominator", "is zero", "one of its coefficients must not be");
+      }
+    }
+  }
+  return result;
+}
+
+std::optional<FrequencyGrid> read_delay(const Section& section, Teleoperator& teleoperator) {
+  constexpr int kHighestOrder = 4, kFewest = 10, kMost = 1'000'000;
+  if (!section.flag("exact", false)) {
+    teleoperator.pade_order = section.integer("pade", teleoperator.pade_order, 1, kHighestOrder);
+    return std::nullopt;
+  }
+  FrequencyGrid grid;
+  grid.low = RadPerSec(section.required_number("grid_from_rad_per_s", config::above(0.0)));
+  grid.high = RadPerSec(section.required_number("grid_to_rad_per_s", config::above(0.0)));
+  grid.points = section.required_integer<int>("grid_points", kFewest, kMost);
+  if (!(grid.low < grid.high)) section.reject("grid_to_rad_per_s", "is not above grid_from_rad_per_s");
+  return grid;
+}
+
+Result<Design> design_of(const Document& document, std::string_view file) {
+  const Section root = document.root();
+  Design design;
+  design.file = file;
+  design.name = root.text("name", "");
+  const Section two_port = root.section("two_port");
+  if (two_port.given() && root.section("architecture").given()) {
+    return tl::unexpected(two_port.error("form", "there is an [architecture] too", "keep one of the two"));
+  }
+  if (!two_port.given() && !root.section("architecture").given()) {
+    return tl::unexpected(root.error("architecture", "is missing, and there is no [two_port] either",
+                                     "write [architecture] with kind = \"position-position\""));
+  }
+  if (two_port.given()) {
+    design.network = read_two_port(two_port);
+  } else {
+    Teleoperator teleoperator = read_teleoperator(document);
+    design.exact_delay = read_delay(root.section("delay"), teleoperator);
+    design.network = std::move(teleoperator);
+  }
+  const Section terminated = root.section("operator");
+  design.operator_port = terminated.integer("port", 1, 1, 2) == 1 ? Port::one : Port::two;
+  if (const auto a = terminated.optional_number("shortage_N_s_per_m")) design.shortage = fraction(*a);
+  if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
+  return design;
+}
+
+}  // namespace
+
+PortEquations Design::equations(std::string_view parameter) const {
+  if (const auto* two_port = std::get_if<TwoPort>(&network)) return PortEquations::of(*two_port);
+  return std::get<Teleoperator>(network).equations(parameter);
+}
+
+Result<Design> parse_design(std::string_view text, std::string_view file) {
+  const auto document = Document::parse(text, file);
+  return document ? design_of(*document, file) : tl::unexpected(document.error());
+}
+
+Result<Design> read_design(const std::filesystem::path& file) {
+  const auto document = Document::read(file);
+  return document ? design_of(*document, file.string()) : tl::unexpected(document.error());
+}
+
+}  // namespace mbk::teleop

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mbk/core/result.h"
+#include "mbk/teleop/design.h"
+
+namespace mbk::teleop {
+
+/// What to find besides the verdict.
+struct Question {
+  /// a of the operator, instead of the design's own.
+  std::optional<OperatorShortage> operator_shortage;
+  /// The values of a parameter for which the design is absolutely stable, with that operator where there is one.
+  struct Sweep {
+    std::string parameter;
+    Rational low, high;
+  };
+  std::optional<Sweep> sweep;
+};
+
+/// "slave.k=50:500"
+/// @fails  usage: not of that shape; LOW ≥ HIGH.
+[[nodiscard]] Result<Question::Sweep> parse_sweep(std::string_view text);
+
+/// The whole answer to a design.
+/// @fails  usage: the design has no such parameter, or an exact delay and a sweep; a of the operator is given twice.
+/// not usable: what llewellyn_on_grid(), admissible_set() and PortEquations::at() say.
+[[nodiscard]] Result<TeleoperationFinding> judge(const Design& design, const Question& question);
+
+}  // namespace mbk::teleop

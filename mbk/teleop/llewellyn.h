@@ -1,0 +1,31 @@
+#pragma once
+
+#include "mbk/lti/positive_real.h"
+#include "mbk/teleop/two_port.h"
+#include "mbk/trial/teleoperation.h"
+
+namespace mbk::teleop {
+
+/// Absolute stability of a two-port: with every passive termination at both ports the whole is stable. By Llewellyn's
+/// criterion (1952; theorem 4.1 of Dyck 2013), r_ij = Re m_ij(jω) and p = m₁₂ m₂₁ of any immittance matrix m:
+///   no pole has Re s > 0;  poles of m₁₁ and m₂₂ on the axis are simple, with positive residues;
+///   r₁₁ ≥ 0,  r₂₂ ≥ 0,  2 r₁₁ r₂₂ − Re p ≥ 0,  4 r₁₁ r₂₂ (r₁₁ r₂₂ − Re p) − (Im p)² ≥ 0  for all ω > 0,
+/// the last two of which say 2 r₁₁ r₂₂ − Re p − |p| ≥ 0. Three things that the theorem does not name are needed too,
+/// and are asked for: the axis includes ∞; m₁₂ and m₂₁ have no pole on the right; and where the axis has a pole, with
+/// residues k_ij, k₁₁ k₂₂ ≥ k₁₂ k₂₁ ([[1, 2], [2, 1]]/s passes all of the above, and a spring of −3 is what port 1
+/// shows when port 2 is free to move). Everything is decided exactly, in rational arithmetic by Sturm's theorem; only
+/// the frequencies and values that are returned are rounded.
+/// @returns  each condition with the bands in which it is violated and the worst frequency there
+[[nodiscard]] AbsoluteStability llewellyn(const TwoPort& two_port);
+
+/// llewellyn(two_port).holds(), quicker.
+[[nodiscard]] bool is_absolutely_stable(const TwoPort& two_port);
+
+/// 2 r₁₁ r₂₂ − Re p − |p| over 2 |r₁₁ r₂₂| + |Re p| + |p|, from −1 to 1, with the sign of the third condition.
+struct ConditionValues {
+  double r11 = 0, r22 = 0, third = 0;
+};
+/// In double; not finite at a pole, and `third` is NaN where 0/0.
+[[nodiscard]] ConditionValues condition_values(const Eigen::MatrixXcd& immittance);
+
+}  // namespace mbk::teleop

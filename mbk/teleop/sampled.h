@@ -1,0 +1,26 @@
+#pragma once
+
+#include "mbk/core/result.h"
+#include "mbk/teleop/architectures.h"
+#include "mbk/trial/teleoperation.h"
+
+namespace mbk::teleop {
+
+/// The conditions of llewellyn() of a teleoperator whose delays are taken as they are, D = e^(−jωT), which no rational
+/// function is. Those on the axis are computed in double on the grid and nowhere else: what lies between two points is
+/// not seen. Those on poles are decided exactly: with |C₂ C₃| < |(1 + C₅)(1 + C₆)| the delay adds none on the right,
+/// and at 0 it is 1.
+/// @param a  shortage of passivity of the termination at `port` [N·s/m]
+/// @fails  not usable: the forces that are sent back and forth add poles, |C₂ C₃| ≥ |(1 + C₅)(1 + C₆)|.
+[[nodiscard]] Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, const FrequencyGrid& grid,
+                                                          Port port = Port::one, const Rational& a = 0);
+
+/// inf over the grid of r_ii − (Re p + |p|)/(2 r_jj) in the z form: the largest shortage there.
+/// @fails  as above
+[[nodiscard]] Result<LargestShortage> largest_shortage_on_grid(const Teleoperator& teleoperator,
+                                                               const FrequencyGrid& grid, Port port);
+
+/// The grid's frequencies, evenly spaced in the logarithm.
+[[nodiscard]] std::vector<RadPerSec> frequencies(const FrequencyGrid& grid);
+
+}  // namespace mbk::teleop

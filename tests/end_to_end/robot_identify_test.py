@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+"""mbk robot identify: inertia, friction and delay of a robot from its motion, simulated and recorded by others."""
+
+import functools
+import pathlib
+
+from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, data_folder, folder_of_logs, main, run
+
+ROBOTS = pathlib.Path(__file__).parents[2] / "examples/robots"
+ALPHA = {"alpha1": 0.06929, "alpha2": 0.04217, "alpha3": 0.04416}  # Dyck 2013, table A.1 [kg·m²]
+VISCOUS = {"viscous_1": 0.06510, "viscous_2": 0.07389}  # [N·m·s/rad]
+COULOMB = {"coulomb_1": 0.03, "coulomb_2": 0.03}  # of the scenario free_motion [N·m]
+COLUMNS = "time=time,q1=joint_1{q},q2=joint_2{q},tau1=torque_1{t},tau2=torque_2{t}"
+
+
+def free_motion(seed=1, breakaway_Nm=None):
+    """The ready scenario free_motion; with a friction that grows to that at rest, where it is said."""
+    return simulated(seed, breakaway_Nm)
+
+
+@functools.lru_cache(maxsize=None)
+def simulated(seed, breakaway_Nm):
+    scenario = folder_of_logs() / f"free_{seed}_{breakaway_Nm}.toml"
+    text = run("simulate", "--show", "free_motion").out
+    if breakaway_Nm:
+        text = text.replace("[robot]\n", f"[robot]\nbreakaway_Nm = [{breakaway_Nm}, {breakaway_Nm}]\n")
+    scenario.write_text(text, encoding="utf-8")
+    recording = scenario.with_suffix(".h5")
+    ran = run("simulate", scenario, "--seed", seed, "--out", recording, "--quiet")
+    assert ran.code == 0, ran
+    return recording
+
+
+def values(result):
+    return {one["name"]: one["value"] for one in result["parameters"]}
+
+
+def codes(result):
+    return [warning["code"] for warning in result["warnings"]]
+
+
+class Simulated(Case):
+    def identify(self, *arguments, code=0):
+        return self.mbk("robot", "identify", *arguments, "--json", code=code).json
+
+    def assert_is_the_robot(self, result, of_value=0.005):
+        found = values(result)
+        for name, value in {**ALPHA, **VISCOUS, **COULOMB}.items():
+            self.assertAlmostEqual(found[name], value, delta=of_value * value, msg=name)
+
+    def test_finds_inertia_friction_and_delay(self):
+        found = self.identify(free_motion())
+        self.assertEqual((found["schema"], found["method"], found["usable"]), ("mbk.robot/1", "wls", True))
+        self.assert_is_the_robot(found)
+        self.assertAlmostEqual(found["motor_delay_s"], 0.5e-3, delta=1e-5)  # a torque held for a sample of 1 ms
+        self.assertTrue(all(fit["VAF"] > 99.9 for fit in found["fit"]))
+        self.assertEqual((found["excitation"]["rank"], found["excitation"]["structural_rank"]), (9, 9))
+        self.assertGreater(found["inertia"]["smallest_eigenvalue"], 0)
+
+    def test_text_says_what_json_says(self):
+        text = self.fine("robot", "identify", free_motion()).out
+        self.assert_lines_fit(text)
+        for words in ("alpha1", "kg·m²", "N·m·s/rad", "torque of joint 2", "ms, found", "positive definite"):
+            self.assertIn(words, text)
+
+    def test_files_are_fitted_together_and_others_judge(self):
+        one, two, three = (free_motion(seed) for seed in (1, 2, 3))
+        both = self.identify(one, two, "--held-back", three)
+        self.assert_is_the_robot(both)
+        self.assertEqual([entry["file"] for entry in both["inputs"]], [str(one), str(two)])
+        self.assertEqual((both["validated_on"], both["held_back_files"]), ("held-back", [str(three)]))
+        # Nothing of the first two is kept for judging, so more rows stand behind the coefficients.
+        self.assertGreater(both["samples"], 2 * self.identify(one)["samples"])
+        # What judges does not change what is found.
+        self.assertEqual(values(both), values(self.identify(one, two, "--held-back", one)))
+
+    def test_terms_that_are_left_out_are_missed(self):
+        found = self.identify(free_motion(), "--terms", "viscous")
+        self.assertEqual(list(values(found)), [*ALPHA, *VISCOUS])
+        self.assertGreater(values(found)["viscous_1"], 1.05 * VISCOUS["viscous_1"])  # takes the dry friction's part
+        bare = self.identify(free_motion(), "--terms", "none")
+        self.assertEqual(list(values(bare)), list(ALPHA))
+        self.assertLess(bare["fit"][0]["VAF"], found["fit"][0]["VAF"])
+
+    def test_a_delay_that_is_given_is_kept(self):
+        found = self.identify(free_motion(), "--motor-delay", "0")
+        self.assertEqual(found["motor_delay_s"], 0)
+        self.assertNotIn("motor_delay_standard_error_s", found)
+        self.assertLess(found["fit"][0]["VAF"], self.identify(free_motion())["fit"][0]["VAF"])
+
+    def test_what_is_known_keeps_its_value(self):
+        found = self.identify(free_motion(), "--fix", "alpha2,viscous_1")
+        fixed = {one["name"]: one for one in found["parameters"] if one.get("fixed")}
+        self.assertEqual({name: one["value"] for name, one in fixed.items()},
+                         {"alpha2": ALPHA["alpha2"], "viscous_1": VISCOUS["viscous_1"]})
+        self.assertEqual([one["standard_error"] for one in fixed.values()], [None, None])
+        self.assert_is_the_robot(found)
+
+    def test_values_of_a_description_stay_where_terms_are_added(self):
+        robot = self.file("robot.toml", "[robot]\nkind = \"planar\"\nviscous_Nms_per_rad = [0.07, 0.08]\n\n"
+                                        "[drive]\nterms = [\"viscous\"]\n")
+        found = self.identify(free_motion(), "--robot", robot, "--terms", "viscous,coulomb", "--fix", "viscous_2")
+        self.assertEqual(values(found)["viscous_2"], 0.08)
+        self.refused(WRONG_USAGE, "robot", "identify", free_motion(), "--robot", robot, "--terms", "viscous,coulomb",
+                     "--fix", "coulomb_1", says=["--fix", "no value of 'coulomb_1'"])
+
+    def test_every_method_finds_the_robot(self):
+        for method, more in (("ls", ()), ("iv", ()), ("iv", ("--motion-cutoff", "4"))):
+            with self.subTest(method=method, more=more):
+                found = self.identify(free_motion(), "--method", method, *more)
+                self.assertEqual(found["method"], method)
+                self.assert_is_the_robot(found)
+                if method == "iv":
+                    self.assertEqual(found["instruments"], "smoothed motion" if more else "hand reference")
+
+    def test_the_stribeck_velocity_is_found(self):
+        breakaway = free_motion(breakaway_Nm=0.06)
+        terms = ("--terms", "viscous,coulomb,stribeck,offset")
+        found = self.identify(breakaway, *terms, "--stribeck-velocity", "auto")
+        # 0.05 rad/s in the simulated robot; the fit hardly depends on it near its best.
+        self.assertAlmostEqual(found["drive"]["stribeck_velocity"], 0.05, delta=0.0025)
+        self.assertAlmostEqual(values(found)["stribeck_1"], 0.03, delta=0.0015)
+        worse = self.identify(breakaway, *terms, "--stribeck-velocity", "0.3")
+        self.assertGreater(worse["fit"][0]["RMSE"], 2 * found["fit"][0]["RMSE"])
+
+    def test_a_stored_robot_is_where_to_begin_again(self):
+        stored = self.folder / "robot.json"
+        self.fine("robot", "identify", free_motion(), "--json", "--out", stored)
+        again = self.identify(free_motion(2), "--robot", stored, "--fix", "coulomb_1")
+        self.assertEqual(values(again)["coulomb_1"], values(self.identify(free_motion()))["coulomb_1"])
+        self.assert_is_the_robot(again)
+
+
+class Wrong(Case):
+    def test_torques_in_another_unit_are_seen(self):
+        for unit, factor in (("N·mm", "*1000"), ("kN·m", ":N.mm")):
+            with self.subTest(unit):
+                ran = self.mbk("robot", "identify", free_motion(), "--channels", COLUMNS.format(q="", t=factor),
+                               "--json", code=NOT_USABLE)
+                warning = next(one for one in ran.json["warnings"] if one["code"] == "torque-unit")
+                self.assertIn(unit, warning["message"])
+                self.assertIs(ran.json["usable"], False)
+
+    def test_angles_in_degrees_cross_the_limits_of_the_joints(self):
+        ran = self.refused(BAD_DATA, "robot", "identify", free_motion(), "--channels",
+                           COLUMNS.format(q="*57.29578", t=""), says=["sample 1 (0.000000 s)", "above its limit"])
+        self.assertIn("--channels", ran.err)
+
+    def test_a_channel_that_is_missing_is_named(self):
+        for left_out, says in ((",tau2=torque_2", "'torque_2' is missing"), (",q1=joint_1", "'joint_1' is missing")):
+            with self.subTest(left_out):
+                channels = COLUMNS.format(q="", t="").replace(left_out, "")
+                self.refused(BAD_DATA, "robot", "identify", free_motion(), "--channels", channels,
+                             says=[str(free_motion()), says, "--channels"])
+
+    def test_options_that_cannot_be_meant(self):
+        for options, says in ((("--terms", "viscous,magic"), ("--terms", "'magic'", "coulomb")),
+                              (("--fix", "beta"), ("--fix", "'beta'", "alpha1")),
+                              (("--fix", "coulomb_1"), ("--fix", "'coulomb_1'")),
+                              (("--motor-delay", "soon"), ("--motor-delay", "'soon'")),
+                              (("--motor-delay", "2000"), ("delay", "2 s")),
+                              (("--stribeck-velocity", "auto"), ("--stribeck-velocity", "--terms")),
+                              (("--terms", "stribeck", "--stribeck-velocity", "-1"), "--stribeck-velocity"),
+                              (("--method", "gls"), ("--method", "'gls'")),
+                              (("--motion-cutoff", "0"), "--motion-cutoff")):
+            with self.subTest(options):
+                self.refused(WRONG_USAGE, "robot", "identify", free_motion(), *options, says=says)
+
+    def test_a_robot_of_other_joints_is_refused(self):
+        self.refused(BAD_DATA, "robot", "identify", free_motion(), "--robot", ROBOTS / "emps.toml",
+                     says=["'joint_1' is in rad", "needs m"])
+
+
+class Emps(Case):
+    """A. Janot, M. Gautier, M. Brunot (2019): one drive that slides, with the values that were published for it."""
+
+    def test_finds_the_published_values(self):
+        found = run("robot", "identify", data_folder("emps", "DATA_EMPS.mat"), "--robot", ROBOTS / "emps.toml",
+                    "--channels", "q1=qm:m,tau1=vir*35.15065188:N,time=t", "--cutoff", "100", "--json")
+        self.assertEqual(found.code, 0, found)
+        published = (("mass", 95.1089, 0.005), ("viscous_1", 203.5034, 0.03), ("coulomb_1", 20.3935, 0.03))
+        for name, value, share in published:
+            self.assertAlmostEqual(values(found.json)[name], value, delta=share * value, msg=name)
+        self.assertGreaterEqual(found.json["fit"][0]["VAF_in_sample"], 99.7)
+
+    def test_a_mass_that_nobody_stated_cannot_be_fixed(self):
+        self.refused(WRONG_USAGE, "robot", "identify", data_folder("emps", "DATA_EMPS.mat"), "--robot",
+                     ROBOTS / "emps.toml", "--fix", "mass", says=["--fix", "'mass'"])
+
+
+class DoublePendulum(Case):
+    """The double pendulum of examples/robots, whose encoders have steps of 0.38 mrad and whose clock is uneven."""
+
+    TRAINING = [f"C1_20230629-{name}.csv" for name in ("143339", "143524", "143601", "143704", "143747", "143906")]
+    JUDGING = "C1_20230629-154220.csv"
+
+    def identify(self, *files, code=0):
+        folder = data_folder("double_pendulum")
+        return self.mbk("robot", "identify", *files, "--robot", ROBOTS / "double_pendulum.toml", "--fix",
+                        "upper.mass_x,lower.mass_x", "--resample", "500", "--channels",
+                        "time=time,q1=pos_meas1,q2=pos_meas2,tau1=tau_meas1,tau2=tau_meas2", "--json", folder=folder,
+                        code=code).json
+
+    def judged(self, *options):
+        return self.identify(*self.TRAINING, "--held-back", self.JUDGING, *options)["fit"]
+
+    def test_predicts_a_recording_that_it_has_not_seen(self):
+        one, two = (fit["VAF"] for fit in self.judged("--cutoff", "5"))
+        self.assertGreaterEqual(one, 92)
+        self.assertGreaterEqual(two, 95)
+
+    def test_noise_of_a_wide_band_biases_least_squares_and_not_instruments(self):
+        by_squares = self.judged("--cutoff", "20")
+        self.assertLess(by_squares[0]["VAF"], 73)
+        self.assertLess(by_squares[1]["VAF"], 83)
+        by_instruments = self.judged("--cutoff", "20", "--method", "iv")
+        self.assertGreaterEqual(by_instruments[0]["VAF_from_smoothed_motion"], 85)
+        self.assertGreaterEqual(by_instruments[1]["VAF_from_smoothed_motion"], 90)
+
+    def test_what_a_joint_that_stands_still_cannot_show_is_named(self):
+        found = self.identify("C1_20230629-143906.csv", code=NOT_USABLE)
+        self.assertIn("joint 2 stands still", " ".join(found["notes"]))
+        self.assertIsNone(found["fit"][1]["VAF"])
+        missing = {one["name"] for one in found["parameters"] if not one["identified"] and not one.get("fixed")}
+        self.assertLessEqual({"lower.inertia_yy", "motor_inertia_2", "viscous_2", "coulomb_2", "offset_2"}, missing)
+        self.assertLess(found["excitation"]["rank"], found["excitation"]["structural_rank"])
+        warning = next(one["message"] for one in found["warnings"] if one["code"] == "poorly-conditioned")
+        for name in ("motor_inertia_2", "viscous_2", "coulomb_2"):
+            self.assertIn(name, warning)
+
+
+if __name__ == "__main__":
+    main()

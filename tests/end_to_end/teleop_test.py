@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""mbk teleop: known answers of Llewellyn's criterion, the operator's excess, intervals of a parameter, wrong input."""
+
+import json
+import pathlib
+import re
+
+from command import BAD_DATA, WRONG_USAGE, Case, main, make_log
+
+EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/teleop"
+DESIGN = """[architecture]
+kind = "position-position"
+[master]
+mass_kg = 0
+damping_N_s_per_m = {b_m}
+controller_damping_N_s_per_m = {d_m}
+controller_stiffness_N_per_m = {k_m}
+[slave]
+mass_kg = 0
+damping_N_s_per_m = {b_s}
+controller_damping_N_s_per_m = {d_s}
+controller_stiffness_N_per_m = {k_s}
+"""
+TWO_PORT = """[two_port]
+form = "{form}"
+{form}11 = {{numerator = {n11}}}
+{form}12 = {{numerator = {n12}}}
+{form}21 = {{numerator = {n21}}}
+{form}22 = {{numerator = {n22}}}
+"""
+
+
+def result(eop=None, index=None):
+    passivity = {"models": []}
+    if eop:
+        passivity["eop"] = {"corrected": sum(eop) / 2, "interval95": eop}
+    if index:
+        passivity["models"] = [{"min_index_interval95": index, "band_hz": [0.5, 3.0]}]
+    return json.dumps({"schema": "mbk.result/1", "passivity": passivity})
+
+
+class Teleop(Case):
+    def design(self, extra="", **values):
+        given = {"b_m": 2, "b_s": 3, "d_m": 10, "k_m": 100, "d_s": 20, "k_s": 200, **values}
+        return self.file("design.toml", DESIGN.format(**given) + extra)
+
+    def violated(self, found, key="llewellyn"):
+        return [one["name"] for one in found[key]["conditions"] if not one["holds"]]
+
+    def test_largest_a_is_the_closed_form(self):
+        found = self.fine("teleop", self.design(), "--json").json
+        self.assertEqual((found["schema"], found["decided"]), ("mbk.teleop/1", "exactly"))
+        self.assertEqual(found["llewellyn"]["verdict"], "stable")
+        one, two = found["largest_a"]
+        self.assertAlmostEqual(two["a"], 19 / 3, delta=1e-12)
+        self.assertLess(two["at_most"] - two["at_least"], 1e-12)
+        self.assertAlmostEqual(one["a"], 2 + 10 * 3 / 23, delta=1e-12)
+
+    def test_without_damping_only_one_ratio_is_stable(self):
+        for k_s, verdict in ((200, "marginal"), (210, "unstable"), (190, "unstable")):
+            found = self.fine("teleop", self.design(b_m=0, b_s=0, k_s=k_s), "--json").json
+            self.assertEqual(found["llewellyn"]["verdict"], verdict, k_s)
+        found = self.fine("teleop", self.design(b_m=0, b_s=0), "--json", "--parameter", "slave.k=0:1000").json
+        (only,) = found["admissible"]["intervals"]
+        self.assertEqual((only["low"]["value"], only["high"]["value"]), (200, 200))
+
+    def test_the_stable_stiffnesses_are_an_interval_with_two_ends(self):
+        ran = self.fine("teleop", self.design(b_m=1, b_s=1), "--json", "--parameter", "slave.k=0:1000")
+        (interval,) = ran.json["admissible"]["intervals"]
+        self.assertAlmostEqual(interval["low"]["value"], 92.754616, places=6)
+        self.assertAlmostEqual(interval["high"]["value"], 431.245384, places=6)
+        text = self.fine("teleop", self.design(b_m=1, b_s=1), "--parameter", "slave.k=0:1000").out
+        self.assertIn("92.75461602 to 431.245384", text)
+        self.assert_lines_fit(text)
+
+    def test_a_resonance_narrower_than_a_grid_is_found(self):
+        ran = self.fine("teleop", EXAMPLES / "narrow_resonance.toml", "--json").json
+        self.assertEqual(self.violated(ran), ["r11", "product"])
+        (band,) = ran["llewellyn"]["conditions"][2]["violated"]
+        self.assertAlmostEqual(band["worst"], 10, places=3)
+        self.assertAlmostEqual(band["value"], -0.01, places=6)
+        self.assertIn("r11 ≥ 0", self.fine("teleop", EXAMPLES / "narrow_resonance.toml").out)
+
+    def test_the_ideal_teleoperator_is_marginal(self):
+        ideal = self.file("ideal.toml", TWO_PORT.format(form="h", n11="[0]", n12="[1]", n21="[-1]", n22="[0]"))
+        found = self.fine("teleop", ideal, "--json").json["llewellyn"]
+        self.assertEqual((found["verdict"], found["equality_everywhere"]), ("marginal", True))
+
+    def test_position_force_fails_for_every_gain(self):
+        found = self.fine("teleop", EXAMPLES / "position_force.toml", "--json", "--parameter",
+                          "channels.force_to_master=0:2").json
+        self.assertEqual(self.violated(found), ["squares"])
+        (only,) = found["admissible"]["intervals"]
+        self.assertEqual((only["low"]["value"], only["high"]["value"]), (0, 0))
+
+    def test_the_operator_counts_with_the_lower_bound_of_the_excess(self):
+        design = self.design("[operator]\nport = 2\n")
+        for interval, verdict in (([4.0, 6.0], "stable"), ([-6.3, 1.0], "stable"), ([-6.4, 1.0], "unstable")):
+            found = self.fine("teleop", design, "--operator", self.file("r.json", result(eop=interval)), "--json").json
+            self.assertEqual(found["operator"]["a"], -interval[0])
+            self.assertEqual(found["modified_llewellyn"]["verdict"], verdict, interval)
+        text = self.fine("teleop", design, "--operator", self.file("r.json", result(index=[-7.0, -1.0]))).out
+        self.assertIn("over 0.5 to 3 Hz only", " ".join(text.split()))
+        self.assertIn("shortage", text)
+
+    def test_a_measured_operator_is_taken(self):
+        measured = self.folder / "measured.json"
+        self.fine("measure", make_log().path, "--json", "--out", measured)
+        eop = json.loads(measured.read_text())["passivity"]["eop"]["interval95"]
+        found = self.fine("teleop", self.design(), "--operator", measured, "--json").json
+        self.assertEqual(found["operator"]["a"], -eop[0])
+        self.assertEqual(found["operator"]["port"], 1)
+
+    def test_exact_delay_names_its_grid(self):
+        delay = ("[delay]\nto_slave_ms = 5\nto_master_ms = 5\nexact = true\ngrid_from_rad_per_s = 0.1\n"
+                 "grid_to_rad_per_s = 1000\ngrid_points = 500\n")
+        ran = self.fine("teleop", self.design(delay))
+        self.assertIn("on 500 points from 0.1 to 1000 rad/s", ran.out)
+        self.assertEqual(self.fine("teleop", self.design(delay), "--json").json["decided"], "on the grid")
+        self.refused(WRONG_USAGE, "teleop", self.design(delay), "--parameter", "slave.k=0:1", says="pade")
+
+    def test_charts_are_written_and_not_over_others(self):
+        prefix = self.folder / "c"
+        self.fine("teleop", self.design(), "--charts", prefix)
+        for name in ("r11", "r22", "third"):
+            self.assertIn("</svg>", (self.folder / f"c_{name}.svg").read_text(encoding="utf-8"))
+        self.refused(WRONG_USAGE, "teleop", self.design(), "--charts", prefix, says=["c_r11.svg", "--overwrite"])
+        self.fine("teleop", self.design(), "--charts", prefix, "--overwrite")
+        self.refused(WRONG_USAGE, "teleop", self.design(), "--overwrite", says="--charts")
+
+    def test_malformed_two_ports_name_the_entry(self):
+        good = dict(form="z", n11="[1]", n12="[0]", n21="[0]", n22="[1]")
+        for change, says in ((dict(n12="[]"), "z12.numerator"), (dict(n21='["a"]'), "z21.numerator"),
+                             (dict(n22="[1], denominator = [0]"), "z22.denominator"),
+                             (dict(n11="[inf]"), "z11.numerator"), (dict(n11="1"), "z11.numerator")):
+            path = self.file("bad.toml", TWO_PORT.format(**{**good, **change}))
+            self.refused(BAD_DATA, "teleop", path, says=["bad.toml", says])
+        path = self.file("bad.toml", re.sub("z21.*\n", "", TWO_PORT.format(**good)))
+        self.refused(BAD_DATA, "teleop", path, says="z21")
+        path = self.file("bad.toml", TWO_PORT.format(**good) + "z33 = 1\n")
+        self.refused(BAD_DATA, "teleop", path, says="z33")
+
+    def test_wrong_input_is_refused(self):
+        self.refused(BAD_DATA, "teleop", self.folder / "none.toml", says="none.toml")
+        self.refused(BAD_DATA, "teleop", self.file("empty.toml", ""), says="architecture")
+        self.refused(BAD_DATA, "teleop", self.design(b_m='"much"'), says="damping_N_s_per_m")
+        self.refused(WRONG_USAGE, "teleop", self.design(), "--parameter", "slave.q=0:1", says=["slave.q", "slave.k"])
+        for wrong in ("slave.k", "slave.k=1", "slave.k=2:1", "slave.k=a:b", ""):
+            self.refused(WRONG_USAGE, "teleop", self.design(), "--parameter", wrong, says="--parameter")
+        narrow = EXAMPLES / "narrow_resonance.toml"
+        self.refused(WRONG_USAGE, "teleop", narrow, "--parameter", "slave.k=0:1", says="architecture")
+        for content, says in (("{", "byte"), ("{}", "schema"), (result(), "how passive")):
+            path = self.file("r.json", content)
+            self.refused(BAD_DATA, "teleop", self.design(), "--operator", path, says=["r.json", says])
+        twice = self.design("[operator]\nshortage_N_s_per_m = 1\n")
+        self.refused(WRONG_USAGE, "teleop", twice, "--operator", self.file("r.json", result(eop=[1, 2])),
+                     says="shortage_N_s_per_m")
+        none = self.file("none.toml", TWO_PORT.format(form="z", n11="[0]", n12="[0]", n21="[0]", n22="[0]"))
+        self.fine("teleop", none)
+
+    def test_every_example_runs(self):
+        for path in sorted(EXAMPLES.glob("*.toml")):
+            with self.subTest(path.name):
+                self.assert_lines_fit(self.fine("teleop", path).out)
+
+
+if __name__ == "__main__":
+    main()
