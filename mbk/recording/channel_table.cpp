@@ -23,6 +23,7 @@ constexpr std::array kAnyPosition{length, angle};
 constexpr std::array kAnyForce{force, torque};
 constexpr std::array kAnyReference{length, angle, force, torque};
 constexpr std::array kAnyAcceleration{acceleration, angular_acceleration};
+constexpr std::array kAnySignal{length, angle, force, torque, acceleration, angular_acceleration, voltage};
 
 constexpr auto kKinds = std::to_array<ChannelKind>({
     {"time", "t", kTime, "", 0, 1},
@@ -64,6 +65,8 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"reaction", "F", kAnyForce, "", 1, 0},
     {"reference", "xr", kAnyReference, "", 1, 0},
     {"acceleration", "a", kAnyAcceleration, "", 1, 0},
+    {"input", "input", kAnySignal, "", 0, 0},
+    {"output", "output", kAnySignal, "", 0, 0},
 });
 static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMostJoints);
 

@@ -27,6 +27,10 @@ enum class WarningCode {
   too_little_data,
   decimation_changes_model,
   torque_unit,
+  residual_not_white,
+  input_explains_residual,
+  pole_outside_band,
+  uneven_clock,
 };
 
 /// Every code with its text, which is stable: scripts may test for it.
@@ -48,6 +52,10 @@ inline constexpr auto kWarningTexts = std::to_array<std::pair<WarningCode, std::
     {WarningCode::too_little_data, "too-little-data"},
     {WarningCode::decimation_changes_model, "decimation-changes-model"},
     {WarningCode::torque_unit, "torque-unit"},
+    {WarningCode::residual_not_white, "residual-not-white"},
+    {WarningCode::input_explains_residual, "input-explains-residual"},
+    {WarningCode::pole_outside_band, "pole-outside-band"},
+    {WarningCode::uneven_clock, "uneven-clock"},
 });
 
 /// "inertia-not-positive", …

@@ -15,6 +15,8 @@ std::span<const Study> studies() {
       Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", 3, springs_study},
       Study{"robot", "dynamics of the robot, from its free motion", 50, robot_study},
       Study{"virtual-sensor", "force, stiffness and mass without a force sensor", 4, virtual_sensor_study},
+      Study{"transfer-function", "a transfer function of four poles under noise, and its order", 50,
+            transfer_function_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
   };
   return kStudies;

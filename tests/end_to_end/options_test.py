@@ -9,7 +9,7 @@ import unittest
 from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
                      write_csv)
 
-COMMANDS = ("measure", "identify", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
+COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
             "completion", "manual", "passivity", "teleop")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
                "robot": ("workspace", "describe", "identify", "force")}

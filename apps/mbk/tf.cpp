@@ -1,0 +1,272 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/measure_options.h"
+#include "apps/mbk/option_checks.h"
+#include "mbk/measurement/transfer_function.h"
+#include "mbk/preprocess/resample.h"
+#include "mbk/recording/channel_table.h"
+#include "mbk/report/transfer_function_text.h"
+#include "mbk/result/transfer_function_json.h"
+
+namespace mbk::app {
+namespace {
+
+struct Arguments : MeasureArguments {
+  std::vector<std::filesystem::path> held_back;
+  std::string input = "input", output_signal = "output", reference, orders, delay = "0";
+  std::optional<long> poles, zeros;
+  std::vector<double> start_poles_hz;
+  double most_delay_s = 0.1;
+  long noise_order = 8;
+  bool from_rest = false;
+};
+
+/// A whole number at the front of `text`, which is shortened by it.
+std::optional<Index> take_number(std::string_view& text) {
+  Index value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+/// "2:5" is every model of 2 to 5 poles with fewer zeros; "4/1,4/2" are these.
+Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given) {
+  constexpr Index kMost = 12;
+  std::vector<std::pair<Index, Index>> orders;
+  const auto wrong =
+      bad_usage(fmt::format("--orders: {} is neither FROM:TO nor POLES/ZEROS,…", quoted(given)),
+                fmt::format("as in 2:5 or 4/1,4/2,5/2, with 1 to {} poles and at most as many zeros", kMost));
+  std::string_view rest = given;
+  for (bool more = true; more;) {
+    const auto first = take_number(rest);
+    const char mark = rest.empty() ? '\0' : rest.front();
+    if (!first || *first < 1 || *first > kMost || (mark != ':' && mark != '/')) return wrong;
+    rest.remove_prefix(1);
+    const auto second = take_number(rest);
+    if (!second || *second < 0) return wrong;
+    if (mark == '/') {
+      if (*second > *first) return wrong;
+      orders.emplace_back(*first, *second);
+    } else {
+      if (*second < *first || *second > kMost) return wrong;
+      for (Index poles = *first; poles <= *second; ++poles) {
+        for (Index zeros = 0; zeros < poles; ++zeros) orders.emplace_back(poles, zeros);
+      }
+    }
+    more = !rest.empty();
+    if (more && rest.front() != ',') return wrong;
+    if (more) rest.remove_prefix(1);
+  }
+  return orders;
+}
+
+Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) {
+  measurement::TransferFunctionMeasurement options;
+  const auto signals = signal_options(a);
+  if (!signals) return tl::unexpected(signals.error());
+  options.window = signals->window;
+  identify::TransferFunctionOptions& fit = options.fit;
+  if (!a.orders.empty()) {
+    if (a.poles || a.zeros)
+      return bad_usage("--orders chooses poles and zeros by itself", "leave --poles and --zeros out");
+    auto orders = orders_of(a.orders);
+    if (!orders) return tl::unexpected(orders.error());
+    fit.orders = std::move(*orders);
+  } else if (!a.poles) {
+    return bad_usage("how many poles?", "pass --poles 4 --zeros 3, or --orders 1:4 to try several");
+  } else {
+    fit.poles = *a.poles;
+    fit.zeros = a.zeros.value_or(*a.poles - 1);
+    if (fit.zeros > fit.poles) {
+      return bad_usage(
+          fmt::format("{} zeros beside {} poles: a system that ends has at most as many", fit.zeros, fit.poles),
+          "exchange input and output, or take fewer zeros");
+    }
+  }
+  if (a.method == "rivc") fit.method = TransferFunctionMethod::rivc;
+  if (a.method == "clsrivc") fit.method = TransferFunctionMethod::closed_loop;
+  if (fit.method == TransferFunctionMethod::closed_loop && a.reference.empty()) {
+    return bad_usage("--method clsrivc needs the reference that drives the loop", "name it by --reference");
+  }
+  fit.find_delay = a.delay == "auto";
+  if (!fit.find_delay) {
+    const auto [end, error] = std::from_chars(a.delay.data(), a.delay.data() + a.delay.size(), fit.delay);
+    if (error != std::errc() || end != a.delay.data() + a.delay.size() || !(fit.delay >= 0.0 && fit.delay < 1e6)) {
+      return bad_usage(fmt::format("--delay: {} is neither a number of seconds from 0 on nor 'auto'", quoted(a.delay)));
+    }
+  }
+  fit.most_delay = a.most_delay_s;
+  fit.most_noise_order = a.noise_order;
+  fit.hac_lag_s = a.hac_lag_s;
+  fit.free_start = !a.from_rest;
+  fit.threads = a.threads;
+  for (const double hz : a.start_poles_hz) fit.start_poles.push_back(2.0 * std::numbers::pi * hz);
+  return options;
+}
+
+/// Where the signals stand. Names of channels that mbk knows are those channels; anything else is a column, a row or a
+/// variable of the file.
+void place_signals(Arguments& a, measurement::TransferFunctionMeasurement& options) {
+  struct Signal {
+    const std::string& given;
+    const char* channel;
+    std::string& to;
+  };
+  const Signal signals[] = {{a.input, "input", options.input},
+                            {a.output_signal, "output", options.output},
+                            {a.reference, "reference", options.reference}};
+  bool known = true;
+  for (const Signal& signal : signals) {
+    known = known && (signal.given.empty() || !recording::kinds_called(signal.given).empty());
+  }
+  const bool mapped = !a.channels.empty();
+  for (const Signal& signal : signals) {
+    if (signal.given.empty()) continue;
+    const auto kinds = recording::kinds_called(signal.given);
+    if (!kinds.empty() && (known || mapped)) {
+      const auto* const kind = recording::kind_for_axes(kinds, a.axes == 0 ? 2 : a.axes);
+      signal.to = kind == nullptr ? std::string(kinds.front()->name) : std::string(kind->name);
+      continue;
+    }
+    a.channels += fmt::format("{}{}={}", a.channels.empty() ? "" : ",", signal.channel, signal.given);
+    signal.to = signal.channel;
+  }
+}
+
+Result<std::vector<Recording>> read_all(const Arguments& a, const std::vector<std::filesystem::path>& files) {
+  MeasureArguments reading = a;
+  reading.files = files;
+  auto recordings = files.empty() ? Result<std::vector<Recording>>() : read_recordings(reading);
+  if (!recordings || !a.resample_hz) return recordings;
+  for (Recording& recording : *recordings) {
+    auto even = preprocess::resample(recording, Hertz(*a.resample_hz));
+    if (!even) return tl::unexpected(even.error());
+    recording = std::move(*even);
+  }
+  return recordings;
+}
+
+int run(const Arguments& given) {
+  Arguments arguments = given;
+  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  auto options = options_of(arguments);
+  if (!options) return report_error(options.error());
+  place_signals(arguments, *options);
+  const auto recordings = read_all(arguments, arguments.files);
+  if (!recordings) return report_error(recordings.error());
+  const auto held_back = read_all(arguments, arguments.held_back);
+  if (!held_back) return report_error(held_back.error());
+  const auto found = measurement::identify_transfer_function(*recordings, *held_back, *options);
+  if (!found) return report_error(found.error());
+  const std::string text = arguments.json ? result::to_json(*found) : report::transfer_function_text(*found);
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  return found->usable ? kFine : kNotUsable;
+}
+
+}  // namespace
+
+Action add_tf(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  arguments->method = "srivc";
+  CLI::App* command = app.add_subcommand("tf", "a transfer function from one signal to another");
+  command->footer(
+      "Examples:\n"
+      "  mbk tf arm.csv --input torque_Nm --output acceleration --poles 6 --zeros 5\n"
+      "  mbk tf log.mat --input Fx --output x --orders 1:4\n"
+      "      a table of all models of 1 to 4 poles, and the one that the data speak for\n"
+      "  mbk tf log.csv --input 2 --output 3 --rate 500 --poles 2 --zeros 0 --delay auto --json\n"
+      "  mbk tf loop.csv --input motor --output angle --reference wanted --method clsrivc --poles 3\n\n"
+      "FILEs are one system: they are fitted together. What did not settle, or settled on an unstable model, is\n"
+      "refused.\n\n"
+      "Exit codes: " +
+      std::string(kExitCodes));
+  add_reading_options(*command, *arguments);
+  command
+      ->add_option("--input", arguments->input,
+                   "the cause: a channel, or a column's number or name, a row or a variable of the file (input)")
+      ->type_name("NAME")
+      ->check(not_empty());
+  command->add_option("--output", arguments->output_signal, "the effect, likewise (output)")
+      ->type_name("NAME")
+      ->check(not_empty());
+  command->add_option("--reference", arguments->reference, "what drives the loop, likewise, for clsrivc")
+      ->type_name("NAME")
+      ->check(not_empty());
+  command->add_option("--held-back", arguments->held_back, "recordings that only judge the fit")->type_name("FILE");
+  add_window_options(*command, *arguments);
+  command
+      ->add_option("--resample", arguments->resample_hz,
+                   "put an uneven clock right first, by straight lines; never done unasked, and srivc does without")
+      ->type_name("HZ")
+      ->check(positive());
+  const char* const model = "Model";
+  command->add_option("--poles", arguments->poles, "how many")
+      ->type_name("N")
+      ->check(whole_number(1, 20))
+      ->group(model);
+  command->add_option("--zeros", arguments->zeros, "how many (one fewer than poles)")
+      ->type_name("N")
+      ->check(whole_number(0, 20))
+      ->group(model);
+  command
+      ->add_option("--orders", arguments->orders,
+                   "choose among models: 2:5 for 2 to 5 poles with fewer zeros, or a list POLES/ZEROS")
+      ->type_name("FROM:TO|LIST")
+      ->check(not_empty())
+      ->group(model);
+  command
+      ->add_option("--method", arguments->method,
+                   "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
+                   "clsrivc: in a loop, with instruments from the reference")
+      ->type_name("srivc|rivc|clsrivc")
+      ->check(one_of({"srivc", "rivc", "clsrivc"}))
+      ->group(model);
+  command->add_option("--delay", arguments->delay, "seconds by which the effect lags; auto finds it (0)")
+      ->type_name("S|auto")
+      ->check(not_empty())
+      ->group(model);
+  command->add_option("--most-delay", arguments->most_delay_s, "how far --delay auto looks, s (0.1)")
+      ->type_name("S")
+      ->check(positive())
+      ->group(model);
+  command
+      ->add_option("--start-pole", arguments->start_poles_hz,
+                   "a frequency at which the search begins, tried beside six over the band")
+      ->type_name("HZ")
+      ->check(positive())
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group(model);
+  command
+      ->add_flag("--from-rest", arguments->from_rest,
+                 "the system is at rest at zero where a stretch begins; otherwise an initial state and an offset are "
+                 "found for each")
+      ->group(model);
+  command->add_option("--noise-order", arguments->noise_order, "greatest order of the noise model of rivc (8)")
+      ->type_name("N")
+      ->check(whole_number(1, 50))
+      ->group(model);
+  command
+      ->add_option("--hac-lag", arguments->hac_lag_s,
+                   "reach of the residual's correlation in the standard errors; 0 takes it as white (1)")
+      ->type_name("S")
+      ->check(not_negative())
+      ->group(model);
+  command->add_option("--threads", arguments->threads, "starts tried at a time (as many as there are cores)")
+      ->type_name("N")
+      ->check(whole_number(1, 1024))
+      ->group(model);
+  add_output_options(*command, *arguments, "mbk.tf/1");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

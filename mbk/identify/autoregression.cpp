@@ -1,0 +1,60 @@
+#include "mbk/identify/autoregression.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace mbk::identify {
+
+Vector autoregression(const std::vector<Vector>& pieces, Index most) {
+  Vector r = Vector::Zero(most + 1);
+  Index samples = 0;
+  for (const Vector& e : pieces) {
+    samples += e.size();
+    for (Index lag = 0; lag <= std::min(most, e.size() - 1); ++lag) {
+      r[lag] += e.head(e.size() - lag).dot(e.tail(e.size() - lag));
+    }
+  }
+  Vector c = Vector::Ones(1), best = c;
+  if (!(r[0] > 0.0)) return best;
+  const auto count = static_cast<double>(samples);
+  double variance = r[0], least = count * std::log(variance);
+  for (Index p = 1; p <= most; ++p) {
+    const double reflection = -c.dot(r.segment(1, p).reverse()) / variance;
+    Vector longer(p + 1);
+    longer << c, 0.0;
+    longer += reflection * longer.reverse().eval();
+    c = longer;
+    variance *= 1.0 - reflection * reflection;
+    if (!(variance > 0.0)) break;
+    const double bic = count * std::log(variance) + static_cast<double>(p) * std::log(count);
+    if (bic < least) {
+      least = bic;
+      best = c;
+    }
+  }
+  return best;
+}
+
+Vector explained_by_past(const Vector& reference, const Vector& signal) {
+  constexpr Index kMostLags = 300;
+  const Index total = signal.size(), lags = std::clamp<Index>(total / 20, 1, kMostLags);
+  const double mean = signal.mean();
+  const Vector r = reference.array() - reference.mean(), s = signal.array() - mean;
+  Vector own(lags), cross(lags);
+  for (Index k = 0; k < lags; ++k) {
+    own[k] = r.head(total - k).dot(r.tail(total - k));
+    cross[k] = r.head(total - k).dot(s.tail(total - k));
+  }
+  constexpr double kRidge = 1e-9;
+  Matrix gram(lags, lags);
+  for (Index i = 0; i < lags; ++i) {
+    for (Index j = 0; j < lags; ++j) gram(i, j) = own[std::abs(i - j)] * (i == j ? 1.0 + kRidge : 1.0);
+  }
+  const Vector h = gram.ldlt().solve(cross);
+  Vector explained = Vector::Constant(total, mean);
+  for (Index k = 0; k < lags; ++k) explained.tail(total - k) += h[k] * r.head(total - k);
+  return explained;
+}
+
+}  // namespace mbk::identify

@@ -1,0 +1,78 @@
+#include "mbk/measurement/transfer_function.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "mbk/recording/channel_map.h"
+#include "mbk/recording/read.h"
+
+namespace mbk::measurement {
+namespace {
+
+Recording part(const Recording& whole, Index begin, Index count) {
+  Recording cut = whole;
+  cut.time = whole.time.segment(begin, count);
+  for (std::size_t k = 0; k < cut.channels.size(); ++k) {
+    cut.channels[k].values = whole.channels[k].values.segment(begin, count);
+  }
+  return cut;
+}
+
+/// A real flexible robot arm, torque to acceleration, periods of 4096 samples (Kollár, Pintelon & Schoukens 1994).
+TEST(TransferFunction, OfARealFlexibleArmHoldsFromAnyStart) {
+  const char* const folder = std::getenv("MBK_DATA_DIR");
+  if (folder == nullptr) GTEST_SKIP() << "MBK_DATA_DIR is not set";
+  recording::ReadOptions reading;
+  reading.channels = recording::parse_channel_map("input=Input,output=Output").value();
+  reading.rate = Hertz(500.0);
+  const auto whole = recording::read(std::string(folder) + "/flexible_arm/contsid_robotarm.mat", reading);
+  ASSERT_TRUE(whole.has_value()) << whole.error().line();
+  constexpr Index kPeriod = 4096;
+  const Recording third = part(*whole, 2 * kPeriod, kPeriod), eighth = part(*whole, 7 * kPeriod, kPeriod);
+  TransferFunctionMeasurement options;
+  options.fit.poles = 6;
+  options.fit.zeros = 5;
+  for (const double start : {0.1, 2.0, 30.0, 400.0, 1500.0}) {  // rad/s
+    options.fit.start_poles = {start};
+    const auto found = identify_transfer_function({&third, 1}, {&eighth, 1}, options);
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_GE(found->held_back_fit.value(), 0.975) << start;
+    ASSERT_EQ(found->poles.size(), 3U);
+    EXPECT_NEAR(found->poles[0].frequency, 7.29, 0.01 * 7.29);
+    EXPECT_NEAR(found->poles[1].frequency, 15.84, 0.01 * 15.84);
+    EXPECT_NEAR(found->poles[2].frequency, 42.45, 0.02 * 42.45);
+    EXPECT_FALSE(found->poles[1].outside_band);
+    EXPECT_TRUE(found->poles[2].outside_band);
+  }
+}
+
+Recording ramp(Index samples) {
+  Recording recording;
+  recording.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) * 0.01;
+  recording.channels = {{"input", "N", "", recording.time.array().sin()},
+                        {"output", "m", "", recording.time.array().cos()}};
+  return recording;
+}
+
+TEST(TransferFunction, SaysWhichChannelIsMissing) {
+  const Recording recording = ramp(100);
+  TransferFunctionMeasurement options;
+  options.output = "position";
+  const auto found = identify_transfer_function({&recording, 1}, {}, options);
+  ASSERT_FALSE(found.has_value());
+  EXPECT_NE(found.error().line().find("'position'; there are input, output"), std::string::npos);
+}
+
+TEST(TransferFunction, RefusesTimeThatStandsStillAndWindowsOutside) {
+  Recording recording = ramp(100);
+  recording.time[50] = recording.time[49];
+  EXPECT_FALSE(identify_transfer_function({&recording, 1}, {}, {}).has_value());
+  recording = ramp(100);
+  TransferFunctionMeasurement options;
+  options.window.from_s = 5.0;
+  EXPECT_FALSE(identify_transfer_function({&recording, 1}, {}, options).has_value());
+}
+
+}  // namespace
+}  // namespace mbk::measurement

@@ -1,0 +1,105 @@
+#include "mbk/result/transfer_function_json.h"
+
+#include "mbk/result/json_parts.h"
+
+namespace mbk::result {
+namespace {
+
+Json roots_json(const std::vector<Root>& roots) {
+  Json array = Json::array();
+  for (const Root& root : roots) {
+    array.push_back({{"re", number(root.value.real())},
+                     {"im", number(root.value.imag())},
+                     {"pair", root.pair},
+                     {"frequency_hz", number(root.frequency)},
+                     {"frequency_standard_error_hz", number(root.frequency_standard_error)},
+                     {"damping", number(root.damping)},
+                     {"damping_standard_error", number(root.damping_standard_error)},
+                     {"outside_band", root.outside_band}});
+  }
+  return array;
+}
+
+}  // namespace
+
+std::string to_json(const TransferFunctionIdentification& found) {
+  Json json = header("mbk.tf/1");
+  json["inputs"] = inputs_json(found.sources);
+  json["method"] = mbk::text(found.method);
+  json["input"] = {{"channel", found.input}, {"unit", found.input_unit}};
+  json["output"] = {{"channel", found.output}, {"unit", found.output_unit}};
+  if (!found.reference.empty()) json["reference"] = found.reference;
+  const bool continuous = found.model.sample_time == 0.0;
+  const auto highest_first = [&](const Vector& c) { return list(continuous ? Vector(c.reverse()) : c); };
+  json["numerator"] = highest_first(found.model.numerator);
+  json["denominator"] = highest_first(found.model.denominator);
+  json["variable"] = continuous ? "s" : "q^-1";
+  json["delay_s"] = found.model.delay;
+  json["delay_found"] = found.delay_found;
+  const Index n = found.model.poles(), q = found.model.numerator.size();
+  json["parameters"] = Json::array();
+  const auto add = [&](std::string name, double value, Index at) {
+    json["parameters"].push_back({{"name", std::move(name)},
+                                  {"value", number(value)},
+                                  {"standard_error", number(std::sqrt(found.covariance(at, at)))}});
+  };
+  for (Index k = 0; k < n; ++k) {
+    const Index power = continuous ? k : k + 1;
+    add(fmt::format("{}{}", continuous ? "a" : "f", power), found.model.denominator[power], k);
+  }
+  for (Index k = 0; k < q; ++k) add(fmt::format("b{}", k), found.model.numerator[k], n + k);
+  json["covariance"] = rows(found.covariance);
+  json["hac_lag_s"] = found.hac_lag_s;
+  json["poles"] = roots_json(found.poles);
+  json["zeros"] = roots_json(found.zeros);
+  json["gain"] = number(found.gain);
+  json["gain_standard_error"] = number(found.gain_standard_error);
+  json["fit"] = {{"R2_in_sample", number(found.fit)},
+                 {"noise_standard_deviation", number(found.noise_standard_deviation)},
+                 {"YIC", number(found.yic)},
+                 {"AIC", number(found.aic)},
+                 {"BIC", number(found.bic)}};
+  if (found.held_back_fit) {
+    json["fit"]["R2_held_back"] = number(*found.held_back_fit);
+    json["fit"]["RMSE_held_back"] = number(found.held_back_rmse);
+  }
+  if (found.noise_denominator.size() > 1) json["noise"]["denominator"] = list(found.noise_denominator);
+  if (found.noise_numerator.size() > 1) json["noise"]["numerator"] = list(found.noise_numerator);
+  json["residuals"] = {{"lags", found.residuals.lags},
+                       {"white", found.residuals.white()},
+                       {"whiteness_p", number(found.residuals.whiteness_p)},
+                       {"autocorrelation_outside", number(found.residuals.autocorrelation_outside)},
+                       {"independent_of_input", found.residuals.independent()},
+                       {"cross_p", number(found.residuals.cross_p)},
+                       {"cross_correlation_outside", number(found.residuals.cross_correlation_outside)}};
+  json["starts"] = Json::array();
+  for (const SearchStart& start : found.starts) {
+    json["starts"].push_back({{"pole_rad_s", number(start.pole)},
+                              {"converged", start.converged},
+                              {"stable", start.stable},
+                              {"iterations", start.iterations},
+                              {"R2", number(start.fit)}});
+  }
+  if (!found.orders.empty()) json["orders"] = Json::array();
+  for (const OrderChoice& one : found.orders) {
+    json["orders"].push_back({{"poles", one.poles},
+                              {"zeros", one.zeros},
+                              {"usable", one.usable},
+                              {"R2", number(one.fit)},
+                              {"YIC", number(one.yic)},
+                              {"AIC", number(one.aic)},
+                              {"BIC", number(one.bic)},
+                              {"chosen", one.chosen}});
+  }
+  json["excited_band_hz"] = {number(found.band_low), number(found.band_high)};
+  json["samples"] = found.samples;
+  json["experiments"] = found.experiments;
+  json["even_clock"] = found.even;
+  json["sample_time_s"] = number(found.sample_time);
+  json["notes"] = found.notes;
+  json["warnings"] = warnings_json(found.warnings);
+  json["usable"] = found.usable;
+  return dumped(json);
+}
+
+}  // namespace mbk::result
