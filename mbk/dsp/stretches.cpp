@@ -226,25 +226,26 @@ const Loops& loops() {
 }
 
 /// [Φᶜ, what each of the c + 1 samples adds], row by row.
-std::vector<double> over_several(const HeldStep& system, Index count) {
+std::vector<double> over_several(const HeldStep& system, const Matrix& power, Index count) {
   const Index n = system.transition.rows();
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> all =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>::Zero(n, n + count + 1);
-  Matrix power = Matrix::Identity(n, n);
-  for (Index i = count; i > 0; --i) {
-    all.col(n + i) += power * system.from_next;
-    all.col(n + i - 1) += power * system.from_last;
-    power *= system.transition;
-  }
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> all(n, n + count + 1);
+  all.setZero();
   all.leftCols(n) = power;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> added(n, 2), next(n, 2);
+  added << system.from_last, system.from_next;
+  for (Index i = count; i > 0; --i) {
+    all.middleCols(n + i - 1, 2) += added;
+    next.noalias() = system.transition.lazyProduct(added);
+    added.swap(next);
+  }
   return {all.data(), all.data() + all.size()};
 }
 
 Matrix power_of(Matrix base, Index exponent) {
   Matrix power = Matrix::Identity(base.rows(), base.cols());
   for (; exponent > 0; exponent /= 2) {
-    if (exponent % 2 == 1) power *= base;
-    base *= base;
+    if (exponent % 2 == 1) power = power.lazyProduct(base).eval();
+    if (exponent > 1) base = base.lazyProduct(base).eval();
   }
   return power;
 }
@@ -255,35 +256,41 @@ double* values(std::vector<Abreast>& rows) {
 
 }  // namespace
 
-Stretches::Stretches(const Vector& signal, Index overlap)
-    : length_((signal.size() + kStretches - 1) / kStretches), rows_(static_cast<std::size_t>(length_ + 1 + overlap)) {
-  for (Index l = 0; l < kStretches; ++l) {
-    const Index begin = l * length_, count = std::clamp<Index>(signal.size() - begin, 0, std::ssize(rows_));
-    for (Index i = 0; i < count; ++i)
-      rows_[static_cast<std::size_t>(i)].values[static_cast<std::size_t>(l)] = signal[begin + i];
+Stretches::Stretches(const std::vector<const Vector*>& signals, Index overlap) {
+  const Index samples = signals.front()->size();
+  length_ = (samples + kStretches - 1) / kStretches;
+  count_ = length_ + 1 + overlap;
+  rows_ = std::make_unique_for_overwrite<Abreast[]>(signals.size() * static_cast<std::size_t>(count_));
+  Abreast* row = rows_.get();
+  for (const Vector* const signal : signals) {
+    for (Index i = 0; i < count_; ++i, ++row) {
+      for (Index l = 0; l < kStretches; ++l) {
+        const Index at = l * length_ + i;
+        row->values[static_cast<std::size_t>(l)] = at < samples ? (*signal)[at] : 0.0;
+      }
+    }
   }
 }
 
-Matrix states_at_starts(const HeldStep& system, const Stretches& input) {
+Matrix states_at_starts(const HeldStep& system, const Stretches& signals, Index input) {
   constexpr Index kAtOnce = 16;
-  const Index n = system.transition.rows(), length = input.length();
+  const Index n = system.transition.rows(), length = signals.length(), chunks = length / kAtOnce;
   const auto advance = loops().advance;
   std::vector<Abreast> x(static_cast<std::size_t>(n)), next = x;
-  Index i = 0;
-  const std::vector<double> several = over_several(system, kAtOnce);
-  for (; i + kAtOnce <= length; i += kAtOnce) {
-    advance(several.data(), n, kAtOnce + 1, values(x), input.row(i), values(next));
-    std::swap(x, next);
+  const Matrix over_chunk = power_of(system.transition, kAtOnce);
+  const std::vector<double> chunk = over_several(system, over_chunk, kAtOnce);
+  const std::vector<double> one = over_several(system, system.transition, 1);
+  for (Index i = 0; i < length; std::swap(x, next)) {
+    const bool whole = i + kAtOnce <= length;
+    const Index count = whole ? kAtOnce : 1;
+    advance((whole ? chunk : one).data(), n, count + 1, values(x), signals.row(input, i), values(next));
+    i += count;
   }
-  if (i < length) {
-    advance(over_several(system, length - i).data(), n, length - i + 1, values(x), input.row(i), values(next));
-    std::swap(x, next);
-  }
-  const Matrix over_one = power_of(system.transition, length);
+  const Matrix over_stretch = power_of(over_chunk, chunks) * power_of(system.transition, length % kAtOnce);
   const Eigen::Map<const Matrix> added(values(x), kStretches, n);
   Matrix starts = Matrix::Zero(n, kStretches);
   for (Index l = 1; l < kStretches; ++l) {
-    starts.col(l) = over_one * starts.col(l - 1) + added.row(l - 1).transpose();
+    starts.col(l) = over_stretch * starts.col(l - 1) + added.row(l - 1).transpose();
   }
   return starts;
 }

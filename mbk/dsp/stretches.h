@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "mbk/dsp/derivative_filter.h"
@@ -18,21 +19,26 @@ struct alignas(64) Abreast {
   std::array<double, kStretches> values;
 };
 
-/// A signal of N samples as stretches: value l of row i is sample l·m + i, m = ⌈N/16⌉, and 0 after the last.
+/// Signals of N samples as stretches: value l of row i is sample l·m + i, m = ⌈N/16⌉, and 0 after the last.
 class Stretches {
  public:
-  /// @param overlap  rows beyond the m + 1 that lead to the next stretch
-  explicit Stretches(const Vector& signal, Index overlap = 0);
+  Stretches() = default;
+  /// @param signals  of equal length    @param overlap  rows beyond the m + 1 that lead to the next stretch
+  explicit Stretches(const std::vector<const Vector*>& signals, Index overlap = 0);
   [[nodiscard]] Index length() const { return length_; }  ///< m
-  [[nodiscard]] const double* row(Index i) const { return rows_[static_cast<std::size_t>(i)].values.data(); }
+  /// Row i of one of the signals; the following ones come after it.
+  [[nodiscard]] const double* row(Index signal, Index i) const {
+    return rows_[static_cast<std::size_t>(signal * count_ + i)].values.data();
+  }
 
  private:
-  Index length_;
-  std::vector<Abreast> rows_;
+  Index length_ = 0, count_ = 0;  // count: of rows
+  std::unique_ptr<Abreast[]> rows_;
 };
 
 /// States at the beginning of each stretch, at rest before the first sample: as many rows as there are states.
-[[nodiscard]] Matrix states_at_starts(const HeldStep& system, const Stretches& input);
+/// @param input  which of the signals
+[[nodiscard]] Matrix states_at_starts(const HeldStep& system, const Stretches& signals, Index input);
 
 /// The same of the free motion from `state` at the first sample, for stretches of `length` samples.
 [[nodiscard]] Matrix free_at_starts(const Matrix& transition, const Vector& state, Index length);

@@ -163,8 +163,9 @@ struct Block {
   /// One row, sample by sample, to where it belongs.
   void scatter(Index row, Vector& to) const {
     const double* const from = rows.row(row);
-    for (Index c = 0; c < columns; ++c) {
-      if (const Index i = sample(c); i < samples) to[i] = from[c];
+    for (Index l = 0; l < stretches; ++l) {
+      const Index begin = l * length + first, count = std::min(columns / stretches, samples - begin);
+      for (Index i = 0; i < count; ++i) to[begin + i] = from[i * stretches + l];
     }
   }
   /// Columns that are no samples become zero.
@@ -177,11 +178,8 @@ struct Block {
   }
 };
 
-/// A record as the filters of all stretches take it.
-struct Stretched {
-  dsp::Stretches input, output;
-  std::optional<dsp::Stretches> clean_input;
-};
+/// Which signal of a record's stretches is which.
+enum : Index { kInput, kOutput, kCleanInput };
 
 /// One experiment's rows with the free motion projected out.
 struct Reduced {
@@ -311,7 +309,7 @@ class Fitter {
   const std::vector<SignalPair>& experiments_;
   const ContinuousFitOptions& options_;
   Index n_, q_;
-  std::vector<Stretched> stretched_;
+  std::vector<dsp::Stretches> stretched_;
   double output_squares_ = 0;  ///< Σ(y − ȳ)²
   Index samples_ = 0;
 };
@@ -347,15 +345,15 @@ template <class Use>
 void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
                                  Use&& use) const {
   const SignalPair& pair = experiments_[experiment];
-  const Stretched& signals = stretched_[experiment];
+  const dsp::Stretches& signals = stretched_[experiment];
   const Vector* const c = layout.reference ? nullptr : free_weights(at, layout, experiment);
-  const Index order = noise.size() - 1, length = signals.input.length(), past = order * dsp::kStretches;
+  const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kStretches;
   const dsp::HeldStep filter = dsp::held_step(at.a, at.scale * *pair.step);
   const dsp::HeldStep negative{filter.transition, -filter.from_last, -filter.from_next};
-  const auto from_rest = [](const dsp::HeldStep& step, const dsp::Stretches& signal) {
-    return dsp::StretchFilter(step, dsp::states_at_starts(step, signal));
+  const auto from_rest = [&](const dsp::HeldStep& step, Index signal) {
+    return dsp::StretchFilter(step, dsp::states_at_starts(step, signals, signal));
   };
-  const dsp::Stretches& source = layout.reference ? *signals.clean_input : signals.input;  // of x̂
+  const Index source = layout.reference ? kCleanInput : kInput;  // of x̂
   // States at the starts: of the source and, below them, what x̂ has of it; the same of the free motion.
   dsp::HeldStep to_x = filter, free_to_x = filter;
   if (layout.instruments) {
@@ -365,15 +363,14 @@ void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, cons
     to_x = dsp::cascaded(filter, weights, through);
     if (c != nullptr) free_to_x = dsp::cascaded(filter, c->head(n_), 0.0);
   }
-  const Matrix of_source = dsp::states_at_starts(to_x, source);
-  const Matrix of_free =
-      dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
+  const Matrix of_source = dsp::states_at_starts(to_x, signals, source);
+  Matrix of_free;
+  if (layout.free) {
+    of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
+  }
   const dsp::StretchFilter source_filter(filter, of_source.topRows(n_));
-  Filters<dsp::StretchFilter> filters{from_rest(negative, signals.output),
-                                      layout.reference ? from_rest(filter, signals.input) : source_filter,
-                                      {},
-                                      {},
-                                      {}};
+  Filters<dsp::StretchFilter> filters{
+      from_rest(negative, kOutput), layout.reference ? from_rest(filter, kInput) : source_filter, {}, {}, {}};
   if (layout.reference) filters.clean_u = source_filter;
   if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
   if (layout.instruments) {
@@ -385,8 +382,8 @@ void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, cons
   const dsp::Rows now = table.from(past);
   for (Index begin = 0; begin < length + order; begin += kSteps) {
     const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kStretches;
-    const Inputs from{signals.input.row(begin), signals.output.row(begin),
-                      layout.reference ? signals.clean_input->row(begin) : nullptr};
+    const Inputs from{signals.row(kInput, begin), signals.row(kOutput, begin),
+                      layout.reference ? signals.row(kCleanInput, begin) : nullptr};
     fill(filters, from, steps, columns, at, layout, c, now);
     Block block{now, columns, begin, dsp::kStretches, length, pair.time.size()};
     if (order > 0) {
@@ -585,6 +582,7 @@ Result<void> Fitter::check() const {
     samples += pair.time.size();
     for (const Vector* signal : {&pair.time, &pair.input, &pair.output}) {
       if (signal->size() != pair.time.size()) return bad_usage("time, input and output differ in length");
+      if (std::isfinite(signal->sum())) continue;
       if (const Index bad = first_non_finite(*signal); bad >= 0) {
         return bad_data(fmt::format("sample {} of a signal is not a finite number", bad + 1),
                         "cut it out by --from and --to");
@@ -683,15 +681,16 @@ Result<ContinuousFit> Fitter::run() {
     input_squares += (pair.input.array() - pair.input.mean()).square().sum();
     samples_ += pair.time.size();
     if (!pair.step) {
-      stretched_.push_back({dsp::Stretches(Vector()), dsp::Stretches(Vector()), {}});
+      stretched_.emplace_back();
       continue;
     }
-    const auto stretches = [&](const Vector& signal) { return dsp::Stretches(signal, options_.most_noise_order); };
-    stretched_.push_back({stretches(pair.input), stretches(pair.output), {}});
-    // û, what the reference explains of u, is the input of the instruments.
+    std::vector<const Vector*> signals = {&pair.input, &pair.output};
+    Vector clean;  // û
     if (options_.reference_instruments) {
-      stretched_.back().clean_input = stretches(explained_by_past(pair.reference, pair.input));
+      clean = explained_by_past(pair.reference, pair.input);
+      signals.push_back(&clean);
     }
+    stretched_.emplace_back(signals, options_.most_noise_order);
   }
   if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
   if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");
@@ -708,7 +707,7 @@ Result<ContinuousFit> Fitter::run() {
     if (a.start.converged != b.start.converged) return a.start.converged;
     return a.variance < b.variance;
   };
-  const Search& best = *std::ranges::min_element(searches, better);
+  Search& best = *std::ranges::min_element(searches, better);
   ContinuousFit made;
   made.samples = samples_;
   for (const Search& one : searches) made.starts.push_back(one.start);
@@ -719,7 +718,7 @@ Result<ContinuousFit> Fitter::run() {
   made.noise = best.noise;
   if (std::isfinite(best.variance)) {
     take_covariance(best, made);
-    made.residuals = best.residuals;
+    made.residuals = std::move(best.residuals);
   }
   return made;
 }
