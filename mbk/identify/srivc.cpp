@@ -258,6 +258,7 @@ class Fitter {
     SearchStart start;
     Iterate at;
     Vector noise = Vector::Ones(1);
+    int unstable_in_a_row = 0;  ///< passes
     double variance = std::numeric_limits<double>::infinity();
     Sums last;                      ///< at the end
     std::vector<Vector> residuals;  ///< y − x̂ of each experiment
@@ -476,18 +477,17 @@ Vector solved(const Sums& sums) {
   return x.asDiagonal() * scaled.colPivHouseholderQr().solve(z.asDiagonal() * sums.g);
 }
 
-/// Roots on the right half plane are reflected; false where there was one.
-bool stabilise(Vector& a) {
+/// Roots on the right half plane are reflected, to no less than a damping ratio; false where there was one.
+bool stabilise(Vector& a, double least_damping) {
   if (!a.allFinite()) return false;
   Vector monic(a.size() + 1);
   monic << a, 1.0;
   Eigen::VectorXcd roots = numeric::polynomial_roots(monic);
   bool stable = true;
-  constexpr double kLeastDamping = 1e-7;  // of a root that is put back
   for (auto& root : roots) {
     if (root.real() < 0.0) continue;
     stable = false;
-    root.real(-std::max(root.real(), kLeastDamping * std::abs(root)));
+    root.real(-std::max(root.real(), least_damping * std::abs(root)));
   }
   if (!stable) a = numeric::monic_from_roots(roots);
   return stable;
@@ -506,7 +506,13 @@ bool Fitter::step(Search& found, double& change) const {
   }
   found.at.a += delta.head(n_);
   found.at.b = (first ? Vector(Vector::Zero(q_)) : found.at.b) + delta.tail(q_);
-  found.start.stable = stabilise(found.at.a);
+  // A root that keeps coming back from the right half plane would be put to the same place for ever: the error has its
+  // least on the axis there. Far from it the search finds another way.
+  constexpr int kPatience = 8;
+  constexpr double kReflected = 1e-7, kMovedAway = 0.1;
+  const bool stuck = found.unstable_in_a_row > 0 && found.unstable_in_a_row % kPatience == 0;
+  found.start.stable = stabilise(found.at.a, stuck ? kMovedAway : kReflected);
+  found.unstable_in_a_row = found.start.stable ? 0 : found.unstable_in_a_row + 1;
   if (!found.at.a.allFinite() || !found.at.b.allFinite()) return false;
   // A coefficient that noise leaves undecided is not asked to stand still beyond its own error.
   const double variance = now.ee / static_cast<double>(std::max<Index>(now.samples - n_ - q_, 1));
@@ -526,7 +532,7 @@ void Fitter::iterate(Search& found) const {
   for (int pass = 0; pass < options_.most_iterations; ++pass) {
     ++found.start.iterations;
     if (!step(found, change)) return;
-    if (settled && change >= 0.5 * least) break;
+    if (settled && change >= 0.5 * least && change < options_.tolerance) break;
     settled = settled || (change < options_.tolerance && found.start.stable);
     least = std::min(least, change);
     if (settled && (!options_.refine || change < kRounding)) break;
@@ -537,11 +543,16 @@ void Fitter::iterate(Search& found) const {
 Fitter::Search Fitter::search(double pole) const {
   Search found;
   found.start.pole = pole;
-  found.at.scale = pole;
-  found.at.a = numeric::monic_from_roots(Eigen::VectorXcd::Constant(n_, -1.0));
-  double change = 0.0;
-  found.start.iterations = 1;
-  if (!step(found, change)) return found;
+  // Filters so slow that they leave nothing but a free motion of the record determine nothing; faster ones do.
+  constexpr int kMostDoublings = 20;
+  bool begun = false;
+  for (int k = 0; !begun && k < kMostDoublings; ++k) {
+    found.at = {std::ldexp(pole, k), numeric::monic_from_roots(Eigen::VectorXcd::Constant(n_, -1.0)), {}, {}};
+    double change = 0.0;
+    ++found.start.iterations;
+    begun = step(found, change);
+  }
+  if (!begun) return found;
   iterate(found);
   if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
   // With a noise model: what is left is modelled, and the fit repeated, until neither changes.
