@@ -103,6 +103,7 @@ struct Iterate {
 struct Layout {
   Index n, q;                         ///< poles; coefficients of the numerator
   bool instruments, reference, free;  ///< present
+  Index input = 0;                    ///< which signal is taken for u: kInput or kCleanInput
   [[nodiscard]] Index z_size() const { return !instruments ? 0 : (reference ? n + q : n); }
   [[nodiscard]] Index u() const { return z_size(); }
   [[nodiscard]] Index e() const { return u() + q; }
@@ -258,8 +259,9 @@ class Fitter {
     SearchStart start;
     Iterate at;
     Vector noise = Vector::Ones(1);
-    int unstable_in_a_row = 0;  ///< passes
-    double variance = std::numeric_limits<double>::infinity();
+    int unstable_in_a_row = 0;      ///< passes
+    bool from_clean_input = false;  ///< û is taken for u
+    double variance = std::numeric_limits<double>::infinity(), rank = variance;
     Sums last;                      ///< at the end
     std::vector<Vector> residuals;  ///< y − x̂ of each experiment
   };
@@ -304,6 +306,9 @@ class Fitter {
   }
   [[nodiscard]] Layout layout(bool instruments) const {
     return {n_, q_, instruments, instruments && options_.reference_instruments, options_.free_start};
+  }
+  [[nodiscard]] Layout layout_of_clean_input(bool instruments) const {
+    return {n_, q_, instruments, false, options_.free_start, kCleanInput};
   }
   void take_covariance(const Search& best, ContinuousFit& made) const;
 
@@ -354,7 +359,7 @@ void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, cons
   const auto from_rest = [&](const dsp::HeldStep& step, Index signal) {
     return dsp::StretchFilter(step, dsp::states_at_starts(step, signals, signal));
   };
-  const Index source = layout.reference ? kCleanInput : kInput;  // of x̂
+  const Index source = layout.reference ? kCleanInput : layout.input;  // of x̂
   // States at the starts: of the source and, below them, what x̂ has of it; the same of the free motion.
   dsp::HeldStep to_x = filter, free_to_x = filter;
   if (layout.instruments) {
@@ -383,7 +388,7 @@ void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, cons
   const dsp::Rows now = table.from(past);
   for (Index begin = 0; begin < length + order; begin += kSteps) {
     const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kStretches;
-    const Inputs from{signals.row(kInput, begin), signals.row(kOutput, begin),
+    const Inputs from{signals.row(layout.input, begin), signals.row(kOutput, begin),
                       layout.reference ? signals.row(kCleanInput, begin) : nullptr};
     fill(filters, from, steps, columns, at, layout, c, now);
     Block block{now, columns, begin, dsp::kStretches, length, pair.time.size()};
@@ -495,7 +500,7 @@ bool stabilise(Vector& a, double least_damping) {
 
 bool Fitter::step(Search& found, double& change) const {
   const bool first = found.at.b.size() == 0;
-  const Layout rows = layout(!first);
+  const Layout rows = found.from_clean_input ? layout_of_clean_input(!first) : layout(!first);
   const Sums now = sums(found.at, rows, found.noise);
   const Vector delta = solved(now);
   if (!delta.allFinite()) return false;
@@ -543,6 +548,7 @@ void Fitter::iterate(Search& found) const {
 Fitter::Search Fitter::search(double pole) const {
   Search found;
   found.start.pole = pole;
+  found.from_clean_input = options_.reference_instruments;
   // Filters so slow that they leave nothing but a free motion of the record determine nothing; faster ones do.
   constexpr int kMostDoublings = 20;
   bool begun = false;
@@ -553,6 +559,13 @@ Fitter::Search Fitter::search(double pole) const {
     begun = step(found, change);
   }
   if (!begun) return found;
+  // In a closed loop first with û for u (two stages, Van den Hof & Schrama 1993): that is a fit without any loop, whose
+  // error has one least. The equations of the instruments have other solutions, too, where the noise is strong.
+  if (found.from_clean_input) {
+    iterate(found);
+    found.from_clean_input = false;
+    if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
+  }
   iterate(found);
   if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
   // With a noise model: what is left is modelled, and the fit repeated, until neither changes.
@@ -567,6 +580,9 @@ Fitter::Search Fitter::search(double pole) const {
   const bool white = found.noise.size() == 1;
   found.last = sums(found.at, layout(true), found.noise, white ? &found.residuals : nullptr);
   found.variance = found.last.ee / static_cast<double>(std::max<Index>(found.last.samples - n_ - q_, 1));
+  found.rank = found.variance;
+  // With the loop's noise in u the least error is not the truth's.
+  if (options_.reference_instruments) found.rank = sums(found.at, layout_of_clean_input(false), Vector::Ones(1)).ee;
   double squares = found.last.ee;
   if (!white) {
     found.residuals = residuals(found.at);
@@ -716,7 +732,7 @@ Result<ContinuousFit> Fitter::run() {
   if (!ran) return tl::unexpected(ran.error());
   const auto better = [](const Search& a, const Search& b) {
     if (a.start.converged != b.start.converged) return a.start.converged;
-    return a.variance < b.variance;
+    return a.rank < b.rank;
   };
   Search& best = *std::ranges::min_element(searches, better);
   ContinuousFit made;
