@@ -47,8 +47,8 @@ class Stretches {
 /// States are those of the first, then of the second.
 [[nodiscard]] HeldStep cascaded(const HeldStep& filter, const Vector& weights, double through);
 
-/// Columns of a table whose rows are signals: row r begins at data + r·stride. Columns come in multiples of 16, rows at
-/// multiples of 64 bytes.
+/// Columns of a table whose rows are signals: row r begins at data + r·stride. Columns come in
+/// multiples of 16.
 struct Rows {
   double* data;
   Index stride;

@@ -180,7 +180,7 @@ struct Block {
 };
 
 /// Which signal of a record's stretches is which.
-enum : Index { kInput, kOutput, kCleanInput };
+constexpr Index kInput = 0, kOutput = 1, kCleanInput = 2;
 
 /// One experiment's rows with the free motion projected out.
 struct Reduced {
