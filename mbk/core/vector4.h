@@ -2,19 +2,30 @@
 
 /// Four doubles at a time, for inner loops. A body is written once with these and compiled twice:
 /// for every processor, and with MBK_X86_64_V3 for those that have AVX2 and fused multiply-add (x86-64-v3, 2013 and
-/// later). Which one runs is decided where the program runs.
+/// later). Which one runs is decided where the program runs. Eight at a time are for MBK_X86_64_V4 (AVX-512).
 namespace mbk {
 
 typedef double Vector4 __attribute__((vector_size(32)));                            // NOLINT(modernize-use-using)
 typedef double Unaligned4 __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+typedef double Vector8 __attribute__((vector_size(64)));                            // NOLINT(modernize-use-using)
+typedef double Unaligned8 __attribute__((vector_size(64), aligned(8), may_alias));  // NOLINT(modernize-use-using)
 
 #if defined(__x86_64__)
 #define MBK_X86_64_V3 [[gnu::target("avx2,fma")]]
 inline bool has_x86_64_v3() {
   return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
 }
+#define MBK_X86_64_V4 [[gnu::target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]]
+inline bool has_x86_64_v4() {
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0 && has_x86_64_v3();
+}
 #else
 #define MBK_X86_64_V3
+#define MBK_X86_64_V4
+inline bool has_x86_64_v4() {
+  return false;
+}
 inline bool has_x86_64_v3() {
   return false;
 }
@@ -25,6 +36,12 @@ inline bool has_x86_64_v3() {
 }
 [[gnu::always_inline]] inline const Unaligned4& four(const double* at) {
   return *reinterpret_cast<const Unaligned4*>(at);
+}
+[[gnu::always_inline]] inline Unaligned8& eight(double* at) {
+  return *reinterpret_cast<Unaligned8*>(at);
+}
+[[gnu::always_inline]] inline const Unaligned8& eight(const double* at) {
+  return *reinterpret_cast<const Unaligned8*>(at);
 }
 
 }  // namespace mbk

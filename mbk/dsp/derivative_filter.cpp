@@ -4,6 +4,18 @@
 
 namespace mbk::dsp {
 
+HeldStep held_step(const Vector& denominator, double step) {
+  const Index n = denominator.size();
+  Matrix F = Matrix::Zero(n + 2, n + 2);
+  F.diagonal(1).head(n - 1).setOnes();
+  F.row(n - 1).head(n) = -denominator.transpose();
+  F(n - 1, n) = 1.0;
+  F(n, n + 1) = 1.0;
+  const Matrix E = (step * F).exp();
+  const Vector from_next = E.col(n + 1).head(n) / step;
+  return {E.topLeftCorner(n, n), E.col(n).head(n) - from_next, from_next};
+}
+
 DerivativeFilter::DerivativeFilter(const Vector& denominator)
     : a_(denominator), x_(Vector::Zero(denominator.size())), n_(denominator.size()) {}
 
@@ -15,22 +27,14 @@ void DerivativeFilter::set_state(const Vector& state, double input) {
 void DerivativeFilter::set_step(double step) {
   if (step == step_) return;
   step_ = step;
-  Matrix F = Matrix::Zero(n_ + 2, n_ + 2);
-  F.diagonal(1).head(n_ - 1).setOnes();
-  F.row(n_ - 1).head(n_) = -a_.transpose();
-  F(n_ - 1, n_) = 1.0;
-  F(n_, n_ + 1) = 1.0;
-  const Matrix E = (step * F).exp();
-  transition_ = E.topLeftCorner(n_, n_);
-  from_next_ = E.col(n_ + 1).head(n_) / step;
-  from_last_ = E.col(n_).head(n_) - from_next_;
+  held_ = held_step(a_, step);
 }
 
 template <int N>
 void DerivativeFilter::run_fixed(const double* input, Index count, double* states, Index stride) {
   using State = Eigen::Matrix<double, N, 1>;
-  const Eigen::Matrix<double, N, N> transition = transition_;
-  const State from_last = from_last_, from_next = from_next_;
+  const Eigen::Matrix<double, N, N> transition = held_.transition;
+  const State from_last = held_.from_last, from_next = held_.from_next;
   State x = x_;
   double last = last_input_;
   for (Index i = 0; i < count; ++i) {
@@ -68,7 +72,7 @@ void DerivativeFilter::run(double step, const double* input, Index count,
       return run_fixed<8>(input, count, to, stride);
     default:
       for (Index i = 0; i < count; ++i) {
-        x_ = (transition_ * x_ + from_last_ * last_input_ + from_next_ * input[i]).eval();
+        x_ = (held_.transition * x_ + held_.from_last * last_input_ + held_.from_next * input[i]).eval();
         last_input_ = input[i];
         states.col(i) = x_;
       }

@@ -4,6 +4,15 @@
 
 namespace mbk::dsp {
 
+/// One sample of a linear system behind a first-order hold: x ← Φ x + Γ₀ u(t) + Γ₁ u(t + h).
+struct HeldStep {
+  Matrix transition;            ///< Φ
+  Vector from_last, from_next;  ///< Γ₀, Γ₁
+};
+
+/// Of the filter below, over `step`.
+[[nodiscard]] HeldStep held_step(const Vector& denominator, double step);
+
 /// All derivatives of a signal behind 1/A in one pass, exactly for a signal that runs in straight lines between its
 /// samples (first-order hold): x_k = sᵏ/A(s) u, k = 0 … n − 1, are the states of the companion form
 ///   ẋ_k = x_{k+1},  ẋ_{n−1} = u − Σ a_k x_k,  A(s) = sⁿ + a_{n−1} sⁿ⁻¹ + … + a₀,
@@ -38,8 +47,7 @@ class DerivativeFilter {
   Index n_;
   double last_input_ = 0.0;
   double step_ = 0.0;
-  Matrix transition_;             // Φ
-  Vector from_last_, from_next_;  // Γ₀, Γ₁
+  HeldStep held_;
 };
 
 }  // namespace mbk::dsp

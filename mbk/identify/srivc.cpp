@@ -6,11 +6,14 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "mbk/dsp/derivative_filter.h"
+#include "mbk/dsp/stretches.h"
 #include "mbk/identify/autoregression.h"
 #include "mbk/numeric/least_squares.h"
 #include "mbk/numeric/parallel.h"
@@ -19,7 +22,8 @@
 namespace mbk::identify {
 namespace {
 
-constexpr Index kBlock = 256;
+constexpr Index kSteps = 16;  // of all stretches in a block: what fits the nearest cache
+constexpr Index kBlock = kSteps * dsp::kStretches;
 constexpr Index kMostPoles = 20;
 
 double step_of(const SignalPair& pair, Index i) {
@@ -29,33 +33,40 @@ double step_of(const SignalPair& pair, Index i) {
 /// The states of a filter over samples [begin, begin + count) of an experiment.
 class Pass {
  public:
-  Pass(const Vector& a, const SignalPair& pair, double scale) : filter_(a), pair_(pair), scale_(scale) {}
-  void start_at(const Vector& state) { filter_.set_state(state); }
+  Pass(const Vector& a, const SignalPair& pair, double scale, const Vector& start, double sign = 1.0)
+      : filter_(a), pair_(pair), scale_(scale), sign_(sign) {
+    filter_.set_state(start);
+  }
 
-  /// @param input the samples of the block    @param states n rows, count columns
-  void run(Index begin, Index count, const double* input, Eigen::Ref<Matrix, 0, Eigen::OuterStride<>> states) {
+  /// @param input the next `count` samples    @param states n rows, count columns
+  void run(const double* input, Index count, Eigen::Ref<Matrix, 0, Eigen::OuterStride<>> states) {
     Index i = 0;
-    if (begin == 0) {
+    if (next_ == 0) {
       states.col(0) = filter_.state();
       filter_.begin(input[0]);
       i = 1;
     }
     if (pair_.step) {
       if (count > i) filter_.run(scale_ * *pair_.step, input + i, count - i, states.middleCols(i, count - i));
-      return;
+    } else {
+      for (; i < count; ++i) filter_.run(scale_ * step_of(pair_, next_ + i), input + i, 1, states.middleCols(i, 1));
     }
-    for (; i < count; ++i) {
-      filter_.run(scale_ * step_of(pair_, begin + i), input + i, 1, states.middleCols(i, 1));
-    }
+    next_ += count;
+  }
+  void run(const double* input, Index count, dsp::Rows to) {
+    Matrix states(filter_.order(), count);
+    run(input, count, states);
+    for (Index r = 0; r < states.rows(); ++r) Eigen::Map<Eigen::RowVectorXd>(to.row(r), count) = sign_ * states.row(r);
   }
 
  private:
   dsp::DerivativeFilter filter_;
   const SignalPair& pair_;
-  double scale_;
+  double scale_, sign_;
+  Index next_ = 0;
 };
 
-/// A₀…, and the model in time scaled by `scale`, t′ = scale·t.
+/// The model in time scaled by `scale`, t′ = scale·t.
 struct Iterate {
   double scale = 1.0;
   Vector a, b;
@@ -88,30 +99,92 @@ struct Iterate {
   [[nodiscard]] Vector physical() const { return theta().cwiseProduct(to_seconds()); }
 };
 
-/// Where the rows of a block stand.
+/// Where the rows of a block stand: [those of Z that X has not | u | e | free motion | −y].
 struct Layout {
   Index n, q;                         ///< poles; coefficients of the numerator
   bool instruments, reference, free;  ///< present
-  [[nodiscard]] Index x() const { return 0; }
-  [[nodiscard]] Index z() const { return n + q; }  ///< of x̂; then those of u where they differ
+  Index input = 0;                    ///< which signal is taken for u: kInput or kCleanInput
   [[nodiscard]] Index z_size() const { return !instruments ? 0 : (reference ? n + q : n); }
-  [[nodiscard]] Index free_at() const { return z() + z_size(); }
+  [[nodiscard]] Index u() const { return z_size(); }
+  [[nodiscard]] Index e() const { return u() + q; }
+  [[nodiscard]] Index free_at() const { return e() + 1; }
   [[nodiscard]] Index free_size() const { return free ? n + 1 : 0; }
-  [[nodiscard]] Index e() const { return free_at() + free_size(); }
-  [[nodiscard]] Index rows() const { return e() + 1; }
-  /// Rows that are Z, in the order of [a, b].
+  [[nodiscard]] Index y() const { return free_at() + free_size(); }
+  [[nodiscard]] Index rows() const { return y() + n; }
+  /// Rows that are X, in the order of [a, b].
+  [[nodiscard]] std::vector<Index> x_rows() const {
+    std::vector<Index> rows_of;
+    for (Index k = 0; k < n + q; ++k) rows_of.push_back(k < n ? y() + k : u() + k - n);
+    return rows_of;
+  }
   [[nodiscard]] std::vector<Index> z_rows() const {
-    std::vector<Index> rows_of(static_cast<std::size_t>(n + q));
-    for (Index k = 0; k < n + q; ++k) {
-      rows_of[static_cast<std::size_t>(k)] = !instruments ? k : (k < n || reference ? z() + k : k);
-    }
+    std::vector<Index> rows_of = x_rows();
+    for (Index k = 0; instruments && k < (reference ? n + q : n); ++k) rows_of[static_cast<std::size_t>(k)] = k;
     return rows_of;
   }
 };
 
+/// Rows of doubles that inner loops can take.
+class Table {
+ public:
+  Table(Index rows, Index columns)
+      : stride_(columns + dsp::kStretches),  // not a power of two, for the cache's sake
+        values_(static_cast<std::size_t>(rows * stride_ / dsp::kStretches)) {}
+  [[nodiscard]] dsp::Rows from(Index column) { return {values_.data()->values.data() + column, stride_}; }
+
+ private:
+  Index stride_;
+  std::vector<dsp::Abreast> values_;
+};
+
+dsp::Rows rows_from(dsp::Rows rows, Index first) {
+  return {rows.row(first), rows.stride};
+}
+
+/// Columns of a block: samples that follow each other, or those of all stretches at one step after another.
+struct Block {
+  dsp::Rows rows;
+  Index columns;            ///< a multiple of 16
+  Index first;              ///< step, of each stretch
+  Index stretches, length;  ///< length: from one stretch to the next
+  Index samples;            ///< in the record
+
+  /// Not below `samples`: none.
+  [[nodiscard]] Index sample(Index column) const { return column % stretches * length + first + column / stretches; }
+  void skip(Index steps) {
+    rows.data += steps * stretches;
+    columns -= steps * stretches;
+    first += steps;
+  }
+  [[nodiscard]] auto matrix(Index row_count) const {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    return Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>(rows.data, row_count, columns,
+                                                               Eigen::OuterStride<>(rows.stride));
+  }
+  /// One row, sample by sample, to where it belongs.
+  void scatter(Index row, Vector& to) const {
+    const double* const from = rows.row(row);
+    for (Index l = 0; l < stretches; ++l) {
+      const Index begin = l * length + first, count = std::min(columns / stretches, samples - begin);
+      for (Index i = 0; i < count; ++i) to[begin + i] = from[i * stretches + l];
+    }
+  }
+  /// Columns that are no samples become zero.
+  void clear_beyond(Index row_count) const {
+    if (sample(columns - 1) < samples) return;
+    for (Index c = 0; c < columns; ++c) {
+      if (sample(c) < samples) continue;
+      for (Index r = 0; r < row_count; ++r) rows.row(r)[c] = 0.0;
+    }
+  }
+};
+
+/// Which signal of a record's stretches is which.
+constexpr Index kInput = 0, kOutput = 1, kCleanInput = 2;
+
 /// One experiment's rows with the free motion projected out.
 struct Reduced {
-  Matrix M, S;                  ///< ZᵀX, ZᵀZ
+  Matrix M, S;                  ///< ZᵀX, ZᵀZ (of which a step of the search needs the diagonal only)
   Vector g;                     ///< Zᵀe
   double ee = 0;                ///< eᵀe
   Matrix free_of_x, free_of_z;  ///< (NᵀN)⁺NᵀX, (NᵀN)⁺NᵀZ
@@ -132,17 +205,17 @@ Matrix pseudo_inverse(const Matrix& gram) {
 }
 
 Reduced reduce(const Matrix& gram, const Layout& at) {
-  const Index p = at.n + at.q, f = at.free_size();
-  const std::vector<Index> z = at.z_rows();
+  const Index f = at.free_size();
+  const std::vector<Index> x = at.x_rows(), z = at.z_rows();
   Reduced r;
-  r.M = gram(z, Eigen::seqN(0, p));
+  r.M = gram(z, x);
   r.S = gram(z, z);
   r.g = gram(z, at.e());
   r.ee = gram(at.e(), at.e());
   if (f == 0) return r;
   const auto free = Eigen::seqN(at.free_at(), f);
   const Matrix inverse = pseudo_inverse(gram(free, free));
-  const Matrix NZ = gram(free, z), NX = gram(free, Eigen::seqN(0, p));
+  const Matrix NZ = gram(free, z), NX = gram(free, x);
   const Vector Ne = gram(free, at.e());
   r.free_of_x = inverse * NX;
   r.free_of_z = inverse * NZ;
@@ -157,11 +230,22 @@ Reduced reduce(const Matrix& gram, const Layout& at) {
 /// Everything that a pass over the data adds up.
 struct Sums {
   Matrix M, S;
-  Vector g, x_squares;
+  Vector g;
   double ee = 0;
   Index samples = 0;
   std::vector<Reduced> each;
 };
+
+/// n + 1 rows: the motions that a state at the first sample leaves, and an offset.
+Matrix free_motion(const Iterate& at, const SignalPair& pair) {
+  const Index n = at.a.size(), total = pair.time.size();
+  Pass pass(at.a, pair, at.scale, Vector::Unit(n, n - 1));
+  Matrix free(n + 1, total);
+  const Vector none = Vector::Zero(total);
+  pass.run(none.data(), total, free.topRows(n));
+  free.row(n).setOnes();
+  return free;
+}
 
 class Fitter {
  public:
@@ -175,8 +259,11 @@ class Fitter {
     SearchStart start;
     Iterate at;
     Vector noise = Vector::Ones(1);
-    double variance = std::numeric_limits<double>::infinity();
-    Sums last;  ///< at the end
+    int unstable_in_a_row = 0;      ///< passes
+    bool from_clean_input = false;  ///< û is taken for u
+    double variance = std::numeric_limits<double>::infinity(), rank = variance;
+    Sums last;                      ///< at the end
+    std::vector<Vector> residuals;  ///< y − x̂ of each experiment
   };
 
   [[nodiscard]] Result<void> check() const;
@@ -185,124 +272,227 @@ class Fitter {
   void iterate(Search& found) const;
   bool step(Search& found, double& change) const;
 
-  /// Calls use(begin, count, rows) for the blocks of one experiment.
+  template <class Filter>
+  struct Filters {
+    Filter y, u;
+    std::optional<Filter> clean_u, free, x;
+  };
+  /// The samples of a block.
+  struct Inputs {
+    const double *input, *output, *clean_input;
+  };
+  /// Fills the rows of a block.   @param free_weights of the free motion in x̂, or nullptr
+  template <class Filter>
+  void fill(Filters<Filter>& filters, const Inputs& from, Index count, Index columns, const Iterate& at,
+            const Layout& layout, const Vector* free_weights, dsp::Rows now) const;
+  /// Calls use(block) for the blocks of one experiment.
   template <class Use>
   void blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise, Use&& use) const;
-  [[nodiscard]] Sums sums(const Iterate& at, const Layout& layout, const Vector& noise) const;
-  [[nodiscard]] std::vector<Vector> residuals(const Iterate& at) const;
+  template <class Use>
+  void blocks_of_stretches(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                           Use&& use) const;
+  template <class Use>
+  void blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const;
+  [[nodiscard]] static const Vector* free_weights(const Iterate& at, const Layout& layout, std::size_t experiment) {
+    return layout.free && experiment < at.free.size() ? &at.free[experiment] : nullptr;
+  }
+  /// @param residuals  y − x̂ of each experiment, where it is not nullptr; without a noise model only
+  [[nodiscard]] Sums sums(const Iterate& at, const Layout& layout, const Vector& noise,
+                          std::vector<Vector>* residuals = nullptr) const;
+  [[nodiscard]] std::vector<Vector> residuals(const Iterate& at) const {
+    std::vector<Vector> all;
+    static_cast<void>(sums(at, layout(false), Vector::Ones(1), &all));
+    return all;
+  }
   [[nodiscard]] Layout layout(bool instruments) const {
     return {n_, q_, instruments, instruments && options_.reference_instruments, options_.free_start};
+  }
+  [[nodiscard]] Layout layout_of_clean_input(bool instruments) const {
+    return {n_, q_, instruments, false, options_.free_start, kCleanInput};
   }
   void take_covariance(const Search& best, ContinuousFit& made) const;
 
   const std::vector<SignalPair>& experiments_;
   const ContinuousFitOptions& options_;
   Index n_, q_;
-  std::vector<Vector> clean_input_;  ///< û, where the reference is the instrument
-  double output_squares_ = 0;        ///< Σ(y − ȳ)²
+  std::vector<dsp::Stretches> stretched_;
+  double output_squares_ = 0;  ///< Σ(y − ȳ)²
   Index samples_ = 0;
 };
+
+template <class Filter>
+void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Index columns, const Iterate& at,
+                  const Layout& layout, const Vector* free_weights, dsp::Rows now) const {
+  static const std::vector<dsp::Abreast> kNone(kSteps);
+  const double* const none = kNone.data()->values.data();
+  /// sᵏ/A, k = 0 … q − 1, of which the n-th is the signal itself less the others. Where q is less than n, rows that
+  /// follow are written, too, and only then get what belongs there.
+  const auto take_input = [&](Filter& filter, const double* signal, dsp::Rows to) {
+    filter.run(signal, count, to);
+    if (q_ > n_) dsp::combine(-at.a, to, signal, columns, to.row(n_));
+  };
+  const dsp::Rows u = rows_from(now, layout.u()), free = rows_from(now, layout.free_at());
+  if (filters.clean_u) take_input(*filters.clean_u, from.clean_input, rows_from(now, n_));
+  take_input(filters.u, from.input, u);
+  filters.y.run(from.output, count, rows_from(now, layout.y()));
+  if (filters.free) {
+    filters.free->run(none, count, free);
+    std::fill_n(free.row(n_), columns, 1.0);
+  }
+  dsp::combine(-at.b, u, from.output, columns, now.row(layout.e()));
+  if (!filters.x) return;
+  alignas(64) std::array<double, kBlock> clean;
+  dsp::combine(at.b, layout.reference ? rows_from(now, n_) : u, none, columns, clean.data());
+  if (free_weights != nullptr) dsp::combine(free_weights->head(n_), free, clean.data(), columns, clean.data());
+  filters.x->run(clean.data(), count, now);
+}
+
+template <class Use>
+void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                                 Use&& use) const {
+  const SignalPair& pair = experiments_[experiment];
+  const dsp::Stretches& signals = stretched_[experiment];
+  const Vector* const c = layout.reference ? nullptr : free_weights(at, layout, experiment);
+  const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kStretches;
+  const dsp::HeldStep filter = dsp::held_step(at.a, at.scale * *pair.step);
+  const dsp::HeldStep negative{filter.transition, -filter.from_last, -filter.from_next};
+  const auto from_rest = [&](const dsp::HeldStep& step, Index signal) {
+    return dsp::StretchFilter(step, dsp::states_at_starts(step, signals, signal));
+  };
+  const Index source = layout.reference ? kCleanInput : layout.input;  // of x̂
+  // States at the starts: of the source and, below them, what x̂ has of it; the same of the free motion.
+  dsp::HeldStep to_x = filter, free_to_x = filter;
+  if (layout.instruments) {
+    const double through = q_ > n_ ? at.b[n_] : 0.0;
+    Vector weights = -through * at.a;
+    weights.head(std::min(q_, n_)) += at.b.head(std::min(q_, n_));
+    to_x = dsp::cascaded(filter, weights, through);
+    if (c != nullptr) free_to_x = dsp::cascaded(filter, c->head(n_), 0.0);
+  }
+  const Matrix of_source = dsp::states_at_starts(to_x, signals, source);
+  Matrix of_free;
+  if (layout.free) {
+    of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
+  }
+  const dsp::StretchFilter source_filter(filter, of_source.topRows(n_));
+  Filters<dsp::StretchFilter> filters{
+      from_rest(negative, kOutput), layout.reference ? from_rest(filter, kInput) : source_filter, {}, {}, {}};
+  if (layout.reference) filters.clean_u = source_filter;
+  if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
+  if (layout.instruments) {
+    Matrix starts = -of_source.bottomRows(n_);
+    if (c != nullptr) starts -= of_free.bottomRows(n_);
+    filters.x.emplace(negative, starts);
+  }
+  Table table(layout.rows(), past + kBlock), filtered(layout.rows(), kBlock);
+  const dsp::Rows now = table.from(past);
+  for (Index begin = 0; begin < length + order; begin += kSteps) {
+    const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kStretches;
+    const Inputs from{signals.row(layout.input, begin), signals.row(kOutput, begin),
+                      layout.reference ? signals.row(kCleanInput, begin) : nullptr};
+    fill(filters, from, steps, columns, at, layout, c, now);
+    Block block{now, columns, begin, dsp::kStretches, length, pair.time.size()};
+    if (order > 0) {
+      block.rows = filtered.from(0);
+      for (Index r = 0; r < layout.rows(); ++r) {
+        double* const row = now.row(r);
+        dsp::combine(noise.tail(order), {row - dsp::kStretches, -dsp::kStretches}, row, columns, block.rows.row(r));
+        std::copy_n(row + columns - past, past, row - past);
+      }
+      // Before there is a past; in all stretches but the first these samples are the last of the one before.
+      block.skip(std::clamp<Index>(order - begin, 0, steps));
+    }
+    if (block.columns == 0) continue;
+    block.clear_beyond(layout.rows());
+    use(block);
+  }
+}
+
+template <class Use>
+void Fitter::blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const {
+  const SignalPair& pair = experiments_[experiment];
+  const Vector rest = Vector::Zero(n_);
+  Filters<Pass> filters{Pass(at.a, pair, at.scale, rest, -1.0), Pass(at.a, pair, at.scale, rest), {}, {}, {}};
+  if (layout.free) filters.free.emplace(at.a, pair, at.scale, Vector::Unit(n_, n_ - 1));
+  if (layout.instruments) filters.x.emplace(at.a, pair, at.scale, rest, -1.0);
+  Table table(layout.rows(), kBlock), signals(2, kBlock);
+  double* const input = signals.from(0).row(0);
+  double* const output = signals.from(0).row(1);
+  for (Index begin = 0; begin < pair.time.size(); begin += kBlock) {
+    const Index count = std::min(kBlock, pair.time.size() - begin);
+    const Index columns = (count + dsp::kStretches - 1) / dsp::kStretches * dsp::kStretches;
+    std::copy_n(pair.input.data() + begin, count, input);
+    std::copy_n(pair.output.data() + begin, count, output);
+    fill(filters, {input, output, nullptr}, count, columns, at, layout, free_weights(at, layout, experiment),
+         table.from(0));
+    const Block block{table.from(0), columns, begin, 1, 0, pair.time.size()};
+    block.clear_beyond(layout.rows());
+    use(block);
+  }
+}
 
 template <class Use>
 void Fitter::blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
                     Use&& use) const {
-  const SignalPair& pair = experiments_[experiment];
-  const Index total = pair.time.size(), order = noise.size() - 1;
-  Pass y(at.a, pair, at.scale), u(at.a, pair, at.scale), x(at.a, pair, at.scale), v(at.a, pair, at.scale),
-      free(at.a, pair, at.scale);
-  free.start_at(Vector::Unit(n_, n_ - 1));
-  const Vector none = Vector::Zero(layout.free ? kBlock : 0);
-  const Vector* const c = layout.free && experiment < at.free.size() ? &at.free[experiment] : nullptr;
-  Matrix rows = Matrix::Zero(layout.rows(), order + kBlock), input(n_, kBlock), filtered;
-  Vector clean(kBlock);
-  for (Index begin = 0; begin < total; begin += kBlock) {
-    const Index count = std::min(kBlock, total - begin);
-    auto now = rows.middleCols(order, count);
-    const auto from = [&](const Vector& signal) { return signal.data() + begin; };
-    /// sᵏ/A, k = 0 … q − 1, of which the n-th is the signal itself less the others.
-    const auto take_input = [&](Pass& pass, const double* signal, Index row) {
-      pass.run(begin, count, signal, input.leftCols(count));
-      now.middleRows(row, std::min(q_, n_)) = input.leftCols(count).topRows(std::min(q_, n_));
-      if (q_ <= n_) return;
-      now.row(row + n_) =
-          Eigen::Map<const Eigen::RowVectorXd>(signal, count) - at.a.transpose() * input.leftCols(count);
-    };
-    y.run(begin, count, from(pair.output), now.topRows(n_));
-    now.topRows(n_) = -now.topRows(n_);
-    take_input(u, from(pair.input), n_);
-    if (layout.free) {
-      free.run(begin, count, none.data(), now.middleRows(layout.free_at(), n_));
-      now.row(layout.free_at() + n_).setOnes();
-    }
-    now.row(layout.e()) = pair.output.segment(begin, count).transpose();
-    if (at.b.size() > 0) {
-      now.row(layout.e()).noalias() -= at.b.transpose() * now.middleRows(n_, q_);
-      if (layout.instruments) {
-        if (layout.reference) {
-          take_input(v, from(clean_input_[experiment]), layout.z() + n_);
-          clean.head(count).noalias() = now.middleRows(layout.z() + n_, q_).transpose() * at.b;
-        } else {
-          clean.head(count).noalias() = now.middleRows(n_, q_).transpose() * at.b;
-          if (c != nullptr) {
-            clean.head(count).noalias() += now.middleRows(layout.free_at(), n_).transpose() * c->head(n_);
-          }
-        }
-        x.run(begin, count, clean.data(), now.middleRows(layout.z(), n_));
-        now.middleRows(layout.z(), n_) = -now.middleRows(layout.z(), n_);
-      }
-    }
-    if (order == 0) {
-      use(begin, count, now);
-      continue;
-    }
-    filtered = now;
-    for (Index j = 1; j <= order; ++j) filtered += noise[j] * rows.middleCols(order - j, count);
-    const Index skip = begin == 0 ? std::min(order, count) : 0;  // before there is a past
-    use(begin + skip, count - skip, filtered.rightCols(count - skip));
-    rows.leftCols(order) = rows.middleCols(count, order).eval();
+  if (experiments_[experiment].step) {
+    blocks_of_stretches(experiment, at, layout, noise, use);
+  } else {
+    blocks_of_uneven(experiment, at, layout, use);
   }
 }
 
-Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise) const {
-  const Index p = n_ + q_;
-  Sums all{Matrix::Zero(p, p), Matrix::Zero(p, p), Vector::Zero(p), Vector::Zero(p), 0.0, 0, {}};
+Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, std::vector<Vector>* residuals) const {
+  const Index p = n_ + q_, u = layout.u(), y = layout.y(), rows = layout.rows();
+  const Index own = layout.instruments ? 0 : y, own_size = layout.instruments ? layout.z_size() : n_;
+  Sums all{Matrix::Zero(p, p), Matrix::Zero(p, p), Vector::Zero(p), 0.0, 0, {}};
   for (std::size_t k = 0; k < experiments_.size(); ++k) {
-    Matrix gram = Matrix::Zero(layout.rows(), layout.rows());
-    blocks(k, at, layout, noise, [&](Index, Index count, const auto& rows) {
-      gram.selfadjointView<Eigen::Lower>().rankUpdate(rows);
-      all.samples += count;
+    // [Z u e free]ᵀ[u e free −y], and ZᵀZ of what is not in u.
+    dsp::Products across(y, rows - u), within(own_size, own_size);
+    Vector e(residuals == nullptr ? 0 : experiments_[k].time.size());
+    blocks(k, at, layout, noise, [&](const Block& block) {
+      across.add(block.rows, rows_from(block.rows, u), block.columns);
+      within.add(rows_from(block.rows, own), rows_from(block.rows, own), block.columns);
+      if (residuals != nullptr) block.scatter(layout.e(), e);
     });
-    gram = gram.selfadjointView<Eigen::Lower>();
+    Matrix gram = Matrix::Zero(rows, rows);
+    gram.block(0, u, y, rows - u) = across.total();
+    gram.block(u, 0, rows - u, y) = across.total().transpose();
+    gram.block(own, own, own_size, own_size) = within.total();
     Reduced one = reduce(gram, layout);
+    if (residuals != nullptr) {
+      if (layout.free) e -= free_motion(at, experiments_[k]).transpose() * one.free_of_e;
+      residuals->push_back(std::move(e));
+    }
     all.M += one.M;
     all.S += one.S;
     all.g += one.g;
     all.ee += one.ee;
-    all.x_squares += gram.diagonal().head(p);
+    all.samples += std::max<Index>(experiments_[k].time.size() - noise.size() + 1, 0);
     all.each.push_back(std::move(one));
   }
   return all;
 }
 
-/// (ZᵀX)⁻¹ with both scaled to unit length; not finite where it is singular.
+/// (ZᵀX)⁻¹Zᵀe, rows and columns scaled to unit length; not finite where it is singular.
 Vector solved(const Sums& sums) {
-  const Vector x = sums.x_squares.cwiseSqrt().cwiseInverse(), z = sums.S.diagonal().cwiseSqrt().cwiseInverse();
-  const Matrix scaled = z.asDiagonal() * sums.M * x.asDiagonal();
+  const Vector z = sums.S.diagonal().cwiseSqrt().cwiseInverse();
+  Matrix scaled = z.asDiagonal() * sums.M;
+  const Vector x = scaled.colwise().norm().cwiseInverse();
+  scaled = scaled * x.asDiagonal();
   return x.asDiagonal() * scaled.colPivHouseholderQr().solve(z.asDiagonal() * sums.g);
 }
 
-/// Roots on the right half plane are reflected; false where there was one.
-bool stabilise(Vector& a) {
+/// Roots on the right half plane are reflected, to no less than a damping ratio; false where there was one.
+bool stabilise(Vector& a, double least_damping) {
   if (!a.allFinite()) return false;
   Vector monic(a.size() + 1);
   monic << a, 1.0;
   Eigen::VectorXcd roots = numeric::polynomial_roots(monic);
   bool stable = true;
-  constexpr double kLeastDamping = 1e-7;  // of a root that is put back
   for (auto& root : roots) {
     if (root.real() < 0.0) continue;
     stable = false;
-    root.real(-std::max(root.real(), kLeastDamping * std::abs(root)));
+    root.real(-std::max(root.real(), least_damping * std::abs(root)));
   }
   if (!stable) a = numeric::monic_from_roots(roots);
   return stable;
@@ -310,7 +500,7 @@ bool stabilise(Vector& a) {
 
 bool Fitter::step(Search& found, double& change) const {
   const bool first = found.at.b.size() == 0;
-  const Layout rows = layout(!first);
+  const Layout rows = found.from_clean_input ? layout_of_clean_input(!first) : layout(!first);
   const Sums now = sums(found.at, rows, found.noise);
   const Vector delta = solved(now);
   if (!delta.allFinite()) return false;
@@ -321,7 +511,13 @@ bool Fitter::step(Search& found, double& change) const {
   }
   found.at.a += delta.head(n_);
   found.at.b = (first ? Vector(Vector::Zero(q_)) : found.at.b) + delta.tail(q_);
-  found.start.stable = stabilise(found.at.a);
+  // A root that keeps coming back from the right half plane would be put to the same place for ever: the error has its
+  // least on the axis there. Far from it the search finds another way.
+  constexpr int kPatience = 8;
+  constexpr double kReflected = 1e-7, kMovedAway = 0.1;
+  const bool stuck = found.unstable_in_a_row > 0 && found.unstable_in_a_row % kPatience == 0;
+  found.start.stable = stabilise(found.at.a, stuck ? kMovedAway : kReflected);
+  found.unstable_in_a_row = found.start.stable ? 0 : found.unstable_in_a_row + 1;
   if (!found.at.a.allFinite() || !found.at.b.allFinite()) return false;
   // A coefficient that noise leaves undecided is not asked to stand still beyond its own error.
   const double variance = now.ee / static_cast<double>(std::max<Index>(now.samples - n_ - q_, 1));
@@ -341,7 +537,7 @@ void Fitter::iterate(Search& found) const {
   for (int pass = 0; pass < options_.most_iterations; ++pass) {
     ++found.start.iterations;
     if (!step(found, change)) return;
-    if (settled && change >= 0.5 * least) break;
+    if (settled && change >= 0.5 * least && change < options_.tolerance) break;
     settled = settled || (change < options_.tolerance && found.start.stable);
     least = std::min(least, change);
     if (settled && (!options_.refine || change < kRounding)) break;
@@ -352,11 +548,24 @@ void Fitter::iterate(Search& found) const {
 Fitter::Search Fitter::search(double pole) const {
   Search found;
   found.start.pole = pole;
-  found.at.scale = pole;
-  found.at.a = numeric::monic_from_roots(Eigen::VectorXcd::Constant(n_, -1.0));
-  double change = 0.0;
-  found.start.iterations = 1;
-  if (!step(found, change)) return found;
+  found.from_clean_input = options_.reference_instruments;
+  // Filters so slow that they leave nothing but a free motion of the record determine nothing; faster ones do.
+  constexpr int kMostDoublings = 20;
+  bool begun = false;
+  for (int k = 0; !begun && k < kMostDoublings; ++k) {
+    found.at = {std::ldexp(pole, k), numeric::monic_from_roots(Eigen::VectorXcd::Constant(n_, -1.0)), {}, {}};
+    double change = 0.0;
+    ++found.start.iterations;
+    begun = step(found, change);
+  }
+  if (!begun) return found;
+  // In a closed loop first with û for u (two stages, Van den Hof & Schrama 1993): that is a fit without any loop, whose
+  // error has one least. The equations of the instruments have other solutions, too, where the noise is strong.
+  if (found.from_clean_input) {
+    iterate(found);
+    found.from_clean_input = false;
+    if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
+  }
   iterate(found);
   if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
   // With a noise model: what is left is modelled, and the fit repeated, until neither changes.
@@ -368,34 +577,20 @@ Fitter::Search Fitter::search(double pole) const {
     const Vector after = found.at.physical();
     if (((after - before).array().abs() <= options_.tolerance * after.array().abs()).all()) break;
   }
-  found.last = sums(found.at, layout(true), found.noise);
+  const bool white = found.noise.size() == 1;
+  found.last = sums(found.at, layout(true), found.noise, white ? &found.residuals : nullptr);
   found.variance = found.last.ee / static_cast<double>(std::max<Index>(found.last.samples - n_ - q_, 1));
+  found.rank = found.variance;
+  // With the loop's noise in u the least error is not the truth's.
+  if (options_.reference_instruments) found.rank = sums(found.at, layout_of_clean_input(false), Vector::Ones(1)).ee;
   double squares = found.last.ee;
-  if (found.noise.size() > 1) {
+  if (!white) {
+    found.residuals = residuals(found.at);
     squares = 0.0;
-    for (const Vector& e : residuals(found.at)) squares += e.squaredNorm();
+    for (const Vector& e : found.residuals) squares += e.squaredNorm();
   }
   found.start.fit = 1.0 - squares / output_squares_;
   return found;
-}
-
-std::vector<Vector> Fitter::residuals(const Iterate& at) const {
-  std::vector<Vector> all;
-  const Layout rows = layout(false);
-  for (std::size_t k = 0; k < experiments_.size(); ++k) {
-    Vector e(experiments_[k].time.size());
-    Matrix gram = Matrix::Zero(rows.rows(), rows.rows());
-    Matrix free(rows.free_size(), e.size());
-    blocks(k, at, rows, Vector::Ones(1), [&](Index begin, Index count, const auto& block) {
-      gram.selfadjointView<Eigen::Lower>().rankUpdate(block);
-      e.segment(begin, count) = block.row(rows.e()).transpose();
-      free.middleCols(begin, count) = block.middleRows(rows.free_at(), rows.free_size());
-    });
-    gram = gram.selfadjointView<Eigen::Lower>();
-    if (rows.free) e -= free.transpose() * reduce(gram, rows).free_of_e;
-    all.push_back(std::move(e));
-  }
-  return all;
 }
 
 Result<void> Fitter::check() const {
@@ -414,6 +609,7 @@ Result<void> Fitter::check() const {
     samples += pair.time.size();
     for (const Vector* signal : {&pair.time, &pair.input, &pair.output}) {
       if (signal->size() != pair.time.size()) return bad_usage("time, input and output differ in length");
+      if (std::isfinite(signal->sum())) continue;
       if (const Index bad = first_non_finite(*signal); bad >= 0) {
         return bad_data(fmt::format("sample {} of a signal is not a finite number", bad + 1),
                         "cut it out by --from and --to");
@@ -472,17 +668,22 @@ void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
       const Index begin = at;
       const Vector& time = experiments_[k].time;
       step = std::max(step, (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1));
-      blocks(k, best.at, rows, best.noise, [&](Index, Index count, const auto& block) {
-        Eigen::RowVectorXd e = block.row(rows.e());
-        Matrix instruments = block(z, Eigen::all);
+      const Index order = best.noise.size() - 1;
+      blocks(k, best.at, rows, best.noise, [&](const Block& block) {
+        const auto all = block.matrix(rows.rows());
+        Eigen::RowVectorXd e = all.row(rows.e());
+        Matrix instruments = all(z, Eigen::all);
         if (rows.free) {
-          const auto free = block.middleRows(rows.free_at(), rows.free_size());
+          const auto free = all.middleRows(rows.free_at(), rows.free_size());
           e -= one.free_of_e.transpose() * free;
           instruments -= one.free_of_z.transpose() * free;
         }
-        scores.middleCols(at, count) = instruments * e.asDiagonal();
-        at += count;
+        instruments = instruments * e.asDiagonal();
+        for (Index c = 0; c < block.columns; ++c) {
+          if (block.sample(c) < block.samples) scores.col(begin + block.sample(c) - order) = instruments.col(c);
+        }
       });
+      at += std::max<Index>(time.size() - order, 0);
       ranges.push_back({begin, at});
     }
     const Index lags = std::min(static_cast<Index>(std::llround(options_.hac_lag_s / step)), last.samples / 10);
@@ -506,7 +707,17 @@ Result<ContinuousFit> Fitter::run() {
     output_squares_ += (pair.output.array() - pair.output.mean()).square().sum();
     input_squares += (pair.input.array() - pair.input.mean()).square().sum();
     samples_ += pair.time.size();
-    if (options_.reference_instruments) clean_input_.push_back(explained_by_past(pair.reference, pair.input));
+    if (!pair.step) {
+      stretched_.emplace_back();
+      continue;
+    }
+    std::vector<const Vector*> signals = {&pair.input, &pair.output};
+    Vector clean;  // û
+    if (options_.reference_instruments) {
+      clean = explained_by_past(pair.reference, pair.input);
+      signals.push_back(&clean);
+    }
+    stretched_.emplace_back(signals, options_.most_noise_order);
   }
   if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
   if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");
@@ -521,9 +732,9 @@ Result<ContinuousFit> Fitter::run() {
   if (!ran) return tl::unexpected(ran.error());
   const auto better = [](const Search& a, const Search& b) {
     if (a.start.converged != b.start.converged) return a.start.converged;
-    return a.variance < b.variance;
+    return a.rank < b.rank;
   };
-  const Search& best = *std::ranges::min_element(searches, better);
+  Search& best = *std::ranges::min_element(searches, better);
   ContinuousFit made;
   made.samples = samples_;
   for (const Search& one : searches) made.starts.push_back(one.start);
@@ -534,7 +745,7 @@ Result<ContinuousFit> Fitter::run() {
   made.noise = best.noise;
   if (std::isfinite(best.variance)) {
     take_covariance(best, made);
-    made.residuals = residuals(best.at);
+    made.residuals = std::move(best.residuals);
   }
   return made;
 }
@@ -549,12 +760,12 @@ Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& e
   const Index n = a.size(), total = experiment.time.size();
   Iterate at{1.0, a, b, {}};
   at.rescale();
-  Pass pass(at.a, experiment, at.scale);
+  Pass pass(at.a, experiment, at.scale, Vector::Zero(n));
   Matrix states(n, kBlock);
   Vector response(total);
   for (Index begin = 0; begin < total; begin += kBlock) {
     const Index count = std::min(kBlock, total - begin);
-    pass.run(begin, count, experiment.input.data() + begin, states.leftCols(count));
+    pass.run(experiment.input.data() + begin, count, states.leftCols(count));
     auto now = response.segment(begin, count);
     const Index q = std::min(at.b.size(), n);
     now = states.leftCols(count).topRows(q).transpose() * at.b.head(q);
@@ -566,15 +777,9 @@ Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& e
 }
 
 Vector without_free_motion(const Vector& a, const SignalPair& experiment, const Vector& residual) {
-  const Index n = a.size(), total = experiment.time.size();
   Iterate at{1.0, a, Vector::Zero(1), {}};
   at.rescale();
-  Pass pass(at.a, experiment, at.scale);
-  pass.start_at(Vector::Unit(n, n - 1));
-  Matrix free(n + 1, total);
-  const Vector none = Vector::Zero(total);
-  pass.run(0, total, none.data(), free.topRows(n));
-  free.row(n).setOnes();
+  const Matrix free = free_motion(at, experiment);
   const Matrix gram = free * free.transpose();
   return residual - free.transpose() * (pseudo_inverse(gram) * (free * residual));
 }

@@ -45,8 +45,10 @@ struct ContinuousFit {
 /// than the tolerance. The fixed point is a stationary point of Σe² (output error). C and c, an initial state and an
 /// offset, are projected out for each experiment. Time is scaled by the geometric mean of the poles.
 ///   First pass: least squares on filters (s + λ)⁻ⁿ, for several λ, as one alone can end in a local minimum.
+///   A λ that determines nothing is doubled.
 ///   RIVC: X, Z and e also pass an autoregressive model of e, found anew until both settle.
-///   Closed loop: Z = [−x̂_f, û_f], where û is what a finite impulse response makes of the reference.
+///   Closed loop: Z = [−x̂_f, û_f], where û is what a finite impulse response makes of the reference. It begins with û
+///   for u, and of several starts takes that whose model leaves least of y from û.
 /// @param experiments  each [1 … N] samples; their clocks may be uneven, but not with a noise model or closed loop
 /// @fails  usage: orders out of range; no experiment; a noise model or closed loop on an uneven clock; no reference.
 ///         data: too few samples; a value is not finite; input or output is constant.

@@ -132,6 +132,7 @@ TEST(Srivc, RefusesAModelThatIsUnstable) {
 TEST(Srivc, WithANoiseModelIsSharperUnderColouredNoise) {
   constexpr int kRuns = 12;
   Vector plain = Vector::Zero(6), modelled = plain;  // squared errors of each coefficient
+  double squares = 0.0;                              // of errors in units of their standard error
   const RaoGarnier truth;
   for (int run = 0; run < kRuns; ++run) {
     const SignalPair pair = rao_garnier(10.0, 300 + run, 0.95);
@@ -146,26 +147,31 @@ TEST(Srivc, WithANoiseModelIsSharperUnderColouredNoise) {
     EXPECT_NEAR(rivc->noise[1], -0.95, 0.1);
     plain += (both(*srivc) - truth.theta).cwiseAbs2();
     modelled += (both(*rivc) - truth.theta).cwiseAbs2();
+    squares += ((both(*rivc) - truth.theta).array().square() / rivc->covariance.diagonal().array()).sum();
   }
-  // What slow noise hides is the gain (b₀); the mode at 3 Hz stands where the noise is weak once it is modelled.
+  // Squared errors with a model over those without, a₀ … a₃, b₀, b₁: 1.12, 0.81, 0.59, 0.59, 0.80, 0.52. The mode at
+  // 3 Hz stands where the noise is weak once it is modelled. What slow noise hides, the gain and the slow mode, no
+  // model brings back; there the errors are what the covariance says they must be.
+  EXPECT_NEAR(squares / (6.0 * kRuns), 1.0, 0.35);
   EXPECT_LT(modelled[3], 0.7 * plain[3]) << (modelled.array() / plain.array()).transpose();
   EXPECT_LT(modelled[2], 0.7 * plain[2]);
   EXPECT_LT(modelled[5], 0.7 * plain[5]);
 }
 
-TEST(Srivc, InClosedLoopNeedsTheReference) {
-  // y = 1/(s + 1) u + e, u = r − 3 y, with e white behind a slow filter: the loop carries e into u.
+/// y = 1/(s + 1) u + e, u = r − 3 y, with e white behind a slow filter, of a standard deviation of 5·`noise`: the loop
+/// carries e into u. What r alone makes of y has one of 0.19.
+SignalPair closed_loop(double noise, std::uint64_t seed) {
   constexpr Index kSamples = 20000;
   SignalPair pair;
   pair.step = 0.02;
   pair.time = Vector::LinSpaced(kSamples, 0.0, static_cast<double>(kSamples - 1)) * 0.02;
   pair.input = pair.output = pair.reference = Vector::Zero(kSamples);
-  numeric::Random random(5);
+  numeric::Random random(seed);
   // Over a straight line of the input from u₀ to u₁: x₁ = E x₀ + (1 − E) u₀ + (1 − (1 − E)/h)(u₁ − u₀).
   const double h = 0.02, E = std::exp(-h), ramp = 1.0 - (1.0 - E) / h;
   double x = 0.0, e = 0.0;
   for (Index i = 1; i < kSamples; ++i) {
-    e = 0.98 * e + 0.05 * random.normal();
+    e = 0.98 * e + noise * random.normal();
     pair.reference[i] = i % 25 == 0 ? (random.uniform() < 0.5 ? -1.0 : 1.0) : pair.reference[i - 1];
     // u₁ = r₁ − 3 (x₁ + e), and x₁ holds u₁.
     const double known = E * x + (1.0 - E - ramp) * pair.input[i - 1];
@@ -173,17 +179,52 @@ TEST(Srivc, InClosedLoopNeedsTheReference) {
     x = known + ramp * pair.input[i];
     pair.output[i] = x + e;
   }
+  return pair;
+}
+
+// Over 100 seeds: with noise 0.02, 0.05 and 0.1 the means of a₀ are 1.002, 1.001 and 1.015, each within one standard
+// error of 1, and those of b₀ 0.997, 0.994 and 0.997; 0, 0 and 5 do not settle, and say so. With the finite impulse
+// response of each half taken from that half itself b₀ would be 0.932 at noise 0.1, five standard errors off.
+TEST(Srivc, InClosedLoopNeedsTheReference) {
+  constexpr int kRuns = 16;
+  Matrix found(2, kRuns), errors(2, kRuns);
+  Index settled = 0;
+  ContinuousFitOptions open_loop, closed;
+  open_loop.poles = closed.poles = 1;
+  closed.reference_instruments = true;
+  closed.hac_lag_s = 5.0;
+  for (int run = 0; run < kRuns; ++run) {
+    const SignalPair pair = closed_loop(0.1, 5 + run);
+    const auto open = fit_continuous({pair}, open_loop);
+    EXPECT_TRUE(!open || !open->converged || std::abs(open->a[0] - 1.0) > 0.5) << run;
+    const auto fit = fit_continuous({pair}, closed);
+    ASSERT_TRUE(fit.has_value());
+    if (!fit->converged) continue;
+    found.col(settled) = both(*fit);
+    errors.col(settled++) = fit->covariance.diagonal().cwiseSqrt();
+  }
+  ASSERT_GE(settled, kRuns - 2);
+  for (Index k = 0; k < 2; ++k) {
+    const auto values = found.row(k).head(settled).array();
+    const double mean = values.mean();
+    const double spread = std::sqrt((values - mean).square().sum() / static_cast<double>(settled - 1));
+    EXPECT_LT(std::abs(mean - 1.0), 3.0 * spread / std::sqrt(static_cast<double>(settled))) << k;
+    EXPECT_NEAR(errors.row(k).head(settled).mean() / spread, 1.0, 0.5) << k;
+  }
+}
+
+TEST(Srivc, InClosedLoopHoldsWithinItsInterval) {
   ContinuousFitOptions options;
   options.poles = 1;
-  const auto open = fit_continuous({pair}, options);
   options.reference_instruments = true;
   options.hac_lag_s = 5.0;
-  const auto closed = fit_continuous({pair}, options);
-  ASSERT_TRUE(closed.has_value() && closed->converged);
-  EXPECT_NEAR(closed->a[0], 1.0, 4.0 * std::sqrt(closed->covariance(0, 0)));
-  EXPECT_NEAR(closed->b[0], 1.0, 4.0 * std::sqrt(closed->covariance(1, 1)));
-  EXPECT_LT(std::sqrt(closed->covariance(0, 0)), 0.2);
-  EXPECT_TRUE(!open || !open->converged || std::abs(open->a[0] - 1.0) > 2.0 * std::abs(closed->a[0] - 1.0));
+  for (const double noise : {0.02, 0.1}) {
+    const auto fit = fit_continuous({closed_loop(noise, 5)}, options);
+    ASSERT_TRUE(fit.has_value() && fit->converged) << noise;
+    EXPECT_NEAR(fit->a[0], 1.0, 3.0 * std::sqrt(fit->covariance(0, 0))) << noise;
+    EXPECT_NEAR(fit->b[0], 1.0, 3.0 * std::sqrt(fit->covariance(1, 1))) << noise;
+    EXPECT_LT(std::sqrt(fit->covariance(0, 0)), 3.0 * noise);
+  }
 }
 
 TEST(Srivc, SaysWhatIsWrongWithItsData) {
