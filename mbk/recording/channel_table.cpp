@@ -23,7 +23,7 @@ constexpr std::array kAnyPosition{length, angle};
 constexpr std::array kAnyForce{force, torque};
 constexpr std::array kAnyReference{length, angle, force, torque};
 constexpr std::array kAnyAcceleration{acceleration, angular_acceleration};
-constexpr std::array kAnySignal{length, angle, force, torque, acceleration, angular_acceleration, voltage};
+constexpr std::span<const Dimension> kAnything;
 
 constexpr auto kKinds = std::to_array<ChannelKind>({
     {"time", "t", kTime, "", 0, 1},
@@ -65,8 +65,9 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"reaction", "F", kAnyForce, "", 1, 0},
     {"reference", "xr", kAnyReference, "", 1, 0},
     {"acceleration", "a", kAnyAcceleration, "", 1, 0},
-    {"input", "input", kAnySignal, "", 0, 0},
-    {"output", "output", kAnySignal, "", 0, 0},
+    {"input", "input", kAnything, "", 0, 0, false, true},
+    {"output", "output", kAnything, "", 0, 0, false, true},
+    {"drive", "drive", kAnything, "", 0, 0, false, true},
 });
 static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMostJoints);
 
@@ -103,7 +104,7 @@ std::string_view trimmed(std::string_view text) {
 }  // namespace
 
 bool ChannelKind::accepts(const Unit& unit) const {
-  return std::ranges::find(measures, unit.dimension) != measures.end();
+  return measures.empty() || std::ranges::find(measures, unit.dimension) != measures.end();
 }
 
 std::span<const ChannelKind> channel_kinds() {
@@ -150,9 +151,15 @@ const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int 
   return nullptr;
 }
 
+std::vector<const ChannelKind*> kinds_by_name(std::string_view name) {
+  std::vector<const ChannelKind*> kinds = kinds_called(name);
+  std::erase_if(kinds, [](const ChannelKind* kind) { return kind->only_mapped; });
+  return kinds;
+}
+
 ColumnName parse_column_name(std::string_view name) {
   name = trimmed(name);
-  ColumnName column{kinds_called(name), nullptr};
+  ColumnName column{kinds_by_name(name), nullptr};
   if (!column.kinds.empty() || name.empty()) return column;
 
   std::string_view base;
@@ -166,7 +173,7 @@ ColumnName parse_column_name(std::string_view name) {
     base = name.substr(0, underscore);
   }
   if (column.unit == nullptr) return column;
-  column.kinds = kinds_called(base);
+  column.kinds = kinds_by_name(base);
   std::erase_if(column.kinds, [&](const ChannelKind* kind) { return !kind->accepts(*column.unit); });
   return column;
 }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "mbk/trial/frequency_response.h"
 #include "mbk/trial/transfer_function.h"
 
 namespace mbk::report {
@@ -9,5 +10,8 @@ namespace mbk::report {
 /// A transfer function for the terminal: how it was found, the table of orders, every coefficient, pole, zero and the
 /// gain with 95 % intervals, the fit, what is left, and warnings with what to try.
 [[nodiscard]] std::string transfer_function_text(const TransferFunctionIdentification& found);
+
+/// The impedance behind an admittance: M, B, K where the model says them, and ten frequencies with intervals.
+[[nodiscard]] std::string inverted_admittance_text(const InvertedAdmittance& inverse);
 
 }  // namespace mbk::report
