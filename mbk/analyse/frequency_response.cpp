@@ -90,7 +90,7 @@ FrequencyResponse frequency_response(const TransferFunction& model, const Matrix
 
 Vector frequencies_of(const TransferFunctionIdentification& found, bool within_band) {
   constexpr double kBeyond = 3.0;
-  constexpr Index kPoints = 200;
+  constexpr Index kPoints = 200, kHalfTurn = 24;
   double low = found.band_low, high = found.band_high;
   std::vector<Root> roots = found.poles;
   roots.insert(roots.end(), found.zeros.begin(), found.zeros.end());
@@ -114,7 +114,9 @@ Vector frequencies_of(const TransferFunctionIdentification& found, bool within_b
   }
   all.back() = high;
   for (const Root& root : roots) {
-    for (const double off : {-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0}) {
+    // Of an oscillation equal steps along its circle in the complex plane.
+    for (Index k = 1 - kHalfTurn; root.pair && k < kHalfTurn; ++k) {
+      const double off = std::tan(0.5 * pi * static_cast<double>(k) / static_cast<double>(kHalfTurn));
       const double f = root.frequency * (1.0 + off * std::min(std::abs(root.damping), 0.1));
       if (f > low && f < high) all.push_back(f);
     }

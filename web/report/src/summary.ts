@@ -1,13 +1,18 @@
 // The measurement in plain words.
-import { type Trial, type Value, fileOf, matrices, unitsOf } from "./data";
+import { type Trial, type Value, type Warning, fileOf, matrices, unitsOf } from "./data";
 import { type HeadingLevel, h, heading, svg } from "./dom";
 import { data, fixed, listed, significant, withHalfWidth } from "./format";
 import { angleBetween, direction, meanings, plainWarnings } from "./words";
 
+/** What was found, with warnings: a measurement or a transfer function. */
+export interface Judged {
+  result: { usable: boolean; warnings: Warning[] };
+}
+
 export const warningTitle = (code: string): string => plainWarnings[code]?.title ?? code;
 
 /** Usable, usable with care, or not: a sign, a word and a reason. */
-export function verdict(trial: Trial): { kind: "good" | "care" | "bad"; sign: string; word: string; reason: string } {
+export function verdict(trial: Judged): { kind: "good" | "care" | "bad"; sign: string; word: string; reason: string } {
   const { usable, warnings } = trial.result;
   const titles = listed(warnings.map((warning) => warningTitle(warning.code).replace(/^./, (c) => c.toLowerCase())));
   if (!usable) {
@@ -108,7 +113,7 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
   );
 }
 
-export function warningsSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement {
+export function warningsSection(trial: Judged, id: string, level: HeadingLevel): HTMLElement {
   const { warnings } = trial.result;
   return h(
     "section",
