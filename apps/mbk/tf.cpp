@@ -128,8 +128,8 @@ struct Signal {
 /// Where the signals stand: channels under their own names (position, Fx), or else columns, rows or variables of the
 /// file, which the map then makes `input`, `output` and `drive`.
 Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasurement& options) {
-  const auto mapped = a.channels.empty() ? Result<std::vector<recording::ChannelSource>>()
-                                         : recording::parse_channel_map(a.channels);
+  const auto mapped =
+      a.channels.empty() ? Result<std::vector<recording::ChannelSource>>() : recording::parse_channel_map(a.channels);
   if (!mapped) return tl::unexpected(mapped.error());
   const auto in_map = [&](const std::string& name) {
     const auto meant = recording::kinds_called(name);
@@ -145,7 +145,7 @@ Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasuremen
     if (signal.given.empty()) continue;
     const bool flipped = signal.given.front() == '-' && signal.sign != nullptr;
     const std::string name = signal.given.substr(flipped ? 1 : 0);
-    const bool by_name = mapped->empty() && !recording::kinds_by_name(name).empty();
+    const bool by_name = mapped->empty() && !recording::kinds_called(name).empty();
     if (by_name || in_map(name)) {
       signal.to = name;
       if (flipped) *signal.sign = -1.0;

@@ -66,8 +66,7 @@ FrequencyResponse frequency_response(const TransferFunction& model, const Matrix
   double last = 0.0;
   for (Index i = 0; i < count; ++i) {
     const double w = 2.0 * pi * frequency[i];
-    const std::complex<double> x =
-        continuous ? std::complex<double>(0.0, w) : std::polar(1.0, -w * model.sample_time);
+    const std::complex<double> x = continuous ? std::complex<double>(0.0, w) : std::polar(1.0, -w * model.sample_time);
     const std::complex<double> above = numeric::polynomial_at(model.numerator, x);
     const std::complex<double> below = numeric::polynomial_at(model.denominator, x);
     const std::complex<double> rational = above / below;
@@ -152,8 +151,8 @@ Result<InvertedAdmittance> inverted(const TransferFunctionIdentification& found,
       Vector gradient = Vector::Zero(n + 1);  // of a_k/b₀
       if (k < n) gradient[k] = 1.0 / b;
       gradient[n] = -model.denominator[k] / (b * b);
-      *terms[k + derivatives] = Estimate{model.denominator[k] / b,
-                                         std::sqrt(std::max(0.0, gradient.dot(found.covariance * gradient)))};
+      *terms[k + derivatives] =
+          Estimate{model.denominator[k] / b, std::sqrt(std::max(0.0, gradient.dot(found.covariance * gradient)))};
     }
   }
   return inverse;

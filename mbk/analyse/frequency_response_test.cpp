@@ -101,7 +101,8 @@ TEST(FrequencyResponse, IntervalsAreThoseOfMonteCarlo) {
       inside(i, 2) += std::abs(other.value[i].real() - response.value[i].real()) < response.real_half_width[i];
       const std::complex<double> turned =
           (other.value[i] - response.value[i]) * std::polar(1.0, -response.region95(i, 2));
-      inside(i, 3) += std::hypot(turned.real() / response.region95(i, 0), turned.imag() / response.region95(i, 1)) < 1.0;
+      inside(i, 3) +=
+          std::hypot(turned.real() / response.region95(i, 0), turned.imag() / response.region95(i, 1)) < 1.0;
     }
   }
   for (Index i = 0; i < frequency.size(); ++i) {
@@ -126,8 +127,8 @@ TEST(InvertedAdmittance, OfASecondOrderArmIsItsInertiaDampingAndStiffness) {
   constexpr double kM = 1.5, kB = 9.0, kK = 120.0;
   const Vector error{{0.8, 0.06, 0.01}};
   const Matrix covariance = error.cwiseAbs2().asDiagonal();
-  const auto inverse = inverted(
-      identified({Vector{{1.0 / kM}}, Vector{{kK / kM, kB / kM, 1.0}}}, covariance), AdmittanceOutput::position);
+  const auto inverse = inverted(identified({Vector{{1.0 / kM}}, Vector{{kK / kM, kB / kM, 1.0}}}, covariance),
+                                AdmittanceOutput::position);
   ASSERT_TRUE(inverse.has_value());
   EXPECT_NEAR(inverse->M->value, kM, kRounding);
   EXPECT_NEAR(inverse->B->value, kB, 10 * kRounding);

@@ -252,11 +252,11 @@ class Assembler {
 
   /// Whether somebody asks for such a channel: otherwise nothing of it can stand in the way.
   [[nodiscard]] bool is_wanted(const ChannelKind& kind) const {
-    return options_.wanted.empty() || kind.name == "time" ||
-           std::ranges::any_of(options_.wanted, [&](const std::string& name) {
-             const auto kinds = kinds_called(name);
-             return std::ranges::find(kinds, &kind) != kinds.end();
-           });
+    if (kind.name == "time" || options_.wanted.empty()) return !kind.only_if_asked;
+    return std::ranges::any_of(options_.wanted, [&](const std::string& name) {
+      const auto kinds = kinds_called(name);
+      return std::ranges::find(kinds, &kind) != kinds.end();
+    });
   }
 
   Result<void> take_names() {
@@ -269,6 +269,7 @@ class Assembler {
     std::vector<std::string> aside;
     for (const Array& array : contents_.arrays) {
       ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name));
+      std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_wanted(*kind); });
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -602,7 +603,7 @@ class Assembler {
         recording_.time = std::move(channel);
         continue;
       }
-      const auto unit = signal.unit != nullptr           ? si_unit(signal.unit->dimension)
+      const auto unit = signal.unit != nullptr          ? si_unit(signal.unit->dimension)
                         : signal.kind->measures.empty() ? std::string_view(signal.line.array->unit)
                                                         : signal.kind->default_unit();
       recording_.channels.push_back(

@@ -151,15 +151,9 @@ const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int 
   return nullptr;
 }
 
-std::vector<const ChannelKind*> kinds_by_name(std::string_view name) {
-  std::vector<const ChannelKind*> kinds = kinds_called(name);
-  std::erase_if(kinds, [](const ChannelKind* kind) { return kind->only_mapped; });
-  return kinds;
-}
-
 ColumnName parse_column_name(std::string_view name) {
   name = trimmed(name);
-  ColumnName column{kinds_by_name(name), nullptr};
+  ColumnName column{kinds_called(name), nullptr};
   if (!column.kinds.empty() || name.empty()) return column;
 
   std::string_view base;
@@ -173,7 +167,7 @@ ColumnName parse_column_name(std::string_view name) {
     base = name.substr(0, underscore);
   }
   if (column.unit == nullptr) return column;
-  column.kinds = kinds_by_name(base);
+  column.kinds = kinds_called(base);
   std::erase_if(column.kinds, [&](const ChannelKind* kind) { return !kind->accepts(*column.unit); });
   return column;
 }

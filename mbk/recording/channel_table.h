@@ -18,7 +18,7 @@ struct ChannelKind {
   int axes;                             ///< 1 or 2: the kind of experiment it belongs to; 0: both
   int logs_row;                         ///< 1-based row of the 19-row `logs` matrix; 0: it has none
   bool first_unless_said = false;       ///< of several measures, the first one where nothing was said: joints turn
-  bool only_mapped = false;  ///< only where a map says so: in files, things of any kind are called input and output
+  bool only_if_asked = false;           ///< not taken by its name alone: things of any kind are called input and output
 
   /// SI unit, or "" where several are possible, nothing was said and none goes without saying.
   [[nodiscard]] std::string_view default_unit() const {
@@ -37,9 +37,6 @@ inline constexpr int kMostJoints = 8;
 /// letter and in Vx and Vy: vx is a velocity.
 [[nodiscard]] std::vector<const ChannelKind*> kinds_called(std::string_view name);
 
-/// Those of them that a name in a file is enough for.
-[[nodiscard]] std::vector<const ChannelKind*> kinds_by_name(std::string_view name);
-
 /// The known name or alias that looks most like `name`.
 [[nodiscard]] std::string_view nearest_channel_name(std::string_view name);
 
@@ -52,7 +49,7 @@ inline constexpr int kMostJoints = 8;
 
 /// A column name taken apart: "hand_x_mm", "hand_x [mm]" and "hand_x (mm)" are hand_x in mm.
 struct ColumnName {
-  std::vector<const ChannelKind*> kinds;  ///< empty: not a name that speaks for itself
+  std::vector<const ChannelKind*> kinds;  ///< empty: not a name that mbk knows
   const Unit* unit = nullptr;             ///< nullptr: the name says none
 };
 [[nodiscard]] ColumnName parse_column_name(std::string_view name);

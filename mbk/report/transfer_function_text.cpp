@@ -173,10 +173,12 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
 
 std::string inverted_admittance_text(const InvertedAdmittance& inverse) {
   const Units units = units_of(inverse.motion);
-  std::string text = fmt::format("\nimpedance, force per velocity: the inverse of force → {}\n", mbk::text(inverse.output));
+  std::string text =
+      fmt::format("\nimpedance, force per velocity: the inverse of force → {}\n", mbk::text(inverse.output));
   Rows rows;
   const auto add = [&](const char* name, const std::optional<Estimate>& value, const char* unit) {
-    if (value) rows.push_back({name, with_interval(value->value, numeric::kNormal95 * value->standard_error) + " " + unit});
+    if (value)
+      rows.push_back({name, with_interval(value->value, numeric::kNormal95 * value->standard_error) + " " + unit});
   };
   add("M", inverse.M, units.inertia);
   add("B", inverse.B, units.damping);
@@ -186,20 +188,22 @@ std::string inverted_admittance_text(const InvertedAdmittance& inverse) {
     return fmt::format("{:.4g} [{:.4g}, {:.4g}]", std::abs(response.value[i]), response.magnitude95(i, 0),
                        response.magnitude95(i, 1));
   };
-  rows = {{"Hz", fmt::format("|Z| [{}]", units.damping), "Re Z", "phase [°]", fmt::format("|sZ| [{}]", units.stiffness)}};
+  rows = {
+      {"Hz", fmt::format("|Z| [{}]", units.damping), "Re Z", "phase [°]", fmt::format("|sZ| [{}]", units.stiffness)}};
   constexpr Index kShown = 10;
   constexpr double kDegrees = 180.0 / std::numbers::pi;
   const FrequencyResponse& z = inverse.impedance;
   for (Index k = 0; k < kShown; ++k) {
     const Index i = k * (z.size() - 1) / (kShown - 1);
-    rows.push_back({fmt::format("{:.3g}", z.frequency[i]), polar(z, i),
-                    with_interval(z.value[i].real(), z.real_half_width[i]),
-                    with_interval(kDegrees * z.phase[i], kDegrees * z.phase_half_width[i]), polar(inverse.stiffness, i)});
+    rows.push_back(
+        {fmt::format("{:.3g}", z.frequency[i]), polar(z, i), with_interval(z.value[i].real(), z.real_half_width[i]),
+         with_interval(kDegrees * z.phase[i], kDegrees * z.phase_half_width[i]), polar(inverse.stiffness, i)});
   }
   text += table(rows);
   if (inverse.unstable) {
-    text += paragraph("  ", "The admittance has zeros on the right half plane, so that this impedance is unstable: no "
-                            "limb is; take fewer zeros.");
+    text += paragraph("  ",
+                      "The admittance has zeros on the right half plane, so that this impedance is unstable: no "
+                      "limb is; take fewer zeros.");
   }
   return text;
 }

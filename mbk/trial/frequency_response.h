@@ -12,10 +12,10 @@ namespace mbk {
 
 /// A response along the frequency axis and how sure it is, one entry for each frequency.
 struct FrequencyResponse {
-  Vector frequency;         ///< [Hz], rising, > 0
-  Eigen::VectorXcd value;   ///< H(jω) [unit of the output per unit of the input]
-  Vector phase;             ///< arg H [rad], without jumps of 2π from one frequency to the next
-  Matrix relative;          ///< N×3 covariance of δH/H = δln|H| + jδφ: var ln|H|, cov(ln|H|, φ), var φ [1, rad, rad²]
+  Vector frequency;        ///< [Hz], rising, > 0
+  Eigen::VectorXcd value;  ///< H(jω) [unit of the output per unit of the input]
+  Vector phase;            ///< arg H [rad], without jumps of 2π from one frequency to the next
+  Matrix relative;  ///< N×3 covariance of δH/H = δln|H| + jδφ: var ln|H|, cov(ln|H|, φ), var φ [1, rad, rad²]
   Matrix magnitude95;       ///< N×2: ends of the 95 % interval of |H|, of whose logarithm the error is taken as normal
   Vector phase_half_width;  ///< of the 95 % interval [rad]
   Vector real_half_width;   ///< of the 95 % interval of Re H
@@ -42,8 +42,8 @@ struct Estimate {
 struct InvertedAdmittance {
   AdmittanceOutput output = AdmittanceOutput::position;
   Motion motion = Motion::unknown;  ///< by the unit of the force
-  FrequencyResponse impedance;  ///< force per velocity
-  FrequencyResponse stiffness;  ///< force per displacement, s Z
+  FrequencyResponse impedance;      ///< force per velocity
+  FrequencyResponse stiffness;      ///< force per displacement, s Z
   /// s Z = M s² + B s + K where the model says just that: a continuous one without zeros and delay. K is absent where
   /// the output is a velocity, B and K where it is an acceleration.
   std::optional<Estimate> M, B, K;

@@ -108,8 +108,8 @@ struct TransferFunctionIdentification {
   std::optional<double> held_back_fit;  ///< R² of the simulation on data that were held back
   double held_back_rmse = 0;
   std::vector<SimulatedOutput> simulated;  ///< of what was held back; where nothing was, of what the model is made of
-  Vector noise_denominator;  ///< C: 1, c₁ … of the noise model e = ε/C(q⁻¹); empty without one
-  Vector noise_numerator;    ///< D: 1, d₁ … with e = D/C ε; empty without one
+  Vector noise_denominator;                ///< C: 1, c₁ … of the noise model e = ε/C(q⁻¹); empty without one
+  Vector noise_numerator;                  ///< D: 1, d₁ … with e = D/C ε; empty without one
   bool delay_found = false;
   std::vector<SearchStart> starts;
   std::vector<OrderChoice> orders;  ///< where several were tried

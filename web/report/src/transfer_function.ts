@@ -5,6 +5,7 @@ import { facts, h, heading, scrolling, table } from "./dom";
 import { data, fixed, plain, significant, superscript, withHalfWidth } from "./format";
 import { nyquist } from "./nyquist";
 import { verdict, warningsSection } from "./summary";
+import { transferFunctionWarnings } from "./words";
 
 interface Root {
   re: Value;
@@ -160,7 +161,7 @@ function formula(result: Result): HTMLElement {
 
 function summary(report: TransferFunctionReport): HTMLElement {
   const { result } = report;
-  const said = verdict(report);
+  const said = verdict({ result, plainly: transferFunctionWarnings });
   const explained = result.fit.R2_held_back ?? result.fit.R2_in_sample;
   const where = result.fit.R2_held_back === undefined ? "of the very data that made it, which flatters it" : "of data that had no share in making it";
   return h("section", { id: "summary" }, heading(2, "In short"),
@@ -356,7 +357,7 @@ export function transferFunctionSections(report: TransferFunctionReport): HTMLEl
   const { result } = report;
   return [
     summary(report),
-    warningsSection(report, "transfer-function", 2),
+    warningsSection({ result, plainly: transferFunctionWarnings }, "transfer-function", 2),
     impedanceSection(result),
     responseSection(result),
     coefficientsSection(result),

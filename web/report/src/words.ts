@@ -1,7 +1,9 @@
 // What is said in plain words: warnings, terms, directions.
 
 /** For each warning a title that needs no training, and what it means for whoever reads the numbers. */
-export const plainWarnings: Record<string, { title: string; meaning: string }> = {
+export type PlainWarnings = Record<string, { title: string; meaning: string }>;
+
+export const plainWarnings: PlainWarnings = {
   "force-sign-reversed": {
     title: "The force was recorded with the opposite sign",
     meaning: "Everything comes out negative, which no limb can be. The recording itself is probably fine.",
@@ -85,6 +87,19 @@ export const plainWarnings: Record<string, { title: string; meaning: string }> =
   "uneven-clock": {
     title: "The samples are unevenly spaced",
     meaning: "The model allows for it; the tests of what is left over do not.",
+  },
+};
+
+/** Those that speak of a limb, said of any system. */
+export const transferFunctionWarnings: PlainWarnings = {
+  ...plainWarnings,
+  "held-back-fit-poor": {
+    title: "The model does badly on the part of the recording that was held back",
+    meaning: "The system probably changed, or the model is too small or too large.",
+  },
+  "fit-poor": {
+    title: "Much of the output is not explained",
+    meaning: "The model is too small, the system is not linear, or the rest is noise.",
   },
 };
 
