@@ -129,7 +129,7 @@ test("undefined numbers are said to be undefined, and nothing to draw is no erro
 
 test("what stands in a recording or an option stays text, and the same options give the same bytes", async () => {
   const hostile = "</script><img src=x onerror=\"document.title='owned'\">";
-  const args = [arm, "--input", "Fx", "--output", "x", "--poles", "2", "--report-note", hostile];
+  const args = [joint, "--input=-F", "--output", "x", "--poles", "2", "--zeros", "0", "--report-note", hostile];
   const one = identify("hostile", ...args);
   await onPage(one.file, async (page) => {
     assert.equal(await page.textContent(".note"), hostile);
