@@ -228,8 +228,8 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       "  mbk tf loop.csv --input motor --output angle --reference wanted --method clsrivc --poles 3\n"
       "  mbk tf log.mat --input -Fx --output x --poles 2 --zeros 0 --invert position --report log.html\n"
       "      from the force on the hand to where it moves, and turned round: the impedance with M, B, K\n\n"
-      "FILEs are one system: they are fitted together. What did not settle, or settled on an unstable model, is\n"
-      "refused.\n\n"
+      "FILEs are one system: they are fitted together. What did not settle, or settled on an unstable\n"
+      "model, is refused.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(*command, *arguments);

@@ -88,9 +88,13 @@ FrequencyResponse frequency_response(const TransferFunction& model, const Matrix
 }
 
 Vector frequencies_of(const TransferFunctionIdentification& found, bool within_band) {
-  constexpr double kBeyond = 3.0;
+  constexpr double kBeyond = 3.0, kPeriods = 8.0;
   constexpr Index kPoints = 200, kHalfTurn = 24;
   double low = found.band_low, high = found.band_high;
+  // A slow or constant part lies below what the record resolves.
+  if (low == 0.0 && high > 0.0 && found.samples > 0) {
+    low = kPeriods * static_cast<double>(found.experiments) / (static_cast<double>(found.samples) * found.sample_time);
+  }
   std::vector<Root> roots = found.poles;
   roots.insert(roots.end(), found.zeros.begin(), found.zeros.end());
   const bool band = low > 0.0 && high > low;

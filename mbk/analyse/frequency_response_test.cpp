@@ -176,6 +176,16 @@ TEST(InvertedAdmittance, OfADelayIsRefused) {
   EXPECT_FALSE(inverted(found, AdmittanceOutput::position).has_value());
 }
 
+TEST(FrequenciesOf, BeginWhereTheRecordResolvesThemIfTheInputIsSlower) {
+  auto found = identified({Vector{{1.0}}, Vector{{1.0, 1.0}}}, Matrix::Identity(2, 2));
+  found.band_low = 0.0;
+  found.samples = 8000;
+  found.experiments = 2;
+  const Vector all = frequencies_of(found, true);
+  EXPECT_NEAR(all[0], 8.0 / 40.0, kRounding);
+  EXPECT_DOUBLE_EQ(all[all.size() - 1], 8.0);
+}
+
 TEST(FrequenciesOf, KeepToHalfTheSampleRateAndMeetEveryResonance) {
   auto found = identified({Vector{{1.0}}, Vector{{1.0, 1.0}}}, Matrix::Identity(2, 2));
   found.poles = {{.value = {-0.1, 40.0}, .frequency = 6.0, .damping = 0.002, .pair = true},
