@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <memory>
 #include <numbers>
@@ -17,6 +18,7 @@
 #include "mbk/preprocess/resample.h"
 #include "mbk/recording/channel_map.h"
 #include "mbk/recording/channel_table.h"
+#include "mbk/report/chart.h"
 #include "mbk/report/transfer_function_text.h"
 #include "mbk/result/transfer_function_json.h"
 
@@ -26,6 +28,7 @@ namespace {
 struct Arguments : MeasureArguments {
   std::vector<std::filesystem::path> held_back;
   std::string input = "input", output_signal = "output", reference, orders, delay = "0", invert;
+  std::filesystem::path charts;
   std::optional<long> poles, zeros;
   std::vector<double> start_poles_hz;
   double most_delay_s = 0.1;
@@ -186,9 +189,38 @@ std::string shown_name(const std::string& given) {
   return (entry->front().negate ? "−" : "") + entry->front().source;
 }
 
+constexpr std::array kChartNames = {"magnitude", "phase", "nyquist"};
+
+std::filesystem::path chart_file(const Arguments& arguments, std::size_t chart) {
+  return arguments.charts.string() + "_" + kChartNames[chart] + ".svg";
+}
+
+/// What can be said of every file that is to be written before the work begins.
+Result<void> check_written(const Arguments& arguments) {
+  MeasureArguments others = arguments;
+  const bool charts_alone = !arguments.output.file && !arguments.report && !arguments.charts.empty();
+  if (charts_alone) others.output.overwrite = false;
+  if (auto ok = check_files(others); !ok || arguments.charts.empty()) return ok;
+  for (std::size_t k = 0; k < kChartNames.size(); ++k) {
+    if (auto ok = check_new_file(chart_file(arguments, k), "--charts", arguments.output.overwrite, arguments.files);
+        !ok) {
+      return ok;
+    }
+  }
+  return {};
+}
+
+Result<void> write_charts(const Arguments& arguments, const std::vector<Chart>& charts) {
+  for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
+    const Output file{chart_file(arguments, k), arguments.output.overwrite};
+    if (auto ok = file.write(report::chart_svg(charts[k])); !ok) return ok;
+  }
+  return {};
+}
+
 int run(const Arguments& given, const std::string& typed) {
   Arguments arguments = given;
-  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  if (auto ok = check_written(arguments); !ok) return report_error(ok.error());
   auto options = options_of(arguments);
   if (!options) return report_error(options.error());
   if (auto ok = place_signals(arguments, *options); !ok) return report_error(ok.error());
@@ -206,6 +238,9 @@ int run(const Arguments& given, const std::string& typed) {
   if (arguments.report) {
     const std::string report = result::report_json(*found, *findings, typed, arguments.report_note);
     if (auto ok = write_page(arguments, report); !ok) return report_error(ok.error());
+  }
+  if (auto ok = write_charts(arguments, report::response_charts(*found, findings->response)); !ok) {
+    return report_error(ok.error());
   }
   std::string text = arguments.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
   if (!arguments.json && findings->inverse) text += report::inverted_admittance_text(*findings->inverse);
@@ -317,6 +352,12 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       ->group(model);
   add_output_options(*command, *arguments, "mbk.tf/1");
   add_report_options(*command, *arguments);
+  command
+      ->add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")
+      ->type_name("PREFIX")
+      ->check(not_empty());
+  command->get_option("--overwrite")
+      ->description("replace the files of --out, --report and --charts where they are there");
   return [arguments, typed] { return run(*arguments, typed); };
 }
 

@@ -171,6 +171,36 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
   return text;
 }
 
+std::vector<Chart> response_charts(const TransferFunctionIdentification& found, const FrequencyResponse& response) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const auto values = [](const Vector& vector) { return std::vector<double>(vector.begin(), vector.end()); };
+  const auto line = [&](const char* name, const Vector& x, const Vector& y) {
+    return ChartSeries{name, values(x), values(y), {}, ChartSeries::Drawn::line};
+  };
+  const ChartAxis frequency = {"frequency", "Hz", true};
+  const std::string name = name_of(found.input, found.input_unit) + " → " + name_of(found.output, found.output_unit);
+  const Vector phase = kDegrees * response.phase, half = kDegrees * response.phase_half_width;
+  Chart magnitude{"Magnitude, " + name, frequency, {"output over input", "", true}, {}, {}, {}};
+  magnitude.series = {line("model", response.frequency, response.value.cwiseAbs()),
+                      line("95 %, low", response.frequency, response.magnitude95.col(0)),
+                      line("95 %, high", response.frequency, response.magnitude95.col(1))};
+  Chart turn{"Phase, " + name, frequency, {"phase", "°"}, {}, {}, {}};
+  turn.series = {line("model", response.frequency, phase), line("95 %, low", response.frequency, phase - half),
+                 line("95 %, high", response.frequency, phase + half)};
+  for (Chart* const chart : {&magnitude, &turn}) {
+    for (const double end : {found.band_low, found.band_high}) {
+      if (end >= response.frequency[0] && end <= response.frequency[response.size() - 1]) {
+        chart->vertical.push_back({end, "end of the excited band"});
+      }
+    }
+  }
+  Chart nyquist{"Nyquist plot, " + name, {"real part", ""}, {"imaginary part", ""}, {}, {}, {}};
+  nyquist.series = {line("model", response.value.real(), response.value.imag())};
+  nyquist.horizontal = nyquist.vertical = {{0.0, ""}};
+  nyquist.equal_scale = true;
+  return {magnitude, turn, nyquist};
+}
+
 std::string inverted_admittance_text(const InvertedAdmittance& inverse) {
   const Units units = units_of(inverse.motion);
   std::string text =

@@ -101,6 +101,18 @@ class TransferFunction(Case):
             self.assertTrue(low[k] < abs(value) < high[k])
 
 
+class Charts(Case):
+    def test_are_three_files_that_are_not_lost_unasked(self):
+        log, prefix = make_log().path, self.folder / "plot"
+        options = ("tf", log, "--input", "Fx", "--output", "x", "--poles", "1", "--charts", prefix)
+        self.fine(*options)
+        for name in ("magnitude", "phase", "nyquist"):
+            self.assertTrue((self.folder / f"plot_{name}.svg").read_text(encoding="utf-8").startswith("<svg "))
+        self.assertIn("end of the excited band", (self.folder / "plot_phase.svg").read_text(encoding="utf-8"))
+        self.refused(WRONG_USAGE, *options, says="--overwrite")
+        self.fine(*options, "--overwrite")
+
+
 class Signals(Case):
     """Which signals of a file are meant, and that names for them stand in nobody's way."""
 
