@@ -103,8 +103,9 @@ class TransferFunction(Case):
 
 class Charts(Case):
     def test_are_three_files_that_are_not_lost_unasked(self):
-        log, prefix = make_log().path, self.folder / "plot"
-        options = ("tf", log, "--input", "Fx", "--output", "x", "--poles", "1", "--charts", prefix)
+        lines = ["time,force,motion"] + [",".join(f"{v:.12g}" for v in row) for row in oscillator()]
+        file, prefix = self.file("signals.csv", "\n".join(lines) + "\n"), self.folder / "plot"
+        options = ("tf", file, "--input", "force", "--output", "motion", "--poles", "2", "--zeros", "0", "--charts", prefix)
         self.fine(*options)
         for name in ("magnitude", "phase", "nyquist"):
             self.assertTrue((self.folder / f"plot_{name}.svg").read_text(encoding="utf-8").startswith("<svg "))
