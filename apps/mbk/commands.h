@@ -16,7 +16,7 @@ std::string command_line(int argc, char** argv);
 /// @param typed the command line, which a report repeats
 Action add_measure(CLI::App& app, const std::string& typed);
 Action add_identify(CLI::App& app);
-Action add_tf(CLI::App& app);
+Action add_tf(CLI::App& app, const std::string& typed);
 Action add_ellipse(CLI::App& app);
 Action add_passivity(CLI::App& app);
 Action add_info(CLI::App& app);

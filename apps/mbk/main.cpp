@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
   const std::vector<std::pair<const char*, mbk::app::Action>> commands = {
       {"measure", mbk::app::add_measure(app, mbk::app::command_line(argc, argv))},
       {"identify", mbk::app::add_identify(app)},
-      {"tf", mbk::app::add_tf(app)},
+      {"tf", mbk::app::add_tf(app, mbk::app::command_line(argc, argv))},
       {"ellipse", mbk::app::add_ellipse(app)},
       {"passivity", mbk::app::add_passivity(app)},
       {"info", mbk::app::add_info(app)},

@@ -229,6 +229,7 @@ Result<recording::ReadOptions> read_options(const MeasureArguments& arguments) {
   options.axes = arguments.axes;
   options.untimed = arguments.untimed;
   options.variable = arguments.variable;
+  options.wanted = arguments.wanted;
   return options;
 }
 

@@ -18,6 +18,7 @@ struct MeasureArguments {
   std::vector<std::filesystem::path> files;
   bool parts = false;
   std::string channels, variable;
+  std::vector<std::string> wanted;  ///< channels that are taken by name, beside those of the map; empty: all
   std::optional<double> rate_hz, resample_hz;
   int axes = 0;
   bool untimed = false;  ///< rows without a time are welcome

@@ -44,7 +44,11 @@ Result<void> write_report(const MeasureArguments& arguments, const std::string& 
     }
     report.results.push_back(std::move(reported));
   }
-  const auto page = report::page(result::to_json(report));
+  return write_page(arguments, result::to_json(report));
+}
+
+Result<void> write_page(const MeasureArguments& arguments, std::string_view report_json) {
+  const auto page = report::page(report_json);
   if (!page) return tl::unexpected(page.error());
   return recording::write_file(*arguments.report, arguments.output.overwrite, *page);
 }

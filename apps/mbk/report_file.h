@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/mbk/measure_options.h"
@@ -21,5 +22,8 @@ namespace mbk::app {
                                         const std::vector<result::Measured>& measured,
                                         const std::vector<std::optional<Diagnostics>>& diagnostics,
                                         const std::optional<Summary>& summary);
+
+/// The same for a document that is ready.
+[[nodiscard]] Result<void> write_page(const MeasureArguments& arguments, std::string_view report_json);
 
 }  // namespace mbk::app

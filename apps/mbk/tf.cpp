@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <memory>
 #include <numbers>
@@ -10,9 +12,13 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/report_file.h"
+#include "mbk/analyse/frequency_response.h"
 #include "mbk/measurement/transfer_function.h"
 #include "mbk/preprocess/resample.h"
+#include "mbk/recording/channel_map.h"
 #include "mbk/recording/channel_table.h"
+#include "mbk/report/chart.h"
 #include "mbk/report/transfer_function_text.h"
 #include "mbk/result/transfer_function_json.h"
 
@@ -21,7 +27,8 @@ namespace {
 
 struct Arguments : MeasureArguments {
   std::vector<std::filesystem::path> held_back;
-  std::string input = "input", output_signal = "output", reference, orders, delay = "0";
+  std::string input = "input", output_signal = "output", reference, orders, delay = "0", invert;
+  std::filesystem::path charts;
   std::optional<long> poles, zeros;
   std::vector<double> start_poles_hz;
   double most_delay_s = 0.1;
@@ -113,33 +120,45 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
   return options;
 }
 
-/// Where the signals stand. Names of channels that mbk knows are those channels; anything else is a column, a row or a
-/// variable of the file.
-void place_signals(Arguments& a, measurement::TransferFunctionMeasurement& options) {
-  struct Signal {
-    const std::string& given;
-    const char* channel;
-    std::string& to;
+/// A signal as the command line names it.
+struct Signal {
+  const std::string& given;
+  const char* channel;  ///< that it becomes where the map has to say where it stands
+  std::string& to;
+  double* sign;  ///< nullptr: has none
+};
+
+/// Where the signals stand: channels under their own names (position, Fx), or else columns, rows or variables of the
+/// file, which the map then makes `input`, `output` and `drive`.
+Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasurement& options) {
+  const auto mapped =
+      a.channels.empty() ? Result<std::vector<recording::ChannelSource>>() : recording::parse_channel_map(a.channels);
+  if (!mapped) return tl::unexpected(mapped.error());
+  const auto in_map = [&](const std::string& name) {
+    const auto meant = recording::kinds_called(name);
+    return std::ranges::any_of(*mapped, [&](const recording::ChannelSource& entry) {
+      const auto kinds = recording::kinds_called(entry.channel);
+      return std::ranges::find_first_of(meant, kinds) != meant.end();
+    });
   };
-  const Signal signals[] = {{a.input, "input", options.input},
-                            {a.output_signal, "output", options.output},
-                            {a.reference, "reference", options.reference}};
-  bool known = true;
-  for (const Signal& signal : signals) {
-    known = known && (signal.given.empty() || !recording::kinds_called(signal.given).empty());
-  }
-  const bool mapped = !a.channels.empty();
+  const Signal signals[] = {{a.input, "input", options.input, &options.input_sign},
+                            {a.output_signal, "output", options.output, &options.output_sign},
+                            {a.reference, "drive", options.reference, nullptr}};
   for (const Signal& signal : signals) {
     if (signal.given.empty()) continue;
-    const auto kinds = recording::kinds_called(signal.given);
-    if (!kinds.empty() && (known || mapped)) {
-      const auto* const kind = recording::kind_for_axes(kinds, a.axes == 0 ? 2 : a.axes);
-      signal.to = kind == nullptr ? std::string(kinds.front()->name) : std::string(kind->name);
+    const bool flipped = signal.given.front() == '-' && signal.sign != nullptr;
+    const std::string name = signal.given.substr(flipped ? 1 : 0);
+    const bool by_name = mapped->empty() && !recording::kinds_called(name).empty();
+    if (by_name || in_map(name)) {
+      signal.to = name;
+      if (flipped) *signal.sign = -1.0;
+      if (by_name) a.wanted.push_back(name);
       continue;
     }
     a.channels += fmt::format("{}{}={}", a.channels.empty() ? "" : ",", signal.channel, signal.given);
     signal.to = signal.channel;
   }
+  return {};
 }
 
 Result<std::vector<Recording>> read_all(const Arguments& a, const std::vector<std::filesystem::path>& files) {
@@ -155,26 +174,83 @@ Result<std::vector<Recording>> read_all(const Arguments& a, const std::vector<st
   return recordings;
 }
 
-int run(const Arguments& given) {
+/// What the output is, where the model is to be inverted.
+std::optional<AdmittanceOutput> inverted_output(const std::string& word) {
+  for (const auto output : {AdmittanceOutput::position, AdmittanceOutput::velocity, AdmittanceOutput::acceleration}) {
+    if (text(output) == word) return output;
+  }
+  return std::nullopt;
+}
+
+/// How a signal was named, without what converts it: "-2:mm" is −2.
+std::string shown_name(const std::string& given) {
+  const auto entry = recording::parse_channel_map("input=" + given);
+  if (!entry) return given;
+  return (entry->front().negate ? "−" : "") + entry->front().source;
+}
+
+constexpr std::array kChartNames = {"magnitude", "phase", "nyquist"};
+
+std::filesystem::path chart_file(const Arguments& arguments, std::size_t chart) {
+  return arguments.charts.string() + "_" + kChartNames[chart] + ".svg";
+}
+
+/// What can be said of every file that is to be written before the work begins.
+Result<void> check_written(const Arguments& arguments) {
+  MeasureArguments others = arguments;
+  const bool charts_alone = !arguments.output.file && !arguments.report && !arguments.charts.empty();
+  if (charts_alone) others.output.overwrite = false;
+  if (auto ok = check_files(others); !ok || arguments.charts.empty()) return ok;
+  for (std::size_t k = 0; k < kChartNames.size(); ++k) {
+    if (auto ok = check_new_file(chart_file(arguments, k), "--charts", arguments.output.overwrite, arguments.files);
+        !ok) {
+      return ok;
+    }
+  }
+  return {};
+}
+
+Result<void> write_charts(const Arguments& arguments, const std::vector<Chart>& charts) {
+  for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
+    const Output file{chart_file(arguments, k), arguments.output.overwrite};
+    if (auto ok = file.write(report::chart_svg(charts[k])); !ok) return ok;
+  }
+  return {};
+}
+
+int run(const Arguments& given, const std::string& typed) {
   Arguments arguments = given;
-  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  if (auto ok = check_written(arguments); !ok) return report_error(ok.error());
   auto options = options_of(arguments);
   if (!options) return report_error(options.error());
-  place_signals(arguments, *options);
+  if (auto ok = place_signals(arguments, *options); !ok) return report_error(ok.error());
   const auto recordings = read_all(arguments, arguments.files);
   if (!recordings) return report_error(recordings.error());
   const auto held_back = read_all(arguments, arguments.held_back);
   if (!held_back) return report_error(held_back.error());
-  const auto found = measurement::identify_transfer_function(*recordings, *held_back, *options);
+  auto found = measurement::identify_transfer_function(*recordings, *held_back, *options);
   if (!found) return report_error(found.error());
-  const std::string text = arguments.json ? result::to_json(*found) : report::transfer_function_text(*found);
+  found->input = shown_name(given.input);
+  found->output = shown_name(given.output_signal);
+  found->reference = shown_name(given.reference);
+  const auto findings = analyse::describe(*found, inverted_output(given.invert));
+  if (!findings) return report_error(findings.error());
+  if (arguments.report) {
+    const std::string report = result::report_json(*found, *findings, typed, arguments.report_note);
+    if (auto ok = write_page(arguments, report); !ok) return report_error(ok.error());
+  }
+  if (auto ok = write_charts(arguments, report::response_charts(*found, findings->response)); !ok) {
+    return report_error(ok.error());
+  }
+  std::string text = arguments.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
+  if (!arguments.json && findings->inverse) text += report::inverted_admittance_text(*findings->inverse);
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 
 }  // namespace
 
-Action add_tf(CLI::App& app) {
+Action add_tf(CLI::App& app, const std::string& typed) {
   auto arguments = std::make_shared<Arguments>();
   arguments->method = "srivc";
   CLI::App* command = app.add_subcommand("tf", "a transfer function from one signal to another");
@@ -184,9 +260,11 @@ Action add_tf(CLI::App& app) {
       "  mbk tf log.mat --input Fx --output x --orders 1:4\n"
       "      a table of all models of 1 to 4 poles, and the one that the data speak for\n"
       "  mbk tf log.csv --input 2 --output 3 --rate 500 --poles 2 --zeros 0 --delay auto --json\n"
-      "  mbk tf loop.csv --input motor --output angle --reference wanted --method clsrivc --poles 3\n\n"
-      "FILEs are one system: they are fitted together. What did not settle, or settled on an unstable model, is\n"
-      "refused.\n\n"
+      "  mbk tf loop.csv --input motor --output angle --reference wanted --method clsrivc --poles 3\n"
+      "  mbk tf log.mat --input -Fx --output x --poles 2 --zeros 0 --invert position --report log.html\n"
+      "      from the force on the hand to where it moves, and turned round: the impedance with M, B, K\n\n"
+      "FILEs are one system: they are fitted together. What did not settle, or settled on an unstable\n"
+      "model, is refused.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(*command, *arguments);
@@ -222,6 +300,13 @@ Action add_tf(CLI::App& app) {
                    "choose among models: 2:5 for 2 to 5 poles with fewer zeros, or a list POLES/ZEROS")
       ->type_name("FROM:TO|LIST")
       ->check(not_empty())
+      ->group(model);
+  command
+      ->add_option("--invert", arguments->invert,
+                   "also the inverse: the input is the force on what moves, the output that motion of it; gives the "
+                   "impedance")
+      ->type_name("position|velocity|acceleration")
+      ->check(one_of({"position", "velocity", "acceleration"}))
       ->group(model);
   command
       ->add_option("--method", arguments->method,
@@ -266,7 +351,14 @@ Action add_tf(CLI::App& app) {
       ->check(whole_number(1, 1024))
       ->group(model);
   add_output_options(*command, *arguments, "mbk.tf/1");
-  return [arguments] { return run(*arguments); };
+  add_report_options(*command, *arguments);
+  command
+      ->add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")
+      ->type_name("PREFIX")
+      ->check(not_empty());
+  command->get_option("--overwrite")
+      ->description("replace the files of --out, --report and --charts where they are there");
+  return [arguments, typed] { return run(*arguments, typed); };
 }
 
 }  // namespace mbk::app

@@ -75,7 +75,7 @@ class Identifier {
   Result<ContinuousFit> choose_order();
   void describe(const ContinuousFit& fit);
   void test(const ContinuousFit& fit);
-  void judge_held_back();
+  void simulate(const ContinuousFit& fit);
   void warn();
   [[nodiscard]] double median_step() const;
 
@@ -285,14 +285,23 @@ void Identifier::test(const ContinuousFit& fit) {
   found_.residuals = test_residuals(left, inputs, std::max<Index>(1, static_cast<Index>(lags)));
 }
 
-void Identifier::judge_held_back() {
-  if (held_back_.empty()) return;
+void Identifier::simulate(const ContinuousFit& fit) {
+  if (held_back_.empty()) {
+    for (std::size_t k = 0; k < experiments_.size(); ++k) {
+      const SignalPair& pair = experiments_[k];
+      const Vector output = pair.output.tail(pair.samples());
+      found_.simulated.push_back({pair.time.tail(pair.samples()), output, output - fit.residuals[k]});
+    }
+    return;
+  }
   double squares = 0.0, output = 0.0;
   Index count = 0;
   const Vector a = found_.model.denominator.head(found_.model.poles());
   for (const SignalPair& pair : delayed(held_back_, delay_)) {
     const Vector error = pair.output - simulate_continuous(a, found_.model.numerator, pair);
-    squares += without_free_motion(a, pair, error).squaredNorm();
+    const Vector left = without_free_motion(a, pair, error);
+    squares += left.squaredNorm();
+    found_.simulated.push_back({pair.time, pair.output, pair.output - left});
     output += (pair.output.array() - pair.output.mean()).square().sum();
     count += pair.output.size();
   }
@@ -352,7 +361,7 @@ Result<TransferFunctionIdentification> Identifier::run() {
   if (!fit) return tl::unexpected(fit.error());
   describe(*fit);
   test(*fit);
-  judge_held_back();
+  simulate(*fit);
   warn();
   return std::move(found_);
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/recording/channel_table.h"
+
 namespace mbk::measurement {
 namespace {
 
@@ -48,6 +50,9 @@ std::pair<std::vector<Piece>, bool> pieces_of(const Vector& time) {
 
 Result<const Channel*> channel_of(const Recording& recording, const std::string& name) {
   if (const Channel* const channel = recording.find(name)) return channel;
+  for (const auto* const kind : recording::kinds_called(name)) {
+    if (const Channel* const channel = recording.find(kind->name)) return channel;
+  }
   std::vector<std::string> names;
   for (const Channel& channel : recording.channels) names.push_back(channel.name);
   return bad_data(fmt::format("there is no channel '{}'; there are {}", name, fmt::join(names, ", ")),
@@ -84,11 +89,11 @@ void Preparer::cut(const Recording& recording, Piece piece, bool even, double fr
   while (past > piece.begin && recording.time[past] > recording.time[begin] - reach) --past;
   SignalPair pair;
   const auto taken = [&](const std::string& name) {
-    return Vector(recording.find(name)->values.segment(past, end - past));
+    return Vector(channel_of(recording, name).value()->values.segment(past, end - past));
   };
   pair.time = recording.time.segment(past, end - past);
-  pair.input = taken(options_.input);
-  pair.output = taken(options_.output);
+  pair.input = options_.input_sign * taken(options_.input);
+  pair.output = options_.output_sign * taken(options_.output);
   if (!options_.reference.empty()) pair.reference = taken(options_.reference);
   pair.first = begin - past;
   if (even) pair.step = (pair.time[pair.time.size() - 1] - pair.time[0]) / static_cast<double>(pair.time.size() - 1);

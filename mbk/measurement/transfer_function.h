@@ -11,7 +11,8 @@
 namespace mbk::measurement {
 
 struct TransferFunctionMeasurement {
-  std::string input = "input", output = "output";  ///< channels
+  std::string input = "input", output = "output";  ///< channels, by name or alias
+  double input_sign = 1, output_sign = 1;          ///< −1 flips
   std::string reference;                           ///< channel that drives the loop; empty: none
   preprocess::WindowLimits window;  ///< split: what is behind it is held back; absent: the last fifth, unless whole
                                     ///< recordings are

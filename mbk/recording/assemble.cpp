@@ -156,7 +156,12 @@ class Assembler {
           fmt::format("--variable {} means a variable of a MAT file, and this is a table", options_.variable),
           "name its columns with --channels");
     }
-    if (auto ok = options_.channels.empty() ? recognise() : follow_map(); !ok) return tl::unexpected(ok.error());
+    if (options_.channels.empty() || !options_.wanted.empty()) {
+      if (auto ok = recognise(); !ok) return tl::unexpected(ok.error());
+    }
+    if (!options_.channels.empty()) {
+      if (auto ok = follow_map(); !ok) return tl::unexpected(ok.error());
+    }
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
     follow_metadata();
     extract();
@@ -173,6 +178,7 @@ class Assembler {
     if (*logs != nullptr) return take_logs(**logs);
     if (auto ok = take_names(); !ok) return ok;
     if (std::ranges::any_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) return {};
+    if (!options_.channels.empty()) return {};  // the map names them
     for (const Array& array : contents_.arrays) {
       if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
     }
@@ -227,7 +233,7 @@ class Assembler {
   Result<void> take_logs(const Array& logs) {
     std::vector<std::string> absent;
     for (const ChannelKind& kind : channel_kinds()) {
-      if (kind.logs_row == 0) continue;
+      if (kind.logs_row == 0 || !is_wanted(kind)) continue;
       const Line line{&logs, kind.logs_row - 1, true};
       if (kind.name != "time" && not_recorded(logs.values.row(line.index))) {
         absent.emplace_back(kind.name);
@@ -244,6 +250,15 @@ class Assembler {
     return {};
   }
 
+  /// Whether somebody asks for such a channel: otherwise nothing of it can stand in the way.
+  [[nodiscard]] bool is_wanted(const ChannelKind& kind) const {
+    if (kind.name == "time" || options_.wanted.empty()) return !kind.only_if_asked;
+    return std::ranges::any_of(options_.wanted, [&](const std::string& name) {
+      const auto kinds = kinds_called(name);
+      return std::ranges::find(kinds, &kind) != kinds.end();
+    });
+  }
+
   Result<void> take_names() {
     struct Candidate {
       const Array* array;
@@ -254,6 +269,7 @@ class Assembler {
     std::vector<std::string> aside;
     for (const Array& array : contents_.arrays) {
       ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name));
+      std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_wanted(*kind); });
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -266,7 +282,7 @@ class Assembler {
       const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
       if (kind == nullptr) {
         aside.push_back(candidate.array->name);
-      } else {
+      } else if (is_wanted(*kind)) {
         const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
         if (!unit) return tl::unexpected(unit.error());
         signals_.push_back({kind, vector_of(*candidate.array), *unit, false, candidate.array->name});
@@ -284,7 +300,7 @@ class Assembler {
   static Result<const Unit*> unit_said(const ChannelKind& kind, const Array& array, const Unit* in_name) {
     if (array.unit.empty()) return in_name;
     const Unit* const unit = find_unit(array.unit);
-    if (unit != nullptr && kind.accepts(*unit)) return unit;
+    if (kind.measures.empty() || (unit != nullptr && kind.accepts(*unit))) return unit;
     return bad_data(fmt::format("the file says that '{}' is in '{}', which channel {} cannot be in", array.name,
                                 array.unit, kind.name),
                     fmt::format("say the unit with --channels {}={}:UNIT; possible are {}", kind.name, array.name,
@@ -587,7 +603,9 @@ class Assembler {
         recording_.time = std::move(channel);
         continue;
       }
-      const auto unit = signal.unit != nullptr ? si_unit(signal.unit->dimension) : signal.kind->default_unit();
+      const auto unit = signal.unit != nullptr          ? si_unit(signal.unit->dimension)
+                        : signal.kind->measures.empty() ? std::string_view(signal.line.array->unit)
+                                                        : signal.kind->default_unit();
       recording_.channels.push_back(
           {std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame), std::move(channel)});
     }

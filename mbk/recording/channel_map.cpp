@@ -64,9 +64,11 @@ Result<ChannelSource> parse_entry(std::string_view entry) {
   if (const auto colon = source.rfind(':'); colon != source.npos && find_unit(trimmed(source.substr(colon + 1)))) {
     result.unit = trimmed(source.substr(colon + 1));
     source = trimmed(source.substr(0, colon));
-    std::vector<Dimension> possible;
-    for (const ChannelKind* kind : kinds) possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
-    if (std::ranges::find(possible, find_unit(result.unit)->dimension) == possible.end()) {
+    const Unit& unit = *find_unit(result.unit);
+    if (std::ranges::none_of(kinds, [&](const ChannelKind* kind) { return kind->accepts(unit); })) {
+      std::vector<Dimension> possible;
+      for (const ChannelKind* kind : kinds)
+        possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
       return bad_data(fmt::format("channel {} cannot be in {}", name, result.unit),
                       fmt::format("possible are {}", unit_names(possible)));
     }

@@ -23,7 +23,7 @@ constexpr std::array kAnyPosition{length, angle};
 constexpr std::array kAnyForce{force, torque};
 constexpr std::array kAnyReference{length, angle, force, torque};
 constexpr std::array kAnyAcceleration{acceleration, angular_acceleration};
-constexpr std::array kAnySignal{length, angle, force, torque, acceleration, angular_acceleration, voltage};
+constexpr std::span<const Dimension> kAnything;
 
 constexpr auto kKinds = std::to_array<ChannelKind>({
     {"time", "t", kTime, "", 0, 1},
@@ -65,8 +65,9 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"reaction", "F", kAnyForce, "", 1, 0},
     {"reference", "xr", kAnyReference, "", 1, 0},
     {"acceleration", "a", kAnyAcceleration, "", 1, 0},
-    {"input", "input", kAnySignal, "", 0, 0},
-    {"output", "output", kAnySignal, "", 0, 0},
+    {"input", "input", kAnything, "", 0, 0, false, true},
+    {"output", "output", kAnything, "", 0, 0, false, true},
+    {"drive", "drive", kAnything, "", 0, 0, false, true},
 });
 static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMostJoints);
 
@@ -103,7 +104,7 @@ std::string_view trimmed(std::string_view text) {
 }  // namespace
 
 bool ChannelKind::accepts(const Unit& unit) const {
-  return std::ranges::find(measures, unit.dimension) != measures.end();
+  return measures.empty() || std::ranges::find(measures, unit.dimension) != measures.end();
 }
 
 std::span<const ChannelKind> channel_kinds() {

@@ -13,11 +13,12 @@ namespace mbk::recording {
 struct ChannelKind {
   std::string_view name;
   std::string_view alias;               ///< "x" and "xr" are aliases of two kinds: of one axis and of two
-  std::span<const Dimension> measures;  ///< what it may measure; where there are several, the file must say
+  std::span<const Dimension> measures;  ///< what it may measure; where there are several, the file must say; none: any
   std::string_view frame;               ///< "base", "joint" or ""
   int axes;                             ///< 1 or 2: the kind of experiment it belongs to; 0: both
   int logs_row;                         ///< 1-based row of the 19-row `logs` matrix; 0: it has none
   bool first_unless_said = false;       ///< of several measures, the first one where nothing was said: joints turn
+  bool only_if_asked = false;           ///< not taken by its name alone: things of any kind are called input and output
 
   /// SI unit, or "" where several are possible, nothing was said and none goes without saying.
   [[nodiscard]] std::string_view default_unit() const {

@@ -15,7 +15,9 @@ namespace mbk::recording {
 
 struct ReadOptions {
   std::vector<ChannelSource> channels;  ///< empty: the file is recognised by itself
-  std::optional<Hertz> rate;            ///< needed where the file holds no time; must agree with the time where it does
+  std::vector<std::string> wanted;  ///< channels that are taken by name, beside those of the map; empty: without a map
+                                    ///< all, and with one none
+  std::optional<Hertz> rate;        ///< needed where the file holds no time; must agree with the time where it does
   int axes = 0;          ///< what x and xr mean: 1 position, reference; 2 hand_x, reference_x; 0 by the channels found
   bool untimed = false;  ///< rows without a time and a rate are taken as they are; otherwise that is an error
   std::string variable;  ///< the MAT variable that is meant, where several could be

@@ -481,6 +481,31 @@ TEST(ReadRealFiles, AnkleBothAsTableAndAsMatrixBesideObjects) {
   EXPECT_LT((matrix->find("reaction")->values - table->find("reaction")->values).cwiseAbs().maxCoeff(), 0.6e-5);
 }
 
+TEST(ReadAnySignal, InputAndOutputAreTakenOnlyWhereAsked) {
+  const test::Folder folder;
+  const auto file = folder.write("plant.csv", "time,x,Input,output [mm]\n0,1,5,7\n0.1,2,6,8\n");
+  const auto by_name = read(file, {});
+  ASSERT_TRUE(by_name) << by_name.error().line();
+  EXPECT_EQ(by_name->channels.size(), 1U);
+  const auto mapped = read(file, with_channels("input=Input:V,output=output [mm]"));
+  ASSERT_TRUE(mapped) << mapped.error().line();
+  EXPECT_EQ(mapped->find("input")->unit, "V");
+  EXPECT_EQ(mapped->find("output")->unit, "m");
+  EXPECT_DOUBLE_EQ(mapped->find("output")->values[1], 0.008);
+}
+
+TEST(ReadAnySignal, WantedChannelsAreTakenByNameBesideTheMap) {
+  const test::Folder folder;
+  const auto file = folder.write("plant.csv", "time,hand_x_mm,Fx,7\n0,1,5,7\n0.1,2,6,8\n");
+  ReadOptions options = with_channels("output=4");
+  options.wanted = {"x"};
+  const auto both = read(file, options);
+  ASSERT_TRUE(both) << both.error().line();
+  EXPECT_EQ(both->channels.size(), 2U);
+  EXPECT_DOUBLE_EQ(both->find("hand_x")->values[1], 0.002);
+  EXPECT_DOUBLE_EQ(both->find("output")->values[1], 8.0);
+}
+
 TEST(ReadRealFiles, DriveAndFlexibleArm) {
   MBK_DATA_OR_SKIP(data);
   const auto drive = read(data / "emps/DATA_EMPS.mat", with_channels("t=t,x=qm:m,F=vir,xr=qg:m"));

@@ -79,6 +79,26 @@ Ranges ranges_of(const Chart& chart) {
   return {with_room(ranges.x), with_room(ranges.y)};
 }
 
+void take_logarithm(double& value) {
+  value = value > 0.0 ? std::log10(value) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The chart with the decimal logarithms of what its logarithmic axes show.
+Chart on_even_axes(Chart chart) {
+  for (ChartSeries& series : chart.series) {
+    if (chart.x.logarithmic) std::ranges::for_each(series.x, take_logarithm);
+    if (!chart.y.logarithmic) continue;
+    std::ranges::for_each(series.y, take_logarithm);
+    for (auto& [low, high] : series.intervals) {
+      take_logarithm(low);
+      take_logarithm(high);
+    }
+  }
+  if (chart.x.logarithmic) std::ranges::for_each(chart.vertical, take_logarithm, &ChartReference::value);
+  if (chart.y.logarithmic) std::ranges::for_each(chart.horizontal, take_logarithm, &ChartReference::value);
+  return chart;
+}
+
 struct Tick {
   double value = 0;
   std::string label;
@@ -99,6 +119,25 @@ std::vector<Tick> ticks_of(const Range& range, int wanted) {
     ticks.push_back({value, plain ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.6g}", value)});
   }
   return ticks;
+}
+
+/// Powers of ten within a range of logarithms, and twice and five times these where there is room.
+std::vector<Tick> logarithmic_ticks_of(const Range& range, int wanted) {
+  const double every = std::max(1.0, std::ceil(range.size() / wanted));
+  const bool between = 3.0 * range.size() <= wanted;
+  std::vector<Tick> ticks;
+  for (double power = every * std::floor(range.low / every); power <= range.high; power += every) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double value = power + std::log10(factor);
+      if (!range.holds(value) || (factor > 1.0 && !between)) continue;
+      ticks.push_back({value, fmt::format("{:g}", factor * std::pow(10.0, power))});
+    }
+  }
+  return ticks;
+}
+
+std::vector<Tick> ticks_of(const Range& range, int wanted, const ChartAxis& axis) {
+  return axis.logarithmic ? logarithmic_ticks_of(range, wanted) : ticks_of(range, wanted);
 }
 
 std::string with_unit(const ChartAxis& axis) {
@@ -358,12 +397,12 @@ std::string svg_series(const Chart& chart, std::size_t k, const Frame& frame) {
 std::string svg_axes(const Chart& chart, const Frame& frame) {
   const double right = frame.left + frame.width, bottom = frame.top + frame.height;
   std::string grid, numbers;
-  for (const Tick& tick : ticks_of(frame.ranges.x, std::max(2, static_cast<int>(frame.width / 90.0)))) {
+  for (const Tick& tick : ticks_of(frame.ranges.x, std::max(2, static_cast<int>(frame.width / 90.0)), chart.x)) {
     grid += fmt::format("M{:.2f} {:.2f}V{:.2f}", frame.x(tick.value), frame.top, bottom + 5.0);
     numbers += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>)", frame.x(tick.value),
                            bottom + 20.0, tick.label);
   }
-  for (const Tick& tick : ticks_of(frame.ranges.y, std::max(2, static_cast<int>(frame.height / 60.0)))) {
+  for (const Tick& tick : ticks_of(frame.ranges.y, std::max(2, static_cast<int>(frame.height / 60.0)), chart.y)) {
     grid += fmt::format("M{:.2f} {:.2f}H{:.2f}", frame.left - 5.0, frame.y(tick.value), right);
     numbers += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="end">{}</text>)", frame.left - 9.0,
                            frame.y(tick.value) + 4.5, tick.label);
@@ -436,7 +475,8 @@ std::string description(const Chart& chart) {
 
 }  // namespace
 
-std::string chart_text(const Chart& chart) {
+std::string chart_text(const Chart& given) {
+  const Chart chart = on_even_axes(given);
   const Ranges ranges = ranges_of(chart);
   int width = 72, height = 18;
   if (chart.equal_scale || chart.identity) {
@@ -454,8 +494,8 @@ std::string chart_text(const Chart& chart) {
                 line ? kDashes[lines++ % kDashes.size()] : Dash());
   }
 
-  const std::vector<Tick> up = ticks_of(ranges.y, std::max(2, height / 3));
-  const std::vector<Tick> along = ticks_of(ranges.x, std::max(2, width / 11));
+  const std::vector<Tick> up = ticks_of(ranges.y, std::max(2, height / 3), chart.y);
+  const std::vector<Tick> along = ticks_of(ranges.x, std::max(2, width / 11), chart.x);
   std::vector<std::string> numbers(static_cast<std::size_t>(height));
   std::size_t widest = 0;
   for (const Tick& tick : up) {
@@ -476,10 +516,11 @@ std::string chart_text(const Chart& chart) {
   const std::string label = with_unit(chart.x);
   const std::size_t middle = 4 + widest + static_cast<std::size_t>(width) / 2, half = columns(label) / 2;
   text += std::string(middle > half ? middle - half : 0, ' ') + label + "\n";
-  return text + text_legend(chart);
+  return text + text_legend(given);
 }
 
-std::string chart_svg(const Chart& chart) {
+std::string chart_svg(const Chart& given) {
+  const Chart chart = on_even_axes(given);
   const Frame frame = frame_of(chart);
   const double right = frame.left + frame.width, bottom = frame.top + frame.height;
   const double page = std::max(right + 24.0, 640.0);
@@ -502,7 +543,7 @@ std::string chart_svg(const Chart& chart) {
       "\n",
       page, y + 4.0);
   text += fmt::format("<title id=\"title\">{}</title>\n<desc id=\"description\">{}</desc>\n", escaped(chart.title),
-                      escaped(description(chart)));
+                      escaped(description(given)));
   text += R"(<rect width="100%" height="100%" fill="#fff"/>)";
   text += fmt::format(R"(<text x="24" y="26" font-size="16" font-weight="bold">{}</text>)", escaped(chart.title));
   text += "\n" + svg_axes(chart, frame) + svg_references(chart, frame);

@@ -169,6 +169,18 @@ TEST(ChartSvg, MarksStandWhereTheAxesSay) {
   EXPECT_LT(circles[2].y, circles[0].y);  // y grows upwards on the page
 }
 
+TEST(Charts, LogarithmicAxesShowPowersOfTenAndLeaveOutWhatHasNoLogarithm) {
+  Chart c = chart();
+  c.x = {"frequency", "Hz", true};
+  c.y = {"magnitude", "", true};
+  c.series[0] = {"model", {0.01, 0.1, 1.0, 10.0, -1.0}, {1.0, 10.0, 100.0, 1000.0, 5.0}, {}, Drawn::marks};
+  c.vertical = {{0.1, "end"}};
+  const std::string svg = chart_svg(c), text = chart_text(c);
+  for (const char* tick : {">0.01<", ">0.1<", ">1<", ">10<", ">1000<"}) EXPECT_THAT(svg, HasSubstr(tick));
+  EXPECT_THAT(text, HasSubstr("end (0.1 Hz)"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
 TEST(ChartSvg, EqualScaleAndIdentityHaveOneScaleForBothAxes) {
   for (const bool identity : {false, true}) {
     Chart c = chart();

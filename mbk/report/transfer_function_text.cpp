@@ -171,4 +171,71 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
   return text;
 }
 
+std::vector<Chart> response_charts(const TransferFunctionIdentification& found, const FrequencyResponse& response) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const auto values = [](const Vector& vector) { return std::vector<double>(vector.begin(), vector.end()); };
+  const auto line = [&](const char* name, const Vector& x, const Vector& y) {
+    return ChartSeries{name, values(x), values(y), {}, ChartSeries::Drawn::line};
+  };
+  const ChartAxis frequency = {"frequency", "Hz", true};
+  const std::string name = name_of(found.input, found.input_unit) + " → " + name_of(found.output, found.output_unit);
+  const Vector phase = kDegrees * response.phase, half = kDegrees * response.phase_half_width;
+  Chart magnitude{"Magnitude, " + name, frequency, {"output over input", "", true}, {}, {}, {}};
+  magnitude.series = {line("model", response.frequency, response.value.cwiseAbs()),
+                      line("95 %, low", response.frequency, response.magnitude95.col(0)),
+                      line("95 %, high", response.frequency, response.magnitude95.col(1))};
+  Chart turn{"Phase, " + name, frequency, {"phase", "°"}, {}, {}, {}};
+  turn.series = {line("model", response.frequency, phase), line("95 %, low", response.frequency, phase - half),
+                 line("95 %, high", response.frequency, phase + half)};
+  for (Chart* const chart : {&magnitude, &turn}) {
+    for (const double end : {found.band_low, found.band_high}) {
+      if (end >= response.frequency[0] && end <= response.frequency[response.size() - 1]) {
+        chart->vertical.push_back({end, "end of the excited band"});
+      }
+    }
+  }
+  Chart nyquist{"Nyquist plot, " + name, {"real part", ""}, {"imaginary part", ""}, {}, {}, {}};
+  nyquist.series = {line("model", response.value.real(), response.value.imag())};
+  nyquist.horizontal = nyquist.vertical = {{0.0, ""}};
+  nyquist.equal_scale = true;
+  return {magnitude, turn, nyquist};
+}
+
+std::string inverted_admittance_text(const InvertedAdmittance& inverse) {
+  const Units units = units_of(inverse.motion);
+  std::string text =
+      fmt::format("\nimpedance, force per velocity: the inverse of force → {}\n", mbk::text(inverse.output));
+  Rows rows;
+  const auto add = [&](const char* name, const std::optional<Estimate>& value, const char* unit) {
+    if (value)
+      rows.push_back({name, with_interval(value->value, numeric::kNormal95 * value->standard_error) + " " + unit});
+  };
+  add("M", inverse.M, units.inertia);
+  add("B", inverse.B, units.damping);
+  add("K", inverse.K, units.stiffness);
+  if (!rows.empty()) text += table(rows) + "\n";
+  const auto polar = [](const FrequencyResponse& response, Index i) {
+    return fmt::format("{:.4g} [{:.4g}, {:.4g}]", std::abs(response.value[i]), response.magnitude95(i, 0),
+                       response.magnitude95(i, 1));
+  };
+  rows = {
+      {"Hz", fmt::format("|Z| [{}]", units.damping), "Re Z", "phase [°]", fmt::format("|sZ| [{}]", units.stiffness)}};
+  constexpr Index kShown = 10;
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const FrequencyResponse& z = inverse.impedance;
+  for (Index k = 0; k < kShown; ++k) {
+    const Index i = k * (z.size() - 1) / (kShown - 1);
+    rows.push_back(
+        {fmt::format("{:.3g}", z.frequency[i]), polar(z, i), with_interval(z.value[i].real(), z.real_half_width[i]),
+         with_interval(kDegrees * z.phase[i], kDegrees * z.phase_half_width[i]), polar(inverse.stiffness, i)});
+  }
+  text += table(rows);
+  if (inverse.unstable) {
+    text += paragraph("  ",
+                      "The admittance has zeros on the right half plane, so that this impedance is unstable: no "
+                      "limb is; take fewer zeros.");
+  }
+  return text;
+}
+
 }  // namespace mbk::report

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -27,6 +28,22 @@ inline Json number(double value) {
 inline Json list(const Vector& values) {
   Json array = Json::array();
   for (const double value : values) array.push_back(number(value));
+  return array;
+}
+
+inline constexpr int kDigits = 6, kTimeDigits = 9;  ///< of what is only there to be looked at
+
+/// The number with so many digits; null where it is undefined.
+inline Json rounded(double value, int digits) {
+  if (!std::isfinite(value)) return nullptr;
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+inline Json rounded(const Vector& values, int digits = kDigits) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(rounded(value, digits));
   return array;
 }
 

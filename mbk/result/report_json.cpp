@@ -1,28 +1,10 @@
 #include "mbk/result/report_json.h"
 
-#include <charconv>
-
 #include "mbk/result/json_parts.h"
 #include "mbk/result/passivity_json.h"
 
 namespace mbk::result {
 namespace {
-
-constexpr int kDigits = 6, kTimeDigits = 9;
-
-/// The number with so many digits; null where it is undefined.
-Json rounded(double value, int digits) {
-  if (!std::isfinite(value)) return nullptr;
-  const std::string text = fmt::format("{:.{}g}", value, digits);
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
-Json rounded(const Vector& values, int digits = kDigits) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(rounded(value, digits));
-  return array;
-}
 
 /// One list for each axis.
 Json by_axis(const Matrix& matrix) {

@@ -1,5 +1,7 @@
 #include "mbk/result/transfer_function_json.h"
 
+#include <numbers>
+
 #include "mbk/result/json_parts.h"
 
 namespace mbk::result {
@@ -20,14 +22,56 @@ Json roots_json(const std::vector<Root>& roots) {
   return array;
 }
 
-}  // namespace
+Json columns_json(const Matrix& matrix) {
+  Json array = Json::array();
+  for (Index k = 0; k < matrix.cols(); ++k) array.push_back(list(matrix.col(k)));
+  return array;
+}
 
-std::string to_json(const TransferFunctionIdentification& found) {
+/// Ends of value ± half width.
+Json around(const Vector& value, const Vector& half_width) {
+  return Json::array({list(value - half_width), list(value + half_width)});
+}
+
+Json response_json(const FrequencyResponse& response) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const Vector real = response.value.real();
+  return {{"frequency_hz", list(response.frequency)},
+          {"magnitude", list(response.value.cwiseAbs())},
+          {"magnitude_interval95", columns_json(response.magnitude95)},
+          {"phase_deg", list(kDegrees * response.phase)},
+          {"phase_interval95_deg", around(kDegrees * response.phase, kDegrees * response.phase_half_width)},
+          {"real", list(real)},
+          {"real_interval95", around(real, response.real_half_width)},
+          {"imaginary", list(response.value.imag())},
+          {"region95",
+           {{"longer_half_axis", list(response.region95.col(0))},
+            {"shorter_half_axis", list(response.region95.col(1))},
+            {"angle_deg", list(kDegrees * response.region95.col(2))}}}};
+}
+
+Json inverse_json(const InvertedAdmittance& inverse) {
+  const Units units = units_of(inverse.motion);
+  Json json = {{"admittance_to", mbk::text(inverse.output)},
+               {"units", {{"M", units.inertia}, {"B", units.damping}, {"K", units.stiffness}}},
+               {"unstable", inverse.unstable}};
+  const auto add = [&](const char* name, const std::optional<Estimate>& value) {
+    if (value) json[name] = {{"value", number(value->value)}, {"standard_error", number(value->standard_error)}};
+  };
+  add("M", inverse.M);
+  add("B", inverse.B);
+  add("K", inverse.K);
+  json["force_per_velocity"] = response_json(inverse.impedance);
+  json["force_per_displacement"] = response_json(inverse.stiffness);
+  return json;
+}
+
+Json document(const TransferFunctionIdentification& found, const TransferFunctionFindings& findings) {
   Json json = header("mbk.tf/1");
   json["inputs"] = inputs_json(found.sources);
   json["method"] = mbk::text(found.method);
-  json["input"] = {{"channel", found.input}, {"unit", found.input_unit}};
-  json["output"] = {{"channel", found.output}, {"unit", found.output_unit}};
+  json["input"] = {{"name", found.input}, {"unit", found.input_unit}};
+  json["output"] = {{"name", found.output}, {"unit", found.output_unit}};
   if (!found.reference.empty()) json["reference"] = found.reference;
   const bool continuous = found.model.sample_time == 0.0;
   const auto highest_first = [&](const Vector& c) { return list(continuous ? Vector(c.reverse()) : c); };
@@ -91,6 +135,8 @@ std::string to_json(const TransferFunctionIdentification& found) {
                               {"BIC", number(one.bic)},
                               {"chosen", one.chosen}});
   }
+  json["frequency_response"] = response_json(findings.response);
+  if (findings.inverse) json["impedance"] = inverse_json(*findings.inverse);
   json["excited_band_hz"] = {number(found.band_low), number(found.band_high)};
   json["samples"] = found.samples;
   json["experiments"] = found.experiments;
@@ -99,7 +145,26 @@ std::string to_json(const TransferFunctionIdentification& found) {
   json["notes"] = found.notes;
   json["warnings"] = warnings_json(found.warnings);
   json["usable"] = found.usable;
-  return dumped(json);
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const TransferFunctionIdentification& found, const TransferFunctionFindings& findings) {
+  return dumped(document(found, findings));
+}
+
+std::string report_json(const TransferFunctionIdentification& found, const TransferFunctionFindings& findings,
+                        const std::string& command, const std::string& note) {
+  Json json = header("mbk.tf_report/1");
+  json["command"] = command;
+  if (!note.empty()) json["note"] = note;
+  json["simulation"] = {{"held_back", found.held_back_fit.has_value()},
+                        {"time_s", rounded(findings.drawn.time, kTimeDigits)},
+                        {"measured", rounded(findings.drawn.measured)},
+                        {"simulated", rounded(findings.drawn.simulated)}};
+  json["result"] = document(found, findings);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace mbk::result

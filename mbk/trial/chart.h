@@ -10,6 +10,7 @@ namespace mbk {
 struct ChartAxis {
   std::string label;
   std::string unit;
+  bool logarithmic = false;  ///< what is not above 0 is left out
 };
 
 /// Points that belong together. A point with a value that is not finite is left out, and breaks a line.

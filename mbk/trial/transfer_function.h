@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mbk/core/linear_algebra.h"
+#include "mbk/trial/frequency_response.h"
 #include "mbk/trial/recording.h"
 #include "mbk/trial/warning.h"
 
@@ -106,8 +107,9 @@ struct TransferFunctionIdentification {
   double yic = 0, aic = 0, bic = 0;
   std::optional<double> held_back_fit;  ///< R² of the simulation on data that were held back
   double held_back_rmse = 0;
-  Vector noise_denominator;  ///< C: 1, c₁ … of the noise model e = ε/C(q⁻¹); empty without one
-  Vector noise_numerator;    ///< D: 1, d₁ … with e = D/C ε; empty without one
+  std::vector<SimulatedOutput> simulated;  ///< of what was held back; where nothing was, of what the model is made of
+  Vector noise_denominator;                ///< C: 1, c₁ … of the noise model e = ε/C(q⁻¹); empty without one
+  Vector noise_numerator;                  ///< D: 1, d₁ … with e = D/C ε; empty without one
   bool delay_found = false;
   std::vector<SearchStart> starts;
   std::vector<OrderChoice> orders;  ///< where several were tried

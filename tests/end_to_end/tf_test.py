@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """mbk tf: from a file to a transfer function, and what it refuses."""
 
+import json
 import math
 import random
+import re
 
-from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main
+import mat_file
+from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main, make_log, run
 
 W, ZETA, GAIN = 2 * math.pi * 1.5, 0.2, 4.0  # GAIN W²/(s² + 2 ZETA W s + W²)
 STEP = 0.01
@@ -83,6 +86,180 @@ class TransferFunction(Case):
         rows = [(t, 1.0, y) for t, _, y in oscillator(samples=300)]
         self.refused(BAD_DATA, "tf", self.csv(rows), "--input", "force", "--output", "motion", "--poles", "1",
                      says="constant")
+
+    def test_a_frequency_response_stands_in_the_json_with_its_interval(self):
+        found = self.fine("tf", self.csv(oscillator()), "--input", "force", "--output", "motion", "--poles", "2",
+                          "--zeros", "0", "--json").json
+        response = found["frequency_response"]
+        low, high = response["magnitude_interval95"]
+        for k, hertz in enumerate(response["frequency_hz"]):
+            s = 2j * math.pi * hertz
+            a2, a1, a0 = found["denominator"]
+            value = found["numerator"][0] / (a2 * s * s + a1 * s + a0)
+            self.assertAlmostEqual(response["magnitude"][k], abs(value), delta=1e-9 * abs(value))
+            self.assertAlmostEqual(response["imaginary"][k], value.imag, delta=1e-9 * abs(value))
+            self.assertTrue(low[k] < abs(value) < high[k])
+
+
+class Charts(Case):
+    def test_are_three_files_that_are_not_lost_unasked(self):
+        lines = ["time,force,motion"] + [",".join(f"{v:.12g}" for v in row) for row in oscillator()]
+        file, prefix = self.file("signals.csv", "\n".join(lines) + "\n"), self.folder / "plot"
+        options = ("tf", file, "--input", "force", "--output", "motion", "--poles", "2", "--zeros", "0", "--charts", prefix)
+        self.fine(*options)
+        for name in ("magnitude", "phase", "nyquist"):
+            self.assertTrue((self.folder / f"plot_{name}.svg").read_text(encoding="utf-8").startswith("<svg "))
+        self.assertIn("end of the excited band", (self.folder / "plot_phase.svg").read_text(encoding="utf-8"))
+        self.refused(WRONG_USAGE, *options, says="--overwrite")
+        self.fine(*options, "--overwrite")
+
+
+class Signals(Case):
+    """Which signals of a file are meant, and that names for them stand in nobody's way."""
+
+    POLES = ("--poles", "2", "--zeros", "0", "--json")
+
+    def poles(self, *arguments):
+        return self.fine("tf", *arguments, *self.POLES).json["poles"]
+
+    def test_variables_called_input_and_output_harm_no_other_command(self):
+        log = mat_file.read(make_log().path)["logs"]
+        alone, beside = self.folder / "alone.mat", self.folder / "beside.mat"
+        signals = {name: [log[row][:20000]] for name, row in
+                   (("time", 0), ("x", 1), ("y", 2), ("Fx", 9), ("Fy", 10), ("xr", 11), ("yr", 12))}
+        mat_file.write(alone, signals)
+        mat_file.write(beside, {**signals, "Input": [[1.0, 2.0, 3.0]], "output": [[4.0, 5.0]],
+                                "drive": [[1.0, 2.0], [3.0, 4.0]]})
+        of = {}
+        for path in (alone, beside):
+            of[path] = self.fine("measure", path, "--json").json
+            self.assertEqual(len(self.fine("info", path, "--json").json["channels"]), 6)
+        self.assertEqual(of[alone]["model"], of[beside]["model"])
+        self.assertIn("Input", " ".join(of[beside]["notes"]))
+
+    def test_by_name_by_alias_by_row_by_unit_and_flipped(self):
+        log = mat_file.read(make_log().path)["logs"]
+        wide = self.folder / "wide.mat"
+        mat_file.write(wide, {"logs": log})
+        named = self.poles(wide, "--input", "Fx", "--output", "x")
+        for names in (("force_x", "hand_x"), ("10", "2"), ("Fx", "2"), ("10", "x")):
+            self.assertEqual(self.poles(wide, "--input", names[0], "--output", names[1]), named, names)
+        self.assertEqual(self.poles(wide, "--channels", "Fx=10,x=2,time=1", "--input", "Fx", "--output", "x"), named)
+        straight, flipped = (self.fine("tf", wide, f"--input={sign}Fx", "--output", "x", *self.POLES).json
+                             for sign in ("", "-"))
+        by_row = self.fine("tf", wide, "--input=-10", "--output", "2:mm", *self.POLES).json
+        self.assertAlmostEqual(flipped["gain"], -straight["gain"], delta=1e-9 * abs(straight["gain"]))
+        self.assertAlmostEqual(by_row["gain"], -1e-3 * straight["gain"], delta=1e-9 * abs(straight["gain"]))
+        self.assertEqual((by_row["input"]["name"], by_row["output"]), ("\N{MINUS SIGN}10", {"name": "2", "unit": "m"}))
+
+    def test_a_file_whose_columns_are_called_input_and_output_is_taken_as_it_is(self):
+        rows = oscillator()
+        lines = ["time,Input [V],Output_mm"] + [f"{t:.12g},{u:.12g},{y:.12g}" for t, u, y in rows]
+        file = self.file("plant.csv", "\n".join(lines) + "\n")
+        found = self.fine("tf", file, "--input", "Input [V]", "--output", "Output_mm", *self.POLES).json
+        self.assertEqual((found["input"]["unit"], found["output"]["unit"]), ("V", "m"))
+        self.assertAlmostEqual(found["gain"], 1e-3 * GAIN, delta=1e-4)
+
+    def test_what_is_not_asked_for_does_not_matter(self):
+        rows = list(zip(*oscillator()))
+        path = self.folder / "beside.mat"
+        mat_file.write(path, {"time": [rows[0]], "Fx": [rows[1]], "x": [rows[2]], "ax": [[1.0, 2.0, 3.0]]})
+        self.assertAlmostEqual(self.poles(path, "--input", "Fx", "--output", "x")[0]["frequency_hz"], 1.5, delta=0.02)
+        self.refused(BAD_DATA, "measure", path, says="samples")
+
+    def test_input_and_output_are_channels_that_can_be_converted_and_read_back(self):
+        file = self.file("columns.csv", "\n".join(",".join(f"{v:.12g}" for v in row) for row in oscillator()) + "\n")
+        for name in ("plant.h5", "plant.csv", "plant.mat"):
+            path = self.folder / name
+            self.mbk("convert", file, path, "--channels", "time=1,input=2:V,output=3")
+            self.assertAlmostEqual(self.poles(path)[0]["frequency_hz"], 1.5, delta=0.02)
+
+
+class Inverted(Case):
+    """The impedance of a limb as the inverse of its admittance, beside the truth of a simulated one."""
+
+    TRUTH = {"M": 0.015, "B": 0.8, "K": 50.0}
+    SCENARIO = """
+[recording]
+seed = 3
+[robot]
+kind = "one_axis"
+inertia_kg_m2 = 0.02
+viscous_Nms_per_rad = 0.1
+[control]
+kind = "position"
+proportional_Nm_per_rad = {gain}
+derivative_Nms_per_rad = {damping}
+[perturbation]
+kind = "random_binary"
+amplitude_deg = 1.5
+switching_time_s = 0.15
+natural_frequency_rad_per_s = 60
+damping_ratio = 0.7
+duration_s = 42.1
+[participant]
+kind = "joint"
+inertia_kg_m2 = 0.015
+viscosity_Nms_per_rad = 0.8
+stiffness_Nm_per_rad = 50
+[participant.reflex]
+gain_Nms_per_rad = 0
+"""
+
+    def simulated(self, gain, damping):
+        scenario = self.file("joint.toml", self.SCENARIO.format(gain=gain, damping=damping))
+        path = self.folder / "joint.mat"
+        self.mbk("simulate", scenario, "--out", path, "--quiet", "--overwrite")
+        return path
+
+    OPTIONS = ("--input=-F", "--output", "x", "--reference", "xr", "--method", "clsrivc", "--poles", "2", "--zeros", "0",
+               "--invert", "position")
+
+    def test_holds_the_truth_of_a_joint_in_a_stiff_and_in_a_soft_loop(self):
+        for gain, damping in ((800, 12), (20, 0.5)):
+            path = self.simulated(gain, damping)
+            impedance = self.fine("tf", path, *self.OPTIONS, "--json").json["impedance"]
+            measured = self.mbk("measure", path, "--method", "iv", "--json").json
+            self.assertEqual((impedance["admittance_to"], impedance["units"]["K"]), ("position", "N·m/rad"))
+            for name, truth in self.TRUTH.items():
+                one = impedance[name]
+                with self.subTest(gain=gain, name=name):
+                    self.assertLess(abs(one["value"] - truth), 3 * one["standard_error"])
+                    self.assertLess(one["standard_error"], 0.05 * truth)
+                    self.assertAlmostEqual(one["value"], measured["model"][name][0][0], delta=0.05 * truth)
+            response = impedance["force_per_velocity"]
+            low, high = response["real_interval95"]
+            for k, hertz in enumerate(response["frequency_hz"]):
+                self.assertTrue(low[k] - 0.02 < self.TRUTH["B"] < high[k] + 0.02, hertz)
+
+    def test_is_said_in_words_too_and_refused_with_a_delay(self):
+        path = self.simulated(800, 12)
+        ran = self.fine("tf", path, *self.OPTIONS)
+        for words in ("impedance, force per velocity", "N·m/rad", "Re Z"):
+            self.assertIn(words, ran.out)
+        self.refused(WRONG_USAGE, "tf", path, *self.OPTIONS, "--delay", "0.01", says="delay")
+
+
+class Report(Case):
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "tf.html"
+        if "without the page" in run("tf", "nothing.mat", "--poles", "1", "--report", self.path).err:
+            self.skipTest("this mbk was built without the page")
+
+    def test_holds_the_result_that_json_prints_and_the_simulation(self):
+        log = make_log().path
+        ran = self.fine("tf", log, "--input", "Fx", "--output", "x", "--orders", "1:2", "--json", "--report", self.path,
+                        "--report-note", "<b>Ward 3")
+        text = self.path.read_text(encoding="utf-8")
+        document = json.loads(re.search(r'id="report-data">(.*?)</script>', text, re.DOTALL).group(1))
+        self.assertEqual((document["schema"], document["note"]), ("mbk.tf_report/1", "<b>Ward 3"))
+        self.assertEqual(document["result"], ran.json)
+        lengths = {len(document["simulation"][name]) for name in ("time_s", "measured", "simulated")}
+        self.assertEqual(len(lengths), 1)
+        self.assertGreater(lengths.pop(), 100)
+        self.refused(WRONG_USAGE, "tf", log, "--input", "Fx", "--output", "x", "--poles", "1", "--report", self.path,
+                     says="--overwrite")
 
 
 if __name__ == "__main__":

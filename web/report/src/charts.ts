@@ -51,7 +51,7 @@ export interface Series {
   /** What is written beside each value. */
   labels?: string[];
   /** What is shaded around the line. */
-  between?: { low: Value[]; high: Value[]; name: string };
+  between?: { low: Value[]; high: Value[]; name: string; color?: string };
 }
 
 export interface Panel {
@@ -60,6 +60,8 @@ export interface Panel {
   series: Series[];
   log?: boolean;
   range?: [number, number];
+  /** Between two lines of the grid. */
+  interval?: number;
   /** Stretch of x that is shaded, with its name. */
   band?: { from: number; to: number; name: string };
   /** Stretch of y that is shaded, with its name. */
@@ -154,7 +156,7 @@ function shaded(one: Series, k: number): object[] {
     animation: false,
     silent: true,
     lineStyle: { opacity: 0 },
-    ...(part === 1 ? { areaStyle: { color: shadeColors.between } } : {}),
+    ...(part === 1 ? { areaStyle: { color: one.between?.color ?? shadeColors.between } } : {}),
   }));
 }
 
@@ -200,6 +202,7 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
         hideOverlap: true,
       },
       splitNumber: panel.log ? 6 : 4,
+      ...(panel.interval ? { interval: panel.interval } : {}),
       splitLine: { lineStyle: { color: "#ececec" } },
     })),
     tooltip: {
@@ -261,7 +264,7 @@ function legend(chart: Chart): HTMLElement {
       ...(panel.band ? [[panel.band.name, shadeColors.band] as const] : []),
       ...(panel.level ? [[panel.level.name, shadeColors.level] as const] : []),
     ]),
-    ...series.flatMap((one) => (one.between ? [[one.between.name, shadeColors.between] as const] : [])),
+    ...series.flatMap((one) => (one.between ? [[one.between.name, one.between.color ?? shadeColors.between] as const] : [])),
   ]);
   return h(
     "ul",

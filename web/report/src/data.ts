@@ -142,8 +142,7 @@ export interface Report {
 }
 
 /** Reads the document out of the page. Throws where it is none. */
-export function readReport(text: string): Report {
-  const json = JSON.parse(text);
+export function readReport(json: any): Report {
   if (json.schema !== "mbk.report/1") throw new Error(`schema ${String(json.schema)} is not mbk.report/1`);
   const results: Result[] = json.result.results ?? [json.result];
   return {

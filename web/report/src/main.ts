@@ -16,7 +16,8 @@ import { passivityDetails, passivitySection } from "./passivity";
 import { ellipsesSection, identityFacts, modelSection, provenanceSection, simulatedNote } from "./sections";
 import "./style.css";
 import { summarySection, verdict, warningsSection } from "./summary";
-import { glossary } from "./words";
+import { type TransferFunctionReport, transferFunctionHead, transferFunctionSections } from "./transfer_function";
+import { glossary, transferFunctionGlossary } from "./words";
 
 function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLElement[] {
   const sections = [
@@ -48,12 +49,12 @@ function recordingsSection(report: Report): HTMLElement {
     }));
 }
 
-function contents(report: Report, sections: HTMLElement[]): HTMLElement {
-  const several = report.trials.length > 1;
+function contents(sections: HTMLElement[], trials: Trial[] = []): HTMLElement {
+  const several = trials.length > 1;
   const entries = sections.filter((section) => section.id).flatMap((section) => {
     const entry = { id: section.id, name: section.querySelector("h2")?.textContent ?? "", inner: false };
     if (!several || section.id !== "recordings") return [entry];
-    return [entry, ...inOrder(report.trials).map(({ trial, id }) => ({ id, name: nameOf(trial, report.trials), inner: true }))];
+    return [entry, ...inOrder(trials).map(({ trial, id }) => ({ id, name: nameOf(trial, trials), inner: true }))];
   });
   return h("nav", { "aria-label": "Contents" }, h("p", { class: "nav-title" }, "Contents"),
     h("ul", {}, ...entries.map(({ id, name, inner }) => h("li", inner ? { class: "inner" } : {}, h("a", { href: `#${id}` }, name)))));
@@ -92,26 +93,43 @@ function foot(): HTMLElement {
         h("div", {}, h("p", {}, h("strong", {}, name)), h("pre", { tabindex: 0, role: "group", "aria-label": name }, text)))));
 }
 
+const reproduceSection = (command: string, software: string): HTMLElement =>
+  h("section", { id: "reproduce" }, heading(2, "How to make it again"),
+    h("p", {}, "The same files, options and version give the same numbers, digit for digit, and this same page."),
+    h("pre", { class: "command" }, command),
+    h("p", {}, "Made with ", h("strong", {}, software), "."));
+
+const glossarySection = (terms: [string, string][]): HTMLElement =>
+  h("section", { id: "glossary" }, heading(2, "Glossary"), facts(terms));
+
+function show(top: HTMLElement, nav: HTMLElement, sections: HTMLElement[]): void {
+  document.getElementById("report")?.replaceWith(
+    h("div", { class: "page" }, top, nav, h("main", { id: "content", tabindex: -1 }, ...sections), foot()));
+  openTargets();
+  followPageAndPrinter();
+}
+
+function drawTransferFunction(report: TransferFunctionReport): void {
+  const sections = [...transferFunctionSections(report), reproduceSection(report.command, report.software), glossarySection(transferFunctionGlossary)];
+  show(transferFunctionHead(report), contents(sections), sections);
+}
+
 function draw(report: Report): void {
   const several = report.trials.length > 1;
   const sections = several
     ? [overviewSection(report), recordingsSection(report)]
     : trialSections(report.trials[0] as Trial, "trial-1", 2);
   sections.push(
-    h("section", { id: "reproduce" }, heading(2, "How to make it again"),
-      h("p", {}, "The same files, options and version give the same numbers, digit for digit, and this same page."),
-      h("pre", { class: "command" }, report.command),
-      h("p", {}, "Made with ", h("strong", {}, report.software), ".")),
-    h("section", { id: "glossary" }, heading(2, "Glossary"), facts(glossary)),
+    reproduceSection(report.command, report.software),
+    glossarySection(glossary),
   );
-  document.getElementById("report")?.replaceWith(
-    h("div", { class: "page" }, head(report), contents(report, sections), h("main", { id: "content", tabindex: -1 }, ...sections), foot()));
-  openTargets();
-  followPageAndPrinter();
+  show(head(report), contents(sections, report.trials), sections);
 }
 
 try {
-  draw(readReport(document.getElementById("report-data")?.textContent ?? ""));
+  const json = JSON.parse(document.getElementById("report-data")?.textContent ?? "");
+  if (json.schema === "mbk.tf_report/1") drawTransferFunction(json);
+  else draw(readReport(json));
 } catch (error) {
   document.getElementById("report")?.replaceWith(
     h("main", { id: "content", class: "page" }, h("h1", {}, "This report cannot be shown"), h("p", {}, `The numbers in this file cannot be read: ${String(error)}`)));

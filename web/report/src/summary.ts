@@ -1,15 +1,22 @@
 // The measurement in plain words.
-import { type Trial, type Value, fileOf, matrices, unitsOf } from "./data";
+import { type Trial, type Value, type Warning, fileOf, matrices, unitsOf } from "./data";
 import { type HeadingLevel, h, heading, svg } from "./dom";
 import { data, fixed, listed, significant, withHalfWidth } from "./format";
-import { angleBetween, direction, meanings, plainWarnings } from "./words";
+import { angleBetween, direction, type PlainWarnings, meanings, plainWarnings } from "./words";
 
-export const warningTitle = (code: string): string => plainWarnings[code]?.title ?? code;
+/** What was found, with warnings: a measurement or a transfer function. */
+export interface Judged {
+  result: { usable: boolean; warnings: Warning[] };
+  /** Other words for warnings than those of a measurement. */
+  plainly?: PlainWarnings;
+}
+
+const warningTitle = (code: string, plainly = plainWarnings): string => plainly[code]?.title ?? code;
 
 /** Usable, usable with care, or not: a sign, a word and a reason. */
-export function verdict(trial: Trial): { kind: "good" | "care" | "bad"; sign: string; word: string; reason: string } {
+export function verdict(trial: Judged): { kind: "good" | "care" | "bad"; sign: string; word: string; reason: string } {
   const { usable, warnings } = trial.result;
-  const titles = listed(warnings.map((warning) => warningTitle(warning.code).replace(/^./, (c) => c.toLowerCase())));
+  const titles = listed(warnings.map((warning) => warningTitle(warning.code, trial.plainly).replace(/^./, (c) => c.toLowerCase())));
   if (!usable) {
     return { kind: "bad", sign: "✕", word: "Not usable", reason: `Do not report these numbers: ${titles || "see the warnings"}.` };
   }
@@ -108,7 +115,7 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
   );
 }
 
-export function warningsSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement {
+export function warningsSection(trial: Judged, id: string, level: HeadingLevel): HTMLElement {
   const { warnings } = trial.result;
   return h(
     "section",
@@ -117,9 +124,9 @@ export function warningsSection(trial: Trial, id: string, level: HeadingLevel): 
     warnings.length === 0 ? h("p", {}, "There are none.") : "",
     h("ul", { class: "warnings" },
       ...warnings.map((warning) => {
-        const plainly = plainWarnings[warning.code];
+        const plainly = (trial.plainly ?? plainWarnings)[warning.code];
         return h("li", { class: "warning", "data-code": warning.code },
-          h("p", {}, h("strong", {}, warningTitle(warning.code)), plainly ? `. ${plainly.meaning}` : ""),
+          h("p", {}, h("strong", {}, warningTitle(warning.code, trial.plainly)), plainly ? `. ${plainly.meaning}` : ""),
           h("p", { class: "exact" }, h("code", {}, warning.code), ": ", h("span", { "data-name": "message" }, warning.message), "."),
           h("p", {}, h("strong", {}, "Try: "), h("span", { "data-name": "try" }, warning.try), "."));
       })),

@@ -1,7 +1,9 @@
 // What is said in plain words: warnings, terms, directions.
 
 /** For each warning a title that needs no training, and what it means for whoever reads the numbers. */
-export const plainWarnings: Record<string, { title: string; meaning: string }> = {
+export type PlainWarnings = Record<string, { title: string; meaning: string }>;
+
+export const plainWarnings: PlainWarnings = {
   "force-sign-reversed": {
     title: "The force was recorded with the opposite sign",
     meaning: "Everything comes out negative, which no limb can be. The recording itself is probably fine.",
@@ -70,7 +72,56 @@ export const plainWarnings: Record<string, { title: string; meaning: string }> =
     title: "The torques are probably in another unit",
     meaning: "As they are read, the robot would be a thousand times too heavy or too light.",
   },
+  "residual-not-white": {
+    title: "What the model leaves over is not noise without memory",
+    meaning: "The ± intervals take it as that, and are narrower than they should be.",
+  },
+  "input-explains-residual": {
+    title: "The model misses a part of what the input does",
+    meaning: "Something of the output follows the input and is not in the model: a faster or slower part, or a delay.",
+  },
+  "pole-outside-band": {
+    title: "The model says something about frequencies that were not tried",
+    meaning: "The input hardly moved the system there, so that this part is a guess by the form of the model.",
+  },
+  "uneven-clock": {
+    title: "The samples are unevenly spaced",
+    meaning: "The model allows for it; the tests of what is left over do not.",
+  },
 };
+
+/** Those that speak of a limb, said of any system. */
+export const transferFunctionWarnings: PlainWarnings = {
+  ...plainWarnings,
+  "held-back-fit-poor": {
+    title: "The model does badly on the part of the recording that was held back",
+    meaning: "The system probably changed, or the model is too small or too large.",
+  },
+  "fit-poor": {
+    title: "Much of the output is not explained",
+    meaning: "The model is too small, the system is not linear, or the rest is noise.",
+  },
+};
+
+/** Terms of a report on a transfer function. */
+export const transferFunctionGlossary: [string, string][] = [
+  ["Transfer function", "How a linear system turns an input into an output, as a fraction of two polynomials of s, the derivative with respect to time. Discrete models have q⁻¹, the last sample, instead."],
+  ["Pole", "A root of the denominator: a way in which the system moves by itself. A pair is an oscillation, with a frequency and a damping; a single one is a decay."],
+  ["Zero", "A root of the numerator: what the system does not let through."],
+  ["Damping ζ", "Of an oscillation: 0 goes on for ever, 1 just does not swing any more."],
+  ["Gain", "Output over input: at frequency zero, what a constant input ends in."],
+  ["Bode plot", "Magnitude and phase of output over input, at each frequency."],
+  ["Nyquist plot", "The same as one curve: at each frequency, magnitude and phase are length and angle of an arrow from the origin."],
+  ["± and brackets", "95 % intervals: of a hundred such intervals, about 95 hold the true value. They know of noise and of its memory, but of no error in the form of the model."],
+  ["R²", "The share of the output's variation that the simulated model explains; 1 is everything."],
+  ["RMSE", "Root mean square error: the typical size of what the model does not explain, in the unit of the output."],
+  ["YIC", "Young's criterion: low where the model fits well with coefficients that are well determined. Too many poles make it rise."],
+  ["AIC, BIC", "Criteria that weigh the fit against the number of coefficients; lower is better."],
+  ["Held-back data", "A part of the recording that had no share in making the model, on which it is then tested."],
+  ["Excited band", "The frequencies that hold 96 % of the input's power. The model holds within it; beyond, it rests on its form."],
+  ["Residual", "Measured minus simulated output."],
+  ["Admittance, impedance", "Motion over force, and force over motion: each the inverse of the other."],
+];
 
 /** The verdict of passivity: a sign and a word, so that nothing hangs on colour, and what it means. */
 export const verdictWords = {

@@ -1,0 +1,370 @@
+// The report of mbk tf: a document of schema mbk.tf_report/1, drawn. Every number in it was computed by mbk.
+import { type Chart, type Panel, figure, styles } from "./charts";
+import type { Value, Warning } from "./data";
+import { facts, h, heading, scrolling, table } from "./dom";
+import { data, fixed, plain, significant, superscript, withHalfWidth } from "./format";
+import { nyquist } from "./nyquist";
+import { verdict, warningsSection } from "./summary";
+import { transferFunctionWarnings } from "./words";
+
+interface Root {
+  re: Value;
+  im: Value;
+  pair: boolean;
+  frequency_hz: Value;
+  frequency_standard_error_hz: Value;
+  damping: Value;
+  damping_standard_error: Value;
+  outside_band: boolean;
+}
+
+export interface Response {
+  frequency_hz: Value[];
+  magnitude: Value[];
+  magnitude_interval95: [Value[], Value[]];
+  phase_deg: Value[];
+  phase_interval95_deg: [Value[], Value[]];
+  real: Value[];
+  real_interval95: [Value[], Value[]];
+  imaginary: Value[];
+  region95: { longer_half_axis: Value[]; shorter_half_axis: Value[]; angle_deg: Value[] };
+}
+
+interface Estimate {
+  value: Value;
+  standard_error: Value;
+}
+
+interface Impedance {
+  admittance_to: string;
+  units: { M: string; B: string; K: string };
+  unstable: boolean;
+  M?: Estimate;
+  B?: Estimate;
+  K?: Estimate;
+  force_per_velocity: Response;
+  force_per_displacement: Response;
+}
+
+interface Result {
+  inputs: { file: string; sha256: string; format: string }[];
+  method: string;
+  input: { name: string; unit: string };
+  output: { name: string; unit: string };
+  reference?: string;
+  numerator: Value[];
+  denominator: Value[];
+  variable: "s" | "q^-1";
+  delay_s: number;
+  delay_found: boolean;
+  parameters: { name: string; value: Value; standard_error: Value }[];
+  hac_lag_s: number;
+  poles: Root[];
+  zeros: Root[];
+  gain: Value;
+  gain_standard_error: Value;
+  fit: { R2_in_sample: Value; noise_standard_deviation: Value; YIC: Value; AIC: Value; BIC: Value; R2_held_back?: Value; RMSE_held_back?: Value };
+  residuals: { lags: number; white: boolean; whiteness_p: Value; autocorrelation_outside: Value; independent_of_input: boolean; cross_p: Value; cross_correlation_outside: Value };
+  starts: { converged: boolean }[];
+  orders?: { poles: number; zeros: number; usable: boolean; R2: Value; YIC: Value; AIC: Value; BIC: Value; chosen: boolean }[];
+  frequency_response: Response;
+  impedance?: Impedance;
+  excited_band_hz: [Value, Value];
+  samples: number;
+  experiments: number;
+  even_clock: boolean;
+  sample_time_s: Value;
+  notes: string[];
+  warnings: Warning[];
+  usable: boolean;
+}
+
+export interface TransferFunctionReport {
+  software: string;
+  command: string;
+  note?: string;
+  simulation: { held_back: boolean; time_s: Value[]; measured: Value[]; simulated: Value[] };
+  result: Result;
+}
+
+const methods: Record<string, string> = {
+  srivc: "refined instrumental variables, continuous time (SRIVC)",
+  rivc: "refined instrumental variables, continuous time, with a model of the noise (RIVC)",
+  clsrivc: "refined instrumental variables, continuous time, instruments from the reference (CLSRIVC)",
+  oe: "output error, discrete time (OE)",
+  bj: "Box–Jenkins, discrete time (BJ)",
+};
+
+/** "N·m" as "N.m" is written in files. */
+const shownUnit = (unit: string): string => unit.replaceAll(".", "·");
+
+const ratioUnit = ({ input, output }: Result): string => {
+  const wrapped = /[·./]/.test(input.unit) ? `(${shownUnit(input.unit)})` : input.unit;
+  return !input.unit || !output.unit ? "" : input.unit === output.unit ? "" : `${shownUnit(output.unit)}/${wrapped}`;
+};
+
+const basename = (path: string): string => path.split(/[\\/]/).at(-1) ?? path;
+
+export function transferFunctionHead({ result, note }: TransferFunctionReport): HTMLElement {
+  const title = `${result.input.name} → ${result.output.name}`;
+  document.title = `${title} – transfer function`;
+  return h("header", { class: "page-head" },
+    h("p", { class: "kicker" }, "Transfer function"),
+    h("h1", { class: "signals" }, title),
+    note ? h("p", { class: "note" }, note) : "",
+    facts([
+      ["File", result.inputs.map((input) => basename(input.file)).join(", ")],
+      ["Input", named(result.input)],
+      ["Output", named(result.output)],
+      ["Reference", result.reference],
+      ["Method", methods[result.method] ?? result.method],
+      ["Samples", `${result.samples} in ${result.experiments === 1 ? "one stretch" : `${result.experiments} stretches`}, ${result.even_clock ? "every" : "unevenly spaced, about every"} ${significant(result.sample_time_s === null ? null : 1000 * result.sample_time_s, 4)} ms`],
+      ["Excited band", bandOf(result) ? `${plain(bandOf(result)?.from, 3)} to ${plain(bandOf(result)?.to, 3)} Hz` : undefined],
+    ]));
+}
+
+const named = ({ name, unit }: { name: string; unit: string }): string => (unit ? `${name} [${shownUnit(unit)}]` : name);
+
+function bandOf(result: Result): { from: number; to: number; name: string } | undefined {
+  const [from, to] = result.excited_band_hz;
+  return from === null || to === null || !(from < to) ? undefined : { from, to, name: "excited band" };
+}
+
+/** −6400 s + 1600, or 1 − 1.5 q⁻¹; what machines read stands in the JSON. */
+function polynomial(coefficients: Value[], variable: Result["variable"]): string {
+  const degree = coefficients.length - 1;
+  const parts: string[] = [];
+  coefficients.forEach((value, k) => {
+    if (value === 0 && degree > 0) return;
+    const power = variable === "s" ? degree - k : k;
+    const symbol = power === 0 ? "" : variable === "s" ? `s${power === 1 ? "" : superscript(String(power))}` : `q⁻${superscript(String(power))}`;
+    const size = significant(value === null ? null : Math.abs(value), 5).replace(/\.?0+(?=·|$)/, (zeros, at, whole) => (whole.slice(0, at).includes(".") || zeros.startsWith(".") ? "" : zeros));
+    const factor = value !== null && Math.abs(value) === 1 && symbol ? symbol : `${size}${symbol ? ` ${symbol}` : ""}`;
+    const negative = value !== null && value < 0;
+    parts.push(parts.length === 0 ? (negative ? `−${factor}` : factor) : `${negative ? "−" : "+"} ${factor}`);
+  });
+  return parts.join(" ");
+}
+
+function formula(result: Result): HTMLElement {
+  const { numerator, denominator, variable, delay_s: delay } = result;
+  const [above, below] = [polynomial(numerator, variable), polynomial(denominator, variable)];
+  const name = variable === "s" ? "G(s)" : "G(q)";
+  const after = delay > 0 ? (variable === "s" ? `e^(−${plain(delay)} s)` : `, ${plain(delay)} s later`) : "";
+  return scrolling("The model", h("div", { class: "formula", role: "img", "aria-label": `${name} = (${above}) / (${below}) ${after}` },
+    h("span", {}, `${name} =`),
+    h("span", { class: "fraction" }, h("span", {}, above), h("span", {}, below)),
+    delay > 0
+      ? variable === "s" ? h("span", {}, "e", h("sup", {}, `−${plain(delay)} s`)) : h("span", {}, after)
+      : ""));
+}
+
+function summary(report: TransferFunctionReport): HTMLElement {
+  const { result } = report;
+  const said = verdict({ result, plainly: transferFunctionWarnings });
+  const explained = result.fit.R2_held_back ?? result.fit.R2_in_sample;
+  const where = result.fit.R2_held_back === undefined ? "of the very data that made it, which flatters it" : "of data that had no share in making it";
+  return h("section", { id: "summary" }, heading(2, "In short"),
+    h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
+      h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
+      h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
+    formula(result),
+    h("p", {}, `From ${result.input.name} to ${result.output.name}: ${count(result.denominator.length - 1, "pole")}, ${count(result.numerator.length - 1, "zero")}${result.delay_s > 0 ? `, a delay of ${plain(result.delay_s)} s${result.delay_found ? ", which was found" : ""}` : ""}. The model explains `,
+      data(explained, explained === null ? "an undefined share" : `${fixed(100 * explained, 2)} %`, "explained"), ` ${where}.`));
+}
+
+const count = (n: number, word: string): string => `${n} ${word}${n === 1 ? "" : "s"}`;
+
+function coefficientsSection(result: Result): HTMLElement {
+  const rows = result.parameters.map(({ name, value, standard_error }) => [
+    h("span", {}, name.slice(0, 1), h("sub", {}, name.slice(1))),
+    withHalfWidth(value, standard_error, name),
+  ]);
+  const power = result.variable === "s" ? "of the powers of s: b above, a below the line" : "of the powers of q⁻¹: b above, f below the line";
+  return h("section", { id: "coefficients" }, heading(2, "Coefficients"),
+    table(`Coefficients ${power}, in seconds and SI units; ± is the 95 % interval, for ${result.hac_lag_s > 0 ? `noise correlated over up to ${plain(result.hac_lag_s)} s` : "white noise"}`,
+      ["", "value ± 95 %"], rows, "numbers"));
+}
+
+function rootsSection(result: Result): HTMLElement {
+  const row = (kind: string, root: Root, id: string): (Node | string)[] => [
+    root.pair ? `${kind} pair` : kind,
+    h("span", { class: "number" }, withHalfWidth(root.frequency_hz, root.frequency_standard_error_hz, `${id}-frequency`), " Hz"),
+    root.pair ? withHalfWidth(root.damping, root.damping_standard_error, `${id}-damping`) : "",
+    h("span", { class: "number" }, significant(root.re, 4), root.pair ? ` ± ${significant(root.im, 4)} j` : ""),
+    root.outside_band ? "outside the excited band" : "",
+  ];
+  return h("section", { id: "roots" }, heading(2, "Poles, zeros and gain"),
+    table("Poles and zeros; ± is the 95 % interval", ["", "frequency", "damping ζ", "value [1/s]", ""],
+      [...result.poles.map((root, k) => row("pole", root, `pole${k}`)), ...result.zeros.map((root, k) => row("zero", root, `zero${k}`))], "numbers"),
+    h("p", {}, "Gain at frequency zero: ", withHalfWidth(result.gain, result.gain_standard_error, "gain"), ` ${ratioUnit(result)}.`));
+}
+
+function impedanceSection(result: Result): HTMLElement | undefined {
+  const { impedance } = result;
+  if (!impedance) return undefined;
+  const terms = [["inertia M", "M"], ["damping B", "B"], ["stiffness K", "K"]] as const;
+  const rows = terms.flatMap(([name, symbol]) => {
+    const one = impedance[symbol];
+    return one ? [[name, withHalfWidth(one.value, one.standard_error, `impedance-${symbol}`), impedance.units[symbol]]] : [];
+  });
+  return h("section", { id: "impedance" }, heading(2, "Impedance"),
+    h("p", {}, `The model is an admittance, from a force to the ${impedance.admittance_to} that it causes. Its inverse says what force a motion takes.`),
+    impedance.unstable
+      ? h("p", { class: "care-text" }, "This impedance is unstable, since the admittance has zeros on the right half plane. No limb is like that.")
+      : "",
+    rows.length ? table("Inertia, damping and stiffness; ± is the 95 % interval", ["", "value ± 95 %", "unit"], rows, "numbers") : "",
+    figure(bode(impedance.force_per_velocity, {
+      id: "impedance-bode",
+      title: "Impedance, force per velocity",
+      unit: impedance.units.B,
+      howToRead: "A falling line is stiffness, a level one damping, a rising one inertia. Only the excited band is shown.",
+      real: true,
+    })),
+    nyquist(impedance.force_per_velocity, undefined, "impedance-nyquist", "Impedance, force per velocity", impedance.units.B));
+}
+
+interface BodeWords {
+  id: string;
+  title: string;
+  unit: string;
+  howToRead: string;
+  band?: { from: number; to: number; name: string } | undefined;
+  real?: boolean;
+}
+
+const intervalColor = "rgba(213,94,0,0.28)"; // unlike the excited band's
+
+/** The phase with lines at whole parts of a turn. */
+function phasePanel(response: Response): Pick<Panel, "range" | "interval"> {
+  const known = [response.phase_deg, ...response.phase_interval95_deg].flat().filter((v): v is number => v !== null);
+  const line = response.phase_deg.filter((v): v is number => v !== null);
+  if (line.length === 0) return {};
+  const low = Math.max(Math.min(...known), Math.min(...line) - 180);
+  const high = Math.min(Math.max(...known), Math.max(...line) + 180);
+  const interval = [15, 30, 45, 90, 180, 360].find((one) => (high - low) / one <= 5) ?? 720;
+  return { range: [interval * Math.floor(low / interval), interval * Math.max(Math.ceil(high / interval), Math.floor(low / interval) + 1)], interval };
+}
+
+const within = (ends: [Value[], Value[]], [low, high]: [number, number]): [Value[], Value[]] =>
+  ends.map((end) => end.map((v) => (v === null ? null : Math.min(Math.max(v, low), high)))) as [Value[], Value[]];
+
+/** Whole powers of ten around the line, and around its interval where that is no more than ten times as far. */
+function decades(response: Response): [number, number] {
+  const known = (values: Value[]): number[] => values.filter((v): v is number => v !== null && v > 0).map(Math.log10);
+  const line = known(response.magnitude);
+  if (line.length === 0) return [0.1, 1];
+  const [least, most] = [Math.min(...line), Math.max(...line)];
+  const [low, high] = response.magnitude_interval95.map(known) as [number[], number[]];
+  const bottom = Math.floor(Math.max(Math.min(least, ...low), least - 1));
+  const top = Math.ceil(Math.min(Math.max(most, ...high), most + 1));
+  return [10 ** bottom, 10 ** Math.max(top, bottom + 1)];
+}
+
+function bode(response: Response, words: BodeWords): Chart {
+  const { frequency_hz: x } = response;
+  const [from, to] = [x[0] ?? 0, x.at(-1) ?? 0];
+  const band = words.band ? { from: Math.max(words.band.from, from), to: Math.min(words.band.to, to), name: words.band.name } : undefined;
+  const line = (name: string, y: Value[], [low, high]: [Value[], Value[]]) => ({ name, x, y, style: styles.first, between: { low, high, name: "95 % interval", color: intervalColor } });
+  const range = decades(response);
+  const phase = phasePanel(response);
+  const panels: Panel[] = [
+    { title: "Magnitude", unit: words.unit, log: true, range, ...(band ? { band } : {}), series: [line("model", response.magnitude, within(response.magnitude_interval95, range))] },
+    { title: "Phase", unit: "°", ...phase, ...(band ? { band } : {}), series: [line("model", response.phase_deg, within(response.phase_interval95_deg, phase.range ?? [-180, 180]))] },
+  ];
+  if (words.real) panels.push({ title: "Real part", unit: words.unit, zero: true, series: [line("model", response.real, response.real_interval95)] });
+  return {
+    id: words.id,
+    title: words.title,
+    howToRead: words.howToRead,
+    description: `Magnitude from ${significant(response.magnitude[0])} at ${significant(from)} Hz to ${significant(response.magnitude.at(-1))} at ${significant(to)} Hz; phase from ${significant(response.phase_deg[0])} to ${significant(response.phase_deg.at(-1))} degrees.`,
+    x: { name: "frequency", unit: "Hz", log: true, range: [from, to] },
+    panels,
+  };
+}
+
+function responseSection(result: Result): HTMLElement {
+  const unit = ratioUnit(result);
+  return h("section", { id: "response" }, heading(2, "Frequency response"),
+    figure(bode(result.frequency_response, {
+      id: "bode",
+      title: "Bode plot",
+      unit,
+      band: bandOf(result),
+      howToRead: "How much the output answers to the input at each frequency, and by how much it lags. Within the shaded stretch the data speak; beyond it the form of the model does.",
+    })),
+    nyquist(result.frequency_response, bandOf(result), "nyquist", "Nyquist plot", unit));
+}
+
+function simulationSection({ simulation: s, result }: TransferFunctionReport): HTMLElement | undefined {
+  if (s.time_s.length === 0) return undefined;
+  const where = s.held_back ? "held-back data" : "the data that made the model";
+  return h("section", { id: "simulation" }, heading(2, `Measured and simulated output, on ${where}`),
+    figure({
+      id: "simulated",
+      title: `Measured and simulated output on ${where}`,
+      howToRead: "The model had the input alone, and the state at the start. The closer the dashed line keeps to the solid one, the better the model.",
+      description: `The model explains ${significant(100 * (result.fit.R2_held_back ?? result.fit.R2_in_sample ?? 0), 4)} per cent of the output.`,
+      x: { name: "time", unit: "s" },
+      panels: [{
+        title: "Output",
+        unit: shownUnit(result.output.unit),
+        series: [
+          { name: "measured", x: s.time_s, y: s.measured, style: styles.measured },
+          { name: "simulated by the model", x: s.time_s, y: s.simulated, style: styles.predicted },
+        ],
+      }],
+    }));
+}
+
+function ordersSection(result: Result): HTMLElement | undefined {
+  if (!result.orders) return undefined;
+  const rows = result.orders.map((one) => [
+    `${count(one.poles, "pole")}, ${count(one.zeros, "zero")}`,
+    ...(one.usable ? [fixed(one.R2, 6), fixed(one.YIC, 2), fixed(one.AIC, 1), fixed(one.BIC, 1)] : ["no stable model", "", "", ""]),
+    one.chosen ? h("strong", {}, "chosen") : "",
+  ]);
+  return h("section", { id: "orders" }, heading(2, "Which order"),
+    table("Models that were tried", ["", "R²", "YIC", "AIC", "BIC", ""], rows, "numbers orders"),
+    h("p", { class: "reading" }, "Of the models that leave at most 2 % more than the one that leaves least, the one of least YIC is chosen."));
+}
+
+function residualSection(result: Result): HTMLElement {
+  const { residuals: r, fit } = result;
+  const share = (value: Value): string => (value === null ? "undefined" : `${fixed(100 * value, 0)} % of ${r.lags} lags`);
+  const rows = [
+    ["Is it noise without memory?", r.white ? "nothing speaks against it" : "no: it is coloured", `p = ${significant(r.whiteness_p, 2)}`, share(r.autocorrelation_outside)],
+    ["Does the input still explain something of it?", r.independent_of_input ? "nothing speaks for it" : "yes: the model misses a part", `p = ${significant(r.cross_p, 2)}`, share(r.cross_correlation_outside)],
+  ];
+  const unit = result.output.unit ? ` ${shownUnit(result.output.unit)}` : "";
+  return h("section", { id: "residuals" }, heading(2, "What the model leaves over"),
+    table("Tests of the residual", ["", "answer", "probability by chance", "beyond the 99 % limit"], rows, "tests"),
+    facts([
+      ["Held back", fit.R2_held_back === undefined ? undefined : `R² ${fixed(fit.R2_held_back, 5)}, RMSE ${significant(fit.RMSE_held_back, 4)}${unit}`],
+      ["In sample", `R² ${fixed(fit.R2_in_sample, 5)}, noise ${significant(fit.noise_standard_deviation, 4)}${unit}`],
+      ["YIC, AIC, BIC", `${fixed(fit.YIC, 2)}, ${fixed(fit.AIC, 1)}, ${fixed(fit.BIC, 1)}`],
+      ["Starts", `${result.starts.length} tried, ${result.starts.filter((start) => start.converged).length} settled`],
+    ]));
+}
+
+function provenance(result: Result): HTMLElement {
+  return h("section", { id: "provenance" }, heading(2, "Where the numbers come from"),
+    table("Files", ["file", "format", "SHA-256"], result.inputs.map((input) => [h("span", { class: "path" }, input.file), input.format, h("code", { class: "hash" }, input.sha256)]), "files"),
+    result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted when the file was read")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
+}
+
+export function transferFunctionSections(report: TransferFunctionReport): HTMLElement[] {
+  const { result } = report;
+  return [
+    summary(report),
+    warningsSection({ result, plainly: transferFunctionWarnings }, "transfer-function", 2),
+    impedanceSection(result),
+    responseSection(result),
+    coefficientsSection(result),
+    rootsSection(result),
+    simulationSection(report),
+    residualSection(result),
+    ordersSection(result),
+    provenance(result),
+  ].filter((section): section is HTMLElement => section !== undefined);
+}
