@@ -2,6 +2,7 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
+#include "mbk/journal/journal.h"
 #include "mbk/recording/inspection.h"
 #include "mbk/recording/read.h"
 #include "mbk/report/text.h"
@@ -22,9 +23,22 @@ int list_unrecognised(const MeasureArguments& arguments, const Error& error) {
   return kFine;
 }
 
+/// What a journal holds so far, as the recording that it would become.
+Result<std::vector<Recording>> read_journal(const std::filesystem::path& file) {
+  const auto journal = journal::read(file);
+  if (!journal) return tl::unexpected(journal.error());
+  auto recording = journal::to_recording(*journal);
+  if (!recording) return tl::unexpected(recording.error().in(file.string()));
+  recording->sources.push_back({file.string(), "journal of a session", ""});
+  recording->notes.emplace_back("'mbk recover' makes a recording of it");
+  return std::vector<Recording>{std::move(*recording)};
+}
+
 int run(const MeasureArguments& arguments) {
   if (auto ok = arguments.output.check(arguments.files); !ok) return report_error(ok.error());
-  const auto recordings = read_recordings(arguments);
+  const bool journal = arguments.files.size() == 1 && journal::is_journal(arguments.files.front());
+  const auto recordings = journal ? read_journal(arguments.files.front()) : read_recordings(arguments);
+  if (!recordings && journal) return report_error(recordings.error());
   if (!recordings) return list_unrecognised(arguments, recordings.error());
   std::vector<Inspection> inspections;
   for (const Recording& recording : *recordings) inspections.push_back(recording::inspect(recording));

@@ -6,6 +6,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
+#include "mbk/journal/journal.h"
 #include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/channel_map.h"
 #include "mbk/report/html.h"
@@ -318,6 +319,10 @@ Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments
     return recordings;
   }
   for (const std::filesystem::path& file : arguments.files) {
+    if (journal::is_journal(file)) {
+      return bad_data("is the journal of a session that was cut off, or still runs",
+                      fmt::format("'mbk recover {}' makes a recording of it", file.string()), file.string());
+    }
     if (auto ok = add(recording::read(file, *options), file); !ok) return tl::unexpected(ok.error());
   }
   return recordings;
@@ -326,7 +331,14 @@ Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments
 Result<std::vector<Recording>> read_perturbations(const MeasureArguments& arguments) {
   auto recordings = read_recordings(arguments);
   if (!recordings) return recordings;
-  for (Recording& recording : *recordings) recording = preprocess::perturbation_only(std::move(recording));
+  for (Recording& recording : *recordings) {
+    const auto withdrawn = recording.metadata.find("withdrawn");
+    if (withdrawn != recording.metadata.end() && withdrawn->second == "yes") {
+      return bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
+                      recording.sources.empty() ? "" : recording.sources.front().path);
+    }
+    recording = preprocess::perturbation_only(std::move(recording));
+  }
   return recordings;
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/scenario_argument.h"
+#include "apps/mbk/stop_keys.h"
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/preprocess/perturbation_only.h"
@@ -36,36 +36,6 @@ struct Arguments {
   std::optional<int> person;
   std::optional<double> speed;
   bool as_fast_as_possible = false, dry_run = false, measure = true, quiet = false;
-};
-
-/// Where Ctrl-C goes while a trial runs.
-std::atomic<session::Signals*> running{nullptr};
-
-extern "C" void on_interrupt(int /*signal*/) {
-  if (session::Signals* signals = running.load()) signals->operator_stop = true;
-}
-
-/// While it lives, Ctrl-C stops the robot instead of the program.
-class StopByKey {
- public:
-  explicit StopByKey(session::Signals& signals) {
-    running = &signals;
-    struct sigaction action {};
-    action.sa_handler = on_interrupt;
-    sigaction(SIGINT, &action, &before_);
-    sigaction(SIGTERM, &action, &before_term_);
-  }
-  StopByKey(const StopByKey&) = delete;
-  StopByKey& operator=(const StopByKey&) = delete;
-  ~StopByKey() {
-    sigaction(SIGINT, &before_, nullptr);
-    sigaction(SIGTERM, &before_term_, nullptr);
-    running = nullptr;
-  }
-
- private:
-  struct sigaction before_ {};
-  struct sigaction before_term_ {};
 };
 
 Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
@@ -186,9 +156,9 @@ Measured measure(const session::TrialOutcome& outcome, const Trial& trial) {
           !identification.usable || identification.fit.vaf.minCoeff() < kPoor};
 }
 
-/// At a terminal: whether the trial shall be done again.
-bool ask_to_repeat() {
-  fmt::print(stderr, "The data are poor. Repeat the trial? [y/N] ");
+/// At a terminal.
+bool ask(const char* question) {
+  fmt::print(stderr, "{} [y/N] ", question);
   std::string answer;
   return std::getline(std::cin, answer) && !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
 }
@@ -209,7 +179,7 @@ int perform(Session& session, const Trial& trial, const fs::path& target, const 
   auto robot = laboratory::SimulatedDevice::create(trial.scenario);
   if (!robot) return report_error(robot.error());
   const auto outcome = [&] {
-    const StopByKey stop(session.signals());
+    const StopKeys keys(session.signals());
     StatusLine line(trial.name, arguments.quiet);
     return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) { line.show(ticks); });
   }();
@@ -222,9 +192,14 @@ int perform(Session& session, const Trial& trial, const fs::path& target, const 
     text += measured.text;
   }
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
-  if (stopped) return kSafetyStop;
-  if (measured.poor && isatty(STDIN_FILENO) == 1) repeat = ask_to_repeat();
-  if (measured.poor && isatty(STDIN_FILENO) == 0) {
+  const bool terminal = isatty(STDIN_FILENO) == 1;
+  if (stopped) {
+    if (!terminal || !ask("Is the reason gone? Reset the gate and do the trial again?")) return kSafetyStop;
+    if (auto ok = session.reset(); !ok) return report_error(ok.error());
+    repeat = true;
+  } else if (measured.poor && terminal) {
+    repeat = ask("The data are poor. Do the trial again?");
+  } else if (measured.poor) {
     fmt::print(stderr, "mbk: the data of {} are poor; think of repeating the trial\n", target.string());
   }
   return kFine;
@@ -272,8 +247,10 @@ Action add_run(CLI::App& app) {
       "      every [[trial]] of the file in turn: p07_NAME.h5\n"
       "  mbk run relaxed_sinusoidal --fast --out relaxed.h5\n"
       "      the same on a virtual clock, as fast as the machine can; --speed 20 for twenty times\n\n"
-      "Ctrl-C stops the robot. What is recorded goes to NAME.h5.journal first; 'mbk recover' makes a recording\n"
-      "of it where the program or the machine went down.\n"
+      "The space bar and Ctrl-C stop the robot, e ends a trial early. What is recorded goes to\n"
+      "NAME.h5.journal first; where the program or the machine went down, 'mbk recover' makes a recording of it.\n"
+      "The gate limits force, torque, speed and place in software; it is no certified safety function. With people,\n"
+      "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable, 5 safety stop.");
   command->add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
       ->required()

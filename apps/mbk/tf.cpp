@@ -164,7 +164,7 @@ Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasuremen
 Result<std::vector<Recording>> read_all(const Arguments& a, const std::vector<std::filesystem::path>& files) {
   MeasureArguments reading = a;
   reading.files = files;
-  auto recordings = files.empty() ? Result<std::vector<Recording>>() : read_recordings(reading);
+  auto recordings = files.empty() ? Result<std::vector<Recording>>() : read_perturbations(reading);
   if (!recordings || !a.resample_hz) return recordings;
   for (Recording& recording : *recordings) {
     auto even = preprocess::resample(recording, Hertz(*a.resample_hz));

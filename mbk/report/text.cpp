@@ -134,7 +134,8 @@ std::string wanted_text(const Interval& wanted) {
 }
 
 std::string source_line(const SourceFile& source) {
-  return fmt::format("{}   {}   sha256 {}…\n", source.path, source.format, source.sha256.substr(0, 16));
+  return fmt::format("{}   {}{}\n", source.path, source.format,
+                     source.sha256.empty() ? "" : fmt::format("   sha256 {}…", source.sha256.substr(0, 16)));
 }
 
 }  // namespace
