@@ -72,7 +72,7 @@ TEST_F(FlexibleArm, HoldsAsOutputErrorAtAHundredHertz) {
   options_.fit.method = TransferFunctionMethod::output_error;
   const auto found = identified();
   ASSERT_TRUE(found.has_value()) << found.error().line();
-  EXPECT_DOUBLE_EQ(found->recorded_rate_hz, 500.0);
+  EXPECT_NEAR(found->recorded_rate_hz, 500.0, 1e-9);
   EXPECT_NEAR(found->model.sample_time, 0.01, 1e-9);
   EXPECT_GE(found->held_back_fit.value(), 0.975);
   expect_modes(*found);
