@@ -32,7 +32,7 @@ constexpr std::array kConditions = {Condition{"rigid", true, true}, Condition{"c
 constexpr std::size_t kRigid = 0, kRelaxed = 2;
 
 /// How long the force keeps its sign [s]; not published. The rows are of the last.
-constexpr std::array kSwitchingTimes = {0.5, 1.0, 2.0, 4.0};
+constexpr std::array kSwitchingTimes = {1.0, 2.0, 4.0};
 
 /// VAF [%] of each trial in table 4.4 of Dyck (2013); only ever shown.
 constexpr std::array kPrinted = {43.6, 69.1, -2.9, 27.3, 70.1};
@@ -89,6 +89,7 @@ Result<Attempt> attempted(const SignalPair& whole) {
   options.poles = kPoles;
   options.zeros = kZeros;
   options.threads = 1;
+  options.most_iterations = 60;
   auto fit = identify::fit_prediction_error({first_part(whole)}, options);
   if (!fit) return tl::unexpected(fit.error());
   Attempt attempt{std::move(fit->f), std::move(fit->b), fit->converged, 0.0};
@@ -282,7 +283,7 @@ Chart switching_chart(Outcomes all, std::size_t each) {
 }  // namespace
 
 Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 4");
+  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 2");
   const auto scenarios = ready("one_axis_random_binary");
   if (!scenarios) return tl::unexpected(scenarios.error());
   const std::size_t trials = kPrinted.size(), each = trials * static_cast<std::size_t>(options.runs);
