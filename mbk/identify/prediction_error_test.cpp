@@ -188,7 +188,7 @@ struct MonteCarlo {
 };
 
 MonteCarlo monte_carlo(bool noise_model, double c, double hac_lag_s) {
-  constexpr int kRuns = 100;
+  constexpr int kRuns = 60;
   const Vector truth = Truth().theta();
   MonteCarlo all{Matrix(kRuns, truth.size()), Vector::Zero(truth.size()), Vector::Zero(truth.size())};
   for (int run = 0; run < kRuns; ++run) {
@@ -213,9 +213,9 @@ Vector spread(const MonteCarlo& all) {
 }
 
 TEST(PredictionError, ItsIntervalsHoldTheTruthAsOftenAsTheySay) {
-  // Of 100 runs at 95 %, fewer than 87 hold with probability 10⁻³ for each coefficient.
+  // Of 60 runs at 95 %, fewer than 51 hold with probability 10⁻³ for each coefficient.
   const MonteCarlo white = monte_carlo(false, 0.0, 0.0);
-  EXPECT_GE(white.coverage.minCoeff(), 0.87) << white.coverage.transpose();
+  EXPECT_GE(white.coverage.minCoeff(), 0.85) << white.coverage.transpose();
   const Vector efficiency = spread(white).cwiseQuotient(white.standard_error);  // of the bound of Cramér & Rao
   EXPECT_GT(efficiency.minCoeff(), 0.75);
   EXPECT_LT(efficiency.maxCoeff(), 1.25) << efficiency.transpose();
@@ -224,7 +224,7 @@ TEST(PredictionError, ItsIntervalsHoldTheTruthAsOftenAsTheySay) {
 TEST(PredictionError, BoxJenkinsIsSharperThanOutputErrorInColouredNoise) {
   const MonteCarlo plain = monte_carlo(false, -0.95, 1.0), modelled = monte_carlo(true, -0.95, 0.0);
   EXPECT_GE(plain.coverage.minCoeff(), 0.82) << plain.coverage.transpose();  // ten seconds hold few seconds
-  EXPECT_GE(modelled.coverage.minCoeff(), 0.87) << modelled.coverage.transpose();
+  EXPECT_GE(modelled.coverage.minCoeff(), 0.85) << modelled.coverage.transpose();
   const Vector ratio = spread(modelled).cwiseQuotient(spread(plain));
   // The noise is strong where the input's gain is, and weak at both modes.
   EXPECT_LT(ratio.tail(4).maxCoeff(), 0.6) << ratio.transpose();
