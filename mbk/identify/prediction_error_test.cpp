@@ -195,6 +195,7 @@ MonteCarlo monte_carlo(bool noise_model, double c, double hac_lag_s) {
     PredictionErrorOptions options = four_poles(noise_model);
     options.hac_lag_s = hac_lag_s;
     options.most_noise_order = 2;
+    options.threads = 1;
     const auto fit = fit_prediction_error({noisy(1000, 100U + static_cast<std::uint64_t>(run), 0.05, c)}, options);
     EXPECT_TRUE(fit.has_value() && fit->converged) << run;
     if (!fit) continue;
