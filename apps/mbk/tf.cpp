@@ -25,9 +25,13 @@
 namespace mbk::app {
 namespace {
 
+constexpr std::array kMethods = {TransferFunctionMethod::srivc, TransferFunctionMethod::rivc,
+                                 TransferFunctionMethod::closed_loop, TransferFunctionMethod::output_error,
+                                 TransferFunctionMethod::box_jenkins};
+
 struct Arguments : MeasureArguments {
   std::vector<std::filesystem::path> held_back;
-  std::string input = "input", output_signal = "output", reference, orders, delay = "0", invert;
+  std::string input = "input", output_signal = "output", reference, orders, delay = "0", invert, sample_rate;
   std::filesystem::path charts;
   std::optional<long> poles, zeros;
   std::vector<double> start_poles_hz;
@@ -42,6 +46,14 @@ std::optional<Index> take_number(std::string_view& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc()) return std::nullopt;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+/// The number that `text` is.
+std::optional<double> value_of(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
@@ -99,16 +111,27 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
           "exchange input and output, or take fewer zeros");
     }
   }
-  if (a.method == "rivc") fit.method = TransferFunctionMethod::rivc;
-  if (a.method == "clsrivc") fit.method = TransferFunctionMethod::closed_loop;
+  for (const auto method : kMethods) {
+    if (a.method == text(method)) fit.method = method;
+  }
   if (fit.method == TransferFunctionMethod::closed_loop && a.reference.empty()) {
     return bad_usage("--method clsrivc needs the reference that drives the loop", "name it by --reference");
   }
   fit.find_delay = a.delay == "auto";
   if (!fit.find_delay) {
-    const auto [end, error] = std::from_chars(a.delay.data(), a.delay.data() + a.delay.size(), fit.delay);
-    if (error != std::errc() || end != a.delay.data() + a.delay.size() || !(fit.delay >= 0.0 && fit.delay < 1e6)) {
+    const auto delay = value_of(a.delay);
+    if (!delay || !(*delay >= 0.0 && *delay < 1e6)) {
       return bad_usage(fmt::format("--delay: {} is neither a number of seconds from 0 on nor 'auto'", quoted(a.delay)));
+    }
+    fit.delay = *delay;
+  }
+  if (a.sample_rate == "recorded") {
+    options.sample_rate_hz = 0.0;
+  } else if (!a.sample_rate.empty()) {
+    options.sample_rate_hz = value_of(a.sample_rate);
+    if (!options.sample_rate_hz || !(*options.sample_rate_hz > 0.0)) {
+      return bad_usage(
+          fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'", quoted(a.sample_rate)));
     }
   }
   fit.most_delay = a.most_delay_s;
@@ -261,6 +284,7 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       "      a table of all models of 1 to 4 poles, and the one that the data speak for\n"
       "  mbk tf log.csv --input 2 --output 3 --rate 500 --poles 2 --zeros 0 --delay auto --json\n"
       "  mbk tf loop.csv --input motor --output angle --reference wanted --method clsrivc --poles 3\n"
+      "  mbk tf arm.csv --input torque --output angle --method bj --poles 2 --zeros 2 --sample-rate 50\n"
       "  mbk tf log.mat --input -Fx --output x --poles 2 --zeros 0 --invert position --report log.html\n"
       "      from the force on the hand to where it moves, and turned round: the impedance with M, B, K\n\n"
       "FILEs are one system: they are fitted together. What did not settle, or settled on an unstable\n"
@@ -286,6 +310,11 @@ Action add_tf(CLI::App& app, const std::string& typed) {
                    "put an uneven clock right first, by straight lines; never done unasked, and srivc does without")
       ->type_name("HZ")
       ->check(positive());
+  command
+      ->add_option("--sample-rate", arguments->sample_rate,
+                   "leave samples out, behind a low-pass (oe and bj: down to 50 to 100; the others: recorded)")
+      ->type_name("HZ|recorded")
+      ->check(not_empty());
   const char* const model = "Model";
   command->add_option("--poles", arguments->poles, "how many")
       ->type_name("N")
@@ -311,9 +340,10 @@ Action add_tf(CLI::App& app, const std::string& typed) {
   command
       ->add_option("--method", arguments->method,
                    "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
-                   "clsrivc: in a loop, with instruments from the reference")
-      ->type_name("srivc|rivc|clsrivc")
-      ->check(one_of({"srivc", "rivc", "clsrivc"}))
+                   "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
+                   "bj: Box-Jenkins, with a model of the noise")
+      ->type_name("srivc|rivc|clsrivc|oe|bj")
+      ->check(one_of({"srivc", "rivc", "clsrivc", "oe", "bj"}))
       ->group(model);
   command->add_option("--delay", arguments->delay, "seconds by which the effect lags; auto finds it (0)")
       ->type_name("S|auto")
@@ -336,7 +366,7 @@ Action add_tf(CLI::App& app, const std::string& typed) {
                  "the system is at rest at zero where a stretch begins; otherwise an initial state and an offset are "
                  "found for each")
       ->group(model);
-  command->add_option("--noise-order", arguments->noise_order, "greatest order of the noise model of rivc (8)")
+  command->add_option("--noise-order", arguments->noise_order, "greatest order of the noise model of rivc and bj (8)")
       ->type_name("N")
       ->check(whole_number(1, 50))
       ->group(model);

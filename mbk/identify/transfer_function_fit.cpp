@@ -7,7 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include "mbk/dsp/difference_equation.h"
 #include "mbk/dsp/spectrum.h"
+#include "mbk/identify/prediction_error.h"
 #include "mbk/identify/srivc.h"
 #include "mbk/numeric/polynomial_roots.h"
 #include "mbk/numeric/statistics.h"
@@ -57,6 +59,55 @@ double chi_squared_beyond(double q, double degrees_of_freedom) {
   return numeric::normal_probability(-(std::cbrt(q / degrees_of_freedom) - (1.0 - spread)) / std::sqrt(spread));
 }
 
+/// What every method gives.
+struct Fit {
+  Vector denominator, numerator;  ///< as in TransferFunction, without the 1
+  bool converged = false;
+  Matrix covariance, white_covariance;  ///< of [denominator; numerator]
+  double variance = 0, fit = 0;
+  Vector noise_denominator, noise_numerator;
+  std::vector<Vector> residuals, innovations;
+  std::vector<SearchStart> starts;
+  Index samples = 0;
+};
+
+Fit fit_of(ContinuousFit&& made) {
+  Fit fit{.denominator = std::move(made.a),
+          .numerator = std::move(made.b),
+          .converged = made.converged,
+          .covariance = std::move(made.covariance),
+          .white_covariance = std::move(made.white_covariance),
+          .variance = made.variance,
+          .fit = made.fit,
+          .noise_denominator = std::move(made.noise),
+          .noise_numerator = Vector::Ones(1),
+          .residuals = std::move(made.residuals),
+          .starts = std::move(made.starts),
+          .samples = made.samples};
+  const Index order = fit.noise_denominator.size() - 1;
+  for (const Vector& e : fit.residuals) {
+    const Vector innovation = dsp::difference_equation(fit.noise_denominator, Vector::Ones(1), e);
+    fit.innovations.push_back(innovation.tail(e.size() - order));
+  }
+  return fit;
+}
+
+Fit fit_of(PredictionErrorFit&& made) {
+  return {.denominator = std::move(made.f),
+          .numerator = std::move(made.b),
+          .converged = made.converged,
+          .covariance = std::move(made.covariance),
+          .white_covariance = std::move(made.white_covariance),
+          .variance = made.variance,
+          .fit = made.fit,
+          .noise_denominator = std::move(made.noise_denominator),
+          .noise_numerator = std::move(made.noise_numerator),
+          .residuals = std::move(made.residuals),
+          .innovations = std::move(made.innovations),
+          .starts = std::move(made.starts),
+          .samples = made.samples};
+}
+
 class Identifier {
  public:
   Identifier(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_back,
@@ -66,16 +117,19 @@ class Identifier {
   Result<TransferFunctionIdentification> run();
 
  private:
-  [[nodiscard]] ContinuousFitOptions fit_options(Index poles, Index zeros) const;
-  [[nodiscard]] Result<ContinuousFit> fit(Index poles, Index zeros, double delay) const {
-    return fit_continuous(delayed(experiments_, delay), fit_options(poles, zeros));
-  }
-  Result<ContinuousFit> choose_delay(Index poles, Index zeros);
-  [[nodiscard]] OrderChoice criteria(const ContinuousFit& fit, Index poles, Index zeros) const;
-  Result<ContinuousFit> choose_order();
-  void describe(const ContinuousFit& fit);
-  void test(const ContinuousFit& fit);
-  void simulate(const ContinuousFit& fit);
+  [[nodiscard]] bool discrete() const { return is_discrete(options_.method); }
+  [[nodiscard]] ContinuousFitOptions continuous_options(Index poles, Index zeros) const;
+  [[nodiscard]] PredictionErrorOptions discrete_options(Index poles, Index zeros) const;
+  [[nodiscard]] Result<Fit> fit(Index poles, Index zeros, double delay) const;
+  Result<Fit> choose_delay(Index poles, Index zeros);
+  [[nodiscard]] OrderChoice criteria(const Fit& fit, Index poles, Index zeros) const;
+  Result<Fit> choose_order();
+  void describe(const Fit& fit);
+  void describe_roots(const Fit& fit);
+  void test(const Fit& fit);
+  [[nodiscard]] Vector simulation_error(const SignalPair& pair) const;
+  [[nodiscard]] Result<void> check_clock() const;
+  void simulate(const Fit& fit);
   void warn();
   [[nodiscard]] double median_step() const;
 
@@ -97,7 +151,7 @@ double Identifier::median_step() const {
   return *middle;
 }
 
-ContinuousFitOptions Identifier::fit_options(Index poles, Index zeros) const {
+ContinuousFitOptions Identifier::continuous_options(Index poles, Index zeros) const {
   ContinuousFitOptions options;
   options.poles = poles;
   options.zeros = zeros;
@@ -110,15 +164,38 @@ ContinuousFitOptions Identifier::fit_options(Index poles, Index zeros) const {
   return options;
 }
 
-Result<ContinuousFit> Identifier::choose_delay(Index poles, Index zeros) {
+PredictionErrorOptions Identifier::discrete_options(Index poles, Index zeros) const {
+  PredictionErrorOptions options;
+  options.poles = poles;
+  options.zeros = zeros;
+  options.start_poles = options_.start_poles;
+  options.free_start = options_.free_start;
+  options.noise_model = options_.method == TransferFunctionMethod::box_jenkins;
+  options.most_noise_order = options_.most_noise_order;
+  options.hac_lag_s = options_.hac_lag_s;
+  options.threads = options_.threads;
+  return options;
+}
+
+Result<Fit> Identifier::fit(Index poles, Index zeros, double delay) const {
+  const std::vector<SignalPair> moved = delayed(experiments_, delay);
+  const auto made = [](auto&& result) -> Result<Fit> {
+    if (!result) return tl::unexpected(result.error());
+    return fit_of(std::move(*result));
+  };
+  if (discrete()) return made(fit_prediction_error(moved, discrete_options(poles, zeros)));
+  return made(fit_continuous(moved, continuous_options(poles, zeros)));
+}
+
+Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
   const double step = median_step();
   if (!options_.find_delay) return fit(poles, zeros, delay_);
-  const auto left = [](const Result<ContinuousFit>& made) {
+  const auto left = [](const Result<Fit>& made) {
     return made->converged ? made->variance : std::numeric_limits<double>::infinity();
   };
   constexpr Index kMost = 25;
   const auto samples = static_cast<Index>(std::floor(options_.most_delay / step + 1e-9));
-  const Index every = std::max<Index>(1, (samples + kMost - 1) / kMost);
+  const Index every = discrete() ? 1 : std::max<Index>(1, (samples + kMost - 1) / kMost);
   double best = 0.0, least = std::numeric_limits<double>::infinity();
   const auto look = [&](double delay) -> Result<double> {
     const auto made = fit(poles, zeros, delay);
@@ -132,6 +209,11 @@ Result<ContinuousFit> Identifier::choose_delay(Index poles, Index zeros) {
   };
   for (Index k = 0; k <= samples; k += every) {
     if (auto ok = look(static_cast<double>(k) * step); !ok) return tl::unexpected(ok.error());
+  }
+  found_.delay_found = true;
+  if (discrete()) {
+    delay_ = best;
+    return fit(poles, zeros, delay_);
   }
   constexpr double kGolden = 0.6180339887498949, kNear = 0.01;  // of a sample
   const double whole = best, reach = static_cast<double>(every) * step;
@@ -156,16 +238,15 @@ Result<ContinuousFit> Identifier::choose_delay(Index poles, Index zeros) {
   if (!at_c) return tl::unexpected(at_c.error());
   if (!at_d) return tl::unexpected(at_d.error());
   delay_ = best;
-  found_.delay_found = true;
   return fit(poles, zeros, delay_);
 }
 
-OrderChoice Identifier::criteria(const ContinuousFit& fit, Index poles, Index zeros) const {
+OrderChoice Identifier::criteria(const Fit& fit, Index poles, Index zeros) const {
   OrderChoice choice{.poles = poles, .zeros = zeros, .usable = fit.converged, .fit = fit.fit};
   choice.yic = choice.aic = choice.bic = kUndefined;
-  if (!std::isfinite(fit.variance) || fit.a.size() == 0) return choice;
-  Vector theta(fit.a.size() + fit.b.size());
-  theta << fit.a, fit.b;
+  if (!std::isfinite(fit.variance) || fit.denominator.size() == 0) return choice;
+  Vector theta(fit.denominator.size() + fit.numerator.size());
+  theta << fit.denominator, fit.numerator;
   double squares = 0.0, output = 0.0;
   for (const Vector& e : fit.residuals) squares += e.squaredNorm();
   for (const SignalPair& pair : experiments_) {
@@ -182,11 +263,11 @@ OrderChoice Identifier::criteria(const ContinuousFit& fit, Index poles, Index ze
   return choice;
 }
 
-Result<ContinuousFit> Identifier::choose_order() {
+Result<Fit> Identifier::choose_order() {
   std::vector<std::pair<Index, Index>> orders = options_.orders;
   const bool several = !orders.empty();
   if (!several) orders.emplace_back(options_.poles, options_.zeros);
-  std::vector<ContinuousFit> fits;
+  std::vector<Fit> fits;
   std::vector<double> delays;
   for (const auto& [poles, zeros] : orders) {
     auto made = choose_delay(poles, zeros);
@@ -222,18 +303,23 @@ Result<ContinuousFit> Identifier::choose_order() {
   return std::move(fits[chosen]);
 }
 
-void Identifier::describe(const ContinuousFit& fit) {
-  const Index n = fit.a.size(), q = fit.b.size();
+void Identifier::describe(const Fit& fit) {
   found_.method = options_.method;
-  found_.model.numerator = fit.b;
-  found_.model.denominator.resize(n + 1);
-  found_.model.denominator << fit.a, 1.0;
+  found_.model.numerator = fit.numerator;
+  found_.model.denominator.resize(fit.denominator.size() + 1);
+  if (discrete()) {
+    found_.model.denominator << 1.0, fit.denominator;
+    found_.model.sample_time = median_step();
+  } else {
+    found_.model.denominator << fit.denominator, 1.0;
+  }
   found_.model.delay = delay_;
   found_.covariance = fit.covariance;
   found_.hac_lag_s = options_.hac_lag_s;
   found_.fit = fit.fit;
   found_.noise_standard_deviation = std::sqrt(fit.variance);
-  if (fit.noise.size() > 1) found_.noise_denominator = fit.noise;
+  if (fit.noise_denominator.size() > 1) found_.noise_denominator = fit.noise_denominator;
+  if (fit.noise_numerator.size() > 1) found_.noise_numerator = fit.noise_numerator;
   const OrderChoice& chosen = *std::ranges::find(found_.orders, true, &OrderChoice::chosen);
   found_.yic = chosen.yic;
   found_.aic = chosen.aic;
@@ -244,13 +330,7 @@ void Identifier::describe(const ContinuousFit& fit) {
   found_.experiments = std::ssize(experiments_);
   found_.even = std::ranges::all_of(experiments_, [](const SignalPair& pair) { return pair.step.has_value(); });
   found_.sample_time = median_step();
-  found_.poles = roots_with_intervals(found_.model.denominator, fit.covariance.topLeftCorner(n, n));
-  found_.zeros = roots_with_intervals(fit.b, fit.covariance.bottomRightCorner(q, q));
-  found_.gain = fit.b[0] / fit.a[0];
-  Vector gradient = Vector::Zero(n + q);
-  gradient[0] = -found_.gain / fit.a[0];
-  gradient[n] = 1.0 / fit.a[0];
-  found_.gain_standard_error = std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
+  describe_roots(fit);
   if (!found_.even) return;
   // Where 96 % of the input's power lies: beyond it, what is said rests on the form of the model.
   const SignalPair& longest = *std::ranges::max_element(experiments_, {}, &SignalPair::samples);
@@ -266,26 +346,53 @@ void Identifier::describe(const ContinuousFit& fit) {
   }
 }
 
-void Identifier::test(const ContinuousFit& fit) {
-  std::vector<Vector> left, inputs;
+void Identifier::describe_roots(const Fit& fit) {
+  const Vector &below = fit.denominator, &above = fit.numerator;
+  const Index n = below.size(), q = above.size();
+  const Matrix of_below = fit.covariance.topLeftCorner(n, n), of_above = fit.covariance.bottomRightCorner(q, q);
+  Vector gradient(n + q);
+  if (discrete()) {
+    const double T = found_.model.sample_time, sum = 1.0 + below.sum();
+    found_.poles = roots_with_intervals(found_.model.denominator.reverse(), of_below.reverse(), T);
+    found_.zeros = roots_with_intervals(above.reverse(), of_above.reverse(), T);
+    found_.gain = above.sum() / sum;
+    gradient << Vector::Constant(n, -found_.gain / sum), Vector::Constant(q, 1.0 / sum);
+  } else {
+    found_.poles = roots_with_intervals(found_.model.denominator, of_below);
+    found_.zeros = roots_with_intervals(above, of_above);
+    found_.gain = above[0] / below[0];
+    gradient << -found_.gain / below[0] * Vector::Unit(n, 0), Vector::Unit(q, 0) / below[0];
+  }
+  found_.gain_standard_error = std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
+}
+
+void Identifier::test(const Fit& fit) {
+  std::vector<Vector> inputs;
   const std::vector<SignalPair> moved = delayed(experiments_, delay_);
   for (std::size_t k = 0; k < moved.size(); ++k) {
-    const Vector& e = fit.residuals[k];
-    const Index order = fit.noise.size() - 1, count = e.size() - order;
-    Vector innovation = e.tail(count);
-    for (Index j = 1; j <= order; ++j) innovation += fit.noise[j] * e.segment(order - j, count);
-    left.push_back(std::move(innovation));
-    inputs.emplace_back(moved[k].input.tail(count).array() - moved[k].input.mean());
+    inputs.emplace_back(moved[k].input.tail(fit.innovations[k].size()).array() - moved[k].input.mean());
   }
   double slowest = 0.0;  // [s]
   for (const Root& pole : found_.poles) slowest = std::max(slowest, 1.0 / std::abs(pole.value.real()));
   constexpr double kLeastLags = 25, kMostLags = 400;
-  const double most = static_cast<double>(std::ranges::min(left, {}, &Vector::size).size()) / 5.0;
+  const double most = static_cast<double>(std::ranges::min(inputs, {}, &Vector::size).size()) / 5.0;
   const double lags = std::min(std::clamp(3.0 * slowest / found_.sample_time, kLeastLags, kMostLags), most);
-  found_.residuals = test_residuals(left, inputs, std::max<Index>(1, static_cast<Index>(lags)));
+  found_.residuals = test_residuals(fit.innovations, inputs, std::max<Index>(1, static_cast<Index>(lags)));
 }
 
-void Identifier::simulate(const ContinuousFit& fit) {
+/// Less what the best initial state and offset explain.
+Vector Identifier::simulation_error(const SignalPair& pair) const {
+  const TransferFunction& model = found_.model;
+  const Index n = model.poles();
+  if (discrete()) {
+    const Vector response = dsp::difference_equation(model.numerator, model.denominator, pair.input);
+    return without_discrete_free_motion(model.denominator.tail(n), pair.output - response);
+  }
+  const Vector a = model.denominator.head(n);
+  return without_free_motion(a, pair, pair.output - simulate_continuous(a, model.numerator, pair));
+}
+
+void Identifier::simulate(const Fit& fit) {
   if (held_back_.empty()) {
     for (std::size_t k = 0; k < experiments_.size(); ++k) {
       const SignalPair& pair = experiments_[k];
@@ -296,10 +403,8 @@ void Identifier::simulate(const ContinuousFit& fit) {
   }
   double squares = 0.0, output = 0.0;
   Index count = 0;
-  const Vector a = found_.model.denominator.head(found_.model.poles());
   for (const SignalPair& pair : delayed(held_back_, delay_)) {
-    const Vector error = pair.output - simulate_continuous(a, found_.model.numerator, pair);
-    const Vector left = without_free_motion(a, pair, error);
+    const Vector left = simulation_error(pair);
     squares += left.squaredNorm();
     found_.simulated.push_back({pair.time, pair.output, pair.output - left});
     output += (pair.output.array() - pair.output.mean()).square().sum();
@@ -353,10 +458,24 @@ void Identifier::warn() {
   }
 }
 
+/// In discrete time everything counts in samples of one clock.
+Result<void> Identifier::check_clock() const {
+  if (!discrete()) return {};
+  const auto step = common_step(experiments_, held_back_);
+  if (!step) return tl::unexpected(step.error());
+  const double samples = delay_ / *step;
+  constexpr double kWhole = 1e-3;
+  if (options_.find_delay || std::abs(samples - std::round(samples)) <= kWhole) return {};
+  return bad_usage(fmt::format("a delay of {:g} s is no whole number of samples of {:.6g} ms", delay_, 1e3 * *step),
+                   fmt::format("give {:.6g} or {:.6g} s, or take --method srivc", std::floor(samples) * *step,
+                               std::ceil(samples) * *step));
+}
+
 Result<TransferFunctionIdentification> Identifier::run() {
   if (!(options_.delay >= 0.0) || !std::isfinite(options_.delay)) {
     return bad_usage(fmt::format("a delay of {} s is not possible", options_.delay), "give 0 or more seconds");
   }
+  if (auto ok = check_clock(); !ok) return tl::unexpected(ok.error());
   auto fit = choose_order();
   if (!fit) return tl::unexpected(fit.error());
   describe(*fit);
@@ -368,20 +487,22 @@ Result<TransferFunctionIdentification> Identifier::run() {
 
 }  // namespace
 
-std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& covariance) {
+std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& covariance, double sample_time) {
   std::vector<Root> all;
+  const bool discrete = sample_time > 0.0;
   const Index degree = ascending.size() - 1, known = covariance.rows();
   Vector derivative(std::max<Index>(degree, 1));
   derivative.setZero();
   for (Index k = 1; k <= degree; ++k) derivative[k - 1] = static_cast<double>(k) * ascending[k];
-  for (const std::complex<double>& p : numeric::polynomial_roots(ascending)) {
-    if (p.imag() < 0.0) continue;
-    Root root{.value = p, .frequency = std::abs(p) / (2.0 * std::numbers::pi), .pair = p.imag() > 0.0};
+  for (const std::complex<double>& r : numeric::polynomial_roots(ascending)) {
+    if (r.imag() < 0.0 || (discrete && r == 0.0)) continue;  // 0 only delays
+    const std::complex<double> p = discrete ? std::log(r) / sample_time : r;
+    Root root{.value = p, .frequency = std::abs(p) / (2.0 * std::numbers::pi), .pair = r.imag() > 0.0};
     root.damping = -p.real() / std::abs(p);
-    const std::complex<double> slope = numeric::polynomial_at(derivative, p);
+    const std::complex<double> slope = numeric::polynomial_at(derivative, r) * (discrete ? sample_time * r : 1.0);
     Vector modulus(known), damping(known);
     std::complex<double> power = 1.0;
-    for (Index k = 0; k < known; ++k, power *= p) {
+    for (Index k = 0; k < known; ++k, power *= r) {
       const std::complex<double> dp = -power / slope;
       modulus[k] = (std::conj(p) * dp).real() / std::abs(p);
       damping[k] = -(dp.real() + root.damping * modulus[k]) / std::abs(p);
@@ -391,6 +512,7 @@ std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& co
     if (root.pair) root.damping_standard_error = std::sqrt(std::max(0.0, damping.dot(covariance * damping)));
     all.push_back(root);
   }
+  if (discrete) std::ranges::stable_sort(all, {}, &Root::frequency);
   return all;
 }
 

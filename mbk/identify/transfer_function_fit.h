@@ -25,16 +25,22 @@ struct TransferFunctionOptions {
 /// of orders, and tests of what is left.
 ///   Order: of the models that settled, those that leave at most 2 % more variance than the one that leaves least; of
 /// these the one of least YIC (Young 1989). Delay: the one that leaves least, by whole samples first and then by
-/// golden section to a hundredth of a sample. The input between samples is a straight line.
+/// golden section to a hundredth of a sample. The input between samples is a straight line. In discrete time (output
+/// error, Box–Jenkins; prediction_error.h) the delay is a whole number of samples, of one even clock.
 /// @param held_back  judged by simulation alone, with an initial state and an offset of their own
-/// @fails  not usable: no start settled on a stable model. As fit_continuous otherwise; delay < 0 or not finite.
+/// @fails  not usable: no start settled on a stable model. As fit_continuous or fit_prediction_error
+/// otherwise; delay < 0 or not finite, or in discrete time no whole number of samples.
 [[nodiscard]] Result<TransferFunctionIdentification> identify_transfer_function(
     const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_back,
     const TransferFunctionOptions& options);
 
-/// Poles or zeros with intervals by the delta method: dp = −Σ pᵏ da_k/A′(p).
+/// Poles or zeros with intervals by the delta method: dp = −Σ pᵏ da_k/A′(p). With a sample time they are roots z of a
+/// polynomial of z, given as p = ln z/T and dp = dz/(zT); the imaginary part of a negative one is that of Nyquist, and
+/// a root at 0, which only delays, is left out.
 /// @param ascending c₀ … cₙ    @param covariance of its first coefficients; those behind them are known
-[[nodiscard]] std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& covariance);
+/// @param sample_time T [s]; 0: continuous
+[[nodiscard]] std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& covariance,
+                                                     double sample_time = 0.0);
 
 /// @param residuals of each experiment    @param inputs as long as these    @param lags ≥ 1
 /// @param free parameters that the residuals were fitted with

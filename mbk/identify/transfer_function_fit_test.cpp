@@ -112,6 +112,77 @@ TEST(TransferFunctionFit, RefusesWhatDidNotSettle) {
   }
 }
 
+TransferFunctionOptions discrete(TransferFunctionMethod method) {
+  TransferFunctionOptions options;
+  options.method = method;
+  options.poles = options.zeros = 2;  // an input of straight lines makes as many zeros as poles
+  return options;
+}
+
+TEST(TransferFunctionFit, GivesADiscreteModelInHertzToo) {
+  for (const auto method : {TransferFunctionMethod::output_error, TransferFunctionMethod::box_jenkins}) {
+    const auto found = identify_transfer_function({oscillator(0, 0.5, 1)}, {oscillator(0, 0.0, 2)}, discrete(method));
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_NEAR(found->model.sample_time, 0.01, 1e-12);
+    EXPECT_EQ(found->model.denominator[0], 1.0);
+    ASSERT_EQ(found->poles.size(), 1U);
+    const Root& pole = found->poles[0];
+    EXPECT_TRUE(pole.pair);
+    EXPECT_NEAR(pole.frequency, 2.0, 4.0 * pole.frequency_standard_error);
+    EXPECT_NEAR(pole.damping, 0.1, 4.0 * pole.damping_standard_error);
+    EXPECT_LT(pole.frequency_standard_error, 0.01);
+    EXPECT_NEAR(found->gain, 3.0, 4.0 * found->gain_standard_error);
+    EXPECT_GT(found->held_back_fit.value(), 0.999);
+    EXPECT_TRUE(found->residuals.white());
+    EXPECT_TRUE(found->residuals.independent());
+  }
+}
+
+TEST(TransferFunctionFit, FindsADelayOfWholeSamplesInDiscreteTime) {
+  TransferFunctionOptions options = discrete(TransferFunctionMethod::output_error);
+  options.find_delay = true;
+  options.most_delay = 0.08;
+  const auto found = identify_transfer_function({oscillator(4, 0.05, 1)}, {}, options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->model.delay, 0.04, 1e-12);
+  options.find_delay = false;
+  options.delay = 0.043;
+  const auto between = identify_transfer_function({oscillator(4, 0.05, 1)}, {}, options);
+  ASSERT_FALSE(between.has_value());
+  EXPECT_EQ(between.error().kind, ErrorKind::usage);
+  EXPECT_NE(between.error().remedy.find("0.04 or 0.05"), std::string::npos) << between.error().remedy;
+}
+
+TEST(TransferFunctionFit, ChoosesTheTrueOrderInDiscreteTime) {
+  TransferFunctionOptions options = discrete(TransferFunctionMethod::output_error);
+  options.orders = {{1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}, {3, 2}, {4, 3}};
+  const auto found = identify_transfer_function({oscillator(0, 0.02, 1)}, {}, options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->model.poles(), 2);
+  EXPECT_EQ(found->orders.size(), options.orders.size());
+}
+
+TEST(RootsWithIntervals, AgreeWithMovedCoefficientsInDiscreteTime) {
+  const Vector c{{0.7, -1.9, 2.6, -2.3, 1.0}};  // of z⁰ … z⁴
+  constexpr double T = 0.02;
+  for (Index k = 0; k < 4; ++k) {
+    Matrix covariance = Matrix::Zero(4, 4);
+    const double h = 1e-6 * c[k];
+    covariance(k, k) = h * h;
+    Vector moved = c;
+    moved[k] += h;
+    const auto roots = roots_with_intervals(c, covariance, T), at = roots_with_intervals(moved, covariance, T);
+    ASSERT_EQ(roots.size(), at.size());
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      const auto z = std::exp(roots[i].value * T);
+      EXPECT_LT(std::abs((((z + c[3]) * z + c[2]) * z + c[1]) * z + c[0]), 1e-12);
+      EXPECT_NEAR(std::abs(at[i].frequency - roots[i].frequency), roots[i].frequency_standard_error, 1e-8);
+      if (!roots[i].pair) continue;
+      EXPECT_NEAR(std::abs(at[i].damping - roots[i].damping), roots[i].damping_standard_error, 1e-8);
+    }
+  }
+}
+
 TEST(RootsWithIntervals, AgreeWithMovedCoefficients) {
   const Vector c{{1600.0, 416.0, 408.0, 5.0, 1.0}};
   for (Index k = 0; k < 4; ++k) {

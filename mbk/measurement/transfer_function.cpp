@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mbk/recording/channel_table.h"
+#include "mbk/dsp/decimate.h"
 
 namespace mbk::measurement {
 namespace {
@@ -68,22 +69,64 @@ class Preparer {
 
   std::vector<SignalPair> experiments, held_back;
   std::string input_unit, output_unit;
+  double recorded_rate_hz = 0.0;  ///< where samples were left out
 
  private:
-  void cut(const Recording& recording, Piece piece, bool even, double from, double to, std::vector<SignalPair>& into);
+  [[nodiscard]] Result<Index> every(const SignalPair& pair) const;
+  Result<void> thin_out(SignalPair& pair);
+  Result<void> cut(const Recording& recording, Piece piece, bool even, double from, double to,
+                   std::vector<SignalPair>& into);
 
   const TransferFunctionMeasurement& options_;
 };
 
-void Preparer::cut(const Recording& recording, Piece piece, bool even, double from, double to,
-                   std::vector<SignalPair>& into) {
+/// One of how many samples is kept.
+Result<Index> Preparer::every(const SignalPair& pair) const {
+  const auto& wanted = options_.sample_rate_hz;
+  const bool discrete = is_discrete(options_.fit.method);
+  if (wanted ? *wanted == 0.0 : !discrete) return 1;
+  if (!pair.step) {
+    if (!wanted) return 1;  // the fit says what is wrong
+    return bad_usage("an uneven clock has no rate to leave samples out of", "put it right by --resample");
+  }
+  const double rate = 1.0 / *pair.step;
+  constexpr double kRounding = 1e-6;
+  if (!wanted) return static_cast<Index>(std::ceil(rate / kMostDiscreteRate.value * (1.0 - kRounding)));
+  if (*wanted <= rate * (1.0 + kRounding)) return static_cast<Index>(std::llround(rate / *wanted));
+  return bad_usage(fmt::format("samples come at {:.6g} Hz, and not at {:g} Hz", rate, *wanted),
+                   "choose a lower --sample-rate, or --resample");
+}
+
+Result<void> Preparer::thin_out(SignalPair& pair) {
+  const auto every_one = every(pair);
+  if (!every_one) return tl::unexpected(every_one.error());
+  if (*every_one == 1) return {};
+  const Hertz rate(1.0 / *pair.step);
+  const Index begin = pair.first % *every_one;
+  Matrix signals(pair.time.size(), pair.reference.size() > 0 ? 3 : 2);
+  signals.leftCols(2) << pair.input, pair.output;
+  if (pair.reference.size() > 0) signals.col(2) = pair.reference;
+  const auto thin = dsp::decimate(signals, rate, *every_one, begin);
+  if (!thin) return tl::unexpected(thin.error());
+  pair.time = Vector(pair.time(Eigen::seqN(begin, thin->rows(), *every_one)));
+  pair.input = thin->col(0);
+  pair.output = thin->col(1);
+  if (pair.reference.size() > 0) pair.reference = thin->col(2);
+  pair.first /= *every_one;
+  *pair.step *= static_cast<double>(*every_one);
+  recorded_rate_hz = rate.value;
+  return {};
+}
+
+Result<void> Preparer::cut(const Recording& recording, Piece piece, bool even, double from, double to,
+                           std::vector<SignalPair>& into) {
   const double start = recording.time[0];
   constexpr double kRounding = 1e-9;
   Index begin = piece.begin, end = piece.end;
   while (begin < end && recording.time[begin] - start < from - kRounding) ++begin;
   while (end > begin && recording.time[end - 1] - start >= to - kRounding) --end;
   constexpr Index kLeast = 8;
-  if (end - begin < kLeast) return;
+  if (end - begin < kLeast) return {};
   const double reach = options_.fit.find_delay ? options_.fit.most_delay : options_.fit.delay;
   Index past = begin;
   while (past > piece.begin && recording.time[past] > recording.time[begin] - reach) --past;
@@ -97,7 +140,9 @@ void Preparer::cut(const Recording& recording, Piece piece, bool even, double fr
   if (!options_.reference.empty()) pair.reference = taken(options_.reference);
   pair.first = begin - past;
   if (even) pair.step = (pair.time[pair.time.size() - 1] - pair.time[0]) / static_cast<double>(pair.time.size() - 1);
+  if (auto ok = thin_out(pair); !ok) return ok;
   into.push_back(std::move(pair));
+  return {};
 }
 
 Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_back) {
@@ -131,8 +176,12 @@ Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_bac
                     "choose --from, --split and --to within it");
   }
   for (const Piece piece : pieces) {
-    if (split > from) cut(recording, piece, even, from, split, experiments);
-    if (split < to) cut(recording, piece, even, split, to, held_back);
+    if (split > from) {
+      if (auto ok = cut(recording, piece, even, from, split, experiments); !ok) return ok;
+    }
+    if (split < to) {
+      if (auto ok = cut(recording, piece, even, split, to, held_back); !ok) return ok;
+    }
   }
   return {};
 }
@@ -164,6 +213,7 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
   found->reference = options.reference;
   found->input_unit = prepared.input_unit;
   found->output_unit = prepared.output_unit;
+  found->recorded_rate_hz = prepared.recorded_rate_hz;
   for (const Recording& recording : recordings) {
     found->sources.insert(found->sources.end(), recording.sources.begin(), recording.sources.end());
     found->notes.insert(found->notes.end(), recording.notes.begin(), recording.notes.end());

@@ -96,7 +96,9 @@ std::string coefficients_text(const TransferFunctionIdentification& found) {
     rows.push_back({fmt::format("{}{}", continuous ? "a" : "f", at),
                     with_interval(found.model.denominator[at], half[continuous ? k : at - 1])});
   }
-  return table(rows) + "  (± is the 95 % interval; coefficients in seconds and SI units" +
+  return table(rows) + "  (± is the 95 % interval; coefficients in " +
+         (continuous ? "seconds and SI units"
+                     : fmt::format("SI units, q a step of {:.6g} ms", 1e3 * found.model.sample_time)) +
          (found.hac_lag_s > 0.0 ? ", for noise correlated over up to " + fmt::format("{:g} s)\n", found.hac_lag_s)
                                 : ", for white noise)\n");
 }
@@ -142,6 +144,10 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
        fmt::format("{} in {} stretch{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "es",
                    found.even ? fmt::format("every {:.6g} ms", 1e3 * found.sample_time)
                               : fmt::format("unevenly spaced, about every {:.6g} ms", 1e3 * found.sample_time))});
+  if (found.recorded_rate_hz > 0.0) {
+    rows.push_back({"thinned out", fmt::format("from {:.6g} to {:.6g} Hz, behind a low-pass", found.recorded_rate_hz,
+                                               1.0 / found.sample_time)});
+  }
   if (found.band_high > 0.0) {
     rows.push_back({"excited", fmt::format("{:.3g} to {:.3g} Hz hold 96 % of the input's power", found.band_low,
                                            found.band_high)});
@@ -163,7 +169,10 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
   }
   rows.push_back({"in sample", fmt::format("R_T² {:.5f}, noise {:.4g} {}, YIC {:.2f}", found.fit,
                                            found.noise_standard_deviation, found.output_unit, found.yic)});
-  if (found.noise_denominator.size() > 1) {
+  if (found.noise_numerator.size() > 1) {
+    rows.push_back({"noise model", fmt::format("({}) / ({}) ε", polynomial_text(found.noise_numerator, false),
+                                               polynomial_text(found.noise_denominator, false))});
+  } else if (found.noise_denominator.size() > 1) {
     rows.push_back({"noise model", fmt::format("autoregressive, order {}", found.noise_denominator.size() - 1)});
   }
   text += table(rows) + left_text(found.residuals);

@@ -78,6 +78,7 @@ Json document(const TransferFunctionIdentification& found, const TransferFunctio
   json["numerator"] = highest_first(found.model.numerator);
   json["denominator"] = highest_first(found.model.denominator);
   json["variable"] = continuous ? "s" : "q^-1";
+  json["sample_time"] = found.model.sample_time;
   json["delay_s"] = found.model.delay;
   json["delay_found"] = found.delay_found;
   const Index n = found.model.poles(), q = found.model.numerator.size();
@@ -123,6 +124,7 @@ Json document(const TransferFunctionIdentification& found, const TransferFunctio
                               {"stable", start.stable},
                               {"iterations", start.iterations},
                               {"R2", number(start.fit)}});
+    if (!start.made_by.empty()) json["starts"].back()["made_by"] = start.made_by;
   }
   if (!found.orders.empty()) json["orders"] = Json::array();
   for (const OrderChoice& one : found.orders) {
@@ -142,6 +144,7 @@ Json document(const TransferFunctionIdentification& found, const TransferFunctio
   json["experiments"] = found.experiments;
   json["even_clock"] = found.even;
   json["sample_time_s"] = number(found.sample_time);
+  if (found.recorded_rate_hz > 0.0) json["recorded_rate_hz"] = found.recorded_rate_hz;
   json["notes"] = found.notes;
   json["warnings"] = warnings_json(found.warnings);
   json["usable"] = found.usable;

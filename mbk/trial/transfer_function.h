@@ -53,6 +53,11 @@ enum class TransferFunctionMethod { srivc, rivc, closed_loop, output_error, box_
   return "unknown";
 }
 
+/// Whether its models are of samples; otherwise of continuous time.
+[[nodiscard]] constexpr bool is_discrete(TransferFunctionMethod method) {
+  return method == TransferFunctionMethod::output_error || method == TransferFunctionMethod::box_jenkins;
+}
+
 /// A pole or a zero, as 1/s; of a pair the one above the real axis.
 struct Root {
   std::complex<double> value;           ///< [rad/s]
@@ -66,7 +71,8 @@ struct Root {
 
 /// One start of the search and where it led.
 struct SearchStart {
-  double pole = 0;  ///< [rad/s] of the first filter
+  std::string made_by = {};  ///< how its first model was made, where there are several ways
+  double pole = 0;           ///< [rad/s] of the first filter; of several the geometric mean
   bool converged = false;
   bool stable = true;  ///< the solution itself, not what became of it by reflection
   int iterations = 0;
@@ -117,6 +123,7 @@ struct TransferFunctionIdentification {
   double band_low = 0, band_high = 0;  ///< [Hz] excited by the input
   bool even = true;                    ///< the samples are on an even clock
   double sample_time = 0;              ///< [s], the median one
+  double recorded_rate_hz = 0;         ///< of the recording, where its samples were thinned out; 0: they were not
   Index samples = 0, experiments = 0;
   std::string input, output, reference, input_unit, output_unit;  ///< names of channels and their units
   std::vector<SourceFile> sources;

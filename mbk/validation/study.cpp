@@ -17,6 +17,7 @@ std::span<const Study> studies() {
       Study{"virtual-sensor", "force, stiffness and mass without a force sensor", 4, virtual_sensor_study},
       Study{"transfer-function", "a transfer function of four poles under noise, and its order", 50,
             transfer_function_study},
+      Study{"one-dimensional", "no linear model holds for a rigid arm along one axis", 2, one_dimensional_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
   };
   return kStudies;

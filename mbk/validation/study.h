@@ -75,4 +75,11 @@ struct Study {
 /// the order is found. A run is one input and one noise. Wanted: a bias below 1 %, the order in 90 % of the runs.
 [[nodiscard]] Result<ValidationTable> transfer_function_study(const StudyOptions& options);
 
+/// Does a linear time-invariant model hold for a rigid arm along one axis (Dyck 2013, §4.4.2: table 4.4 and fig. 4.7 in
+/// form)? The ready scenario one_axis_random_binary, ±2 N: output-error models of 4 poles and 3 zeros from place to
+/// force, judged on the last 10 s of each trial and on the other trials; beside it the same arm with its controller
+/// off, and relaxed, for several switching times of the force. A run is five trials of each. Wanted, at the slowest: a
+/// median VAF below 80 % and a lower quartile below 60 % for the rigid arm, above 90 % and 80 % for the others.
+[[nodiscard]] Result<ValidationTable> one_dimensional_study(const StudyOptions& options);
+
 }  // namespace mbk::validation

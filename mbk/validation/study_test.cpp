@@ -51,6 +51,13 @@ TEST(Springs, RigsOfBothTablesAreFound) {
   }
 }
 
+TEST(OneDimensional, NoLinearModelHoldsForAnArmThatCorrectsAndOneDoesWhereItDoesNot) {
+  const auto table = one_dimensional_study({.runs = 1});  // `mbk validate one-dimensional` takes more
+  expect_met(table);
+  ASSERT_EQ(table->charts.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(table->charts[2].series[2].y[k], table->charts[2].series[0].y[k]);
+}
+
 TEST(Participant, ThreeArmsBehaveAsPeopleDid) {
   const auto table = participant_study({.runs = 3});  // `mbk validate participant` takes ten seeds
   expect_met(table);

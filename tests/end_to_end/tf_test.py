@@ -60,13 +60,39 @@ class TransferFunction(Case):
         chosen, = [order for order in found["orders"] if order["chosen"]]
         self.assertEqual((chosen["poles"], chosen["zeros"]), (2, 0))
 
+    def test_discrete_models_come_back_in_hertz_too(self):
+        file = self.csv(oscillator(0.2))
+        signals = ("--input", "force", "--output", "motion", "--poles", "2", "--zeros", "2")
+        for method in ("oe", "bj"):
+            with self.subTest(method=method):
+                found = self.fine("tf", file, *signals, "--method", method, "--json").json
+                self.assertEqual((found["schema"], found["method"], found["variable"]), ("mbk.tf/1", method, "q^-1"))
+                self.assertAlmostEqual(found["sample_time"], STEP)
+                self.assertEqual(found["denominator"][0], 1)
+                pole, = found["poles"]
+                self.assertAlmostEqual(pole["frequency_hz"], 1.5, delta=0.02)
+                self.assertAlmostEqual(pole["damping"], ZETA, delta=0.02)
+                self.assertAlmostEqual(found["gain"], GAIN, delta=0.1)
+                self.assertGreater(len({start["made_by"] for start in found["starts"]}), 3)
+        text = self.fine("tf", file, *signals, "--method", "oe", "--sample-rate", "50").out
+        for words in ("G(q) =", "q^-1", "from 100 to 50 Hz", "output error"):
+            self.assertIn(words, text)
+        every = self.fine("tf", file, *signals, "--method", "oe", "--sample-rate", "recorded", "--json").json
+        self.assertNotIn("recorded_rate_hz", every)
+
+    def test_a_discrete_model_needs_an_even_clock(self):
+        rows = [(t + (0.004 if i % 7 == 0 else 0.0), u, y) for i, (t, u, y) in enumerate(oscillator(samples=400))]
+        self.refused(WRONG_USAGE, "tf", self.csv(rows), "--input", "force", "--output", "motion", "--poles", "2",
+                     "--method", "oe", says="even clock")
+
     def test_an_unstable_system_is_refused(self):
         rows, y = [], 0.0
         for t, u, _ in oscillator(0.0):
             y += STEP * (0.3 * y + u)
             rows.append((t, u, y))
-        self.refused(NOT_USABLE, "tf", self.csv(rows), "--input", "force", "--output", "motion", "--poles", "1",
-                     "--zeros", "0", says="unstable")
+        for method in ("srivc", "oe"):
+            self.refused(NOT_USABLE, "tf", self.csv(rows), "--input", "force", "--output", "motion", "--poles", "1",
+                         "--zeros", "0", "--method", method, says="unstable")
 
     def test_wrong_words_are_refused_in_one_line(self):
         file = self.csv(oscillator(samples=200))
@@ -76,7 +102,11 @@ class TransferFunction(Case):
                               (("--orders", "1:2", "--poles", "2"), "--orders"),
                               (("--poles", "2", "--method", "clsrivc"), "--reference"),
                               (("--poles", "2", "--delay", "soon"), "'soon'"),
-                              (("--poles", "2", "--delay", "-1"), "--delay")):
+                              (("--poles", "2", "--delay", "-1"), "--delay"),
+                              (("--poles", "2", "--method", "oe", "--delay", "0.013"), "whole number"),
+                              (("--poles", "2", "--sample-rate", "fast"), "'fast'"),
+                              (("--poles", "2", "--sample-rate", "0"), "--sample-rate"),
+                              (("--poles", "2", "--sample-rate", "400"), "400 Hz")):
             with self.subTest(options=options):
                 self.refused(WRONG_USAGE, "tf", file, *signals, *options, says=says)
         self.refused(BAD_DATA, "tf", file, "--input", "nothing", "--output", "motion", "--poles", "1", says="nothing")
