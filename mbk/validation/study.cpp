@@ -17,6 +17,8 @@ std::span<const Study> studies() {
       Study{"virtual-sensor", "force, stiffness and mass without a force sensor", 4, virtual_sensor_study},
       Study{"transfer-function", "a transfer function of four poles under noise, and its order", 50,
             transfer_function_study},
+      Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated", 25,
+            teleoperation_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
   };
   return kStudies;

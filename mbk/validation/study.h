@@ -75,4 +75,12 @@ struct Study {
 /// the order is found. A run is one input and one noise. Wanted: a bias below 1 %, the order in 90 % of the runs.
 [[nodiscard]] Result<ValidationTable> transfer_function_study(const StudyOptions& options);
 
+/// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of
+/// the four architectures, half of them with delay, held by random terminations where it is stable, and by the
+/// terminations that teleop::worst_terminations constructs where it is not; each with a passive operator, with one who
+/// has an excess of passivity and with one who has a shortage. The controllers are sampled at 1 kHz. Wanted: nothing
+/// that is stable, as designed and with sampling, grows; everything that is constructed grows, at its frequency.
+/// Besides, the passivity controller at a virtual wall.
+[[nodiscard]] Result<ValidationTable> teleoperation_study(const StudyOptions& options);
+
 }  // namespace mbk::validation
