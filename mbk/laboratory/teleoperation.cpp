@@ -302,7 +302,7 @@ Result<std::optional<TeleoperationRun>> run_against_worst(const TeleoperationSet
 }  // namespace
 
 RadPerSec highest_shown(double sample_time) {
-  return RadPerSec(0.25 * std::numbers::pi / sample_time);
+  return RadPerSec(0.125 * std::numbers::pi / sample_time);
 }
 
 double duration_to_show(const WorstTerminations& worst) {
@@ -329,7 +329,7 @@ Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::opti
   simulation.sample_time = plan.sample_time;
   constexpr int kPoints = 3000;
   constexpr double kLowest = 1e-2;  // [rad/s]
-  simulation.grid = {RadPerSec(kLowest), highest_shown(plan.sample_time), kPoints};
+  simulation.grid = {RadPerSec(kLowest), RadPerSec(std::numbers::pi / plan.sample_time), kPoints};
   const auto sampled = [&](double shortage) -> Result<AbsoluteStability> {
     const auto exact = lti::exact(shortage);
     if (!exact) return tl::unexpected(exact.error());
@@ -367,7 +367,7 @@ Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::opti
       simulation.notes.push_back(fmt::format(
           "{}: none is constructed, because a pole decides, or only frequencies above {:.4g} rad/s, which a controller "
           "of {:g} Hz does not show",
-          what, simulation.grid.high.value, 1.0 / plan.sample_time));
+          what, highest_shown(plan.sample_time).value, 1.0 / plan.sample_time));
     }
     return {};
   };

@@ -55,7 +55,7 @@ struct MotionVerdict {
 };
 [[nodiscard]] MotionVerdict judge(const TeleoperationMotion& motion);
 
-/// A quarter of the Nyquist frequency, above which a sampled controller is far from what it was designed as.
+/// An eighth of the Nyquist frequency, above which a sampled controller is far from what it was designed as.
 [[nodiscard]] RadPerSec highest_shown(double sample_time);
 
 /// How long terminations need to show what they do [s]: sixteen times 1/σ, from 5 to 100 s.

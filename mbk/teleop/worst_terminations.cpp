@@ -32,16 +32,49 @@ std::optional<double> lowest_at(const Eigen::Matrix2cd& z, Index first) {
   return other.real() * std::tan(0.5 * std::arg(p)) - other.imag();
 }
 
-double per_turn(const WorstTerminations& found) {
-  return found.growth / found.frequency.value;
+/// σ/ω, of which more than a hundredth counts no more.
+double per_radian(const WorstTerminations& found) {
+  constexpr double kEnough = 0.01;
+  return std::min(found.growth / found.frequency.value, kEnough);
+}
+
+/// Terminations, and whether nothing else grows nearly as fast.
+struct Candidate {
+  WorstTerminations found;
+  bool alone = false;
+
+  [[nodiscard]] bool better_than(const Candidate& other) const {
+    if (alone != other.alone) return alone;
+    const double here = per_radian(found), there = per_radian(other.found);
+    return here != there ? here > there : found.frequency < other.found.frequency;
+  }
+};
+
+/// Frequencies at which a closed loop is looked at for what else may grow.
+std::vector<double> scan(double sample_time, std::span<const RadPerSec> frequencies) {
+  constexpr int kPoints = 1500;
+  constexpr double kBeyond = 100.0, kBelow = 1e-2;  // [rad/s]
+  double high = 1.0;
+  for (const RadPerSec omega : frequencies) high = std::max(high, omega.value);
+  high = sample_time > 0.0 ? std::numbers::pi / sample_time : kBeyond * high;
+  std::vector<double> omega;
+  for (int i = 0; i < kPoints; ++i) omega.push_back(kBelow * std::pow(high / kBelow, double(i) / (kPoints - 1)));
+  return omega;
 }
 
 class Search {
  public:
-  Search(const Teleoperator& teleoperator, double sample_time, Port port, double a)
-      : teleoperator_(teleoperator), sample_time_(sample_time), port_(port == Port::one ? 0 : 1), a_(a) {}
+  Search(const Teleoperator& teleoperator, double sample_time, Port port, double a,
+         std::span<const RadPerSec> frequencies)
+      : teleoperator_(teleoperator),
+        sample_time_(sample_time),
+        port_(port == Port::one ? 0 : 1),
+        a_(a),
+        scanned_(scan(sample_time, frequencies)) {
+    for (const double omega : scanned_) z_.push_back(z_at(omega));
+  }
 
-  [[nodiscard]] std::optional<WorstTerminations> at(double omega, Index first) const {
+  [[nodiscard]] std::optional<Candidate> at(double omega, Index first) const {
     const Eigen::Matrix2cd z = z_at(omega);
     if (!z.allFinite()) return std::nullopt;
     // a port that lacks resistance by itself shows it when the other cannot move
@@ -54,7 +87,7 @@ class Search {
     constexpr double kStep = 1e-5;  // relative, of a difference in double
     const auto seen_at = [&](double where) { return driving_point(z_at(where), first, impedance(second, where)); };
     const Complex slope = (seen_at(omega * (1 + kStep)) - seen_at(omega * (1 - kStep))) / (2.0 * kStep * omega);
-    constexpr double kSlowest = 20.0, kDominates = 4.0;
+    constexpr double kSlowest = 50.0, kDominates = 4.0;
     const double wanted = std::max(kDominates * std::abs(slope), kSlowest * -seen.real() / omega);
     // m ω − k/ω cancels Im seen; m + k/ω² = wanted, or what one of them alone has
     const double cancels = -seen.imag() / omega, total = std::max(wanted, std::abs(cancels));
@@ -65,11 +98,33 @@ class Search {
     found.growth = -seen.real() / (slope.imag() + total);
     found.at_port[static_cast<std::size_t>(first)] = closing;
     found.at_port[static_cast<std::size_t>(1 - first)] = second;
+    const bool alone = !grows_elsewhere(first, found);
     found.at_port[static_cast<std::size_t>(port_)].damping -= a_;
-    return found;
+    return Candidate{found, alone};
   }
 
  private:
+  /// Whether the loop has a negative resistance at another frequency where its reactances cancel, and would grow there
+  /// more than half as fast, by the same estimate.
+  [[nodiscard]] bool grows_elsewhere(Index first, const WorstTerminations& found) const {
+    constexpr double kSame = 0.05, kHalf = 0.5;
+    Complex before;
+    for (std::size_t i = 0; i < scanned_.size(); ++i) {
+      const double omega = scanned_[i];
+      const Complex round =
+          driving_point(z_[i], first, impedance(found.at_port[static_cast<std::size_t>(1 - first)], omega)) +
+          impedance(found.at_port[static_cast<std::size_t>(first)], omega);
+      const bool crosses = i > 0 && (before.imag() < 0.0) != (round.imag() < 0.0) && before.real() < 0.0;
+      const bool elsewhere = std::abs(omega / found.frequency.value - 1.0) > kSame;
+      if (crosses && elsewhere) {
+        const double slope = (round.imag() - before.imag()) / (omega - scanned_[i - 1]);
+        if (-before.real() / std::abs(slope) > kHalf * found.growth) return true;
+      }
+      before = round;
+    }
+    return false;
+  }
+
   [[nodiscard]] Eigen::Matrix2cd z_at(double omega) const {
     Eigen::Matrix2cd z = immittance(teleoperator_.with_exact_delay(RadPerSec(omega), sample_time_), Form::z);
     z(port_, port_) -= a_;
@@ -80,6 +135,8 @@ class Search {
   double sample_time_;
   Index port_;
   double a_;
+  std::vector<double> scanned_;
+  std::vector<Eigen::Matrix2cd> z_;
 };
 
 }  // namespace
@@ -87,15 +144,16 @@ class Search {
 std::optional<WorstTerminations> worst_terminations(const Teleoperator& teleoperator,
                                                     std::span<const RadPerSec> frequencies, double sample_time,
                                                     Port port, double a) {
-  const Search search(teleoperator, sample_time, port, a);
-  std::optional<WorstTerminations> quickest;
+  if (frequencies.empty()) return std::nullopt;
+  const Search search(teleoperator, sample_time, port, a, frequencies);
+  std::optional<Candidate> best;
   for (const RadPerSec omega : frequencies) {
     for (const Index first : {0, 1}) {
       const auto found = search.at(omega.value, first);
-      if (found && (!quickest || per_turn(*found) > per_turn(*quickest))) quickest = found;
+      if (found && (!best || found->better_than(*best))) best = found;
     }
   }
-  return quickest;
+  return best ? std::optional(best->found) : std::nullopt;
 }
 
 std::vector<RadPerSec> violated_frequencies(const AbsoluteStability& stability, RadPerSec highest) {

@@ -192,8 +192,7 @@ struct TeleoperationRun {
 /// What `--simulate` adds to a design.
 struct TeleoperationSimulation {
   double sample_time = 0;  ///< [s]
-  /// Llewellyn's and the modified criterion with the controllers' sampling, on a grid up to a quarter of the Nyquist
-  /// frequency;
+  /// Llewellyn's and the modified criterion with the controllers' sampling, on a grid up to the Nyquist frequency;
   /// absent where they cannot be judged so, which a note explains, or without an operator.
   std::optional<AbsoluteStability> sampled, sampled_with_operator;
   FrequencyGrid grid;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,7 +58,7 @@ Teleoperator random_design(Architecture architecture, Random& random) {
   };
   for (const std::string robot : {"master", "slave"}) {
     set((robot + ".m").c_str(), random.uniform(0.3, 1.5));
-    set((robot + ".b").c_str(), log_uniform(random, 0.5, 15.0));
+    set((robot + ".b").c_str(), log_uniform(random, 1.0, 20.0));
     set((robot + ".d").c_str(), log_uniform(random, 5.0, 40.0));
     set((robot + ".k").c_str(), log_uniform(random, 20.0, 600.0));
     set((robot + ".local_force_gain").c_str(), random.uniform(0.0, 0.5));
@@ -191,7 +192,7 @@ Result<Case> perform(const Teleoperator& design, double a, Random& random) {
   if (!network) return tl::unexpected(network.error());
   const AbsoluteStability decided = teleop::llewellyn(*network);
   constexpr int kPoints = 1000;
-  const FrequencyGrid grid{RadPerSec(1e-2), laboratory::highest_shown(kTick), kPoints};
+  const FrequencyGrid grid{RadPerSec(1e-2), RadPerSec(std::numbers::pi / kTick), kPoints};
   const auto sampled = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kTick);
   if (!sampled) return tl::unexpected(sampled.error());
 
@@ -266,7 +267,7 @@ void add_rows(const Operator& who, const Cases& cases, ValidationTable& table) {
   constexpr double kSameFrequency = 5.0;  // [%]
   table.rows.push_back(at_most_row(start + "not stable, largest distance from the violated frequency", 100.0 * furthest,
                                    kSameFrequency, "%"));
-  table.rows.push_back(count_row(start + "not stable, nothing to construct below 125 Hz or too slow", unseen,
+  table.rows.push_back(count_row(start + "not stable, nothing to construct below 62.5 Hz or too slow", unseen,
                                  unstable.cases + unseen, {}));
   const Counted by_sampling = count(cases, [](const Case& one) { return one.stable && !one.stable_sampled; });
   table.rows.push_back(count_row(start + "stable but for the sampling, constructed terminations that grew",
@@ -393,7 +394,7 @@ Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
   table.notes.emplace_back(
       "Random designs of position–position, position–force, three and four channels, half of them with 1 to 20 ms of "
       "delay each way; robots of 0.3 to 1.5 kg; controllers at 1 kHz whose forces are held. Stable means: by the exact "
-      "criterion, with delays by Padé of order 2, and on a grid with the sampling and true delays up to 125 Hz.");
+      "criterion, with delays by Padé of order 2, and on a grid with the sampling and true delays up to 500 Hz.");
   table.notes.emplace_back(
       "Random terminations are masses, dampers and springs, each there or not, the operator's with −a of damping more. "
       "Constructed ones: mbk/teleop/worst_terminations.h; the hardest for a stable design are those that would grow if "
