@@ -94,6 +94,7 @@ struct Case {
   bool stable = false, stable_sampled = false;  ///< as the criterion says
   int simulated = 0, grew = 0;                  ///< random terminations of a stable one
   int hard = 0, grew_hard = 0;                  ///< the hardest of a stable one
+  int grew_sampled = 0;                         ///< of both, those that grow at 1 kHz only
   int late = 0, grew_late = 0;                  ///< the same over a line that loses packets
   std::optional<Shown> shown;                   ///< of one that is not
 };
@@ -139,14 +140,29 @@ std::array<Termination, 2> random_pair(Random& random, double a) {
   return pair;
 }
 
+/// Whether a stable design grows. What grows at 1 kHz and not at 8 kHz is the sampling's: a criterion on a grid up to
+/// the Nyquist frequency leaves out what is folded down from above it.
+Result<void> try_pair(const TeleoperationSetup& setup, const std::array<Termination, 2>& pair, int& grew,
+                      int& grew_sampled) {
+  auto verdict = simulated(setup, pair);
+  if (!verdict) return tl::unexpected(verdict.error());
+  if (!grows(*verdict)) return {};
+  constexpr double kFaster = 8.0;
+  TeleoperationSetup faster = setup;
+  faster.sample_time = setup.sample_time / kFaster;
+  faster.steps_per_tick = 1;
+  verdict = simulated(faster, pair);
+  if (!verdict) return tl::unexpected(verdict.error());
+  ++(grows(*verdict) ? grew : grew_sampled);
+  return {};
+}
+
 Result<void> try_stable(const TeleoperationSetup& setup, double a, Random& random, Case& result) {
   constexpr int kPairs = 3;
   for (int i = 0; i < kPairs; ++i) {
     const auto pair = random_pair(random, a);
-    const auto verdict = simulated(setup, pair);
-    if (!verdict) return tl::unexpected(verdict.error());
     ++result.simulated;
-    result.grew += grows(*verdict) ? 1 : 0;
+    if (auto ok = try_pair(setup, pair, result.grew, result.grew_sampled); !ok) return ok;
     TeleoperationSetup losing = setup;
     losing.line.loss = 0.1;
     losing.line.jitter = 5e-3;
@@ -158,11 +174,8 @@ Result<void> try_stable(const TeleoperationSetup& setup, double a, Random& rando
   const auto hard = hardest(setup.teleoperator, a);
   if (!hard) return tl::unexpected(hard.error());
   if (!*hard) return {};
-  const auto verdict = simulated(setup, **hard);
-  if (!verdict) return tl::unexpected(verdict.error());
   ++result.hard;
-  result.grew_hard += grows(*verdict) ? 1 : 0;
-  return {};
+  return try_pair(setup, **hard, result.grew_hard, result.grew_sampled);
 }
 
 Result<std::optional<Shown>> show(TeleoperationSetup setup, const AbsoluteStability& stability, double a) {
@@ -243,12 +256,13 @@ ValidationRow count_row(std::string what, int value, int of, std::optional<doubl
 }
 
 void add_rows(const Operator& who, const Cases& cases, ValidationTable& table) {
-  int simulated = 0, grew = 0, hard = 0, grew_hard = 0, late = 0, grew_late = 0, unseen = 0;
+  int simulated = 0, grew = 0, hard = 0, grew_hard = 0, grew_sampled = 0, late = 0, grew_late = 0, unseen = 0;
   for (const Case& one : cases) {
     simulated += one.simulated;
     grew += one.grew;
     hard += one.hard;
     grew_hard += one.grew_hard;
+    grew_sampled += one.grew_sampled;
     late += one.late;
     grew_late += one.grew_late;
     unseen += !one.stable && !one.shown ? 1 : 0;
@@ -256,6 +270,8 @@ void add_rows(const Operator& who, const Cases& cases, ValidationTable& table) {
   const std::string start = fmt::format("{}: ", who.name);
   table.rows.push_back(count_row(start + "stable, random terminations that grew", grew, simulated, 0.0));
   table.rows.push_back(count_row(start + "stable, hardest terminations that grew", grew_hard, hard, 0.0));
+  table.rows.push_back(
+      count_row(start + "stable, any of these that grew at 1 kHz and not at 8", grew_sampled, simulated + hard, {}));
   const Counted unstable = count(cases, [](const Case& one) { return !one.stable; });
   table.rows.push_back(count_row(start + "not stable, constructed terminations that did not grow",
                                  unstable.cases - unstable.grew, unstable.cases, 0.0));
@@ -399,7 +415,9 @@ Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
       "Random terminations are masses, dampers and springs, each there or not, the operator's with −a of damping more. "
       "Constructed ones: mbk/teleop/worst_terminations.h; the hardest for a stable design are those that would grow if "
       "the "
-      "operator lacked 0.2 N·s/m more than the design bears. It grows where the speed of the last quarter of the time "
+      "operator lacked 0.2 N·s/m more than the design bears. What grows at 1 kHz and not at 8 is not held against a "
+      "criterion: what sampling folds down from above 500 Hz is in none of them. It grows where the speed of the last "
+      "quarter of the time "
       "is "
       "twice that of the second.");
   table.notes.emplace_back(
