@@ -45,7 +45,8 @@ inline constexpr double kFurthest = 10.0;  ///< [m]
                                                    participant::OneAxisLoad& environment);
 
 /// Whether a motion dies out, by its own numbers: root mean square speed of both robots in the last quarter of the time
-/// over that in the second. Below 1/2 it dies out, above 2, or where it ran away, it grows.
+/// over that in the second. Below 1/2 it dies out, above 2, or where it ran away, it grows. A quarter of the time must
+/// hold several turns of the slowest swing, or that is taken for growth.
 struct MotionVerdict {
   MotionOutcome outcome = MotionOutcome::bounded;
   double ratio = 0.0;

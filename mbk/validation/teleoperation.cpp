@@ -114,10 +114,10 @@ bool grows(const laboratory::MotionVerdict& verdict) {
 
 /// What would grow if the operator lacked a little more than the design bears, with an operator who lacks a: the
 /// hardest that a stable design can meet. None where no termination at all is too much.
-Result<std::optional<std::array<Termination, 2>>> hardest(const Teleoperator& design, double a) {
+Result<std::optional<WorstTerminations>> hardest(const Teleoperator& design, double a) {
   constexpr double kMore = 0.2;  // [N·s/m]
   constexpr int kPoints = 500;
-  const FrequencyGrid grid{RadPerSec(1e-2), laboratory::highest_shown(kTick), kPoints};
+  const FrequencyGrid grid{RadPerSec(1.0), laboratory::highest_shown(kTick), kPoints};
   const auto largest = teleop::largest_shortage_on_grid(design, grid, kOperator);
   if (!largest) return tl::unexpected(largest.error());
   const double beyond = std::max(a, largest->value()) + kMore;
@@ -125,12 +125,10 @@ Result<std::optional<std::array<Termination, 2>>> hardest(const Teleoperator& de
   if (!exact) return std::nullopt;
   const auto too_much = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kTick);
   if (!too_much) return tl::unexpected(too_much.error());
-  const auto worst = teleop::worst_terminations(
+  auto worst = teleop::worst_terminations(
       design, teleop::violated_frequencies(*too_much, laboratory::highest_shown(kTick)), kTick, kOperator, beyond);
-  if (!worst) return std::nullopt;
-  std::array<Termination, 2> pair = worst->at_port;
-  pair[0].damping += beyond - a;
-  return std::optional(pair);
+  if (worst) worst->at_port[0].damping += beyond - a;
+  return worst;
 }
 
 /// Two random terminations, the operator's with −a more damping.
@@ -175,7 +173,11 @@ Result<void> try_stable(const TeleoperationSetup& setup, double a, Random& rando
   if (!hard) return tl::unexpected(hard.error());
   if (!*hard) return {};
   ++result.hard;
-  return try_pair(setup, **hard, result.grew_hard, result.grew_sampled);
+  // a quarter of the time must hold several of its turns
+  constexpr double kTurns = 20.0;
+  TeleoperationSetup longer = setup;
+  longer.duration = std::max(setup.duration, kTurns * 2.0 * std::numbers::pi / (*hard)->frequency.value);
+  return try_pair(longer, (*hard)->at_port, result.grew_hard, result.grew_sampled);
 }
 
 Result<std::optional<Shown>> show(TeleoperationSetup setup, const AbsoluteStability& stability, double a) {
