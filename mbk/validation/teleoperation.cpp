@@ -18,6 +18,7 @@
 #include "mbk/lti/rational.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/numeric/random.h"
+#include "mbk/participant/one_axis_load.h"
 #include "mbk/teleop/llewellyn.h"
 #include "mbk/teleop/sampled.h"
 #include "mbk/teleop/worst_terminations.h"

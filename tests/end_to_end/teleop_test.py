@@ -171,10 +171,11 @@ class Teleop(Case):
 
     def test_a_lossy_line_loses_what_it_should(self):
         extra = "[simulation]\nduration_s = 5\nloss_percent = 20\njitter_ms = 4\nseed = 3\n"
-        (run,) = self.fine("teleop", self.moving(extra, k_s=200), "--simulate", "--json").json["simulation"]["runs"]
+        asked = ("teleop", self.moving(extra, k_s=200), "--simulate", "--quiet", "--json")
+        (run,) = self.fine(*asked).json["simulation"]["runs"]
         self.assertEqual(run["packets"], 10000)
         self.assertAlmostEqual(run["packets_lost"], 2000, delta=160)  # four standard deviations
-        again = self.fine("teleop", self.moving(extra, k_s=200), "--simulate", "--json").json["simulation"]["runs"]
+        again = self.fine(*asked).json["simulation"]["runs"]
         self.assertEqual(again, [run])
 
     def test_what_cannot_be_simulated_is_refused(self):
