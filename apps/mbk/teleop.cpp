@@ -1,10 +1,16 @@
-#include <array>
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/progress.h"
+#include "mbk/laboratory/teleoperation.h"
 #include "mbk/report/chart.h"
 #include "mbk/report/teleoperation_text.h"
 #include "mbk/result/teleoperation_json.h"
@@ -16,16 +22,34 @@ namespace {
 struct Arguments {
   std::filesystem::path design;
   std::filesystem::path operator_result;
-  std::string parameter;
+  std::string parameter, excess;
   std::filesystem::path charts;
-  bool json = false;
+  bool json = false, simulate = false, quiet = false;
   Output output;
 };
 
-constexpr std::array kChartNames = {"r11", "r22", "third"};
+/// The last part of the names of the files that --charts writes.
+std::vector<std::string> chart_names(const Arguments& arguments) {
+  std::vector<std::string> names = {"r11", "r22", "third"};
+  if (!arguments.excess.empty()) names.emplace_back("excess");
+  if (arguments.simulate) {
+    for (int run = 1; run <= laboratory::kMostRuns; ++run) names.push_back(fmt::format("simulated-{}", run));
+  }
+  return names;
+}
 
-std::filesystem::path chart_file(const Arguments& arguments, std::size_t chart) {
-  return arguments.charts.string() + "_" + kChartNames[chart] + ".svg";
+std::filesystem::path chart_file(const Arguments& arguments, const std::string& name) {
+  return arguments.charts.string() + "_" + name + ".svg";
+}
+
+/// In the order of their names; the last ones may be missing.
+std::vector<Chart> charts_of(const TeleoperationFinding& finding) {
+  std::vector<Chart> charts = finding.charts;
+  if (finding.excess) charts.push_back(finding.excess->chart);
+  if (finding.simulation) {
+    for (const TeleoperationRun& run : finding.simulation->runs) charts.push_back(run.positions);
+  }
+  return charts;
 }
 
 Result<void> check(const Arguments& arguments) {
@@ -36,8 +60,8 @@ Result<void> check(const Arguments& arguments) {
   }
   if (auto ok = arguments.output.check(inputs); !ok) return ok;
   if (arguments.charts.empty()) return {};
-  for (std::size_t i = 0; i < kChartNames.size(); ++i) {
-    if (auto ok = check_new_file(chart_file(arguments, i), "--charts", arguments.output.overwrite, inputs); !ok)
+  for (const std::string& name : chart_names(arguments)) {
+    if (auto ok = check_new_file(chart_file(arguments, name), "--charts", arguments.output.overwrite, inputs); !ok)
       return ok;
   }
   return {};
@@ -50,6 +74,11 @@ Result<TeleoperationFinding> find(const Arguments& arguments) {
     if (!sweep) return tl::unexpected(sweep.error());
     question.sweep = std::move(*sweep);
   }
+  if (!arguments.excess.empty()) {
+    const auto excess = teleop::parse_excess(arguments.excess);
+    if (!excess) return tl::unexpected(excess.error());
+    question.excess = *excess;
+  }
   if (!arguments.operator_result.empty()) {
     const auto text = read_text(arguments.operator_result);
     if (!text) return tl::unexpected(text.error());
@@ -60,20 +89,31 @@ Result<TeleoperationFinding> find(const Arguments& arguments) {
   }
   const auto design = teleop::read_design(arguments.design);
   if (!design) return tl::unexpected(design.error());
-  return teleop::judge(*design, question);
+  Progress progress(arguments.quiet, "teleop: ");
+  question.progress = [&](int done, int of) { progress.count(done, of); };
+  auto finding = teleop::judge(*design, question);
+  if (!finding || !arguments.simulate) return finding;
+  const std::optional<double> a =
+      finding->operator_shortage ? std::optional(finding->operator_shortage->a) : std::nullopt;
+  auto simulation = laboratory::simulate(*design, a, [&](double fraction) { progress.reached(fraction); });
+  if (!simulation) return tl::unexpected(simulation.error());
+  finding->simulation = std::move(*simulation);
+  return finding;
 }
 
 int run(const Arguments& arguments) {
   if (auto ok = check(arguments); !ok) return report_error(ok.error());
   const auto finding = find(arguments);
   if (!finding) return report_error(finding.error());
+  const std::vector<Chart> charts = charts_of(*finding);
   std::string shown = arguments.json ? result::to_json(*finding) : report::teleoperation_text(*finding);
   if (!arguments.json) {
-    for (const Chart& chart : finding->charts) shown += "\n" + report::chart_text(chart);
+    for (const Chart& chart : charts) shown += "\n" + report::chart_text(chart);
   }
-  for (std::size_t i = 0; i < finding->charts.size() && !arguments.charts.empty(); ++i) {
-    const Output file{chart_file(arguments, i), arguments.output.overwrite};
-    if (auto ok = file.write(report::chart_svg(finding->charts[i])); !ok) return report_error(ok.error());
+  const std::vector<std::string> names = chart_names(arguments);
+  for (std::size_t i = 0; i < charts.size() && !arguments.charts.empty(); ++i) {
+    const Output file{chart_file(arguments, names[i]), arguments.output.overwrite};
+    if (auto ok = file.write(report::chart_svg(charts[i])); !ok) return report_error(ok.error());
   }
   if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
   return kFine;
@@ -91,7 +131,11 @@ Action add_teleop(CLI::App& app) {
       "  mbk teleop design.toml --operator result.json\n"
       "      the modified criterion, with the excess of passivity that 'mbk measure --json' found\n"
       "  mbk teleop design.toml --parameter slave.k=0:1000\n"
-      "      every value of the slave's stiffness in N/m that is stable, as intervals\n\n"
+      "      every value of the slave's stiffness in N/m that is stable, as intervals\n"
+      "  mbk teleop design.toml --parameter slave.k=0:1000 --excess 0:10 --operator result.json\n"
+      "      those values against the operator's excess of passivity, with the one that was measured\n"
+      "  mbk teleop design.toml --simulate\n"
+      "      both arms over the line in time, and the worst hand and environment where one is unstable\n\n"
       "Complete designs stand in examples/teleop; docs/guide/teleoperation.md has every key.");
   command->add_option("DESIGN.toml", arguments->design, "an [architecture] or a [two_port]")->required();
   command
@@ -104,10 +148,19 @@ Action add_teleop(CLI::App& app) {
                    "find all values of one parameter, in SI units, that are stable, as in slave.k=0:1000")
       ->type_name("NAME=LOW:HIGH")
       ->check(not_empty());
-  command->add_option("--charts", arguments->charts, "also write the charts: PREFIX_r11.svg, _r22.svg, _third.svg")
+  command
+      ->add_option("--excess", arguments->excess,
+                   "find them for operators with these excesses of passivity in N·s/m, as in 0:10 or 0:10:21")
+      ->type_name("LOW:HIGH[:STEPS]")
+      ->check(not_empty());
+  command->add_flag("--simulate", arguments->simulate, "run the design in time, with the arms of its [simulation]");
+  command
+      ->add_option("--charts", arguments->charts,
+                   "also write the charts: PREFIX_r11.svg, _r22.svg, _third.svg, _excess.svg, _simulated-1.svg, …")
       ->type_name("PREFIX")
       ->check(not_empty());
   command->add_flag("--json", arguments->json, "for machines: schema mbk.teleop/1");
+  command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
   arguments->output.add_options(*command);
   CLI::Option* const overwrite = command->get_option("--overwrite");
   overwrite->remove_needs(command->get_option("--out"));

@@ -37,9 +37,13 @@ double OneAxisLoop::reaction(double acceleration) const {
   return -(load.inertia * acceleration + load.bias);
 }
 
+OneAxisLoop::Reading OneAxisLoop::read() const {
+  const double acceleration = change(state_).acceleration;
+  return {state_.position, state_.velocity, acceleration, reaction(acceleration)};
+}
+
 const OneAxisTrueState& OneAxisLoop::hold(double motor, double sample_time) {
-  const double acceleration_before = change(state_).acceleration;
-  const double reaction_before = reaction(acceleration_before);
+  const Reading before = read();
   load_->tick(time_, sample_time, state_, seen_.reaction);
   motor_ = motor;
   sample_time_ = sample_time;
@@ -47,8 +51,8 @@ const OneAxisTrueState& OneAxisLoop::hold(double motor, double sample_time) {
   seen_.time = time_;
   seen_.position = state_.position;
   seen_.velocity = state_.velocity;
-  seen_.acceleration = 0.5 * (acceleration_before + acceleration_after);
-  seen_.reaction = 0.5 * (reaction_before + reaction(acceleration_after));
+  seen_.acceleration = 0.5 * (before.acceleration + acceleration_after);
+  seen_.reaction = 0.5 * (before.reaction + reaction(acceleration_after));
   seen_.motor = motor;
   return seen_;
 }

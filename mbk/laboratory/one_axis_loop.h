@@ -44,6 +44,13 @@ class OneAxisLoop {
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] double position() const { return state_.position; }
 
+  /// What perfect sensors read at this instant, before a controller decides: with the motor as it is still held.
+  struct Reading {
+    double position = 0.0, velocity = 0.0, acceleration = 0.0;
+    double reaction = 0.0;  ///< what the limb exerts on the machine [N·m or N]
+  };
+  [[nodiscard]] Reading read() const;
+
   /// Begins a tick of length T [s]. Acceleration and reaction, which jump with the motor, are the means of before and
   /// after, as in ClosedLoop::hold.
   const OneAxisTrueState& hold(double motor, double sample_time);

@@ -122,6 +122,77 @@ std::string shortage_text(const LargestShortage& largest, bool on_grid) {
   return fmt::format("port {}: a ≤ {:.12g} N·s/m{}", largest.port, largest.value(), on_grid ? ", on the grid" : "");
 }
 
+std::string run_text(const TeleoperationRun& run) {
+  std::string result = fmt::format("\n  {}\n", run.what);
+  result += paragraph("    hand         ", run.hand);
+  result += paragraph("    environment  ", run.environment);
+  if (run.worst) {
+    result += paragraph("    expected     ",
+                        fmt::format("grows at {:.5g} rad/s ({}), by e in {:.3g} s", run.worst->frequency.value,
+                                    in_hz(run.worst->frequency), 1.0 / run.worst->growth));
+  }
+  const char* const outcome = run.outcome == MotionOutcome::grows      ? "GROWS"
+                              : run.outcome == MotionOutcome::dies_out ? "dies out"
+                                                                       : "stays bounded";
+  std::string seen = fmt::format("{}: speed in the last quarter {:.3g} times that in the second", outcome, run.ratio);
+  if (run.frequency.value > 0.0) seen += fmt::format(", at {:.5g} rad/s", run.frequency.value);
+  seen += run.ran_away ? fmt::format("; ran away after {:.3g} s", run.duration)
+                       : fmt::format("; {:.3g} s, no further than {:.3g} mm", run.duration, 1e3 * run.largest_position);
+  result += paragraph("    simulated    ", seen);
+  if (run.lost > 0) {
+    result += paragraph("    line         ", fmt::format("{} of {} packets lost", run.lost, run.sent));
+  }
+  if (run.lowest_energy) {
+    result += paragraph("    controller   ", fmt::format("the teleoperator's energy at the master fell to {:.4g} J at "
+                                                         "lowest",
+                                                         *run.lowest_energy));
+  }
+  return result;
+}
+
+std::string simulation_text(const TeleoperationSimulation& simulation, const TeleoperationFinding& finding) {
+  std::string result =
+      fmt::format("\nIn time, with controllers of {:g} Hz whose forces are held:\n", 1.0 / simulation.sample_time);
+  const auto predicted = [&](const char* who, const AbsoluteStability& designed,
+                             const std::optional<AbsoluteStability>& sampled) {
+    if (!sampled) return;
+    result +=
+        paragraph("  predicted  ", fmt::format("{}: {} as designed; {} with sampling, on {} points up to {:.4g} rad/s",
+                                               who, verdict_line(designed, ""), verdict_line(*sampled, ""),
+                                               simulation.grid.points, simulation.grid.high.value));
+  };
+  predicted("passive hand", finding.stability, simulation.sampled);
+  if (finding.with_operator) predicted("that operator", *finding.with_operator, simulation.sampled_with_operator);
+  for (const TeleoperationRun& run : simulation.runs) result += run_text(run);
+  if (!simulation.notes.empty()) result += "\n";
+  for (const std::string& note : simulation.notes) result += paragraph("  note  ", note);
+  return result;
+}
+
+std::string excess_text(const ExcessSweep& sweep) {
+  const std::string unit = sweep.unit.empty() ? "" : " [" + sweep.unit + "]";
+  std::vector<std::vector<std::string>> rows = {
+      {"excess [N·s/m]", "stable " + sweep.parameter + unit, "felt free [N·s/m]", "felt clamped [N/m]"}};
+  for (const ExcessStep& step : sweep.steps) {
+    std::vector<std::string> intervals;
+    for (const AdmissibleInterval& interval : step.set.intervals) {
+      intervals.push_back(interval.low.value == interval.high.value
+                              ? fmt::format("{:.6g}", interval.low.value)
+                              : fmt::format("{:.6g} to {:.6g}{}", interval.low.value, interval.high.value,
+                                            interval.high.limit_of_search ? " (end of range)" : ""));
+    }
+    rows.push_back({fmt::format("{:g}", step.excess),
+                    intervals.empty() ? "none" : fmt::format("{}", fmt::join(intervals, "; ")),
+                    step.felt ? fmt::format("{:.4g}", step.felt->free) : "",
+                    step.felt ? fmt::format("{:.4g}", step.felt->clamped) : ""});
+  }
+  return fmt::format("\nWhat an excess of passivity of the operator buys:\n{}", table(rows)) +
+         paragraph("  ", fmt::format("felt: by the hand at {:.4g} rad/s ({}) with the largest stable value, |Z| with "
+                                     "nothing at port 2 (transparent: 0) and |ω Z| with port 2 held fast (transparent: "
+                                     "infinite)",
+                                     sweep.frequency.value, in_hz(sweep.frequency)));
+}
+
 }  // namespace
 
 std::string teleoperation_text(const TeleoperationFinding& finding) {
@@ -157,6 +228,8 @@ std::string teleoperation_text(const TeleoperationFinding& finding) {
   }
   result += paragraph("  ", "a < 0 means that it must have that much excess (Re z ≥ −a at every frequency)");
   if (finding.admissible) result += admissible_text(*finding.admissible, finding.with_operator.has_value());
+  if (finding.excess) result += excess_text(*finding.excess);
+  if (finding.simulation) result += simulation_text(*finding.simulation, finding);
   if (!finding.notes.empty()) result += "\n";
   for (const std::string& note : finding.notes) result += paragraph("  note  ", note);
   return result;

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "mbk/result/json_reading.h"
+#include "mbk/trial/identification.h"
 
 namespace mbk::result {
 namespace {
@@ -66,6 +67,60 @@ Json chart_json(const Chart& chart) {
   return {{"name", chart.series.front().name}, {"frequency", std::move(x)}, {"value", std::move(y)}};
 }
 
+Json termination_json(const Termination& termination) {
+  return {{"mass", number(termination.mass)},
+          {"damping", number(termination.damping)},
+          {"stiffness", number(termination.stiffness)}};
+}
+
+Json run_json(const TeleoperationRun& run) {
+  Json json = {{"what", run.what},
+               {"hand", run.hand},
+               {"environment", run.environment},
+               {"outcome", text(run.outcome)},
+               {"ratio", number(run.ratio)},
+               {"frequency", number(run.frequency.value)},
+               {"duration", number(run.duration)},
+               {"ran_away", run.ran_away},
+               {"largest_position", number(run.largest_position)},
+               {"packets", run.sent},
+               {"packets_lost", run.lost}};
+  if (run.lowest_energy) json["lowest_energy"] = number(*run.lowest_energy);
+  if (run.worst) {
+    json["expected"] = {{"frequency", number(run.worst->frequency.value)},
+                        {"growth", number(run.worst->growth)},
+                        {"hand", termination_json(run.worst->at_port[0])},
+                        {"environment", termination_json(run.worst->at_port[1])}};
+  }
+  return json;
+}
+
+Json simulation_json(const TeleoperationSimulation& simulation) {
+  Json json = {
+      {"sample_time", number(simulation.sample_time)},
+      {"grid",
+       {{"from", simulation.grid.low.value}, {"to", simulation.grid.high.value}, {"points", simulation.grid.points}}},
+      {"runs", Json::array()},
+      {"notes", simulation.notes}};
+  if (simulation.sampled) json["llewellyn"] = stability_json(*simulation.sampled);
+  if (simulation.sampled_with_operator) json["modified_llewellyn"] = stability_json(*simulation.sampled_with_operator);
+  for (const TeleoperationRun& run : simulation.runs) json["runs"].push_back(run_json(run));
+  return json;
+}
+
+Json excess_json(const ExcessSweep& sweep) {
+  Json json = {{"parameter", sweep.parameter},
+               {"unit", sweep.unit},
+               {"frequency", number(sweep.frequency.value)},
+               {"steps", Json::array()}};
+  for (const ExcessStep& step : sweep.steps) {
+    Json one = {{"excess", number(step.excess)}, {"admissible", admissible_json(step.set)}};
+    if (step.felt) one["felt"] = {{"free", number(step.felt->free)}, {"clamped", number(step.felt->clamped)}};
+    json["steps"].push_back(std::move(one));
+  }
+  return json;
+}
+
 /// A list with two numbers at that place, or none.
 std::optional<std::pair<double, double>> pair_at(const Json& json, const char* place) {
   const Json::json_pointer at(place);
@@ -73,6 +128,16 @@ std::optional<std::pair<double, double>> pair_at(const Json& json, const char* p
   const Json& found = json[at];
   if (!found.is_array() || found.size() != 2 || !found[0].is_number() || !found[1].is_number()) return std::nullopt;
   return std::pair(found[0].get<double>(), found[1].get<double>());
+}
+
+/// Whether a result or what decides its passivity has a unit of rotation.
+bool is_of_rotation(const Json& json) {
+  const std::string rotation = units_of(Motion::rotation).damping;
+  const Json::json_pointer damping("/units/B"), conditions("/passivity/models/0/conditions");
+  if (json.contains(damping)) return json[damping] == rotation;
+  if (!json.contains(conditions) || !json[conditions].is_array()) return false;
+  return std::ranges::any_of(json[conditions],
+                             [&](const Json& one) { return one.is_object() && one.value("unit", Json()) == rotation; });
 }
 
 }  // namespace
@@ -106,6 +171,8 @@ std::string to_json(const TeleoperationFinding& finding) {
     json["largest_a"].push_back(std::move(one));
   }
   if (finding.admissible) json["admissible"] = admissible_json(*finding.admissible);
+  if (finding.excess) json["excess"] = excess_json(*finding.excess);
+  if (finding.simulation) json["simulation"] = simulation_json(*finding.simulation);
   json["curves"] = Json::array();
   for (const Chart& chart : finding.charts) json["curves"].push_back(chart_json(chart));
   json["notes"] = finding.notes;
@@ -130,12 +197,17 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
   if (!has_schema(json, "mbk.result/1") && !has_schema(json, "mbk.passivity/1")) {
     return bad_data("no result of mbk: its schema is neither mbk.result/1 nor mbk.passivity/1", remedy);
   }
+  if (is_of_rotation(json)) {
+    return bad_data("it is of a joint that turns: its excess of passivity is in N·m·s/rad, and a design is in N·s/m",
+                    "give the result of an arm that was moved along a line or in a plane");
+  }
   if (const auto excess = pair_at(json, "/passivity/eop/interval95")) {
     return OperatorShortage{
         0.0 - excess->first,
         fmt::format("minus the lower end of the 95 % interval of the excess of passivity, {:.4g} to "
                     "{:.4g} N·s/m",
-                    excess->first, excess->second)};
+                    excess->first, excess->second),
+        excess};
   }
   const auto index = pair_at(json, "/passivity/models/0/min_index_interval95");
   const auto band = pair_at(json, "/passivity/models/0/band_hz");
@@ -148,7 +220,8 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
       fmt::format(
           "minus the lower end of the 95 % interval of the smallest passivity index, {:.4g} to {:.4g} N·s/m, over "
           "{:.3g} to {:.3g} Hz only: the model has no excess over all frequencies",
-          index->first, index->second, band->first, band->second)};
+          index->first, index->second, band->first, band->second),
+      index};
 }
 
 }  // namespace mbk::result

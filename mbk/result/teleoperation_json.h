@@ -15,7 +15,8 @@ namespace mbk::result {
 /// λ_min(B_s), which holds at every frequency; or, where the model has no such excess, of the smallest index over the
 /// band in which it was judged.
 /// @param text  schema mbk.result/1 or mbk.passivity/1, or the list of either with one entry
-/// @fails  data: not JSON (the byte is named); another schema; several results; no interval of either kind.
+/// @fails  data: not JSON (the byte is named); another schema; several results; no interval of either kind; a joint
+/// that turns, whose excess is in N·m·s/rad.
 [[nodiscard]] Result<OperatorShortage> operator_shortage_from_json(std::string_view text);
 
 }  // namespace mbk::result

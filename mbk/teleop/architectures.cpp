@@ -161,16 +161,26 @@ PortEquations Teleoperator::equations(std::string_view parameter) const {
   return result;
 }
 
-Eigen::Matrix<std::complex<double>, 2, 4> Teleoperator::with_exact_delay(RadPerSec frequency) const {
+Eigen::Matrix<std::complex<double>, 2, 4> Teleoperator::with_exact_delay(RadPerSec frequency,
+                                                                         double sample_time) const {
   const PortEquations at_once = without_delay();
+  Teleoperator robots;  // without controllers
+  for (const char* name : {"master.m", "master.b", "slave.m", "slave.b"}) {
+    if (const auto found = values.find(name); found != values.end()) robots.values.insert(*found);
+  }
+  const PortEquations alone = robots.without_delay();
   const std::complex<double> s(0.0, frequency.value);
+  const std::complex<double> hold =
+      sample_time > 0.0 ? (1.0 - std::exp(-s * sample_time)) / (s * sample_time) : std::complex<double>(1.0);
   Eigen::Matrix<std::complex<double>, 2, 4> result;
   for (const std::size_t i : {0, 1}) {
     const auto found = values.find(kDelays[i]);
     const double T = found == values.end() ? 0.0 : lti::to_double(found->second);
     for (std::size_t j = 0; j < 4; ++j) {
-      const std::complex<double> value = lti::evaluate(at_once.rows[i][j].at(0), s);
-      result(static_cast<Index>(i), static_cast<Index>(j)) = kSent[i][j] ? value * std::exp(-s * T) : value;
+      const std::complex<double> own = lti::evaluate(alone.rows[i][j].at(0), s);
+      const std::complex<double> commanded = lti::evaluate(at_once.rows[i][j].at(0), s) - own;
+      result(static_cast<Index>(i), static_cast<Index>(j)) =
+          own + hold * (kSent[i][j] ? commanded * std::exp(-s * T) : commanded);
     }
   }
   return result;

@@ -75,8 +75,13 @@ struct Teleoperator {
   /// The same with D = 1.
   [[nodiscard]] PortEquations without_delay(std::string_view parameter = {}) const;
 
-  /// [V₁ V₂ I₁ I₂] of both equations at s = jω, with D = e^(−jωT) as it is.
-  [[nodiscard]] Eigen::Matrix<std::complex<double>, 2, 4> with_exact_delay(RadPerSec frequency) const;
+  /// [V₁ V₂ I₁ I₂] of both equations at s = jω, with D = e^(−jωT) as it is. With a sample time, what the motors do is
+  /// besides held from sample to sample: everything but V₁ = Z_m I₁ and V₂ = Z_s I₂ of the robots themselves times
+  ///   H(s) = (1 − e^(−s T_s))/(s T_s)
+  /// which for ω well below π/T_s is half a sample of delay. What sampling folds down from above π/T_s is left out.
+  /// @param sample_time  T_s [s] ≥ 0
+  [[nodiscard]] Eigen::Matrix<std::complex<double>, 2, 4> with_exact_delay(RadPerSec frequency,
+                                                                           double sample_time = 0.0) const;
 };
 
 }  // namespace mbk::teleop

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -100,6 +101,39 @@ std::optional<FrequencyGrid> read_delay(const Section& section, Teleoperator& te
   return grid;
 }
 
+SimulatedArm read_arm(const Section& section) {
+  using enum SimulatedArm::Kind;
+  SimulatedArm arm;
+  arm.kind = section.choice("kind", {{"relaxed", relaxed}, {"rigid", rigid}, {"impedance", impedance}}, arm.kind);
+  if (arm.kind == impedance) {
+    arm.impedance.mass = section.number("mass_kg", 0.0, config::at_least(0.0));
+    arm.impedance.damping = section.number("damping_N_s_per_m", 0.0);
+    arm.impedance.stiffness = section.number("stiffness_N_per_m", 0.0, config::at_least(0.0));
+    return arm;
+  }
+  constexpr int kParticipants = 6;
+  arm.participant = section.integer("participant", arm.participant, 1, kParticipants);
+  arm.direction = section.number("direction_deg", arm.direction);
+  return arm;
+}
+
+SimulationPlan read_simulation(const Section& section) {
+  SimulationPlan plan;
+  constexpr double kShortest = 0.1, kLongest = 3600.0, kSlowest = 50.0, kFastest = 20'000.0;
+  constexpr double kLongestJitter = 10'000.0, kAll = 100.0;  // ms, %
+  plan.duration = section.number("duration_s", plan.duration, config::between(kShortest, kLongest));
+  plan.sample_time = 1.0 / section.number("rate_hz", 1.0 / plan.sample_time, config::between(kSlowest, kFastest));
+  plan.kick = section.number("kick_Ns", plan.kick);
+  plan.jitter = section.number("jitter_ms", plan.jitter, config::between(0.0, kLongestJitter));
+  plan.loss = section.number("loss_percent", plan.loss, config::between(0.0, kAll));
+  plan.zero_on_loss = section.choice("on_loss", {{"hold", false}, {"zero", true}}, plan.zero_on_loss);
+  plan.seed = section.integer<std::uint64_t>("seed", plan.seed, 0, std::numeric_limits<std::int64_t>::max());
+  plan.passivity_controller = section.optional_number("passivity_controller_N_s_per_m", config::above(0.0));
+  plan.therapist = read_arm(section.section("therapist"));
+  plan.patient = read_arm(section.section("patient"));
+  return plan;
+}
+
 Result<Design> design_of(const Document& document, std::string_view file) {
   const Section root = document.root();
   Design design;
@@ -123,6 +157,7 @@ Result<Design> design_of(const Document& document, std::string_view file) {
   const Section terminated = root.section("operator");
   design.operator_port = terminated.integer("port", 1, 1, 2) == 1 ? Port::one : Port::two;
   if (const auto a = terminated.optional_number("shortage_N_s_per_m")) design.shortage = fraction(*a);
+  if (design.is_architecture()) design.simulation = read_simulation(root.section("simulation"));
   if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
   return design;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +12,32 @@
 
 namespace mbk::teleop {
 
+/// An arm that holds a port in a simulation.
+struct SimulatedArm {
+  enum class Kind {
+    relaxed,    ///< of one of the six participants of Dyck (2013), table 3.3
+    rigid,      ///< the same arm that holds its place at will
+    impedance,  ///< a mass, a damper and a spring
+  };
+  Kind kind = Kind::relaxed;
+  int participant = 1;                    ///< 1 to 6, of a relaxed or rigid arm
+  double direction = 1.5707963267948966;  ///< of the line on which it moves, from +x [rad]
+  Termination impedance;
+};
+
+/// What `--simulate` runs in time, where the design says so. Delays are those of the design.
+struct SimulationPlan {
+  double duration = 20.0;                      ///< [s]
+  double sample_time = 1e-3;                   ///< of the controllers [s]
+  double kick = 0.5;                           ///< impulse on the master that sets the motion off [N·s]
+  double jitter = 0.0;                         ///< of each packet [s]
+  double loss = 0.0;                           ///< share of the packets, 0 to 1
+  bool zero_on_loss = false;                   ///< zeros where no packet came, instead of the last one
+  std::uint64_t seed = 1;                      ///< of losses and of what arms do at random
+  std::optional<double> passivity_controller;  ///< largest damping at the master [N·s/m]
+  SimulatedArm therapist, patient;             ///< at the master and at the slave
+};
+
 /// What a design file says: docs/guide/teleoperation.md has every key.
 struct Design {
   std::string file, name;
@@ -18,6 +45,9 @@ struct Design {
   std::optional<FrequencyGrid> exact_delay;  ///< delays as they are, on this grid; none: by Padé, exactly
   Port operator_port = Port::one;
   std::optional<Rational> shortage;  ///< a of the termination at that port [N·s/m]
+  SimulationPlan simulation;
+
+  [[nodiscard]] bool is_architecture() const { return std::holds_alternative<Teleoperator>(network); }
 
   /// @param parameter  of a teleoperator, to stay a variable; empty: none
   [[nodiscard]] PortEquations equations(std::string_view parameter = {}) const;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mbk/lti/half_planes.h"
+#include "mbk/lti/on_axis.h"
 #include "mbk/teleop/admissible.h"
 #include "mbk/teleop/llewellyn.h"
 #include "mbk/teleop/sampled.h"
@@ -172,6 +173,74 @@ Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, 
   return set;
 }
 
+/// One cycle per second, within what a hand does.
+constexpr RadPerSec kFelt{Hertz(1.0)};
+
+/// With nothing at port 2 the hand feels Z = z₁₁ − z₁₂ z₂₁/z₂₂ = h₁₁ + …, with V₂ = 0; with port 2 held fast, z₁₁.
+ExcessStep::Felt felt(const PortEquations& equations, const Rational& k) {
+  const std::complex<double> s(0.0, kFelt.value);
+  Eigen::Matrix<std::complex<double>, 2, 4> values;
+  for (const std::size_t i : {0, 1}) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      values(static_cast<Index>(i), static_cast<Index>(j)) = lti::evaluate(equations.rows[i][j].at(k), s);
+    }
+  }
+  const Eigen::Matrix2cd z = immittance(values, Form::z), y = immittance(values, Form::y);
+  return {std::abs(1.0 / y(0, 0)), kFelt.value * std::abs(z(0, 0))};
+}
+
+Result<ExcessSweep> sweep_excess(const Design& design, const Question::Sweep& asked, const Question::Excess& excess,
+                                 const std::function<void(int, int)>& progress) {
+  ExcessSweep result;
+  result.frequency = kFelt;
+  for (int i = 0; i < excess.steps; ++i) {
+    const Rational delta = excess.low + (excess.high - excess.low) * Rational(i, excess.steps - 1);
+    auto set = sweep(design, asked, -delta);
+    if (!set) return tl::unexpected(set.error());
+    result.parameter = set->parameter;
+    result.unit = set->unit;
+    ExcessStep step{lti::to_double(delta), std::move(*set), {}};
+    if (!step.set.intervals.empty()) {
+      const auto largest = lti::exact(step.set.intervals.back().high.value);
+      if (largest) step.felt = felt(design.equations(asked.parameter), *largest);
+    }
+    result.steps.push_back(std::move(step));
+    if (progress) progress(i + 1, excess.steps);
+  }
+  return result;
+}
+
+/// The least and the largest admissible value against the excess, with the measured one.
+Chart excess_chart(const ExcessSweep& sweep, const std::optional<OperatorShortage>& shortage) {
+  ChartSeries least{"least stable", {}, {}, {}, ChartSeries::Drawn::line}, largest = least;
+  largest.name = "largest stable";
+  for (const ExcessStep& step : sweep.steps) {
+    if (step.set.intervals.empty()) continue;
+    least.x.push_back(step.excess);
+    least.y.push_back(step.set.intervals.front().low.value);
+    largest.x.push_back(step.excess);
+    largest.y.push_back(step.set.intervals.back().high.value);
+  }
+  Chart chart;
+  chart.title = "What an excess of passivity buys: stable values of " + sweep.parameter;
+  chart.x = {"excess of passivity of the operator", "N·s/m"};
+  chart.y = {sweep.parameter, sweep.unit};
+  chart.series = {std::move(least), std::move(largest)};
+  if (shortage && shortage->excess95) {
+    chart.vertical = {{shortage->excess95->first, "measured, low"}, {shortage->excess95->second, "measured, high"}};
+  } else if (shortage) {
+    chart.vertical = {{-shortage->a, "operator"}};
+  }
+  return chart;
+}
+
+Result<Rational> number(std::string_view word) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return bad_usage("not a number");
+  return lti::exact(value);
+}
+
 }  // namespace
 
 Result<Question::Sweep> parse_sweep(std::string_view text) {
@@ -181,15 +250,30 @@ Result<Question::Sweep> parse_sweep(std::string_view text) {
   };
   const auto equal = text.find('='), colon = text.find(':', equal == text.npos ? 0 : equal);
   if (equal == text.npos || equal == 0 || colon == text.npos) return wrong();
-  const auto number = [](std::string_view word) -> Result<Rational> {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) return bad_usage("not a number");
-    return lti::exact(value);
-  };
   const auto low = number(text.substr(equal + 1, colon - equal - 1)), high = number(text.substr(colon + 1));
   if (!low || !high || !(*low < *high)) return wrong();
   return Question::Sweep{std::string(text.substr(0, equal)), *low, *high};
+}
+
+Result<Question::Excess> parse_excess(std::string_view text) {
+  constexpr int kMost = 201;
+  const auto wrong = [&] {
+    return bad_usage(
+        fmt::format("--excess: '{}' is not LOW:HIGH or LOW:HIGH:STEPS with LOW < HIGH, 2 to {} steps", text, kMost),
+        "as in --excess 0:10, in N·s/m");
+  };
+  const auto first = text.find(':'), second = text.find(':', first == text.npos ? text.npos : first + 1);
+  if (first == text.npos) return wrong();
+  const auto low = number(text.substr(0, first)), high = number(text.substr(first + 1, second - first - 1));
+  if (!low || !high || !(*low < *high)) return wrong();
+  Question::Excess excess{*low, *high};
+  if (second == text.npos) return excess;
+  const std::string_view word = text.substr(second + 1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), excess.steps);
+  if (error != std::errc() || end != word.data() + word.size() || excess.steps < 2 || excess.steps > kMost) {
+    return wrong();
+  }
+  return excess;
 }
 
 Result<TeleoperationFinding> judge(const Design& design, const Question& question) {
@@ -203,7 +287,7 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
     if (question.operator_shortage) {
       return bad_usage("a of the operator is given by --operator and by shortage_N_s_per_m", "keep one of the two");
     }
-    finding.operator_shortage = OperatorShortage{lti::to_double(*design.shortage), "[operator] of the design"};
+    finding.operator_shortage = OperatorShortage{lti::to_double(*design.shortage), "[operator] of the design", {}};
   }
   Rational a = 0;
   if (finding.operator_shortage) {
@@ -223,6 +307,14 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
     auto set = sweep(design, *question.sweep, a);
     if (!set) return tl::unexpected(set.error());
     finding.admissible = std::move(*set);
+  }
+  if (question.excess) {
+    if (!question.sweep)
+      return bad_usage("--excess shows a parameter against it", "name one: --parameter slave.k=0:1000");
+    auto swept = sweep_excess(design, *question.sweep, *question.excess, question.progress);
+    if (!swept) return tl::unexpected(swept.error());
+    swept->chart = excess_chart(*swept, finding.operator_shortage);
+    finding.excess = std::move(*swept);
   }
 
   Immittance immittance = [&](RadPerSec omega) -> Eigen::MatrixXcd { return passive->two_port.matrix(omega); };

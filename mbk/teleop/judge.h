@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -18,14 +19,26 @@ struct Question {
     Rational low, high;
   };
   std::optional<Sweep> sweep;
+  /// The same for a row of excesses of passivity of the operator, δ = −a, evenly from low to high [N·s/m].
+  struct Excess {
+    Rational low, high;
+    int steps = 11;  ///< ≥ 2
+  };
+  std::optional<Excess> excess;
+  std::function<void(int done, int of)> progress = {};  ///< of the excesses
 };
 
 /// "slave.k=50:500"
 /// @fails  usage: not of that shape; LOW ≥ HIGH.
 [[nodiscard]] Result<Question::Sweep> parse_sweep(std::string_view text);
 
+/// "0:10" or "0:10:21", the last the number of steps, 2 to 201
+/// @fails  usage: not of that shape; LOW ≥ HIGH.
+[[nodiscard]] Result<Question::Excess> parse_excess(std::string_view text);
+
 /// The whole answer to a design.
-/// @fails  usage: the design has no such parameter, or an exact delay and a sweep; a of the operator is given twice.
+/// @fails  usage: the design has no such parameter, or an exact delay and a sweep; excesses without a sweep; a of the
+/// operator is given twice.
 /// not usable: what llewellyn_on_grid(), admissible_set() and PortEquations::at() say.
 [[nodiscard]] Result<TeleoperationFinding> judge(const Design& design, const Question& question);
 

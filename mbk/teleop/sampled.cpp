@@ -55,7 +55,7 @@ std::vector<RadPerSec> frequencies(const FrequencyGrid& grid) {
 }
 
 Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, const FrequencyGrid& grid, Port port,
-                                            const Rational& a) {
+                                            const Rational& a, double sample_time) {
   if (auto ok = check_poles(teleoperator); !ok) return tl::unexpected(ok.error());
   const auto at_once = teleoperator.without_delay().with_shortage(port, Polynomial{a}).at(0);
   if (!at_once) return tl::unexpected(at_once.error());
@@ -64,7 +64,7 @@ Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, co
   const std::vector<RadPerSec> omega = frequencies(grid);
   std::vector<double> r11, r22, product, squares, third;
   for (const RadPerSec frequency : omega) {
-    Eigen::Matrix2cd z = immittance(teleoperator.with_exact_delay(frequency), Form::z);
+    Eigen::Matrix2cd z = immittance(teleoperator.with_exact_delay(frequency, sample_time), Form::z);
     const Index i = port == Port::one ? 0 : 1;
     z(i, i) -= lti::to_double(a);
     const ConditionValues values = condition_values(z);

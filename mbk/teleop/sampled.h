@@ -11,9 +11,11 @@ namespace mbk::teleop {
 /// not seen. Those on poles are decided exactly: with |C₂ C₃| < |(1 + C₅)(1 + C₆)| the delay adds none on the right,
 /// and at 0 it is 1.
 /// @param a  shortage of passivity of the termination at `port` [N·s/m]
+/// @param sample_time  the controllers' [s], as in Teleoperator::with_exact_delay; the poles are those without sampling
 /// @fails  not usable: the forces that are sent back and forth add poles, |C₂ C₃| ≥ |(1 + C₅)(1 + C₆)|.
 [[nodiscard]] Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, const FrequencyGrid& grid,
-                                                          Port port = Port::one, const Rational& a = 0);
+                                                          Port port = Port::one, const Rational& a = 0,
+                                                          double sample_time = 0.0);
 
 /// inf over the grid of r_ii − (Re p + |p|)/(2 r_jj) in the z form: the largest shortage there.
 /// @fails  as above

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mbk/core/units.h"
@@ -112,14 +113,91 @@ struct AdmissibleSet {
 
 /// What is taken of the operator.
 struct OperatorShortage {
-  double a = 0;      ///< [N·s/m]; negative for an excess of passivity
-  std::string rule;  ///< where it comes from, in words
+  double a = 0;                                       ///< [N·s/m]; negative for an excess of passivity
+  std::string rule;                                   ///< where it comes from, in words
+  std::optional<std::pair<double, double>> excess95;  ///< the measured excess, low and high [N·s/m]
 };
 
 /// Where the conditions were looked at on a grid, because a delay was taken as it is.
 struct FrequencyGrid {
   RadPerSec low, high;
   int points = 0;  ///< evenly spaced in the logarithm
+};
+
+/// What an excess of passivity of the operator buys: the admissible values of a parameter against it.
+struct ExcessStep {
+  double excess = 0;  ///< δ = −a [N·s/m]
+  AdmissibleSet set;
+  /// What the hand feels with the last admissible value, at FeltAt::frequency; absent: there is none.
+  struct Felt {
+    double free = 0;     ///< |Z| with nothing at port 2 [N·s/m]; 0 were transparent
+    double clamped = 0;  ///< |ω Z| with port 2 held fast [N/m]; infinite were transparent
+  };
+  std::optional<Felt> felt;
+};
+struct ExcessSweep {
+  std::string parameter, unit;
+  RadPerSec frequency;  ///< at which `felt` is taken
+  std::vector<ExcessStep> steps;
+  Chart chart;  ///< the least and the largest stable value over the excess, with that of the operator
+};
+
+/// Z = m s + b + k/s at a port.
+struct Termination {
+  double mass = 0, damping = 0, stiffness = 0;  ///< [kg], [N·s/m], [N/m]
+};
+
+/// Two terminations, each no worse than was allowed, with which the whole oscillates more and more.
+struct WorstTerminations {
+  RadPerSec frequency;
+  double growth = 0;                   ///< σ of e^(σt) [1/s] > 0
+  std::array<Termination, 2> at_port;  ///< port 1 first
+};
+
+/// How a simulated motion goes on after it was set off.
+enum class MotionOutcome {
+  dies_out,  ///< less than half as fast in its last quarter as in its second
+  bounded,   ///< neither: something keeps it going, or it is slow to decide
+  grows,     ///< more than twice as fast, or it ran away
+};
+
+/// The word of the JSON.
+[[nodiscard]] inline const char* text(MotionOutcome outcome) {
+  switch (outcome) {
+    case MotionOutcome::dies_out:
+      return "dies_out";
+    case MotionOutcome::bounded:
+      return "bounded";
+    case MotionOutcome::grows:
+      break;
+  }
+  return "grows";
+}
+
+/// One simulation of hand, master, line, slave and environment in time.
+struct TeleoperationRun {
+  std::string what, hand, environment;  ///< in words
+  MotionOutcome outcome = MotionOutcome::bounded;
+  double ratio = 0;     ///< root mean square speed of both robots, last quarter over second
+  RadPerSec frequency;  ///< of the last quarter; 0: it does not swing
+  double duration = 0;  ///< [s]; shorter than asked for where it ran away
+  bool ran_away = false;
+  double largest_position = 0;             ///< of either robot [m]
+  long sent = 0, lost = 0;                 ///< packets, both directions
+  std::optional<double> lowest_energy;     ///< of the passivity controller's one-port [J]
+  std::optional<WorstTerminations> worst;  ///< what it was run against, where that was constructed
+  Chart positions;
+};
+
+/// What `--simulate` adds to a design.
+struct TeleoperationSimulation {
+  double sample_time = 0;  ///< [s]
+  /// Llewellyn's and the modified criterion with the controllers' sampling, on a grid up to the Nyquist frequency;
+  /// absent where they cannot be judged so, which a note explains, or without an operator.
+  std::optional<AbsoluteStability> sampled, sampled_with_operator;
+  FrequencyGrid grid;
+  std::vector<TeleoperationRun> runs;
+  std::vector<std::string> notes;
 };
 
 /// A number of a design.
@@ -140,6 +218,8 @@ struct TeleoperationFinding {
   std::optional<AbsoluteStability> with_operator;  ///< modified Llewellyn, with that a
   std::vector<LargestShortage> largest_shortages;  ///< one for each port
   std::optional<AdmissibleSet> admissible;
+  std::optional<ExcessSweep> excess;
+  std::optional<TeleoperationSimulation> simulation;
   std::vector<Chart> charts;  ///< r₁₁, r₂₂ and the third condition over frequency
   std::vector<std::string> notes;
 };

@@ -18,6 +18,8 @@ std::span<const Study> studies() {
       Study{"transfer-function", "a transfer function of four poles under noise, and its order", 50,
             transfer_function_study},
       Study{"one-dimensional", "no linear model holds for a rigid arm along one axis", 2, one_dimensional_study},
+      Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated", 25,
+            teleoperation_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
   };
   return kStudies;

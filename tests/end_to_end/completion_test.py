@@ -24,9 +24,11 @@ TYPED = {  # what has been typed → what is offered
     ("springs", ""): ["calibrate", "field", "find"],
     ("springs", "field", "--sp"): ["--spring"],
     ("teleop", "--op"): ["--operator"],
+    ("teleop", "--ex"): ["--excess"],
+    ("teleop", "--sim"): ["--simulate"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
     ("validate", ""): ["closed-loop", "coverage", "participant", "recovery", "robot", "springs",
-                       "transfer-function", "virtual-sensor"],
+                       "teleoperation", "transfer-function", "virtual-sensor"],
     ("completion", ""): ["bash", "fish", "zsh"],
 }
 

@@ -119,6 +119,74 @@ class Teleop(Case):
         self.assertEqual(self.fine("teleop", self.design(delay), "--json").json["decided"], "on the grid")
         self.refused(WRONG_USAGE, "teleop", self.design(delay), "--parameter", "slave.k=0:1", says="pade")
 
+    def test_an_operator_of_a_joint_that_turns_is_refused(self):
+        turning = json.loads(result(eop=[1.0, 2.0]))
+        turning["units"] = {"B": "N·m·s/rad"}
+        self.refused(BAD_DATA, "teleop", self.design(), "--operator", self.file("r.json", json.dumps(turning)),
+                     says=["r.json", "N·m·s/rad"])
+
+    def test_an_excess_buys_stiffness(self):
+        design, measured = self.design(b_m=1, b_s=1), self.file("r.json", result(eop=[4.0, 6.0]))
+        ran = self.fine("teleop", design, "--parameter", "slave.k=0:5000", "--excess", "0:8:3", "--operator", measured,
+                        "--charts", self.folder / "c", "--json").json["excess"]
+        self.assertEqual([step["excess"] for step in ran["steps"]], [0, 4, 8])
+        for step in ran["steps"]:
+            # 4 (b_m + δ + d_m)(b_s + d_s) k_m k_s = (d_m k_s + d_s k_m)²: roots of k_s² + 2 (200 − q) k_s + 200²
+            (interval,) = step["admissible"]["intervals"]
+            half = 2 * (11 + step["excess"]) * 21 - 200
+            root = (half * half - 200 * 200)**0.5
+            self.assertAlmostEqual(interval["low"]["value"], half - root, places=6)
+            self.assertAlmostEqual(interval["high"]["value"], half + root, places=6)
+        self.assertLess(ran["steps"][-1]["felt"]["free"], ran["steps"][0]["felt"]["free"])
+        drawn = (self.folder / "c_excess.svg").read_text(encoding="utf-8")
+        self.assertIn("measured, low", drawn)
+        text = self.fine("teleop", design, "--parameter", "slave.k=0:5000", "--excess", "0:8:3").out
+        self.assertIn("92.7546 to 431.245", text)
+        self.assert_lines_fit(text)
+        self.refused(WRONG_USAGE, "teleop", design, "--excess", "0:8", says="--parameter")
+        for wrong in ("", "1", "2:1", "0:8:1", "0:8:x", "0:8:5000", "a:b"):
+            self.refused(WRONG_USAGE, "teleop", design, "--parameter", "slave.k=0:1", "--excess", wrong,
+                         says="--excess")
+
+    def test_a_simulation_agrees_with_the_criterion(self):
+        for k_s, verdict, outcomes in ((200, "stable", ["dies_out"]), (1000, "unstable", ["dies_out", "grows"])):
+            design = self.moving(k_s=k_s)
+            found = self.fine("teleop", design, "--simulate", "--json", "--quiet").json
+            self.assertEqual(found["llewellyn"]["verdict"], verdict)
+            runs = found["simulation"]["runs"]
+            self.assertEqual([run["outcome"] for run in runs], outcomes)
+        expected = runs[1]["expected"]
+        self.assertAlmostEqual(runs[1]["frequency"], expected["frequency"], delta=0.02 * expected["frequency"])
+        for end in ("hand", "environment"):
+            self.assertGreaterEqual(min(expected[end].values()), 0)
+        text = self.fine("teleop", design, "--simulate", "--quiet", "--charts", self.folder / "s").out
+        self.assertIn("GROWS", text)
+        self.assert_lines_fit(text)
+        for run in (1, 2):
+            self.assertIn("</svg>", (self.folder / f"s_simulated-{run}.svg").read_text(encoding="utf-8"))
+
+    def moving(self, extra="", **values):
+        text = DESIGN.format(**{"b_m": 1, "b_s": 1, "d_m": 10, "k_m": 100, "d_s": 20, **values})
+        return self.file("moving.toml", text.replace("mass_kg = 0", "mass_kg = 0.5") + extra)
+
+    def test_a_lossy_line_loses_what_it_should(self):
+        extra = "[simulation]\nduration_s = 5\nloss_percent = 20\njitter_ms = 4\nseed = 3\n"
+        asked = ("teleop", self.moving(extra, k_s=200), "--simulate", "--quiet", "--json")
+        (run,) = self.fine(*asked).json["simulation"]["runs"]
+        self.assertEqual(run["packets"], 10000)
+        self.assertAlmostEqual(run["packets_lost"], 2000, delta=160)  # four standard deviations
+        again = self.fine(*asked).json["simulation"]["runs"]
+        self.assertEqual(again, [run])
+
+    def test_what_cannot_be_simulated_is_refused(self):
+        self.refused(WRONG_USAGE, "teleop", self.design(), "--simulate", says="mass_kg")
+        narrow = EXAMPLES / "narrow_resonance.toml"
+        self.refused(WRONG_USAGE, "teleop", narrow, "--simulate", says="architecture")
+        for wrong, says in (("loss_percent = 101", "loss_percent"), ("on_loss = 'what'", "on_loss"),
+                            ("rate_hz = 0", "rate_hz"), ("[simulation.patient]\nparticipant = 7", "participant"),
+                            ("[simulation.patient]\nkind = 'impedance'\nmass_kg = -1", "mass_kg")):
+            self.refused(BAD_DATA, "teleop", self.moving(f"[simulation]\n{wrong}\n", k_s=200), says=says)
+
     def test_charts_are_written_and_not_over_others(self):
         prefix = self.folder / "c"
         self.fine("teleop", self.design(), "--charts", prefix)
