@@ -149,6 +149,9 @@ Measured measure(const session::TrialOutcome& outcome, const Trial& trial) {
   const Recording perturbed = preprocess::perturbation_only(std::move(*recording));
   measurement::Options options;
   options.identify.handle_mass = trial.planar().robot.handle_mass;
+  if (!std::holds_alternative<control::PositionMode>(trial.planar().control)) {
+    options.identify.method = Method::instrumental_variables;  // the person answers what least squares takes for noise
+  }
   const auto measured = measurement::measure({&perturbed, 1}, options);
   if (!measured) return {fmt::format("not measured: {}\n", measured.error().line()), true};
   const Identification& identification = measured->identification;
