@@ -166,10 +166,8 @@ std::string plan_text(const Trial& trial, const Plan& plan, const Rehearsal& reh
   std::string text = fmt::format("{}{}{}\n", trial.protocol, trial.name.empty() ? "" : ", trial " + trial.name,
                                  trial.scenario.condition.empty() ? "" : ": " + trial.scenario.condition);
   text += fmt::format(
-      "  in all        {:.1f} s: soft start {:g} s, way to the test location, {:g} s of rest,
-"
-      "                perturbation {:.1f} s, way back, soft stop {:g} s
-",
+      "  in all        {:.1f} s: soft start {:g} s, way to the test location, {:g} s of rest,\n"
+      "                perturbation {:.1f} s, way back, soft stop {:g} s\n",
       rehearsal.duration, trial.sequence.soft_start, trial.sequence.settle, perturbation, trial.sequence.soft_start);
   text += report::schedule_text(plan.schedule);
   text += "  peaks in a rehearsal on the simulated robot, and the gate's limits\n";
