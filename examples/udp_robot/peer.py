@@ -1,0 +1,41 @@
+"""A robot for mbk in Python: two wheels of 0.07 kg·m² behind UDP.   usage: peer.py [PORT]
+
+What goes where in the datagrams stands in docs/guide/devices.md. A real robot also keeps the watchdog.
+"""
+import socket
+import struct
+import sys
+import time
+import zlib
+
+STATE, COMMAND = struct.Struct("<4sHHIIQQ7d"), struct.Struct("<4sHHIIQ2d")
+ENABLED, GREETING = 1, 2
+port = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+port.bind(("127.0.0.1", int(sys.argv[1]) if len(sys.argv) > 1 else 25000))
+port.setblocking(False)
+print("listening at UDP 127.0.0.1:%d" % port.getsockname()[1], flush=True)
+angle, speed, torque = [0.2, 0.9], [0.0, 0.0], [0.0, 0.0]
+master, session, answered, enabled, heard, watchdog = None, 0, 0, False, 0.0, 0.05
+begin = time.monotonic()
+for sequence in range(1, sys.maxsize):
+    time.sleep(max(0.0, begin + 1e-3 * sequence - time.monotonic()))
+    try:
+        while True:
+            data, sender = port.recvfrom(100)
+            if len(data) != 44 or struct.pack("<I", zlib.crc32(data[:40])) != data[40:]:
+                continue
+            _, version, flags, its_session, its_watchdog, number, *its_torque = COMMAND.unpack(data[:40])
+            if flags & GREETING and not enabled:
+                master, session, answered = sender, its_session, 0
+            if sender == master and its_session == session and number > answered:
+                answered, torque, enabled = number, its_torque, bool(flags & ENABLED)
+                heard, watchdog = time.monotonic(), 1e-3 * its_watchdog
+    except BlockingIOError:
+        pass
+    enabled = enabled and time.monotonic() - heard < watchdog
+    for k in range(2):
+        speed[k] += 1e-3 * ((torque[k] if enabled else 0.0) - 0.1 * speed[k]) / 0.07
+        angle[k] += 1e-3 * speed[k]
+    if master:
+        state = STATE.pack(b"MBKS", 1, 2 * enabled, session, 0, sequence, answered, 1e-3 * sequence, *angle, 0, 0, 0, 0)
+        port.sendto(state + struct.pack("<I", zlib.crc32(state)), master)
