@@ -33,14 +33,14 @@ int run(const Arguments& arguments) {
   if (!text) return report_error(text.error());
   const auto setup = session::read_robot_setup(text->text, text->file);
   if (!setup) return report_error(setup.error());
+  if (arguments.live && !setup->has_device) {
+    return report_error(
+        {ErrorKind::usage, "it names no robot to connect to", "add [device], or leave --live away", arguments.file});
+  }
   const std::vector<session::Finding> findings = session::check_setup(*setup);
   bool wrong = session::worst(findings) == session::Finding::Verdict::wrong;
   fmt::print("{}{}", session::setup_text(*setup), findings_text(findings));
   if (!arguments.live) return wrong ? kNotUsable : kFine;
-  if (!setup->has_device) {
-    return report_error(
-        {ErrorKind::usage, "it names no robot to connect to", "add [device], or leave --live away", arguments.file});
-  }
   const auto robot = session::make_device(setup->device, setup->scenario);
   if (!robot) return report_error(robot.error());
   const auto record = session::watch_robot(**robot, setup->scenario.rate, *arguments.live);

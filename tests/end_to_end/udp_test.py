@@ -86,7 +86,8 @@ class Udp(Case):
         for experiment, options in ((udp, ()), (simulated, ("--fast",))):
             recording = self.folder / f"{experiment.stem}.h5"
             self.fine("run", experiment, *options, "--quiet", "--no-measure", "--out", recording)
-            results.append(self.mbk("measure", recording, "--json", code=None).json)
+            # A busy machine misses ticks, which only an even clock bridges.
+            results.append(self.fine("measure", recording, "--resample", "1000", "--json").json)
         for matrix in "MBK":
             for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
                 one, other = (result["model"][matrix][i][j] for result in results)
@@ -118,7 +119,7 @@ class Udp(Case):
         recording = self.folder / "lost.h5"
         process = self.started(self.experiment("udp.toml", peer.port, seconds=60), recording)
         peer.end()
-        self.assert_stopped(process, recording, "link")
+        self.assert_stopped(process, recording, "the robot was silent")
 
     def test_the_stop_button(self):
         peer = self.peer(seconds=60)
