@@ -59,7 +59,7 @@ Action add_robot_check(CLI::App& group) {
   command->footer(
       "Examples:\n"
       "  mbk robot check my_experiment.toml\n"
-      "      geometry, limits, wiring and device as understood, and what cannot be meant; nothing is touched\n"
+      "      geometry, limits, wiring and device as understood, and what cannot be meant\n"
       "  mbk robot check my_experiment.toml --live 5\n"
       "      also five seconds of readings with the motors off; turn the joints by hand, press the stop button\n\n"
       "Do both before anyone sits down at a new robot. The keys of [device] stand in docs/guide/devices.md.\n"

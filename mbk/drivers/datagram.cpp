@@ -11,8 +11,8 @@ namespace {
 constexpr std::uint32_t kStateMagic = 0x534B424D, kCommandMagic = 0x434B424D;  // "MBKS", "MBKC"
 constexpr std::size_t kChecksumBytes = 4;
 
-enum StateFlag : std::uint16_t { kStop = 1, kMotorsOn = 2, kForce = 4, kAcceleration = 8, kExpired = 16 };
-enum CommandFlag : std::uint16_t { kEnabled = 1, kGreeting = 2, kLockStep = 4 };
+constexpr std::uint16_t kStop = 1, kMotorsOn = 2, kForce = 4, kAcceleration = 8, kExpired = 16;  // of a state
+constexpr std::uint16_t kEnabled = 1, kGreeting = 2, kLockStep = 4;                              // of a command
 
 template <class Number>
 using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t,

@@ -10,7 +10,6 @@ namespace mbk::session {
 namespace {
 
 using config::above;
-using config::at_least;
 using config::between;
 using config::Section;
 using device::Wiring;

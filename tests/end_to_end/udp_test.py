@@ -71,6 +71,10 @@ class Udp(Case):
         self.fine("convert", recording, csv)
         return [line for line in csv.read_text().splitlines() if not line.startswith("#")]
 
+    def metadata(self, recording):
+        """What is said of the recording besides its samples."""
+        return "".join(self.fine("info", recording, "--json").json.get("metadata", {}))
+
     def test_in_lock_step_it_gives_the_recording_of_the_simulated_robot(self):
         peer = self.peer()
         udp = self.experiment("udp.toml", peer.port, "lock_step = true")
@@ -78,6 +82,8 @@ class Udp(Case):
         self.fine("run", udp, "--fast", "--quiet", "--out", one)
         self.fine("run", self.folder / "robot.toml", "--fast", "--quiet", "--out", other)
         self.assertEqual(self.channels(one), self.channels(other))
+        self.assertNotIn("truth", self.metadata(one))  # mbk knows nothing of who is at that handle
+        self.assertIn("truth", self.metadata(other))
 
     def test_at_its_own_clock_it_is_measured_as_the_simulated_robot_is(self):
         peer = self.peer(seconds=22)
@@ -92,8 +98,8 @@ class Udp(Case):
             for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
                 one, other = (result["model"][matrix][i][j] for result in results)
                 errors = [result["standard_error"][matrix][i][j] for result in results]
-                # Three standard errors of the difference.
-                self.assertLess(abs(one - other), 3 * (errors[0] ** 2 + errors[1] ** 2) ** 0.5, (matrix, i, j, results))
+                # Twelve numbers that differ by chance from run to run: five standard errors of the difference.
+                self.assertLess(abs(one - other), 5 * (errors[0] ** 2 + errors[1] ** 2) ** 0.5, (matrix, i, j, results))
 
     def started(self, experiment, recording):
         """`mbk run` once it perturbs."""
