@@ -55,13 +55,13 @@ int run(const Arguments& arguments) {
 
 Action add_robot_check(CLI::App& group) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = group.add_subcommand("check", "is a robot described, wired and reached as it should be?");
+  CLI::App* command = group.add_subcommand("check", "whether a robot is described, wired and reached as it should be");
   command->footer(
       "Examples:\n"
       "  mbk robot check my_experiment.toml\n"
       "      geometry, limits, wiring and device as understood, and what cannot be meant\n"
       "  mbk robot check my_experiment.toml --live 5\n"
-      "      also five seconds of readings with the motors off; turn the joints by hand, press the stop button\n\n"
+      "      also five seconds of readings, motors off; turn the joints, press the stop button\n\n"
       "Do both before anyone sits down at a new robot. The keys of [device] stand in docs/guide/devices.md.\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 unreadable, or the robot does not answer, 4 something is wrong.");
   command->add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
@@ -71,6 +71,7 @@ Action add_robot_check(CLI::App& group) {
       ->type_name("S")
       ->expected(0, 1)
       ->default_str("2")
+      ->option_text("S")
       ->check(positive());
   return [arguments] { return run(*arguments); };
 }

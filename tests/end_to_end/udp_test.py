@@ -28,10 +28,17 @@ moving_in_s = 2
 [participant]
 kind = "arm"
 number = 1
-# A machine that does other things besides comes late; nobody sits at this robot.
+# Where the machine does other things besides, ticks are late or missing, and what is compared from one to the next
+# jumps. Nobody sits at this robot.
 [safety]
 link_silence_ms = 500
 lateness_ms = 0
+accelerometer_m_per_s2 = 0
+acceleration_m_per_s2 = 1000
+encoder_jump_deg = 20
+force_jump_N = 100
+speed_mm_per_s = 5000
+torque_rate_Nm_per_s = 100000
 """
 DEVICE = """
 [device]
