@@ -11,7 +11,6 @@
 #include "apps/mbk/output.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
-#include "mbk/laboratory/simulated_device.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/read.h"
@@ -39,17 +38,9 @@ struct Arguments {
 };
 
 Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
-  std::string text;
-  fs::path file = arguments.experiment;
-  if (const auto* ready = laboratory::find_ready_scenario(arguments.experiment)) {
-    text = ready->text;
-    file += ".toml";
-  } else {
-    auto read = read_text(file);
-    if (!read) return tl::unexpected(read.error());
-    text = std::move(*read);
-  }
-  auto trials = session::read_experiment(text, file);
+  const auto text = read_scenario_text(arguments.experiment);
+  if (!text) return tl::unexpected(text.error());
+  auto trials = session::read_experiment(text->text, text->file);
   if (!trials) return trials;
   std::vector<Trial> chosen;
   for (const std::string& name : arguments.trials) {
@@ -179,7 +170,7 @@ fs::path next_free(const fs::path& target) {
 int perform(Session& session, const Trial& trial, const fs::path& target, const session::Pace& pace,
             const Arguments& arguments, bool& repeat) {
   repeat = false;
-  auto robot = laboratory::SimulatedDevice::create(trial.scenario);
+  auto robot = session::make_device(trial.device, trial.scenario);
   if (!robot) return report_error(robot.error());
   const auto outcome = [&] {
     const StopKeys keys(session.signals());
