@@ -18,6 +18,7 @@ std::span<const Study> studies() {
       Study{"transfer-function", "a transfer function of four poles under noise, and its order", 50,
             transfer_function_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
+      Study{"faults", "motors off in time, whatever breaks at 1 kHz", 20, faults_study},
   };
   return kStudies;
 }
