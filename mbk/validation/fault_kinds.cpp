@@ -99,11 +99,12 @@ safety::Limits& only(FaultRun& run) {
   limits.acceleration = 1e3;
   limits.excursion = 0.0;
   limits.tracking = 3.0;
+  limits.joint_margin = 0.0;
   return limits;
 }
 
 void push_hard(FaultRun& run, Random& random) {
-  push(run, random.uniform(35.0, 45.0) * direction(random), random.uniform(0.05, 0.3));
+  push(run, random.uniform(60.0, 80.0) * direction(random), random.uniform(0.05, 0.2));
 }
 
 /// The direction in which the joints come closest to their limits.
@@ -127,9 +128,9 @@ std::vector<FaultKind> sensors() {
   const std::vector<Reason> stuck = {Reason::encoder_frozen, Reason::accelerometer_disagrees, Reason::tracking,
                                      Reason::limited_too_long};
   std::vector<FaultKind> kinds = {
-      {"encoder 1 stands still", Onset::perturbing, {800, 800}, stuck, frozen(&State::joint, 0)},
-      {"encoder 2 stands still", Onset::perturbing, {800, 800}, stuck, frozen(&State::joint, 1)},
-      {"both encoders stand still", Onset::perturbing, {800, 800}, stuck, frozen(&State::joint, -1)},
+      {"encoder 1 stands still", Onset::perturbing, {800, 2500}, stuck, frozen(&State::joint, 0)},
+      {"encoder 2 stands still", Onset::perturbing, {800, 2500}, stuck, frozen(&State::joint, 1)},
+      {"both encoders stand still", Onset::perturbing, {800, 2500}, stuck, frozen(&State::joint, -1)},
       {"force stands still", Onset::anywhere, {251, 251}, {Reason::force_frozen}, frozen(&State::force, -1)},
       {"acceleration stands still",
        Onset::anywhere,
@@ -271,6 +272,13 @@ std::vector<FaultKind> link_and_machine() {
   };
 }
 
+/// The gains of the whole trial, as an experiment file sets them.
+void set_gains(FaultRun& run, const std::function<void(control::JointPositionControl::Gains&)>& change) {
+  auto& trial = std::get<laboratory::PlanarTrial>(run.trial.scenario.trial);
+  if (auto* position = std::get_if<control::PositionMode>(&trial.control)) change(position->gains);
+  change(run.trial.sequence.hold);
+}
+
 std::vector<FaultKind> runaways() {
   const std::vector<Reason> runs_away = {Reason::tracking,
                                          Reason::limited_too_long,
@@ -292,30 +300,36 @@ std::vector<FaultKind> runaways() {
            return true;
          };
        }},
-      {"motors are 5 to 20 times too strong",
+      {"motors far too strong",
        Onset::perturbing,
        {1500, 1500},
        runs_away,
        [](FaultRun& run, Random& random) {
-         const double gain = random.uniform(5.0, 20.0);
+         // a place is only held more stiffly by strong motors, until the loop is no longer stable
+         const double gain = run.kind == TrialKind::position ? random.uniform(100.0, 300.0) : random.uniform(5.0, 20.0);
          run.fault.driving = [=](Command& command, int) {
            command.torque *= gain;
            return true;
          };
        }},
-      {"gains 20 to 100 times too high",
+      {"gains far too high, no damping",
        Onset::beginning,
        {2000, 2000},
        runs_away,
        [](FaultRun& run, Random& random) {
-         const double gain = random.uniform(20.0, 100.0);
-         auto& trial = std::get<laboratory::PlanarTrial>(run.trial.scenario.trial);
-         if (auto* position = std::get_if<control::PositionMode>(&trial.control)) {
-           position->gains.proportional *= gain;
-           position->gains.derivative *= gain;
-         }
-         run.trial.sequence.hold.proportional *= gain;
-         run.trial.sequence.hold.derivative *= gain;
+         set_gains(run, [gain = random.uniform(20.0, 100.0)](control::JointPositionControl::Gains& gains) {
+           gains.proportional *= gain;
+           gains.derivative.setZero();
+         });
+       }},
+      {"damping far too high",
+       Onset::beginning,
+       {2000, 2000},
+       runs_away,
+       [](FaultRun& run, Random& random) {
+         set_gains(run, [gain = random.uniform(100.0, 300.0)](control::JointPositionControl::Gains& gains) {
+           gains.derivative *= gain;
+         });
        }},
   };
 }
@@ -326,14 +340,14 @@ std::vector<FaultKind> pushes() {
        Onset::anywhere,
        {700, 700},
        {Reason::measured_force, Reason::excursion, Reason::tracking, Reason::limited_too_long, Reason::speed,
-        Reason::acceleration},
+        Reason::acceleration, Reason::joint_margin},
        [](FaultRun& run, Random& random) { push(run, 80.0 * direction(random), random.uniform(0.3, 0.8)); }},
-      {"a knock of 60 to 150 N",
+      {"a knock of 300 to 600 N",
        Onset::anywhere,
        {40, 40},
        {Reason::force_jump, Reason::measured_force, Reason::acceleration},
        [](FaultRun& run, Random& random) {
-         const Vector2d force = random.uniform(60.0, 150.0) * direction(random);
+         const Vector2d force = random.uniform(300.0, 600.0) * direction(random);
          run.fault.push = [=](int k) {
            return Vector2d(k < 20 ? std::sin(std::numbers::pi * (k + 0.5) / 20.0) * force : Vector2d(0.0, 0.0));
          };
@@ -394,7 +408,7 @@ std::vector<FaultKind> pushes() {
        {Reason::measured_force},
        [](FaultRun& run, Random& random) {
          only(run).measured_force = 40.0;
-         push(run, 80.0 * direction(random), 0.4);
+         push(run, random.uniform(150.0, 200.0) * direction(random), 0.05);
        }},
       {"controller beyond its limits",
        Onset::moving,

@@ -57,7 +57,7 @@ def times_of(recording, folder):
         raise AssertionError(ran)
     with open(table, encoding="utf-8") as lines:
         rows = csv.reader(line for line in lines if not line.startswith("#"))
-        at = next(rows).index("time")
+        at = next(rows).index("time_s")
         return [float(row[at]) for row in rows]
 
 
