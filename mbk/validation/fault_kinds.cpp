@@ -302,7 +302,7 @@ std::vector<FaultKind> runaways() {
        }},
       {"motors far too strong",
        Onset::perturbing,
-       {1500, 1500},
+       {1500, 3500},
        runs_away,
        [](FaultRun& run, Random& random) {
          // a place is only held more stiffly by strong motors, until the loop is no longer stable
@@ -314,17 +314,17 @@ std::vector<FaultKind> runaways() {
        }},
       {"gains far too high, no damping",
        Onset::beginning,
-       {2000, 2000},
+       {2500, 2500},
        runs_away,
        [](FaultRun& run, Random& random) {
-         set_gains(run, [gain = random.uniform(20.0, 100.0)](control::JointPositionControl::Gains& gains) {
+         set_gains(run, [gain = random.uniform(150.0, 400.0)](control::JointPositionControl::Gains& gains) {
            gains.proportional *= gain;
            gains.derivative.setZero();
          });
        }},
       {"damping far too high",
        Onset::beginning,
-       {2000, 2000},
+       {2500, 2500},
        runs_away,
        [](FaultRun& run, Random& random) {
          set_gains(run, [gain = random.uniform(100.0, 300.0)](control::JointPositionControl::Gains& gains) {
