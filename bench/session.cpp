@@ -111,7 +111,8 @@ bool perform(double seconds, bool real_time, const fs::path& folder) {
   const auto watch = [&](std::span<const journal::Tick> came) {
     for (const journal::Tick& tick : came) {
       // what a tick took stands in the next
-      if (tick.number > 0) own.add(std::llround(1e9 * tick.compute) - device.took(tick.number - 1));
+      if (tick.number > 0)
+        own.add(std::llround(1e9 * static_cast<double>(tick.compute)) - device.took(tick.number - 1));
     }
     for (std::size_t i = 0; i < when.size(); ++i) {
       if (resident[i] == 0.0 && came.back().number >= when[i]) resident[i] = memory("VmRSS");

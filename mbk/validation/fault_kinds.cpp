@@ -341,7 +341,7 @@ std::vector<FaultKind> pushes() {
        {700, 700},
        {Reason::measured_force, Reason::excursion, Reason::tracking, Reason::limited_too_long, Reason::speed,
         Reason::acceleration, Reason::joint_margin},
-       [](FaultRun& run, Random& random) { push(run, 80.0 * direction(random), random.uniform(0.3, 0.8)); }},
+       [](FaultRun& run, Random& random) { push(run, 120.0 * direction(random), random.uniform(0.3, 0.8)); }},
       {"a knock of 300 to 600 N",
        Onset::anywhere,
        {40, 40},
@@ -374,7 +374,7 @@ std::vector<FaultKind> pushes() {
        {Reason::excursion},
        [](FaultRun& run, Random& random) {
          only(run).excursion = run.kind == TrialKind::position ? 0.04 : 0.08;
-         push_hard(run, random);
+         push(run, random.uniform(110.0, 150.0) * direction(random), 0.2);
        }},
       {"hand out of the workspace",
        Onset::moving,
@@ -413,10 +413,10 @@ std::vector<FaultKind> pushes() {
       {"controller beyond its limits",
        Onset::moving,
        {1000, -1},
-       {Reason::limited_too_long},
+       {Reason::limited_too_long, Reason::joint_margin},
        [](FaultRun& run, Random& random) {
          only(run).limited_for = 0.1;
-         push_hard(run, random);
+         push(run, random.uniform(35.0, 45.0) * direction(random), 0.2);
        }},
   };
 }
