@@ -128,9 +128,9 @@ std::vector<FaultKind> sensors() {
   const std::vector<Reason> stuck = {Reason::encoder_frozen, Reason::accelerometer_disagrees, Reason::tracking,
                                      Reason::limited_too_long};
   std::vector<FaultKind> kinds = {
-      {"encoder 1 stands still", Onset::perturbing, {800, 2500}, stuck, frozen(&State::joint, 0)},
-      {"encoder 2 stands still", Onset::perturbing, {800, 2500}, stuck, frozen(&State::joint, 1)},
-      {"both encoders stand still", Onset::perturbing, {800, 2500}, stuck, frozen(&State::joint, -1)},
+      {"encoder 1 stands still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, 0)},
+      {"encoder 2 stands still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, 1)},
+      {"both encoders stand still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, -1)},
       {"force stands still", Onset::anywhere, {251, 251}, {Reason::force_frozen}, frozen(&State::force, -1)},
       {"acceleration stands still",
        Onset::anywhere,
@@ -194,7 +194,7 @@ std::vector<FaultKind> sensors() {
        spoiled([](State& state, int) { state.acceleration.setZero(); })},
       {"force drifts by 20 to 100 N/s",
        Onset::anywhere,
-       {3000, 3000},
+       {2500, 2500},
        {Reason::measured_force},
        [](FaultRun& run, Random& random) {
          const Vector2d rate = random.uniform(20.0, 100.0) * direction(random);
@@ -338,10 +338,10 @@ std::vector<FaultKind> pushes() {
   return {
       {"somebody pushes harder and harder",
        Onset::anywhere,
-       {700, 700},
+       {1500, 1500},
        {Reason::measured_force, Reason::excursion, Reason::tracking, Reason::limited_too_long, Reason::speed,
         Reason::acceleration, Reason::joint_margin},
-       [](FaultRun& run, Random& random) { push(run, 120.0 * direction(random), random.uniform(0.3, 0.8)); }},
+       [](FaultRun& run, Random& random) { push(run, 300.0 * direction(random), random.uniform(0.75, 2.0)); }},
       {"a knock of 300 to 600 N",
        Onset::anywhere,
        {40, 40},

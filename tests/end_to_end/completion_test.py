@@ -25,7 +25,7 @@ TYPED = {  # what has been typed → what is offered
     ("springs", "field", "--sp"): ["--spring"],
     ("teleop", "--op"): ["--operator"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
-    ("validate", ""): ["closed-loop", "coverage", "participant", "recovery", "robot", "springs",
+    ("validate", ""): ["closed-loop", "coverage", "faults", "participant", "recovery", "robot", "springs",
                        "transfer-function", "virtual-sensor"],
     ("completion", ""): ["bash", "fish", "zsh"],
 }
