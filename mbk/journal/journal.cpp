@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kMagic = "MBKJRNL1";
-enum Kind : std::uint32_t { kHeader = 1, kTicks = 2, kEnding = 3 };
+constexpr std::uint32_t kHeader = 1, kTicks = 2, kEnding = 3;  // kinds of blocks
 constexpr std::uint32_t kLargestBlock = 1U << 24U;
 
 struct BlockHead {

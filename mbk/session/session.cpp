@@ -147,10 +147,14 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
 }
 
 Result<Recording> recover(const fs::path& file, const fs::path& target, bool overwrite, bool keep) {
-  auto journal = journal::read(file);
-  if (!journal) return tl::unexpected(journal.error());
-  auto recording = journal::to_recording(*journal);
-  if (!recording) return tl::unexpected(recording.error().in(file.string()));
+  auto recording = [&]() -> Result<Recording> {
+    const auto journal = journal::read(file);  // gone before the recording is written: half a gigabyte for an hour
+    if (!journal) return tl::unexpected(journal.error());
+    auto made = journal::to_recording(*journal);
+    if (!made) return tl::unexpected(made.error().in(file.string()));
+    return made;
+  }();
+  if (!recording) return tl::unexpected(recording.error());
   const auto format = recording::format_of(target);
   if (!format) return tl::unexpected(format.error());
   if (overwrite || !holds_the_same(target, *recording)) {

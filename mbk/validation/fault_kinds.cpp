@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mbk/control/trial_control.h"
 #include "mbk/robot/workspace.h"
 
 namespace mbk::validation {

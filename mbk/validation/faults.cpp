@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <thread>
 
+#include "mbk/journal/tick.h"
 #include "mbk/laboratory/ready_scenarios.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/numeric/statistics.h"
+#include "mbk/realtime/clock.h"
 #include "mbk/recording/read.h"
 #include "mbk/session/plan.h"
 #include "mbk/session/session.h"

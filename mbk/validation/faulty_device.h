@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "mbk/device/device.h"
 #include "mbk/laboratory/simulated_device.h"
 
 namespace mbk::validation {

@@ -75,11 +75,11 @@ struct Study {
 /// the order is found. A run is one input and one noise. Wanted: a bias below 1 %, the order in 90 % of the runs.
 [[nodiscard]] Result<ValidationTable> transfer_function_study(const StudyOptions& options);
 
-/// Whatever breaks, are the motors off in time? Each kind of fault (fault_kinds.h) comes into a trial of positions and one
-/// of forces at a moment drawn by lot, through the robot, another thread or the clock, and passes the whole session.
-/// Wanted in every run: motors off within the documented ticks, for a right reason, no command beyond the cap of the
-/// handle force by the true angles, a recording that holds every command to the bit; and not one trip in ten times as
-/// many trials without a fault, over the ready scenarios. A run is one moment of each kind in both trials.
+/// Whatever breaks, are the motors off in time? Each kind of fault (fault_kinds.h) comes into a trial of positions and
+/// one of forces at a moment drawn by lot, through the robot, another thread or the clock, and passes the whole
+/// session. Wanted in every run: motors off within the documented ticks, for a right reason, no command beyond the cap
+/// of the handle force by the true angles, a recording that holds every command to the bit; and not one trip in ten
+/// times as many trials without a fault, over the ready scenarios. A run is one moment of each kind in both trials.
 [[nodiscard]] Result<ValidationTable> faults_study(const StudyOptions& options);
 
 }  // namespace mbk::validation
