@@ -8,8 +8,9 @@ thread_local long count = 0;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 
-// A sanitizer has taken malloc for itself, and tells.
-#include <sanitizer/allocator_interface.h>
+// A sanitizer has taken malloc for itself, and tells. GCC installs no header of it.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
+                                                         void (*free_hook)(const volatile void*));
 
 namespace {
 const int installed = __sanitizer_install_malloc_and_free_hooks(
