@@ -425,14 +425,14 @@ std::vector<FaultKind> pushes() {
 }  // namespace
 
 const std::vector<FaultKind>& fault_kinds() {
-  static const std::vector<FaultKind> kinds = [] {
+  static const std::vector<FaultKind> kKinds = [] {
     std::vector<FaultKind> all;
     for (const auto& some : {sensors(), link_and_machine(), runaways(), pushes()}) {
       all.insert(all.end(), some.begin(), some.end());
     }
     return all;
   }();
-  return kinds;
+  return kKinds;
 }
 
 std::string_view fault_experiment(TrialKind kind) {
