@@ -96,7 +96,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   if (fs::exists(target)) {
     return fail(ErrorKind::usage, "is there already", "choose another name, or move it away", target.string());
   }
-  if (pace_.virtual_clock && robot.facts().keeps_time) {
+  if (pace_.virtual_clock && robot.facts().keeps_time && !trial.device.simulated()) {
     return bad_usage(fmt::format("{} keeps its own time, which a virtual clock cannot hurry", robot.facts().name),
                      "run it without --fast and --speed; a simulation behind UDP can wait: lock_step = true");
   }

@@ -1,5 +1,6 @@
 // The report of mbk tf in a browser: its numbers are those of --json, it is quiet, offline, accessible and printable.
 import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
 import { after, test } from "node:test";
 import { assertShown, changed, close, closeBrowser, documentOf, folder, makeLog, mbk, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
 import { join } from "node:path";
@@ -14,7 +15,10 @@ function identify(name, ...args) {
   return { json: JSON.parse(ran.out), file: join(folder, `${name}.html`) };
 }
 
-const joint = simulate("joint.mat", "ankle_reflex");
+// without its reflex the joint is linear
+const scenario = join(folder, "joint.toml");
+writeFileSync(scenario, mbk("simulate", "--show", "ankle_reflex").out.replace(/^gain_Nms.*$/m, "gain_Nms_per_rad = 0"));
+const joint = simulate("joint.mat", scenario);
 const arm = makeLog("arm.mat", "--protocol", "sinusoidal", "--seed", "4", "--coloured-force-noise", "0.3");
 const inverted = identify("inverted", joint, "--input=-F", "--output", "x", "--reference", "xr", "--method", "clsrivc", "--poles", "2", "--zeros", "0", "--invert", "position");
 const chosen = identify("chosen", arm, "--input", "Fx", "--output", "x", "--orders", "1:3", "--delay", "0.002", "--report-note", "Ward 3");
