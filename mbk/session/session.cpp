@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "mbk/core/version.h"
+#include "mbk/recording/read.h"
 #include "mbk/recording/write.h"
 #include "mbk/session/plan.h"
 
@@ -25,6 +26,16 @@ std::string now_text() {
   return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
+
+journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
+  journal::Ending ending;
+  ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
+  if (gate.tripped()) ending.detail = safety::sentence(gate.trip());
+  ending.overruns = times.missed;
+  return ending;
+}
+
+}  // namespace
 
 Header header_of(const Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
   Header header;
@@ -47,16 +58,6 @@ Header header_of(const Trial& trial, const device::Facts& facts, const perturbat
   for (const auto& event : schedule.events()) header.events.push_back({event.time, event.name, event.value});
   return header;
 }
-
-journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
-  journal::Ending ending;
-  ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
-  if (gate.tripped()) ending.detail = safety::sentence(gate.trip());
-  ending.overruns = times.missed;
-  return ending;
-}
-
-}  // namespace
 
 fs::path journal_of(const fs::path& recording) {
   return recording.string() + ".journal";
@@ -128,6 +129,16 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
     return tl::unexpected(recording.error());
   }
   return outcome;
+}
+
+Result<void> annotate(const fs::path& file, const std::vector<std::string>& notes) {
+  auto recording = recording::read(file, {});
+  if (!recording) return tl::unexpected(recording.error());
+  const auto format = recording::format_of(file);
+  if (!format) return tl::unexpected(format.error());
+  std::string& text = recording->metadata["notes"];
+  for (const std::string& note : notes) text += (text.empty() ? "" : "\n") + note;
+  return recording::write(*recording, file, *format, true);
 }
 
 Result<Recording> recover(const fs::path& file, const fs::path& target, bool overwrite, bool keep) {
