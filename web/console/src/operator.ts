@@ -1,4 +1,5 @@
 // The operator's page: what happens, whether it is safe, and what to do next.
+import uplotLicence from "uplot/LICENSE?raw";
 import { h } from "../../report/src/dom";
 import { EstimatePanel } from "./estimate";
 import { histogram } from "./histogram";
@@ -81,7 +82,9 @@ class OperatorPage {
           h("section", { class: "signals", "aria-label": "Live signals" }, this.traces.element,
             h("section", { class: "machine", "aria-label": "Timing of the loop" }, this.histograms, this.facts)),
           this.estimate.element),
-        h("footer", {}, this.links)));
+        h("footer", {}, this.links,
+          h("details", { class: "licences" }, h("summary", {}, "Software inside this page, and its licence"),
+            h("p", {}, "The traces are drawn with uPlot."), h("pre", { tabindex: 0, role: "group", "aria-label": "uPlot: licence" }, uplotLicence)))));
     this.stop.addEventListener("click", () => this.pressStop());
     addEventListener("keydown", (event) => this.key(event), { capture: true });
     addEventListener("keyup", (event) => {
