@@ -106,11 +106,6 @@ class StatusLine {
   std::chrono::steady_clock::time_point next_;
 };
 
-std::string time_text(const realtime::CycleRecord& record) {
-  return fmt::format("median {:.1f} µs, p99.9 {:.1f} µs, worst {:.1f} µs", 1e-3 * record.quantile(0.5),
-                     1e-3 * record.quantile(0.999), 1e-3 * static_cast<double>(record.worst()));
-}
-
 std::string outcome_text(const session::TrialOutcome& outcome, const session::Pace& pace) {
   std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ending.how);
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
@@ -188,8 +183,7 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
     });
   }();
   if (!outcome) return report_error(outcome.error());
-  console.finish(*outcome);
-  std::string text = outcome_text(*outcome, pace);
+  std::string text = outcome_text(*outcome, pace) + console.finish(*outcome);
   const bool stopped = outcome->trip.reason != safety::Reason::none;
   Measured measured;
   if (!stopped && arguments.measure) {

@@ -18,8 +18,11 @@ using console::Question;
 using session::Trial;
 
 void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
-  command.add_flag("--console,!--no-console", arguments.wanted,
-                   "serve a page to watch and stop it, on this machine only; the default at a terminal");
+  command.add_flag_callback(
+      "--console", [&arguments] { arguments.wanted = true; },
+      "serve a page to watch and stop it, on this machine only; the default at a terminal");
+  command.add_flag_callback(
+      "--no-console", [&arguments] { arguments.wanted = false; }, "no such page");
   command.add_option("--port", arguments.port, "of the console, instead of any that is free")
       ->type_name("N")
       ->check(whole_number(0, 65535));
@@ -30,6 +33,11 @@ measurement::Options measurement_options_of(const Trial& trial) {
   measurement::Options options;
   options.identify.handle_mass = trial.planar().robot.handle_mass;
   return options;
+}
+
+std::string time_text(const realtime::CycleRecord& record) {
+  return fmt::format("median {:.1f} µs, p99.9 {:.1f} µs, worst {:.1f} µs", 1e-3 * record.quantile(0.5),
+                     1e-3 * record.quantile(0.999), 1e-3 * static_cast<double>(record.worst()));
 }
 
 Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const std::vector<Trial>& trials,
@@ -75,9 +83,18 @@ void RunConsole::watch(std::span<const journal::Tick> ticks) {
   if (console_) console_->watch(ticks);
 }
 
-void RunConsole::finish(const session::TrialOutcome& outcome) {
-  if (console_) console_->finish(outcome);
+std::string RunConsole::finish(const session::TrialOutcome& outcome) {
   last_ = outcome.recording;
+  if (!console_) return {};
+  console_->finish(outcome);
+  const auto with = console_->times(true), without = console_->times(false);
+  if (with.lateness.count() == 0 || without.lateness.count() == 0) return {};
+  std::string text;
+  for (const auto& [name, times] : {std::pair{"with pages open", with}, {"without", without}}) {
+    text += fmt::format("  {}, {} ticks: compute {}; lateness {}\n", name, times.lateness.count(),
+                        time_text(times.compute), time_text(times.lateness));
+  }
+  return text;
 }
 
 Result<result::Measured> RunConsole::measured(const Recording& recording, const measurement::Options& options) {

@@ -23,6 +23,9 @@ void add_console_options(CLI::App& command, ConsoleArguments& arguments);
 /// How a trial is measured, while it runs and after it.
 [[nodiscard]] measurement::Options measurement_options_of(const session::Trial& trial);
 
+/// "median 4.3 µs, p99.9 …, worst …"
+[[nodiscard]] std::string time_text(const realtime::CycleRecord& record);
+
 enum class AfterTrial { next, repeat, end };
 
 /// The console beside a run; every call is fine where there is none.
@@ -38,7 +41,8 @@ class RunConsole {
   [[nodiscard]] Result<void> begin(std::size_t index, const session::Trial& trial, const device::Facts& facts,
                                    const std::filesystem::path& target);
   void watch(std::span<const journal::Tick> ticks);
-  void finish(const session::TrialOutcome& outcome);
+  /// @returns  what pages cost the loop, where there were any for a part of the time; else nothing
+  [[nodiscard]] std::string finish(const session::TrialOutcome& outcome);
 
   /// Measures, and where there is a page that could open it makes the report too.   @fails  as measurement::measure
   [[nodiscard]] Result<result::Measured> measured(const Recording& recording, const measurement::Options& options);

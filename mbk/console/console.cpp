@@ -10,7 +10,11 @@
 
 #include "mbk/console/frame.h"
 #include "mbk/console/page.h"
+#include "mbk/control/sequencer.h"
 #include "mbk/core/version.h"
+#include "mbk/laboratory/scenario.h"
+#include "mbk/result/json.h"
+#include "mbk/safety/trip.h"
 
 namespace mbk::console {
 namespace {
@@ -133,7 +137,8 @@ void Console::begin(std::size_t index, const journal::Header& header, const meas
   pending_.clear();
   last_ = {};
   ticks_ = dropped_ticks_ = skipped_samples_ = next_number_ = 0;
-  compute_ = lateness_ = {};
+  times_ = {};
+  times_apart_ = {};
   trip_ = {};
   estimate_ = std::make_shared<std::string>(R"({"type":"estimate"})");
   Listed& listed = trials_[index];
@@ -148,11 +153,14 @@ void Console::begin(std::size_t index, const journal::Header& header, const meas
 void Console::watch(std::span<const Tick> ticks) {
   {
     const std::scoped_lock lock(mutex_);
+    Times& apart = times_apart_[server_->status().viewers > 0 ? 1 : 0];
     for (const Tick& tick : ticks) {
       dropped_ticks_ += tick.number - next_number_;
       next_number_ = tick.number + 1;
-      if (tick.number > 0) compute_.add(static_cast<std::int64_t>(1e9 * static_cast<double>(tick.compute)));
-      lateness_.add(static_cast<std::int64_t>(1e9 * tick.late));
+      for (Times* times : {&times_, &apart}) {
+        if (tick.number > 0) times->compute.add(static_cast<std::int64_t>(1e9 * static_cast<double>(tick.compute)));
+        times->lateness.add(static_cast<std::int64_t>(1e9 * tick.late));
+      }
       const auto reason = static_cast<safety::Reason>(tick.reason);
       if (reason != trip_.reason) trip_ = {reason, tick.time, tick.number, 0.0, 0.0};
       changed_ = changed_ || tick.phase != last_.phase || tick.reason != last_.reason;
@@ -178,6 +186,11 @@ void Console::finish(const session::TrialOutcome& outcome) {
   dropped_ticks_ = outcome.ending.dropped;
   running_ = false;
   changed_ = true;
+}
+
+Console::Times Console::times(bool watched) {
+  const std::scoped_lock lock(mutex_);
+  return times_apart_[watched ? 1 : 0];
 }
 
 void Console::show_report(std::string html, std::string why) {
@@ -340,7 +353,7 @@ std::string Console::state_locked() const {
                  {"sentence", held ? "stopped while nothing ran: nothing begins before a reset" : sentence_of(trip_)},
                  {"cut", last_.cut != 0},
                  {"enabled", last_.enabled != 0}}},
-               {"times", {{"compute", times_json(compute_)}, {"lateness", times_json(lateness_)}}},
+               {"times", {{"compute", times_json(times_.compute)}, {"lateness", times_json(times_.lateness)}}},
                {"dropped_ticks", dropped_ticks_},
                {"skipped_samples", skipped_samples_},
                {"disk_free_bytes", disk_free_},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -55,6 +56,13 @@ class Console {
 
   /// The trial is over. Returns once the last estimate is there.
   void finish(const session::TrialOutcome& outcome);
+
+  /// How long the ticks of the last trial took and how late they came, apart for those while pages were open and for
+  /// the others.
+  struct Times {
+    realtime::CycleRecord compute, lateness;
+  };
+  [[nodiscard]] Times times(bool watched);
 
   /// Its report can be opened.   @param html  of report::page; empty: there is none, for a reason that `why` says
   void show_report(std::string html, std::string why = "");
@@ -114,7 +122,8 @@ class Console {
   std::vector<journal::Tick> pending_;
   journal::Tick last_;
   std::uint64_t ticks_ = 0, dropped_ticks_ = 0, skipped_samples_ = 0, next_number_ = 0;
-  realtime::CycleRecord compute_, lateness_;
+  Times times_;
+  std::array<Times, 2> times_apart_;  // without pages, with pages
   safety::Trip trip_;
   Message estimate_;
   int beats_ = 0;

@@ -288,7 +288,8 @@ TEST_F(ConsoleOfASession, MalformedMessagesAreRefusedLoggedAndAtLastEndTheConnec
       },
       boost::system::system_error);
   auto talkative = open(token_);
-  talkative->tell(std::string(100'000, ' '));
+  beast::error_code ignored;  // it is cut off in the middle
+  talkative->socket.write(net::buffer(std::string(100'000, ' ')), ignored);
   EXPECT_TRUE(soon([&] { return logged("a message that is too long"); }));
   EXPECT_EQ(get("/?token=" + token_).result(), http::status::ok);  // it lives
 }
@@ -387,8 +388,8 @@ TEST_F(ConsoleOfASession, AStuckViewerCostsABoundedRoomAndHoldsNobodyUp) {
     return console_->status().dropped_frames > 100;
   }));
   auto page = open(token_);
-  EXPECT_TRUE(page->read_until([](Page& one) { return one.state != Json(); }));
-  EXPECT_GT(page->state.at("dropped_frames").get<int>(), 100);
+  EXPECT_TRUE(page->read_until(
+      [](Page& one) { return one.state != Json() && one.state.at("dropped_frames").get<int>() > 100; }));
   EXPECT_EQ(page->state.at("dropped_ticks"), 0);
 }
 
@@ -408,7 +409,7 @@ TEST_F(ConsoleOfASession, SamplesThatAreTooManyForAFrameAreLeftOutAndCounted) {
 TEST_F(ConsoleOfASession, NotesReachTheRecording) {
   auto page = open(token_);
   page->tell(R"({"command":"note","text":"the participant talked"})");
-  page->tell(R"({"command":"note","text":"ä second one"})");
+  page->tell(R"({"command":"note","text":"ä second\none"})");
   std::vector<std::string> notes;
   EXPECT_TRUE(soon([&] {
     for (std::string& note : console_->take_notes()) notes.push_back(std::move(note));
@@ -416,10 +417,12 @@ TEST_F(ConsoleOfASession, NotesReachTheRecording) {
   }));
   const auto outcome = perform(session_, folder_ / "trial.h5");
   const auto before = recording::read(outcome.recording, {}).value();
-  ASSERT_TRUE(session::annotate(outcome.recording, {notes.front()}));
-  ASSERT_TRUE(session::annotate(outcome.recording, {notes.back()}));
+  for (const std::string& note : notes) {
+    const auto ok = session::annotate(outcome.recording, {note});
+    ASSERT_TRUE(ok) << ok.error().line();
+  }
   const auto after = recording::read(outcome.recording, {}).value();
-  EXPECT_EQ(after.metadata.at("notes"), "the participant talked\nä second one");
+  EXPECT_EQ(after.metadata.at("notes"), "the participant talked | ä second one");
   ASSERT_EQ(after.channels.size(), before.channels.size());
   for (std::size_t k = 0; k < before.channels.size(); ++k) {
     EXPECT_EQ(after.channels[k].name, before.channels[k].name);

@@ -3,6 +3,9 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
+
+#include "mbk/control/sequencer.h"
 
 namespace mbk::console {
 
@@ -31,11 +34,21 @@ std::string frame(std::span<const journal::Tick> ticks, const robot::Geometry& g
   put(at, static_cast<double>(first.number));
   for (const journal::Tick& tick : ticks) {
     const auto hand = robot::hand_position(geometry, {tick.joint[0], tick.joint[1]});
-    const std::array<double, kFrameColumns> row = {
-        tick.time - first.time, hand[0],           hand[1],           tick.force[0],
-        tick.force[1],          tick.reference[0], tick.reference[1], tick.acceleration[0],
-        tick.acceleration[1],   tick.torque[0],    tick.torque[1],    1e6 * static_cast<double>(tick.compute),
-        1e6 * tick.late};
+    const bool asked = tick.reason == 0 && static_cast<control::Phase>(tick.phase) != control::Phase::done;
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    const std::array<double, kFrameColumns> row = {tick.time - first.time,
+                                                   hand[0],
+                                                   hand[1],
+                                                   tick.force[0],
+                                                   tick.force[1],
+                                                   asked ? tick.reference[0] : nothing,
+                                                   asked ? tick.reference[1] : nothing,
+                                                   tick.acceleration[0],
+                                                   tick.acceleration[1],
+                                                   tick.torque[0],
+                                                   tick.torque[1],
+                                                   1e6 * static_cast<double>(tick.compute),
+                                                   1e6 * tick.late};
     for (const double value : row) put(at, static_cast<float>(value));
   }
   return bytes;

@@ -1,5 +1,6 @@
 #include "mbk/console/live_estimate.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <iterator>
 
 #include "mbk/preprocess/perturbation_only.h"
+#include "mbk/trial/recording.h"
 
 namespace mbk::console {
 namespace {
@@ -86,7 +88,9 @@ void LiveEstimate::make(std::unique_lock<std::mutex>& lock, bool final) {
   lock.unlock();
   journal_.ticks.insert(journal_.ticks.end(), came.begin(), came.end());
   const double seen = perturbed(journal_);
-  if (final || (seen >= kShortest && !came.empty() && came.back().perturbing())) {
+  if (seen < kShortest) {
+    if (final) done_({final, seen, bad_data(fmt::format("the perturbation went on for {:.1f} s only", seen))});
+  } else if (final || (!came.empty() && came.back().perturbing())) {
     done_({final, seen, estimate(journal_, options_)});
   }
   lock.lock();

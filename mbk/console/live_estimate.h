@@ -11,6 +11,7 @@
 #include "mbk/core/result.h"
 #include "mbk/journal/journal.h"
 #include "mbk/measurement/measure.h"
+#include "mbk/result/json.h"
 
 namespace mbk::console {
 

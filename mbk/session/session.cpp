@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
+#include <utility>
 
+#include "mbk/core/printable.h"
 #include "mbk/core/version.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/write.h"
@@ -137,7 +140,10 @@ Result<void> annotate(const fs::path& file, const std::vector<std::string>& note
   const auto format = recording::format_of(file);
   if (!format) return tl::unexpected(format.error());
   std::string& text = recording->metadata["notes"];
-  for (const std::string& note : notes) text += (text.empty() ? "" : "\n") + note;
+  for (std::string note : notes) {
+    std::ranges::replace(note, '\n', ' ');
+    text += (text.empty() ? "" : " | ") + printable(std::move(note));
+  }
   return recording::write(*recording, file, *format, true);
 }
 

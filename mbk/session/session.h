@@ -62,7 +62,7 @@ class Session {
 [[nodiscard]] journal::Header header_of(const Trial& trial, const device::Facts& facts,
                                         const perturbation::Schedule& schedule);
 
-/// Adds remarks to the metadata of a recording, as `notes`, one on each line.
+/// Adds remarks to the metadata of a recording, as `notes` in one line with " | " between them.
 /// @fails  data: the recording cannot be read or written.
 [[nodiscard]] Result<void> annotate(const std::filesystem::path& recording, const std::vector<std::string>& notes);
 

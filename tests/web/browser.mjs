@@ -31,7 +31,11 @@ const { chromium } = library("playwright-core");
 const axeSource = readFileSync((library("axe-core"), packages.resolve("axe-core/axe.min.js")), "utf8");
 
 export const folder = mkdtempSync(join(tmpdir(), "mbk-web-"));
-process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+const children = new Set();
+process.on("exit", () => {
+  for (const child of children) child.kill("SIGKILL");
+  rmSync(folder, { recursive: true, force: true });
+});
 export const pictures = join(process.cwd(), "screenshots");
 mkdirSync(pictures, { recursive: true });
 
@@ -95,7 +99,7 @@ export function start(...args) {
   const child = spawn(program("MBK"), args, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
   const running = { said: "", child, code: new Promise((resolve) => child.on("close", resolve)) };
   for (const stream of [child.stdout, child.stderr]) stream.setEncoding("utf8").on("data", (text) => { running.said += text; });
-  process.on("exit", () => child.kill("SIGKILL"));
+  children.add(child);
   running.until = async (pattern) => {
     for (let k = 0; k < 600; ++k) {
       const found = pattern.exec(running.said);

@@ -77,7 +77,7 @@ export class EstimatePanel {
         history.length > 1
           ? `95 % intervals, ${(100 * (history.at(-1) as number)).toFixed(0)} % as wide as in the first estimate. `
           : "± is half of the 95 % interval. ",
-        `Model explains ${result.fit.VAF.map((value, k) => `${value === null ? "–" : value.toFixed(0)} % in ${"xy"[k]}`).join(", ")}.`,
+        `Model explains ${result.fit.VAF.map((value, k) => `${value === null ? "–" : value.toFixed(1)} % in ${"xy"[k]}`).join(", ")}.`,
         result.usable ? "" : h("strong", { class: "care-text" }, " ▲ Not usable yet."),
       ),
     );

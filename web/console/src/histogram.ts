@@ -6,7 +6,7 @@ import type { Times } from "./stream";
 const [low, high] = [1, 1e5]; // [µs]
 const [width, height, foot] = [420, 74, 22];
 const x = (us: number): number => (width * Math.log(Math.min(Math.max(us, low), high) / low)) / Math.log(high / low);
-const labels: [number, string][] = [[1, "1 µs"], [10, "10"], [100, "100"], [1000, "1 ms"], [10000, "10"], [100000, "100"]];
+const labels: [number, string][] = [[1, "1 µs"], [10, "10"], [100, "100 µs"], [1000, "1 ms"], [10000, "10"], [100000, "100 ms"]];
 
 export function time(us: number): string {
   return us < 1000 ? `${significant(us)} µs` : `${significant(us / 1000)} ms`;

@@ -9,7 +9,7 @@ interface View {
   magnified: number;
 }
 
-const field = 0.075; // from the middle to the nearer edge, unmagnified [m]
+const field = 0.05; // from the middle to the nearer edge, unmagnified [m]
 const handleRadius = 0.008; // [m]
 const targetRadius = 0.0125; // [m]
 const [background, target, handle, quiet] = ["#10212b", "#e8e2d0", "#f0b429", "#5d7482"];

@@ -5,13 +5,11 @@ import { h } from "../../report/src/dom";
 import { type Frame, column } from "./stream";
 
 const span = 8; // [s]
-const buckets = 800; // over the span
-const kept = span + 1; // [s]
+const buckets = 400; // over the span
+const width = span / buckets; // [s]
+const columns = 13;
 
 interface Line {
-  label: string;
-  colour: string;
-  dash?: number[];
   from: number; // column
   scale: number;
   offset: number;
@@ -27,9 +25,9 @@ class Trace {
   readonly element: HTMLElement;
   private readonly plot: uPlot;
   private readonly drawing = h("div", { class: "trace-plot", "aria-hidden": true });
-  private lines: Line[] = [];
+  private lines: (Line | undefined)[] = [];
 
-  constructor(private readonly title: string, unit: string, labels: string[], least: number) {
+  constructor(title: string, unit: string, labels: string[], least: number) {
     const series = labels.map((label, k) => ({
       label,
       stroke: k % 2 === 0 ? blue : vermilion,
@@ -73,89 +71,79 @@ class Trace {
     }).observe(this.drawing);
   }
 
-  show(lines: Line[]): void {
+  /** Which column each line shows; undefined: none. */
+  show(lines: (Line | undefined)[]): void {
     this.lines = lines;
   }
 
   draw(samples: Samples, to: number): void {
-    const columns = samples.envelope(this.lines, to - span, to);
-    this.plot.setData(columns as unknown as uPlot.AlignedData, false);
-    this.plot.batch(() => {
-      this.plot.setScale("x", { min: to - span, max: to });
-      const values = columns.slice(1).flat().filter((value) => value !== null) as number[];
-      let [low, high] = [0, 0];
+    const table = samples.lines(this.lines);
+    let [low, high] = [0, 0];
+    for (const values of table.slice(1)) {
       for (const value of values) {
+        if (value === null) continue;
         if (value < low) low = value;
         if (value > high) high = value;
       }
+    }
+    this.plot.batch(() => {
+      this.plot.setData(table as unknown as uPlot.AlignedData, false);
+      this.plot.setScale("x", { min: to - span, max: to });
       this.plot.setScale("y", { min: low, max: high });
     });
-    this.drawing.dataset["title"] = this.title;
   }
 }
 
-/** The samples of the last seconds. */
+/** The last seconds, in buckets of time that stay where they are, so that nothing shimmers: of each column the lowest and
+ * the highest sample. */
 class Samples {
-  private times = new Float64Array(1 << 16);
-  private rows = new Float32Array(this.times.length * 13);
-  private from = 0;
-  private to = 0; // exclusive; both grow, and are taken modulo the capacity
+  private readonly capacity = buckets + 2;
+  private readonly lows = new Float32Array(this.capacity * columns);
+  private readonly highs = new Float32Array(this.capacity * columns);
+  private readonly numbers = new Int32Array(this.capacity).fill(-1); // of the bucket in each place
+  private last = -1;
 
   clear(): void {
-    this.from = this.to;
+    this.numbers.fill(-1);
+    this.last = -1;
   }
 
   add(frame: Frame): void {
-    const capacity = this.times.length;
+    const { values } = frame;
     for (let i = 0; i < frame.samples; ++i) {
-      const at = this.to++ % capacity;
-      this.times[at] = frame.time + (frame.values[i * frame.columns] as number);
-      this.rows.set(frame.values.subarray(i * frame.columns, i * frame.columns + 13), at * 13);
+      const row = i * frame.columns;
+      const number = Math.floor((frame.time + (values[row] as number)) / width);
+      const at = number % this.capacity;
+      const place = at * columns;
+      const fresh = this.numbers[at] !== number;
+      this.numbers[at] = this.last = number;
+      for (let k = 1; k < columns; ++k) {
+        const value = values[row + k] as number;
+        if (fresh || value < (this.lows[place + k] as number)) this.lows[place + k] = value;
+        if (fresh || value > (this.highs[place + k] as number)) this.highs[place + k] = value;
+      }
     }
-    this.from = Math.max(this.from, this.to - capacity);
-    while (this.from < this.to && this.time(this.from) < this.latest() - kept) ++this.from;
   }
 
   latest(): number {
-    return this.to > this.from ? this.time(this.to - 1) : 0;
+    return (this.last + 1) * width;
   }
 
-  /** For each bucket with samples its lowest and its highest value, of every line; null where samples are missing. */
-  envelope(lines: Line[], from: number, to: number): (number | null)[][] {
-    const width = (to - from) / buckets;
-    const columns: (number | null)[][] = [[], ...lines.map((): (number | null)[] => [])];
-    let i = this.from;
-    while (i < this.to && this.time(i) < from) ++i;
-    const lows = new Float64Array(lines.length);
-    const highs = new Float64Array(lines.length);
-    let last = -1;
-    while (i < this.to) {
-      const bucket = Math.floor((this.time(i) - from) / width);
-      lows.fill(Infinity);
-      highs.fill(-Infinity);
-      const begin = i;
-      for (; i < this.to && (i === begin || this.time(i) < from + (bucket + 1) * width); ++i) {
-        const row = (i % this.times.length) * 13;
-        lines.forEach((line, k) => {
-          const value = line.scale * ((this.rows[row + line.from] as number) - line.offset);
-          if (value < (lows[k] as number)) lows[k] = value;
-          if (value > (highs[k] as number)) highs[k] = value;
-        });
-      }
-      const middle = from + (bucket + 0.5) * width;
-      if (last >= 0 && bucket > last + 5) {
-        columns[0]?.push(middle - width);
-        for (const each of columns.slice(1)) each.push(null);
-      }
-      columns[0]?.push(middle - 0.2 * width, middle + 0.2 * width);
-      lines.forEach((_, k) => columns[k + 1]?.push(lows[k] as number, highs[k] as number));
-      last = bucket;
+  /** Time, and of every line the lowest and the highest value of each bucket; null where there is none. */
+  lines(lines: (Line | undefined)[]): (number | null)[][] {
+    const table: (number | null)[][] = [[], ...lines.map((): (number | null)[] => [])];
+    for (let number = Math.max(0, this.last - buckets); number <= this.last; ++number) {
+      const at = number % this.capacity;
+      const there = this.numbers[at] === number;
+      const middle = (number + 0.5) * width;
+      (table[0] as number[]).push(middle - 0.2 * width, middle + 0.2 * width);
+      lines.forEach((line, k) => {
+        const low = line && there ? line.scale * ((this.lows[at * columns + line.from] as number) - line.offset) : NaN;
+        const high = line && there ? line.scale * ((this.highs[at * columns + line.from] as number) - line.offset) : NaN;
+        (table[k + 1] as (number | null)[]).push(Number.isFinite(low) ? low : null, Number.isFinite(high) ? high : null);
+      });
     }
-    return columns;
-  }
-
-  private time(i: number): number {
-    return this.times[i % this.times.length] as number;
+    return table;
   }
 }
 
@@ -165,6 +153,7 @@ export class Traces {
   private readonly force = new Trace("Force of the hand on the robot", "N", ["x", "y", "command x", "command y"], 2);
   private readonly position = new Trace("Position from the test location", "mm", ["x", "y", "reference x", "reference y"], 5);
   private trial = -1;
+  private newest = 0; // [s]
   private fresh = false;
 
   constructor() {
@@ -173,25 +162,24 @@ export class Traces {
 
   /** What belongs to the trial: where home is, and what its reference is. */
   choose(home: [number, number], referenceUnit: "m" | "N"): void {
-    const line = (label: string, from: number, scale: number, offset: number): Line =>
-      ({ label, colour: "", from, scale, offset });
-    const nothing = (label: string) => line(label, column.time, 0, 0);
-    const forces = [line("x", column.force, 1, 0), line("y", column.force + 1, 1, 0)];
-    const places = [line("x", column.hand, 1000, home[0]), line("y", column.hand + 1, 1000, home[1])];
-    const referenced = ["x", "y"].map((axis, k) =>
-      line(axis, column.reference + k, referenceUnit === "N" ? 1 : 1000, referenceUnit === "N" ? 0 : (home[k] as number)));
-    this.force.show([...forces, ...(referenceUnit === "N" ? referenced : ["x", "y"].map(nothing))]);
-    this.position.show([...places, ...(referenceUnit === "m" ? referenced : ["x", "y"].map(nothing))]);
+    const pair = (from: number, scale: number, offset = [0, 0]): Line[] =>
+      [0, 1].map((axis) => ({ from: from + axis, scale, offset: offset[axis] as number }));
+    const millimetres = 1000;
+    const force = referenceUnit === "N" ? pair(column.reference, 1) : [];
+    const place = referenceUnit === "m" ? pair(column.reference, millimetres, home) : [];
+    this.force.show([...pair(column.force, 1), force[0], force[1]]);
+    this.position.show([...pair(column.hand, millimetres, home), place[0], place[1]]);
     this.force.element.classList.toggle("with-reference", referenceUnit === "N");
     this.position.element.classList.toggle("with-reference", referenceUnit === "m");
   }
 
   add(frame: Frame): void {
-    if (frame.trial !== this.trial || frame.time < this.samples.latest() - 1e-9) {
+    if (frame.trial !== this.trial || frame.time < this.newest) {
       this.samples.clear();
       this.trial = frame.trial;
     }
     this.samples.add(frame);
+    this.newest = frame.time;
     this.fresh = true;
   }
 
