@@ -8,5 +8,6 @@ namespace mbk::app {
 Action add_robot_describe(CLI::App& group);
 Action add_robot_identify(CLI::App& group);
 Action add_robot_force(CLI::App& group);
+Action add_robot_check(CLI::App& group);
 
 }  // namespace mbk::app

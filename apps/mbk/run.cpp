@@ -12,7 +12,6 @@
 #include "apps/mbk/run_console.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
-#include "mbk/laboratory/simulated_device.h"
 #include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/read.h"
 #include "mbk/report/text.h"
@@ -40,17 +39,9 @@ struct Arguments {
 };
 
 Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
-  std::string text;
-  fs::path file = arguments.experiment;
-  if (const auto* ready = laboratory::find_ready_scenario(arguments.experiment)) {
-    text = ready->text;
-    file += ".toml";
-  } else {
-    auto read = read_text(file);
-    if (!read) return tl::unexpected(read.error());
-    text = std::move(*read);
-  }
-  auto trials = session::read_experiment(text, file);
+  const auto text = read_scenario_text(arguments.experiment);
+  if (!text) return tl::unexpected(text.error());
+  auto trials = session::read_experiment(text->text, text->file);
   if (!trials) return trials;
   std::vector<Trial> chosen;
   for (const std::string& name : arguments.trials) {
@@ -171,7 +162,7 @@ fs::path next_free(const fs::path& target) {
 std::optional<int> perform(Session& session, const Trial& trial, std::size_t index, const fs::path& target,
                            const session::Pace& pace, const Arguments& arguments, RunConsole& console, bool& repeat) {
   repeat = false;
-  auto robot = laboratory::SimulatedDevice::create(trial.scenario);
+  auto robot = session::make_device(trial.device, trial.scenario);
   if (!robot) return report_error(robot.error());
   if (auto ok = console.begin(index, trial, (*robot)->facts(), target); !ok) return report_error(ok.error());
   const auto outcome = [&] {

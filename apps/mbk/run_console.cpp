@@ -8,6 +8,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/report_file.h"
 #include "mbk/console/page.h"
+#include "mbk/control/trial_control.h"
 #include "mbk/report/html.h"
 #include "mbk/session/plan.h"
 
@@ -32,6 +33,9 @@ void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
 measurement::Options measurement_options_of(const Trial& trial) {
   measurement::Options options;
   options.identify.handle_mass = trial.planar().robot.handle_mass;
+  if (!std::holds_alternative<control::PositionMode>(trial.planar().control)) {
+    options.identify.method = Method::instrumental_variables;  // the person answers what least squares takes for noise
+  }
   return options;
 }
 

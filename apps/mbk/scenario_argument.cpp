@@ -9,18 +9,24 @@
 
 namespace mbk::app {
 
-Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument) {
+Result<ScenarioText> read_scenario_text(const std::string& argument) {
   if (const auto* ready = laboratory::find_ready_scenario(argument)) {
-    return laboratory::read_scenarios(ready->text, std::string(ready->name) + ".toml");
+    return ScenarioText{std::string(ready->text), std::string(ready->name) + ".toml"};
   }
   std::error_code error;
   if (!std::filesystem::exists(argument, error)) {
     return bad_data("no such file, and no ready scenario of that name", "'mbk simulate --list' names the ready ones",
                     argument);
   }
-  const auto text = read_text(argument);
+  auto text = read_text(argument);
   if (!text) return tl::unexpected(text.error());
-  return laboratory::read_scenarios(*text, argument);
+  return ScenarioText{*std::move(text), argument};
+}
+
+Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument) {
+  const auto text = read_scenario_text(argument);
+  if (!text) return tl::unexpected(text.error());
+  return laboratory::read_scenarios(text->text, text->file);
 }
 
 std::vector<std::string> ready_scenario_names() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,18 @@
 
 namespace mbk::app {
 
-/// The trials behind a SCENARIO argument: a ready scenario by its name, or a TOML file.
-/// @fails  data: neither; as read_scenarios.
+/// A file's text, and how messages call it.
+struct ScenarioText {
+  std::string text;
+  std::filesystem::path file;
+};
+
+/// The text behind a SCENARIO or EXPERIMENT argument: a ready one by its name, or a TOML file.
+/// @fails  data: neither.
+[[nodiscard]] Result<ScenarioText> read_scenario_text(const std::string& argument);
+
+/// The trials behind a SCENARIO argument.
+/// @fails  as read_scenario_text, read_scenarios.
 [[nodiscard]] Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument);
 
 /// What `mbk simulate --list` names.

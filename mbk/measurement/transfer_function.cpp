@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mbk/recording/channel_table.h"
 #include "mbk/dsp/decimate.h"
+#include "mbk/recording/channel_table.h"
 
 namespace mbk::measurement {
 namespace {

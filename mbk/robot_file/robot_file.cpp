@@ -192,6 +192,7 @@ Result<Bodies> read_urdf(const Section& s, const Urdf& urdf) {
 Result<RobotDescription> described(const config::Document& document, const FindUrdf& find_urdf) {
   enum class Kind { planar, one_axis, urdf };
   const Section root = document.root(), s = root.section("robot"), drive = root.section("drive");
+  root.leave_to_others("device");  // how it is reached is the session's affair
   const Kind kind =
       s.required_choice<Kind>("kind", {{"planar", Kind::planar}, {"one_axis", Kind::one_axis}, {"urdf", Kind::urdf}});
   RobotDescription description;

@@ -11,6 +11,7 @@
 #include "mbk/core/result.h"
 #include "mbk/laboratory/scenario.h"
 #include "mbk/safety/limits.h"
+#include "mbk/session/device_plan.h"
 
 namespace mbk::session {
 
@@ -27,12 +28,14 @@ struct Person {
   bool withdrawn = false;  ///< the person has withdrawn: no further trial, and the data are not to be used
 };
 
-/// One trial of an experiment: how the robot is driven, what the gate allows, and for a simulated robot who holds it.
+/// One trial of an experiment: which robot it runs on, how that is driven, what the gate allows, and for a simulated
+/// robot who holds it.
 struct Trial {
   std::string name;               ///< of the [[trial]]; empty where the file has none
   laboratory::Scenario scenario;  ///< planar; its robot, control, perturbation and sensors
   control::SequenceOptions sequence;
   safety::Limits limits;
+  DevicePlan device;
   Person person;
   std::string protocol;  ///< name of the file without folder and ending
 
@@ -44,6 +47,7 @@ struct Trial {
 /// The trials that an experiment file describes, in its order. It has the sections of a scenario and besides
 ///   [session]  soft_start_s, move_speed_mm_per_s, settle_s, handover_s
 ///   [safety]   a key for each member of safety::Limits
+///   [device]   which robot: a simulated one, or one behind UDP or a plug-in, and how it is wired
 ///   [person]   number, age_years, handedness, height_cm, weight_kg, upper_arm_mm, forearm_mm, consent, withdrawn
 /// Every one of them may be left out, so that each planar scenario is an experiment too.
 /// @param file  how messages call it

@@ -90,6 +90,7 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     trial.sequence = read_sequence(root.section("session"), trial.planar());
     trial.limits = read_limits(root.section("safety"));
     trial.person = read_person(root.section("person"));
+    trial.device = read_device(root.section("device"), file.parent_path());
     if (auto ok = part.document.finish(); !ok) return tl::unexpected(ok.error());
     trials.push_back(std::move(trial));
   }

@@ -100,7 +100,7 @@ class Peaks {
 };
 
 std::string limit_line(const char* what, double value, double limit, const char* unit) {
-  return fmt::format("  {:<28}{:>9.3g} {:<5} of {:>7.3g}{}\n", what, value, unit, limit,
+  return fmt::format("  {:<34}{:>8.3g} {:<4} of {:>5.3g}{}\n", what, value, unit, limit,
                      value > 0.8 * limit ? "   close to the limit" : "");
 }
 
@@ -166,11 +166,11 @@ std::string plan_text(const Trial& trial, const Plan& plan, const Rehearsal& reh
   std::string text = fmt::format("{}{}{}\n", trial.protocol, trial.name.empty() ? "" : ", trial " + trial.name,
                                  trial.scenario.condition.empty() ? "" : ": " + trial.scenario.condition);
   text += fmt::format(
-      "  {:.1f} s in all: soft start {:g} s, way to the test location, {:g} s of rest, perturbation "
-      "{:.1f} s, way back, soft stop {:g} s\n",
+      "  in all        {:.1f} s: soft start {:g} s, way to the test location, {:g} s of rest,\n"
+      "                perturbation {:.1f} s, way back, soft stop {:g} s\n",
       rehearsal.duration, trial.sequence.soft_start, trial.sequence.settle, perturbation, trial.sequence.soft_start);
   text += report::schedule_text(plan.schedule);
-  text += "peaks in a rehearsal on the simulated robot, and the gate's limits\n";
+  text += "  peaks in a rehearsal on the simulated robot, and the gate's limits\n";
   text += limit_line("force of the motors at the handle", rehearsal.handle_force, limits.handle_force, "N");
   text += limit_line("torque of joint 1", rehearsal.joint_torque[0], limits.joint_torque[0], "N·m");
   text += limit_line("torque of joint 2", rehearsal.joint_torque[1], limits.joint_torque[1], "N·m");

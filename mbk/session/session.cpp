@@ -43,7 +43,8 @@ journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, cons
 Header header_of(const Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
   Header header;
   header.metadata = metadata_of(trial.person);
-  header.metadata.merge(laboratory::scenario_metadata(trial.scenario));
+  // The scenario's participant is at the handle only where the robot is simulated.
+  if (trial.device.simulated()) header.metadata.merge(laboratory::scenario_metadata(trial.scenario));
   header.metadata["protocol"] = trial.protocol;
   if (!trial.name.empty()) header.metadata["trial"] = trial.name;
   if (!trial.scenario.condition.empty()) header.metadata["condition"] = trial.scenario.condition;
@@ -85,6 +86,10 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   }
   if (fs::exists(target)) {
     return fail(ErrorKind::usage, "is there already", "choose another name, or move it away", target.string());
+  }
+  if (pace_.virtual_clock && robot.facts().keeps_time) {
+    return bad_usage(fmt::format("{} keeps its own time, which a virtual clock cannot hurry", robot.facts().name),
+                     "run it without --fast and --speed; a simulation behind UDP can wait: lock_step = true");
   }
   auto plan = make_plan(trial);
   if (!plan) return tl::unexpected(plan.error());

@@ -38,7 +38,8 @@ class Session {
   /// Everything that can be known to fail is asked before the robot moves.
   /// @param target  of the recording (.h5); the journal stands beside it as NAME.h5.journal
   /// @param watch  see Recorder; may be empty
-  /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; a limit or check
+  /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; the robot keeps
+  ///         its own time and the clock is virtual; a limit or check
   ///         failed, which the message names. data: the robot does not answer; the folder, space or disk.
   [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const Trial& trial,
                                              const std::filesystem::path& target, const Watch& watch = {});

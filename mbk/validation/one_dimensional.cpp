@@ -258,8 +258,7 @@ void add_rows(std::size_t condition, Outcomes outcomes, ValidationTable& table) 
                          std::optional<std::pair<double, double>> wanted) {
     table.rows.push_back(share_row(name + ": " + what, outcomes, is, wanted));
   };
-  share(
-      "a stable model settled", [](const Outcome& outcome) { return outcome.impedance.holds; }, {});
+  share("a stable model settled", [](const Outcome& outcome) { return outcome.impedance.holds; }, {});
   share("so it did in continuous time", [](const Outcome& outcome) { return outcome.continuous; }, {});
 }
 
@@ -274,9 +273,9 @@ void add_contrasts(Outcomes all, std::size_t each, ValidationTable& table) {
     const double rigid = median_at(all, each, time, kRigid), off = median_at(all, each, time, kOff);
     table.rows.push_back(row_of(fmt::format("rigid, a switch every {:g} s: median VAF", kSwitchingTimes[time]), rigid,
                                 std::pair(-kNone, kHolds)));
-    ValidationRow row = row_of(fmt::format("a switch every {:g} s: unexplained, rigid over controller off",
-                                           kSwitchingTimes[time]),
-                               (100.0 - rigid) / (100.0 - off), std::pair(kContrast, kNone));
+    ValidationRow row =
+        row_of(fmt::format("a switch every {:g} s: unexplained, rigid over controller off", kSwitchingTimes[time]),
+               (100.0 - rigid) / (100.0 - off), std::pair(kContrast, kNone));
     row.unit = "times";
     table.rows.push_back(std::move(row));
   }

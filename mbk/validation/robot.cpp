@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "mbk/numeric/parallel.h"
 #include "mbk/numeric/statistics.h"
 #include "mbk/validation/robot_trials.h"
+#include "mbk/validation/seeded_runs.h"
 #include "mbk/validation/simulated_trials.h"
 #include "mbk/validation/study.h"
 
@@ -140,21 +140,9 @@ void add_without_coulomb(const Runs& runs, const Vector& truth, ValidationTable&
 }  // namespace
 
 Result<ValidationTable> robot_study(const StudyOptions& options) {
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 50");
-  Runs runs(static_cast<std::size_t>(options.runs));
-  int done = 0;
-  const auto ran = numeric::parallel_for(
-      options.runs, options.threads,
-      [&](int i) -> Result<void> {
-        auto run = perform(options.seed + static_cast<std::uint64_t>(i));
-        if (!run) return tl::unexpected(run.error());
-        runs[static_cast<std::size_t>(i)] = std::move(*run);
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done, options.runs);
-      });
+  const auto ran = seeded_runs(options, 50, perform);
   if (!ran) return tl::unexpected(ran.error());
+  const Runs& runs = *ran;
   const auto truth = true_parameters(FrictionModel::full);
   if (!truth) return tl::unexpected(truth.error());
   const auto viscous_truth = true_parameters(FrictionModel::viscous);

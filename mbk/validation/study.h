@@ -79,8 +79,8 @@ struct Study {
 /// form)? The ready scenario one_axis_random_binary, ±2 N: output-error models of 4 poles and 3 zeros from place to
 /// force, judged on the last 10 s of each trial and on the other trials; beside it the same arm with its controller
 /// off, and relaxed, for several switching times of the force. A run is five trials of each. Wanted: a
-/// median VAF of at least 90 % for the other two, and at every switching time less for the rigid arm, with at least three
-/// times as much unexplained as without its controller.
+/// median VAF of at least 90 % for the other two, and at every switching time less for the rigid arm, with at least
+/// three times as much unexplained as without its controller.
 [[nodiscard]] Result<ValidationTable> one_dimensional_study(const StudyOptions& options);
 
 /// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of

@@ -12,7 +12,7 @@ from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, mak
 COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
             "completion", "manual", "passivity", "teleop")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
-               "robot": ("workspace", "describe", "identify", "force")}
+               "robot": ("workspace", "describe", "identify", "force", "check")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
 NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
     "--rate": ("0", "-1", "-1e300"),

@@ -13,6 +13,7 @@ import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PUBLIC = {"Eigen", "boost", "tl", "fmt"}  # outside libraries that may stand in headers
+OF_C = {"stddef.h", "stdint.h"}  # in headers that C reads too
 LONGEST_S = 600
 
 
@@ -56,6 +57,14 @@ class Installed(unittest.TestCase):
                 # The same code on the same bytes, each printed with every digit.
                 self.assertEqual(numbers, [one for row in wanted[matrix] for one in row], (name, matrix))
 
+    def test_a_driver_is_built_from_its_example(self):
+        example = self.prefix / "share/doc/mbk/examples/device_plugin"
+        self.configured("driver", example)
+        ran(program("CMAKE"), "--build", self.folder / "driver")
+        experiment = self.folder / "wheels.toml"
+        experiment.write_text((example / "experiment.toml").read_text().replace("build/", "driver/"))
+        self.assertIn("two wheels", ran(self.prefix / "bin/mbk", "robot", "check", experiment, "--live", "0.2"))
+
     def found(self, arguments, code=0):
         project = self.folder / "finding"
         project.mkdir(exist_ok=True)
@@ -86,7 +95,7 @@ class Installed(unittest.TestCase):
                     if left == '"':
                         self.assertTrue((self.include / name).exists())
                     elif "/" in name or "." in name:  # the rest is the standard library's
-                        self.assertIn(name.split("/")[0], PUBLIC)
+                        self.assertIn(name.split("/")[0], PUBLIC | OF_C)
 
     def test_every_header_compiles_by_itself(self):
         """A header that its own source file includes first has been compiled so by the build."""
