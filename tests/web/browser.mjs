@@ -112,9 +112,10 @@ export function start(...args) {
   return running;
 }
 
-/** A page on a report, or at an address. What it says on the console, which errors it meets and what it asks a network for is kept. */
-export async function open(file, options = {}) {
+/** A page on a report, or at an address; a `script` runs before its own. What it says on the console, which errors it meets and what it asks a network for is kept. */
+export async function open(file, { script, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, reducedMotion: "reduce", ...options });
+  if (script) await context.addInitScript(script);
   const page = await context.newPage();
   const said = [];
   const requests = [];

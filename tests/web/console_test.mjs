@@ -114,35 +114,51 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   assert.equal(of("whole_rigid_2.h5").notes, "better");
 });
 
-/** Displayed frames between the press and the picture of the trip, and where the server said so. */
-async function pressAndCount(page, press) {
+/** Keeps the time of the newest sample that came, by the trial's clock [s]. */
+function watchArrivals() {
+  globalThis.WebSocket = class extends WebSocket {
+    constructor(...args) {
+      super(...args);
+      this.addEventListener("message", ({ data }) => {
+        if (!(data instanceof ArrayBuffer)) return;
+        const view = new DataView(data);
+        const last = 32 + 4 * view.getUint16(6, true) * (view.getUint32(8, true) - 1);
+        globalThis.newestSample = view.getFloat64(16, true) + view.getFloat32(last, true);
+      });
+    }
+  };
+}
+
+/** From the newest sample that was there at the press to the trip, by the trial's clock; and displayed frames until the page
+ * says the reason. */
+async function pressAndMeasure(page, press) {
   await page.evaluate(() => {
-    const seen = (globalThis.stopSeen = { frames: 0, done: false });
-    const words = () => document.querySelector(".banner-words").textContent;
-    let pressed = false;
-    const begin = () => { pressed = true; };
-    document.querySelector(".stop").addEventListener("click", begin);
+    const seen = (globalThis.stopSeen = { frames: 0, done: false, pressed: 0 });
+    const begin = () => { seen.pressed ||= globalThis.newestSample; };
+    document.querySelector(".stop").addEventListener("click", begin, { capture: true });
     addEventListener("keydown", begin, { capture: true });
     const count = () => {
-      if (pressed) ++seen.frames;
-      if (/operator stopped it/.test(words())) seen.done = true;
+      if (seen.pressed) ++seen.frames;
+      const reason = /operator stopped it, at ([\d.]+) s/.exec(document.querySelector(".banner-words").textContent);
+      if (reason) Object.assign(seen, { done: true, tripped: Number(reason[1]) });
       else requestAnimationFrame(count);
     };
     requestAnimationFrame(count);
   });
   await press();
   await page.waitForFunction(() => globalThis.stopSeen.done, undefined, { timeout: 20_000 });
-  return page.evaluate(() => globalThis.stopSeen.frames);
+  const { frames, tripped, pressed } = await page.evaluate(() => globalThis.stopSeen);
+  return `tripped ${(1000 * (tripped - pressed)).toFixed(0)} ms behind the newest sample that was there, reason displayed in frame ${frames}`;
 }
 
 test("the stop button and the space bar trip the gate; a reset takes two steps", async () => {
   const running = await run("stopped", "--wait", "--speed", "1", "--trial", "relaxed");
-  const operator = await visit(running.operator);
+  const operator = await visit(running.operator, { script: watchArrivals });
   const { page, click, banner } = operator;
   await click("Begin: relaxed");
   await banner("Running");
   await page.waitForTimeout(1500);
-  const byButton = await pressAndCount(page, () => page.locator(".stop").click());
+  const byButton = await pressAndMeasure(page, () => page.locator(".stop").click());
   await page.getByRole("button", { name: "Reset …" }).waitFor();
   assert.match(await page.textContent(".banner"), /Stopped.*the operator stopped it/);
   assert.deepEqual(await violations(page), []);
@@ -151,9 +167,10 @@ test("the stop button and the space bar trip the gate; a reset takes two steps",
   await click("The reason is gone");
   await click("Repeat this trial");
   await banner("Running");
+  await page.waitForTimeout(1500);
   await page.getByRole("button", { name: "End this trial early" }).focus();  // the space bar does not press it
-  const bySpace = await pressAndCount(page, () => page.keyboard.press("Space"));
-  console.log(`displayed frames from the press to the reason of the trip: button ${byButton}, space bar ${bySpace}`);
+  const bySpace = await pressAndMeasure(page, () => page.keyboard.press("Space"));
+  console.log(`after the press: by the button ${byButton}; by the space bar ${bySpace}`);
   await click("End the session");
   assert.equal(await ended(operator, running), 5);
   for (const name of ["stopped.h5", "stopped_2.h5"]) {

@@ -3,7 +3,8 @@ import type { Estimate } from "./stream";
 import { type Value, matrices, unitsOf } from "../../report/src/data";
 import { ellipsePanels } from "../../report/src/ellipses";
 import { h } from "../../report/src/dom";
-import { normal95, withHalfWidth } from "../../report/src/format";
+import { plainWarnings } from "../../report/src/words";
+import { fixed, withHalfWidth } from "../../report/src/format";
 
 const cells: [number, number][] = [[0, 0], [0, 1], [1, 0], [1, 1]];
 const kept = 24; // half widths of the last estimates that the small picture shows
@@ -77,10 +78,10 @@ export class EstimatePanel {
         history.length > 1
           ? `95 % intervals, ${(100 * (history.at(-1) as number)).toFixed(0)} % as wide as in the first estimate. `
           : "± is half of the 95 % interval. ",
-        `Model explains ${result.fit.VAF.map((value, k) => `${value === null ? "–" : value.toFixed(1)} % in ${"xy"[k]}`).join(", ")}.`,
-        result.usable ? "" : h("strong", { class: "care-text" }, " ▲ Not usable yet."),
+        `Model explains ${result.fit.VAF.map((value, k) => `${fixed(value, 1)} % in ${"xy"[k]}`).join(", ")}.`,
+        result.usable ? "" : h("strong", { class: "care-text" }, estimate.final ? " ▲ Not usable." : " ▲ Not usable yet."),
       ),
+      h("ul", { class: "warnings" }, ...result.warnings.map(({ code, message }) => h("li", {}, `▲ ${plainWarnings[code]?.title ?? message}`))),
     );
-    this.element.dataset["half"] = String(normal95 * (result.standard_error.K[0]?.[0] ?? NaN));
   }
 }

@@ -21,7 +21,7 @@ export function histogram(title: string, times: Times, period: number): HTMLElem
     h("figcaption", {}, h("strong", {}, title), ` median ${time(times.median_us)}, 99.9 % within ${time(times.p999_us)}, worst ${time(times.worst_us)}`),
     svg(
       "svg",
-      { viewBox: `-14 -2 ${width + 28} ${height + foot + 2}`, role: "img", "aria-label": `${title}: histogram, both axes logarithmic` },
+      { viewBox: `-18 -2 ${width + 44} ${height + foot + 2}`, role: "img", "aria-label": `${title}: histogram, both axes logarithmic` },
       ...times.bins.map(([from, to, count]) =>
         svg("rect", { x: x(from), y: height - tall(count), width: Math.max(x(to) - x(from) - 0.6, 1), height: tall(count), class: "bar" })),
       svg("line", { x1: x(period), y1: 0, x2: x(period), y2: height, class: "period" }),
