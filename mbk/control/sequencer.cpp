@@ -11,6 +11,9 @@ namespace {
 /// Largest speed of a minimum-jerk move of unit length in unit time.
 constexpr double kPeakSpeed = 1.875;
 
+/// Time in which the joints come to rest from the perturbation's motion [s]; the way back may take much longer.
+constexpr double kBrake = 0.2;
+
 /// From 0 to 1, with rest at both ends.
 double smooth(double share) noexcept {
   const double s = std::clamp(share, 0.0, 1.0);
@@ -50,7 +53,8 @@ Sequencer::Sequencer(const TrialControl& trial, const SequenceOptions& options, 
       geometry_(geometry),
       hold_(hold),
       sample_time_(sample_time),
-      move_{straight(0.0, 0.0, 1.0), straight(0.0, 0.0, 1.0)} {}
+      move_{straight(0.0, 0.0, 1.0), straight(0.0, 0.0, 1.0)},
+      brake_(move_) {}
 
 Result<Sequencer> Sequencer::create(const TrialControl& trial, const SequenceOptions& options,
                                     const robot::Geometry& geometry, double sample_time) {
@@ -81,7 +85,9 @@ void Sequencer::plan_move(const Vector2d& measured) noexcept {
   const Vector2d distance = robot::hand_position(geometry_, target) - robot::hand_position(geometry_, measured);
   move_duration_ = move_duration(distance.norm());
   for (Eigen::Index i = 0; i < 2; ++i) {
-    move_[static_cast<std::size_t>(i)] = {{held_[i], held_rate_[i], 0.0}, {target[i], 0.0, 0.0}, move_duration_};
+    const double rolled = 0.5 * kBrake * held_rate_[i];
+    move_[static_cast<std::size_t>(i)] = straight(held_[i] + rolled, target[i], move_duration_);
+    brake_[static_cast<std::size_t>(i)] = {{-rolled, held_rate_[i], 0.0}, {0.0, 0.0, 0.0}, kBrake};
   }
 }
 
@@ -129,9 +135,9 @@ double Sequencer::phase_duration() const {
 
 void Sequencer::hold_along(double t) noexcept {
   for (Eigen::Index i = 0; i < 2; ++i) {
-    const auto now = move_[static_cast<std::size_t>(i)].at(t);
-    held_[i] = now.value;
-    held_rate_[i] = now.first;
+    const auto moved = move_[static_cast<std::size_t>(i)].at(t), braked = brake_[static_cast<std::size_t>(i)].at(t);
+    held_[i] = moved.value + braked.value;
+    held_rate_[i] = moved.first + braked.first;
   }
 }
 

@@ -80,7 +80,7 @@ class Sequencer {
   bool found_ = false, ending_ = false;
   std::int64_t ticks_ = 0;  // since the phase began
   Vector2d held_ = {0.0, 0.0}, held_rate_ = {0.0, 0.0};
-  std::array<perturbation::MinimumJerk, 2> move_;
+  std::array<perturbation::MinimumJerk, 2> move_, brake_;  // their sum is the way: from rest to rest, and out of motion
   double move_duration_ = 0.0;
   bool grip_again_ = false;  // on the way back the gains have to grow once more
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "mbk/robot/workspace.h"
@@ -127,6 +128,34 @@ TEST(Sequencer, EndsEarlyByGoingBack) {
   EXPECT_LT(some.size(), all.size());
   Sequencer early = sequencer(PositionMode{}, schedule);
   EXPECT_EQ(follow(early, 300)[300].phase, Phase::stopping);
+}
+
+TEST(Sequencer, BrakesAtOnceHoweverLongTheWayBackTakes) {
+  SequenceOptions options;
+  options.shortest_move = 5.0;
+  Sequencer whole = sequencer(PositionMode{}, pulses(Quantity::position, 0.01), options), sequence = whole;
+  const auto all = follow(whole);
+  int fastest = 1;
+  double speed = 0.0;
+  for (int i = 1; i < static_cast<int>(all.size()) && all[static_cast<std::size_t>(i)].phase <= Phase::perturbing;
+       ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double now = (all[at].joint_reference - all[at - 1].joint_reference).norm();
+    if (all[at].phase == Phase::perturbing && now > speed) speed = now, fastest = i;
+  }
+  const auto steps = follow(sequence, fastest + 1);
+  const auto end = std::ranges::find(steps, Phase::returning, &Sequencer::Step::phase);
+  ASSERT_NE(end, steps.end());
+  const Vector2d place = (end - 1)->joint_reference, rate = (place - (end - 2)->joint_reference) / kTick;
+  ASSERT_GT(rate.norm(), 0.01);
+  double away = 0.0;
+  Vector2d last = place;
+  for (auto step = end; step->phase == Phase::returning; ++step) {
+    EXPECT_LT((step->joint_reference - last).norm() / kTick, 1.3 * rate.norm() + 0.02);
+    last = step->joint_reference;
+    away = std::max(away, (last - place).dot(rate.normalized()));
+  }
+  EXPECT_LT(away, 0.15 * rate.norm());  // 0.2 s to rest
 }
 
 TEST(Sequencer, DoesNotAllocate) {

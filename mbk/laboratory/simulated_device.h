@@ -24,6 +24,9 @@ class SimulatedDevice : public device::Device {
   bool write(const device::Command& command) noexcept override;
   void stop() noexcept override {}
 
+  /// Where the joints' motors are in truth, whatever the encoders say [rad].
+  [[nodiscard]] Vector2d motor_angle() const { return loop_.motor_angle(); }
+
  private:
   SimulatedDevice(const Scenario& scenario, std::unique_ptr<participant::Load> load, ClosedLoop loop,
                   SensorSuite sensors);

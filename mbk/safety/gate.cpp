@@ -15,6 +15,14 @@ constexpr double kHistory = 2.0;  // [s]
 /// Least |det J| with which a torque is turned into a force: a quarter of a percent of d₁d₂ is out of reach anyway.
 constexpr double kLeastDeterminant = 1e-4;
 
+/// What encoders and accelerometer say is also compared over a longer time, against how much the hand moves at all:
+///   rms(encoders' − accelerometer's) ≤ kShare rms(accelerometer's) + kFloor limit,
+/// the mean taken over kMeanTime. So an encoder that counts backwards is found in motions far below the limit.
+constexpr double kMeanTime = 0.5, kShare = 0.5, kFloor = 0.05;  // [s], [1], [1]
+
+/// Of the time that the controller was cut, so much is forgiven for each tick that it is not.
+constexpr double kForgiven = 0.25;
+
 }  // namespace
 
 Gate::Gate(const Limits& limits, const robot::Geometry& geometry, const Vector2d& home, double sample_time)
@@ -39,11 +47,13 @@ void Gate::Stillness::see(const Vector2d& value) noexcept {
 
 void Gate::forget() noexcept {
   sent_.setZero();
-  cut_ticks_ = silent_ticks_ = 0;
+  cut_for_ = 0.0;
+  silent_ticks_ = 0;
   seen_before_ = false;
   force_still_ = acceleration_still_ = {};
   encoder_still_ = {0, 0};
   at_ = filled_ = 0;
+  disagreement_ = liveliness_ = 0.0;
 }
 
 Result<void> Gate::reset() {
@@ -84,8 +94,9 @@ Gate::Decision Gate::step(const Observation& seen, const Vector2d& asked) noexce
   if (!tripped()) {
     decision.torque = cut(asked, decision.cut);
     decision.enabled = true;
-    cut_ticks_ = decision.cut ? cut_ticks_ + 1 : 0;
-    beyond(Reason::limited_too_long, seen, cut_ticks_ * sample_time_, limits_.limited_for);
+    // not reset by a tick that is not cut: a controller that swings between its limits asks for little in between
+    cut_for_ = std::max(0.0, cut_for_ + (decision.cut ? 1.0 : -kForgiven) * sample_time_);
+    beyond(Reason::limited_too_long, seen, cut_for_, limits_.limited_for);
   }
   if (tripped()) {
     if (ramp_left_ > 0) --ramp_left_;
@@ -195,7 +206,13 @@ bool Gate::check_motion(const Observation& seen) noexcept {
   Vector2d measured = Vector2d::Zero();
   for (int k = 1; k < 2 * kWindow; ++k) measured += (kWindow - std::abs(k - kWindow)) * before(accelerometer_, k);
   measured /= kWindow * kWindow;
-  return !beyond(Reason::accelerometer_disagrees, seen, (by_encoders - measured).norm(), limits_.accelerometer);
+  const Vector2d difference = by_encoders - measured;
+  if (beyond(Reason::accelerometer_disagrees, seen, difference.norm(), limits_.accelerometer)) return false;
+  const double weight = sample_time_ / kMeanTime;
+  disagreement_ += weight * (difference.squaredNorm() - disagreement_);
+  liveliness_ += weight * (measured.squaredNorm() - liveliness_);
+  return !beyond(Reason::accelerometer_disagrees, seen, std::sqrt(disagreement_),
+                 kShare * std::sqrt(liveliness_) + kFloor * limits_.accelerometer);
 }
 
 Vector2d Gate::cut(const Vector2d& asked, bool& was_cut) const noexcept {

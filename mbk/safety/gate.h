@@ -103,7 +103,8 @@ class Gate {
 
   Trip trip_;
   Vector2d sent_ = {0.0, 0.0}, ramp_from_ = {0.0, 0.0};
-  int ramp_left_ = 0, cut_ticks_ = 0, silent_ticks_ = 0;
+  int ramp_left_ = 0, silent_ticks_ = 0;
+  double cut_for_ = 0.0;  // [s]
   bool stop_pressed_ = false;
 
   bool seen_before_ = false;
@@ -114,6 +115,7 @@ class Gate {
 
   std::array<Vector2d, 2 * kWindow + 1> hand_{}, accelerometer_{};  // rings, newest at `at_`
   int at_ = 0, filled_ = 0;
+  double disagreement_ = 0.0, liveliness_ = 0.0;  // mean squares of accelerations [m²/s⁴]
 
   std::vector<Moment> history_;  // ring
   std::size_t next_moment_ = 0, moments_ = 0;

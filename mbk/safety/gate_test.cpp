@@ -241,6 +241,43 @@ TEST(Gate, KeepsTheFirstReasonUntilItIsReset) {
   EXPECT_TRUE(g.step(moving(51), {0.1, 0.0}).enabled);
 }
 
+TEST(Gate, FindsAnEncoderThatCountsBackwardsInASmallMotion) {
+  for (const Eigen::Index joint : {0, 1}) {
+    Gate g = gate();
+    const double at = moving(600).joint[joint];
+    const int ticks = ticks_to_trip(g, [&](Observation& seen, Vector2d&, int) {
+      seen.joint[joint] = 2.0 * at - seen.joint[joint];
+      seen.follows = false;
+    });
+    EXPECT_GT(ticks, 0);
+    EXPECT_LT(ticks, 1000);
+    EXPECT_EQ(g.trip().reason, Reason::accelerometer_disagrees) << sentence(g.trip());
+    EXPECT_LT(g.trip().limit, 0.5);  // of 4 m/s² over 40 ms
+  }
+}
+
+/// Ticks until it trips where so many of ten ticks ask for too much; −1: never.
+int ticks_of_swinging(int beyond) {
+  Gate g = gate();
+  Vector2d sent(0.0, 0.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double sign = i / 10 % 2 == 0 ? 40.0 : -40.0;
+    sent = g.step(moving(i), i % 10 < beyond ? Vector2d(sign, sign) : sent).torque;
+    if (g.tripped()) {
+      EXPECT_EQ(g.trip().reason, Reason::limited_too_long);
+      return i;
+    }
+  }
+  return -1;
+}
+
+TEST(Gate, AControllerThatSwingsBetweenItsLimitsIsStoppedToo) {
+  // of ten ticks n count up by one and 10 − n down by a quarter: 100 ms are full after 1000 / (n − (10 − n) / 4) ticks
+  EXPECT_NEAR(ticks_of_swinging(6), 200, 10);
+  EXPECT_NEAR(ticks_of_swinging(4), 400, 10);
+  EXPECT_EQ(ticks_of_swinging(2), -1);
+}
+
 TEST(Gate, KeepsTheLastTwoSeconds) {
   Gate g = gate();
   for (int i = 0; i < 5000; ++i) g.step(moving(i), {0.1, 0.0});

@@ -38,6 +38,17 @@ journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, cons
   return ending;
 }
 
+/// Whether the recording is there already and holds the same: the program went down before it removed the journal.
+bool holds_the_same(const fs::path& target, const Recording& recording) {
+  if (!fs::exists(target)) return false;
+  const auto there = recording::read(target, {});
+  if (!there || there->samples() != recording.samples() || there->time != recording.time) return false;
+  return std::ranges::all_of(recording.channels, [&](const Channel& channel) {
+    const Channel* const twin = there->find(channel.name);
+    return twin != nullptr && twin->values == channel.values;
+  });
+}
+
 }  // namespace
 
 Header header_of(const Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
@@ -113,7 +124,9 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   realtime::BoundedRing<Tick> ring(kRing);
   Recorder recorder(ring, std::move(*writer), *signals_, watch);
   std::thread loop([&] {
-    if (pace_.virtual_clock) {
+    if (pace_.clock != nullptr) {
+      run_loop(robot, plan->sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
+    } else if (pace_.virtual_clock) {
       realtime::VirtualClock clock(sample_time, pace_.speed);
       run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
     } else {
@@ -130,6 +143,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   outcome.ending.dropped = ring.dropped();
   if (!closed) {
     Error error = closed.error();
+    if (gate_->tripped()) error.message += "; safety stop: " + outcome.ending.detail;
     error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
     return tl::unexpected(error);
   }
@@ -153,13 +167,19 @@ Result<void> annotate(const fs::path& file, const std::vector<std::string>& note
 }
 
 Result<Recording> recover(const fs::path& file, const fs::path& target, bool overwrite, bool keep) {
-  auto journal = journal::read(file);
-  if (!journal) return tl::unexpected(journal.error());
-  auto recording = journal::to_recording(*journal);
-  if (!recording) return tl::unexpected(recording.error().in(file.string()));
+  auto recording = [&]() -> Result<Recording> {
+    const auto journal = journal::read(file);  // gone before the recording is written: half a gigabyte for an hour
+    if (!journal) return tl::unexpected(journal.error());
+    auto made = journal::to_recording(*journal);
+    if (!made) return tl::unexpected(made.error().in(file.string()));
+    return made;
+  }();
+  if (!recording) return tl::unexpected(recording.error());
   const auto format = recording::format_of(target);
   if (!format) return tl::unexpected(format.error());
-  if (auto ok = recording::write(*recording, target, *format, overwrite); !ok) return tl::unexpected(ok.error());
+  if (overwrite || !holds_the_same(target, *recording)) {
+    if (auto ok = recording::write(*recording, target, *format, overwrite); !ok) return tl::unexpected(ok.error());
+  }
   if (!keep) {
     std::error_code ignored;
     fs::remove(file, ignored);

@@ -16,8 +16,9 @@ namespace mbk::session {
 
 /// How time passes.
 struct Pace {
-  bool virtual_clock = false;  ///< ticks come as fast as the machine can, or `speed` times as fast as real ones
-  double speed = 0.0;          ///< of a virtual clock; 0: as fast as it can
+  bool virtual_clock = false;        ///< ticks come as fast as the machine can, or `speed` times as fast as real ones
+  double speed = 0.0;                ///< of a virtual clock; 0: as fast as it can
+  realtime::Clock* clock = nullptr;  ///< where given, this one instead, of the experiment's sample time
 };
 
 /// A trial that is over.
@@ -70,9 +71,10 @@ class Session {
 /// The journal beside a recording: NAME.h5 → NAME.h5.journal.
 [[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& recording);
 
-/// Makes the recording that a journal holds, and removes the journal once it is on the disk.
+/// Makes the recording that a journal holds, and removes the journal once it is on the disk. A target that is there and
+/// holds the same is left as it is.
 /// @param keep  leaves the journal where it is
-/// @fails  usage: the target is there and `overwrite` is false. data: as journal::read; the recording cannot be
+/// @fails  usage: another target is there and `overwrite` is false. data: as journal::read; the recording cannot be
 /// written.
 [[nodiscard]] Result<Recording> recover(const std::filesystem::path& journal, const std::filesystem::path& target,
                                         bool overwrite, bool keep);

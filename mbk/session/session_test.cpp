@@ -1,8 +1,10 @@
 #include "mbk/session/session.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/recording/read.h"
@@ -154,6 +156,27 @@ TEST_F(SessionFolder, AnUnfinishedJournalIsRecovered) {
   EXPECT_FALSE(fs::exists(journal_of(target_)));
 }
 
+TEST_F(SessionFolder, RecoversAsOftenAsOneLikesAndReplacesNothingElse) {
+  const auto write_journal = [&](double first) {
+    fs::remove(journal_of(target_));
+    auto writer = journal::Writer::create(journal_of(target_), journal::Header{}, 10).value();
+    std::vector<journal::Tick> ticks(50);
+    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = first + 1e-3 * static_cast<double>(i);
+    ASSERT_TRUE(writer.append(ticks));
+  };
+  write_journal(0.0);
+  ASSERT_TRUE(recover(journal_of(target_), target_, false, true));
+  const auto made = fs::last_write_time(target_);
+  EXPECT_TRUE(recover(journal_of(target_), target_, false, true));
+  EXPECT_EQ(fs::last_write_time(target_), made);
+  write_journal(0.5);
+  const auto refused = recover(journal_of(target_), target_, false, false);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+  EXPECT_EQ(fs::last_write_time(target_), made);
+  EXPECT_TRUE(fs::exists(journal_of(target_)));
+}
+
 TEST(ExperimentFile, RefusesNames) {
   for (const char* key : {"name", "initials"}) {
     const std::string text = std::string(kExperiment) + key + " = \"Ann\"\n";
@@ -175,10 +198,11 @@ TEST(ExperimentFile, EveryReadyPlanarScenarioIsAnExperiment) {
   }
 }
 
-/// Counts what the loop allocates between its first and its last tick.
+/// Counts what the loop's thread allocates between its first and its last tick.
 class CountingDevice : public device::Device {
  public:
-  explicit CountingDevice(device::Device& inner, bool allocate) : inner_(&inner), allocate_(allocate) {}
+  enum class Plant { nothing, object, matrix };
+  CountingDevice(device::Device& inner, Plant plant) : inner_(&inner), plant_(plant) {}
   [[nodiscard]] const device::Facts& facts() const override { return inner_->facts(); }
   [[nodiscard]] Result<void> start() override { return inner_->start(); }
   bool read(device::State& state) noexcept override {
@@ -186,7 +210,8 @@ class CountingDevice : public device::Device {
     return inner_->read(state);
   }
   bool write(const device::Command& command) noexcept override {
-    if (allocate_ && command.tick == 1000) planted_ = std::make_unique<int>(3);
+    if (command.tick == 1000 && plant_ == Plant::object) object_ = std::make_unique<int>(3);
+    if (command.tick == 1000 && plant_ == Plant::matrix) matrix_.resize(3, 3);
     const bool fine = inner_->write(command);
     last_ = testing_support::allocations();
     return fine;
@@ -196,26 +221,65 @@ class CountingDevice : public device::Device {
 
  private:
   device::Device* inner_;
-  bool allocate_;
-  std::unique_ptr<int> planted_;
+  Plant plant_;
+  std::unique_ptr<int> object_;
+  Eigen::MatrixXd matrix_;
   long first_ = -1, last_ = 0;
 };
 
-TEST(Loop, DoesNotAllocateAndAPlantedAllocationIsSeen) {
-  for (const bool planted : {false, true}) {
-    const Trial t = read_experiment(kExperiment, "experiment.toml")->front();
+TEST_F(SessionFolder, TheLoopDoesNotAllocateWhileItIsRecordedAndAPlantedAllocationIsSeen) {
+  using Plant = CountingDevice::Plant;
+  for (const Plant plant : {Plant::nothing, Plant::object, Plant::matrix}) {
+    const Trial t = trial();
     auto robot = SimulatedDevice::create(t.scenario).value();
-    CountingDevice counting(*robot, planted);
-    Plan plan = make_plan(t).value();
-    realtime::VirtualClock clock(1e-3);
-    realtime::BoundedRing<journal::Tick> ring(100'000);
-    Signals signals;
-    LoopTimes times;
-    run_loop(counting, plan.sequence, plan.gate, clock, ring, signals, times);
-    EXPECT_FALSE(plan.gate.tripped()) << safety::sentence(plan.gate.trip());
-    EXPECT_GT(times.ticks, 9000U);
-    EXPECT_EQ(counting.counted(), planted ? 1 : 0);
+    CountingDevice counting(*robot, plant);
+    fs::remove(target_);
+    Session session(kFast);
+    const auto outcome = session.perform(counting, t, target_);
+    ASSERT_TRUE(outcome) << outcome.error().line();
+    EXPECT_EQ(outcome->ending.how, "completed") << outcome->ending.detail;
+    EXPECT_GT(outcome->times.ticks, 9000U);
+    EXPECT_EQ(counting.counted(), plant == Plant::nothing ? 0 : 1);
   }
+}
+
+/// A trip on the way down neither allocates.
+TEST_F(SessionFolder, ATripDoesNotAllocate) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  CountingDevice counting(*robot, CountingDevice::Plant::nothing);
+  Session session(kFast);
+  const auto outcome = session.perform(counting, t, target_, [&](std::span<const journal::Tick> ticks) {
+    if (ticks.back().time > 1.5) session.signals().operator_stop = true;
+  });
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->trip.reason, safety::Reason::operator_stop);
+  EXPECT_EQ(counting.counted(), 0);
+}
+
+/// Memory of this process now [MiB].
+double resident() {
+  std::ifstream pages("/proc/self/statm");
+  double all = 0.0, here = 0.0;
+  pages >> all >> here;
+  return here * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+TEST_F(SessionFolder, MemoryStaysFlatAndNothingIsDropped) {
+  std::string text = kExperiment;
+  text.replace(text.find("duration_s = 6"), 14, "duration_s = 120");
+  const Trial t = trial(text);
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  Session session(kFast);
+  double early = 0.0, late = 0.0;  // bench_session does it for an hour
+  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+    if (early == 0.0 && ticks.back().time > 20.0) early = resident();
+    if (ticks.back().time > 115.0) late = resident();
+  });
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->ending.dropped, 0U);
+  EXPECT_GT(late, 0.0);
+  EXPECT_LT(late - early, 4.0);  // MiB; what was recorded between the two are 13
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ std::span<const Study> studies() {
       Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated", 25,
             teleoperation_study},
       Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
+      Study{"faults", "motors off in time, whatever breaks at 1 kHz", 20, faults_study},
   };
   return kStudies;
 }

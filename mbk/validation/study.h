@@ -91,4 +91,11 @@ struct Study {
 /// Besides, the passivity controller at a virtual wall.
 [[nodiscard]] Result<ValidationTable> teleoperation_study(const StudyOptions& options);
 
+/// Whatever breaks, are the motors off in time? Each kind of fault (fault_kinds.h) comes into a trial of positions and
+/// one of forces at a moment drawn by lot, through the robot, another thread or the clock, and passes the whole
+/// session. Wanted in every run: motors off within the documented ticks, for a right reason, no command beyond the cap
+/// of the handle force by the true angles, a recording that holds every command to the bit; and not one trip in ten
+/// times as many trials without a fault, over the ready scenarios. A run is one moment of each kind in both trials.
+[[nodiscard]] Result<ValidationTable> faults_study(const StudyOptions& options);
+
 }  // namespace mbk::validation

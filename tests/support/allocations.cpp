@@ -1,25 +1,50 @@
 #include "tests/support/allocations.h"
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <cstddef>
 
 namespace {
-std::atomic<long> count{0};
+thread_local long count = 0;
 }  // namespace
 
-// Not inlined, so that the compiler cannot pair them with malloc and free that it sees elsewhere.
-[[gnu::noinline]] void* operator new(std::size_t size) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+
+// A sanitizer has taken malloc for itself, and tells. GCC installs no header of it.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
+                                                         void (*free_hook)(const volatile void*));
+
+namespace {
+const int installed = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void* /*memory*/, std::size_t /*size*/) { ++count; }, [](const volatile void* /*memory*/) {});
+}  // namespace
+
+#else
+
+// What the program defines goes before the C library's: operator new and Eigen, which takes malloc, both end here.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t items, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) {
   ++count;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
+  return __libc_malloc(size);
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
+void* calloc(std::size_t items, std::size_t size) {
+  ++count;
+  return __libc_calloc(items, size);
 }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
+void* realloc(void* memory, std::size_t size) {
+  ++count;
+  return __libc_realloc(memory, size);
 }
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+}
+
+#endif
 
 namespace mbk::testing_support {
 
