@@ -205,7 +205,7 @@ void Console::show_report(std::string html, std::string why) {
 
 Action Console::ask(Question question) {
   std::unique_lock lock(mutex_);
-  question_ = question;
+  question_ = signals_.operator_stop ? Question::reset : question;
   decision_.reset();
   reset_code_.clear();
   changed_ = true;

@@ -329,6 +329,16 @@ TEST_F(ConsoleOfASession, AStopWhileNothingRunsHoldsWhatComesNext) {
   asking.join();
 }
 
+TEST_F(ConsoleOfASession, AStopBetweenTrialsIsResetBeforeAnythingElse) {
+  auto page = open(token_);
+  page->tell(R"({"command":"stop"})");
+  ASSERT_TRUE(soon([&] { return session_.signals().operator_stop.load(); }));
+  std::thread asking([&] { EXPECT_EQ(console_->ask(Question::after), Action::abort); });
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.state != Json() && one.state.at("question") == "reset"; }));
+  page->tell(R"({"command":"abort"})");
+  asking.join();
+}
+
 TEST_F(ConsoleOfASession, TheLastEstimateIsThatOfTheRecording) {
   const auto outcome = perform(session_, folder_ / "trial.h5");
   auto page = open(viewing_token_);

@@ -170,7 +170,7 @@ class OperatorPage {
 
   private drawBanner(state: State | undefined): void {
     const [kind, title, words] = this.situation(state);
-    this.banner.className = `banner ${kind}`;
+    if (!this.banner.classList.contains(kind)) this.banner.className = `banner ${kind}`;
     text(this.bannerTitle, title);
     text(this.bannerWords, words);
   }
