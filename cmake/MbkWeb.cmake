@@ -22,14 +22,19 @@ if(MBK_WEB)
                         "(tools/install-packages build), or configure with -DMBK_WEB=OFF and do without --report")
   endif()
   # In the folder where it will run, for a manager of versions may choose by folder.
-  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/web/report)
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/web/report ${PROJECT_BINARY_DIR}/web/console)
   execute_process(COMMAND ${MBK_NODE} --version WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/web/report
                   OUTPUT_VARIABLE version OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   mbk_node_command(MBK_NODE_COMMAND "${version}")
 endif()
 
-# mbk_web_page(NAME): web/NAME as ${PROJECT_BINARY_DIR}/web/NAME/dist/index.html, of target web_NAME.
+# mbk_web_page(NAME [OTHER...]): web/NAME as ${PROJECT_BINARY_DIR}/web/NAME/dist/index.html, of target web_NAME. Its
+# sources may import those of the OTHER pages.
 function(mbk_web_page name)
+  set(others "")
+  foreach(other IN LISTS ARGN)
+    list(APPEND others ${PROJECT_BINARY_DIR}/web/${other}/dist/index.html)
+  endforeach()
   set(source ${PROJECT_SOURCE_DIR}/web/${name})
   set(folder ${PROJECT_BINARY_DIR}/web/${name})
   set(package ${source}/package.json ${source}/package-lock.json ${source}/.npmrc)
@@ -55,9 +60,34 @@ function(mbk_web_page name)
     COMMAND ${CMAKE_COMMAND} -E copy_directory ${source}/src ${folder}/src
     COMMAND ${MBK_NODE_COMMAND} node_modules/typescript/bin/tsc --noEmit
     COMMAND ${MBK_NODE_COMMAND} node_modules/vite/bin/vite.js build --logLevel warn
-    DEPENDS ${folder}/installed ${code} ${settings}
+    DEPENDS ${folder}/installed ${code} ${settings} ${others}
     WORKING_DIRECTORY ${folder}
     COMMENT "Building the page web/${name}"
     VERBATIM)
   add_custom_target(web_${name} DEPENDS ${folder}/dist/index.html)
+  foreach(other IN LISTS ARGN)
+    add_dependencies(web_${name} web_${other})
+  endforeach()
+endfunction()
+
+# mbk_embed_page(MODULE SYMBOL [USES OTHER...]): the page web/MODULE as bytes from SYMBOLBegin to SYMBOLEnd in the module
+# of that name, whose sources see MBK_WEB. Without MBK_WEB: nothing.
+function(mbk_embed_page module symbol)
+  if(NOT MBK_WEB)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  mbk_web_page(${module} ${ARG_USES})
+  set(MBK_PAGE_NAME ${module})
+  set(MBK_PAGE_SYMBOL ${symbol})
+  set(MBK_PAGE_FILE ${PROJECT_BINARY_DIR}/web/${module}/dist/index.html)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/page.S.in page.S @ONLY)
+  set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/page.S PROPERTIES OBJECT_DEPENDS ${MBK_PAGE_FILE})
+  add_library(mbk_${module}_page OBJECT ${CMAKE_CURRENT_BINARY_DIR}/page.S)
+  add_dependencies(mbk_${module}_page web_${module})
+  target_sources(mbk_${module} PRIVATE $<TARGET_OBJECTS:mbk_${module}_page>)
+  target_compile_definitions(mbk_${module} PRIVATE MBK_WEB)
+  if(TARGET ${module}_test)
+    target_compile_definitions(${module}_test PRIVATE MBK_WEB)
+  endif()
 endfunction()

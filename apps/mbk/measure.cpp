@@ -101,8 +101,8 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
     if (summary) text += "\n" + report::summary_text(*summary);
   }
   if (arguments.report) {
-    if (auto ok = write_report(arguments, typed, *recordings, measured, diagnostics, summary); !ok)
-      return report_error(ok.error());
+    const std::string document = report_json(typed, arguments.report_note, *recordings, measured, diagnostics, summary);
+    if (auto ok = write_page(arguments, document); !ok) return report_error(ok.error());
   }
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   for (const Measured& one : measured) {

@@ -30,11 +30,11 @@ std::string command_line(int argc, char** argv) {
   return line;
 }
 
-Result<void> write_report(const MeasureArguments& arguments, const std::string& typed,
-                          const std::vector<Recording>& recordings, const std::vector<result::Measured>& measured,
-                          const std::vector<std::optional<Diagnostics>>& diagnostics,
-                          const std::optional<Summary>& summary) {
-  result::Report report{{}, summary, typed, arguments.report_note};
+std::string report_json(const std::string& typed, const std::string& note, const std::vector<Recording>& recordings,
+                        const std::vector<result::Measured>& measured,
+                        const std::vector<std::optional<Diagnostics>>& diagnostics,
+                        const std::optional<Summary>& summary) {
+  result::Report report{{}, summary, typed, note};
   auto recording = recordings.begin();
   for (std::size_t k = 0; k < measured.size(); ++k) {
     const result::Measured& one = measured[k];
@@ -44,7 +44,7 @@ Result<void> write_report(const MeasureArguments& arguments, const std::string& 
     }
     report.results.push_back(std::move(reported));
   }
-  return write_page(arguments, result::to_json(report));
+  return result::to_json(report);
 }
 
 Result<void> write_page(const MeasureArguments& arguments, std::string_view report_json) {

@@ -14,16 +14,17 @@
 
 namespace mbk::app {
 
-/// Writes --report: the page with everything in it.
+/// The document of a report, with everything in it.
 /// @param recordings  one for each result, or all of one pooled result    @param diagnostics  one for each result
 /// @param typed       the command line
-[[nodiscard]] Result<void> write_report(const MeasureArguments& arguments, const std::string& typed,
-                                        const std::vector<Recording>& recordings,
-                                        const std::vector<result::Measured>& measured,
-                                        const std::vector<std::optional<Diagnostics>>& diagnostics,
-                                        const std::optional<Summary>& summary);
+/// @param note        of whoever made it
+[[nodiscard]] std::string report_json(const std::string& typed, const std::string& note,
+                                      const std::vector<Recording>& recordings,
+                                      const std::vector<result::Measured>& measured,
+                                      const std::vector<std::optional<Diagnostics>>& diagnostics,
+                                      const std::optional<Summary>& summary);
 
-/// The same for a document that is ready.
+/// Writes --report: the page with that document.
 [[nodiscard]] Result<void> write_page(const MeasureArguments& arguments, std::string_view report_json);
 
 }  // namespace mbk::app

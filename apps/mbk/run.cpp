@@ -9,9 +9,9 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/run_console.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
-#include "mbk/measurement/measure.h"
 #include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/read.h"
 #include "mbk/report/text.h"
@@ -35,6 +35,7 @@ struct Arguments {
   std::optional<int> person;
   std::optional<double> speed;
   bool as_fast_as_possible = false, dry_run = false, measure = true, quiet = false;
+  ConsoleArguments console;
 };
 
 Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
@@ -96,11 +97,6 @@ class StatusLine {
   std::chrono::steady_clock::time_point next_;
 };
 
-std::string time_text(const realtime::CycleRecord& record) {
-  return fmt::format("median {:.1f} µs, p99.9 {:.1f} µs, worst {:.1f} µs", 1e-3 * record.quantile(0.5),
-                     1e-3 * record.quantile(0.999), 1e-3 * static_cast<double>(record.worst()));
-}
-
 std::string outcome_text(const session::TrialOutcome& outcome, const session::Pace& pace) {
   std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ending.how);
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
@@ -134,16 +130,11 @@ struct Measured {
   bool poor = false;
 };
 
-Measured measure(const session::TrialOutcome& outcome, const Trial& trial) {
+Measured measure(const session::TrialOutcome& outcome, const Trial& trial, RunConsole& console) {
   auto recording = recording::read(outcome.recording, {});
   if (!recording) return {recording.error().line() + "\n", true};
   const Recording perturbed = preprocess::perturbation_only(std::move(*recording));
-  measurement::Options options;
-  options.identify.handle_mass = trial.planar().robot.handle_mass;
-  if (!std::holds_alternative<control::PositionMode>(trial.planar().control)) {
-    options.identify.method = Method::instrumental_variables;  // the person answers what least squares takes for noise
-  }
-  const auto measured = measurement::measure({&perturbed, 1}, options);
+  const auto measured = console.measured(perturbed, measurement_options_of(trial));
   if (!measured) return {fmt::format("not measured: {}\n", measured.error().line()), true};
   const Identification& identification = measured->identification;
   return {report::result_text(identification, std::nullopt),
@@ -166,26 +157,38 @@ fs::path next_free(const fs::path& target) {
   return free;
 }
 
-/// One trial: on the robot, into the file, and measured.   @returns  an exit code; kFine where the next may follow
-int perform(Session& session, const Trial& trial, const fs::path& target, const session::Pace& pace,
-            const Arguments& arguments, bool& repeat) {
+/// One trial: on the robot, into the file, and measured.
+/// @returns  an exit code where no trial may follow
+std::optional<int> perform(Session& session, const Trial& trial, std::size_t index, const fs::path& target,
+                           const session::Pace& pace, const Arguments& arguments, RunConsole& console, bool& repeat) {
   repeat = false;
   auto robot = session::make_device(trial.device, trial.scenario);
   if (!robot) return report_error(robot.error());
+  if (auto ok = console.begin(index, trial, (*robot)->facts(), target); !ok) return report_error(ok.error());
   const auto outcome = [&] {
     const StopKeys keys(session.signals());
     StatusLine line(trial.name, arguments.quiet);
-    return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) { line.show(ticks); });
+    return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) {
+      line.show(ticks);
+      console.watch(ticks);
+    });
   }();
   if (!outcome) return report_error(outcome.error());
-  std::string text = outcome_text(*outcome, pace);
+  std::string text = outcome_text(*outcome, pace) + console.finish(*outcome);
   const bool stopped = outcome->trip.reason != safety::Reason::none;
   Measured measured;
   if (!stopped && arguments.measure) {
-    measured = measure(*outcome, trial);
+    measured = measure(*outcome, trial, console);
     text += measured.text;
   }
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = console.keep_notes(); !ok) return report_error(ok.error());
+  if (console.decides(stopped || measured.poor)) {
+    const auto then = console.after_trial(session, stopped);
+    repeat = then == AfterTrial::repeat;
+    if (then == AfterTrial::end) return stopped ? kSafetyStop : kFine;
+    return std::nullopt;
+  }
   const bool terminal = isatty(STDIN_FILENO) == 1;
   if (stopped) {
     if (!terminal || !ask("Is the reason gone? Reset the gate and do the trial again?")) return kSafetyStop;
@@ -196,7 +199,7 @@ int perform(Session& session, const Trial& trial, const fs::path& target, const 
   } else if (measured.poor) {
     fmt::print(stderr, "mbk: the data of {} are poor; think of repeating the trial\n", target.string());
   }
-  return kFine;
+  return std::nullopt;
 }
 
 int run(const Arguments& arguments) {
@@ -215,15 +218,19 @@ int run(const Arguments& arguments) {
     }
   }
   Session session(pace);
-  for (const Trial& trial : *trials) {
+  auto console = RunConsole::open(arguments.console, *trials, session.signals());
+  if (!console) return report_error(console.error());
+  if (!console->may_begin(session)) return kFine;
+  std::optional<int> code;
+  for (std::size_t index = 0; index < trials->size() && !code; ++index) {
+    const Trial& trial = (*trials)[index];
     const fs::path target = target_of(arguments, trial, trials->size() > 1);
-    for (bool repeat = true; repeat;) {
-      if (const int code = perform(session, trial, next_free(target), pace, arguments, repeat); code != kFine) {
-        return code;
-      }
+    for (bool repeat = true; repeat && !code;) {
+      code = perform(session, trial, index, next_free(target), pace, arguments, *console, repeat);
     }
   }
-  return kFine;
+  if (auto ok = console->end(); !ok) return report_error(ok.error());
+  return code.value_or(kFine);
 }
 
 }  // namespace
@@ -240,7 +247,9 @@ Action add_run(CLI::App& app) {
       "  mbk run mine.toml --participant 7 --out p07.h5\n"
       "      every [[trial]] of the file in turn: p07_NAME.h5\n"
       "  mbk run relaxed_sinusoidal --fast --out relaxed.h5\n"
-      "      the same on a virtual clock, as fast as the machine can; --speed 20 for twenty times\n\n"
+      "      the same on a virtual clock, as fast as the machine can; --speed 20 for twenty times\n"
+      "  mbk run mine.toml --wait\n"
+      "      nothing moves before its operator says so in the console, a page whose address is printed\n\n"
       "The space bar and Ctrl-C stop the robot, e ends a trial early. What is recorded goes to\n"
       "NAME.h5.journal first; where the program or the machine went down, 'mbk recover' makes a recording of it.\n"
       "The gate limits force, torque, speed and place in software; it is no certified safety function. With people,\n"
@@ -265,6 +274,7 @@ Action add_run(CLI::App& app) {
   command->add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
   command->add_flag("!--no-measure", arguments->measure, "record only");
   command->add_flag("--quiet", arguments->quiet, "no status line");
+  add_console_options(*command, arguments->console);
   return [arguments] { return run(*arguments); };
 }
 

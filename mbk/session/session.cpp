@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
+#include "mbk/core/printable.h"
 #include "mbk/core/version.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/write.h"
@@ -28,6 +30,27 @@ std::string now_text() {
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
+journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
+  journal::Ending ending;
+  ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
+  if (gate.tripped()) ending.detail = safety::sentence(gate.trip());
+  ending.overruns = times.missed;
+  return ending;
+}
+
+/// Whether the recording is there already and holds the same: the program went down before it removed the journal.
+bool holds_the_same(const fs::path& target, const Recording& recording) {
+  if (!fs::exists(target)) return false;
+  const auto there = recording::read(target, {});
+  if (!there || there->samples() != recording.samples() || there->time != recording.time) return false;
+  return std::ranges::all_of(recording.channels, [&](const Channel& channel) {
+    const Channel* const twin = there->find(channel.name);
+    return twin != nullptr && twin->values == channel.values;
+  });
+}
+
+}  // namespace
+
 Header header_of(const Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
   Header header;
   header.metadata = metadata_of(trial.person);
@@ -50,27 +73,6 @@ Header header_of(const Trial& trial, const device::Facts& facts, const perturbat
   for (const auto& event : schedule.events()) header.events.push_back({event.time, event.name, event.value});
   return header;
 }
-
-journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
-  journal::Ending ending;
-  ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
-  if (gate.tripped()) ending.detail = safety::sentence(gate.trip());
-  ending.overruns = times.missed;
-  return ending;
-}
-
-/// Whether the recording is there already and holds the same: the program went down before it removed the journal.
-bool holds_the_same(const fs::path& target, const Recording& recording) {
-  if (!fs::exists(target)) return false;
-  const auto there = recording::read(target, {});
-  if (!there || there->samples() != recording.samples() || there->time != recording.time) return false;
-  return std::ranges::all_of(recording.channels, [&](const Channel& channel) {
-    const Channel* const twin = there->find(channel.name);
-    return twin != nullptr && twin->values == channel.values;
-  });
-}
-
-}  // namespace
 
 fs::path journal_of(const fs::path& recording) {
   return recording.string() + ".journal";
@@ -149,6 +151,19 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
     return tl::unexpected(recording.error());
   }
   return outcome;
+}
+
+Result<void> annotate(const fs::path& file, const std::vector<std::string>& notes) {
+  auto recording = recording::read(file, {});
+  if (!recording) return tl::unexpected(recording.error());
+  const auto format = recording::format_of(file);
+  if (!format) return tl::unexpected(format.error());
+  std::string& text = recording->metadata["notes"];
+  for (std::string note : notes) {
+    std::ranges::replace(note, '\n', ' ');
+    text += (text.empty() ? "" : " | ") + printable(std::move(note));
+  }
+  return recording::write(*recording, file, *format, true);
 }
 
 Result<Recording> recover(const fs::path& file, const fs::path& target, bool overwrite, bool keep) {

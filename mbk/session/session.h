@@ -60,6 +60,14 @@ class Session {
   std::unique_ptr<Signals> signals_ = std::make_unique<Signals>();
 };
 
+/// What a trial's journal says before the first tick.
+[[nodiscard]] journal::Header header_of(const Trial& trial, const device::Facts& facts,
+                                        const perturbation::Schedule& schedule);
+
+/// Adds remarks to the metadata of a recording, as `notes` in one line with " | " between them.
+/// @fails  data: the recording cannot be read or written.
+[[nodiscard]] Result<void> annotate(const std::filesystem::path& recording, const std::vector<std::string>& notes);
+
 /// The journal beside a recording: NAME.h5 → NAME.h5.journal.
 [[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& recording);
 

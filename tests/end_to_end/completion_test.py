@@ -21,6 +21,7 @@ TYPED = {  # what has been typed → what is offered
     ("measure", "--mode", ""): ["default", "reference"],
     ("measure", "--json", "--mode", "r"): ["reference"],
     ("measure", "--cutoff", ""): ["none"],
+    ("run", "--no-c"): ["--no-console"],
     ("springs", ""): ["calibrate", "field", "find"],
     ("springs", "field", "--sp"): ["--spring"],
     ("teleop", "--op"): ["--operator"],

@@ -361,6 +361,12 @@ class Help(Case):
         self.assertIn("mbk measure log.mat", self.fine("--help").out)
 
 
+class Console(Case):
+    def test_a_run_cannot_wait_for_a_console_that_it_leaves_away(self):
+        self.refused(WRONG_USAGE, "run", "relaxed_sinusoidal", "--wait", "--no-console", says=["--wait", "--no-console"])
+        self.refused(WRONG_USAGE, "run", "relaxed_sinusoidal", "--port", "70000", says="--port")
+
+
 class Validate(Case):
     def test_coverage(self):
         ran = self.fine("validate", "coverage", "--runs", "4", "--json", "--quiet")

@@ -1,9 +1,9 @@
-// What the tests of the report share: the programs, a browser without a network, and reading numbers off a page.
+// What the tests of reports and console share: the programs, a browser without a network, and reading numbers off a page.
 //
 // Run in the build folder of the page, where the packages are: cd build/test/web/report, then
 //   MBK=$PWD/../../bin/mbk MAKE_LOG=$PWD/../../bin/make_log node ../../../../tests/web/report_test.mjs
 import assert from "node:assert/strict";
-import { execFileSync, spawnSync } from "node:child_process";
+import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
@@ -31,7 +31,11 @@ const { chromium } = library("playwright-core");
 const axeSource = readFileSync((library("axe-core"), packages.resolve("axe-core/axe.min.js")), "utf8");
 
 export const folder = mkdtempSync(join(tmpdir(), "mbk-web-"));
-process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+const children = new Set();
+process.on("exit", () => {
+  for (const child of children) child.kill("SIGKILL");
+  rmSync(folder, { recursive: true, force: true });
+});
 export const pictures = join(process.cwd(), "screenshots");
 mkdirSync(pictures, { recursive: true });
 
@@ -90,16 +94,35 @@ const browser = await chromium.launch({
 });
 export const closeBrowser = () => browser.close();
 
-/** A page on a report. What it says on the console, which errors it meets and what it asks a network for is kept. */
-export async function open(file, options = {}) {
+/** mbk that goes on beside the test: what it has said, a promise of its exit code, and a way to wait for a word of it. */
+export function start(...args) {
+  const child = spawn(program("MBK"), args, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+  const running = { said: "", child, code: new Promise((resolve) => child.on("close", resolve)) };
+  for (const stream of [child.stdout, child.stderr]) stream.setEncoding("utf8").on("data", (text) => { running.said += text; });
+  children.add(child);
+  running.until = async (pattern) => {
+    for (let k = 0; k < 600; ++k) {
+      const found = pattern.exec(running.said);
+      if (found) return found;
+      if (child.exitCode !== null) break;
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+    throw new Error(`mbk did not say ${pattern}: ${running.said}`);
+  };
+  return running;
+}
+
+/** A page on a report, or at an address; a `script` runs before its own. What it says on the console, which errors it meets and what it asks a network for is kept. */
+export async function open(file, { script, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, reducedMotion: "reduce", ...options });
+  if (script) await context.addInitScript(script);
   const page = await context.newPage();
   const said = [];
   const requests = [];
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(String(error)));
   page.on("request", (request) => requests.push(request.url()));
-  await page.goto(pathToFileURL(file).href);
+  await page.goto(file.startsWith("http:") ? file : pathToFileURL(file).href);
   await page.waitForSelector("main");
   const outside = () => requests.filter((url) => !/^(data|blob):/.test(url)).slice(1);
   return { page, said, outside, close: () => context.close() };

@@ -1,5 +1,5 @@
 // Ellipses to scale at the hand, with a reference circle and the posture under them (Dyck 2013, figs. 3.10, 3.11).
-import { type Ellipse, type Posture, type Trial, matrices, unitsOf } from "./data";
+import { type Ellipse, type Posture, type Result, type Trial, matrices, unitsOf } from "./data";
 import { h, svg } from "./dom";
 import { fixed, plain, significant } from "./format";
 import { type Band, directions, ellipseBand } from "./uncertainty";
@@ -184,31 +184,40 @@ const postureWords = {
   hand: "The recording says nothing of the arm's lengths, so only the hand is drawn, at the centre.",
 };
 
+/** The three ellipses of a result beside each other; `bands` by default are those of its covariance. */
+export function ellipsePanels(result: Result, posture?: Posture, bands = bandsOf(result)): HTMLElement | undefined {
+  const { ellipses } = result;
+  if (!ellipses) return undefined;
+  const units = unitsOf(result);
+  return h(
+    "div",
+    { class: "panels" },
+    ...matrices.map(({ symbol, name, title }, k) => {
+      const largest = largestOf([ellipses[name]]);
+      return h(
+        "div",
+        { class: "panel" },
+        h("p", { class: "panel-title" }, `${title} ${symbol}`),
+        drawing(ellipses[name], title, units[symbol], roomFor([ellipses[name]], [bands[k]]), niceBelow(0.8 * largest), posture, bands[k]),
+      );
+    }),
+  );
+}
+
+const bandsOf = (result: Result): (Band | undefined)[] => matrices.map(({ symbol }) => ellipseBand(symbol, result));
+
 /** The three ellipses of one trial. */
 export function ellipsesOf(trial: Trial): HTMLElement | undefined {
-  const { ellipses } = trial.result;
-  if (!ellipses) return undefined;
-  const units = unitsOf(trial.result);
   const posture = trial.recordings[0]?.posture;
+  const bands = bandsOf(trial.result);
+  const panels = ellipsePanels(trial.result, posture, bands);
+  if (!panels) return undefined;
   const words = [postureWords[posture?.of ?? "hand"], posture?.note ? `(${posture.note}.)` : ""].join(" ");
-  const bands = matrices.map(({ symbol }) => ellipseBand(symbol, trial.result));
   return h(
     "figure",
     { class: "ellipses" },
     bands.some((band) => band) ? bandLegend() : "",
-    h(
-      "div",
-      { class: "panels" },
-      ...matrices.map(({ symbol, name, title }, k) => {
-        const largest = largestOf([ellipses[name]]);
-        return h(
-          "div",
-          { class: "panel" },
-          h("p", { class: "panel-title" }, `${title} ${symbol}`),
-          drawing(ellipses[name], title, units[symbol], roomFor([ellipses[name]], [bands[k]]), niceBelow(0.8 * largest), posture, bands[k]),
-        );
-      }),
-    ),
+    panels,
     h(
       "figcaption",
       {},

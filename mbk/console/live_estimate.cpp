@@ -1,0 +1,117 @@
+#include "mbk/console/live_estimate.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+
+#include "mbk/preprocess/perturbation_only.h"
+#include "mbk/trial/recording.h"
+
+namespace mbk::console {
+namespace {
+
+constexpr auto kInterval = std::chrono::seconds(1);
+constexpr double kShortest = 2.0;  // of a perturbation worth a look [s]
+constexpr int kNiceness = 10;
+
+double perturbed(const journal::Journal& journal) {
+  const auto last = std::find_if(journal.ticks.rbegin(), journal.ticks.rend(),
+                                 [](const journal::Tick& tick) { return tick.perturbing(); });
+  return last == journal.ticks.rend() ? 0.0 : last->perturbation_time;
+}
+
+/// While a perturbation goes on, the last samples have no reading of their own yet where the sensor's comes later.
+void cut_unread(Recording& recording, int latency) {
+  const Index samples = std::max<Index>(0, recording.samples() - latency);
+  recording.time.conservativeResize(samples);
+  for (Channel& channel : recording.channels) channel.values.conservativeResize(samples);
+}
+
+}  // namespace
+
+Result<result::Measured> estimate(const journal::Journal& journal, const measurement::Options& options) {
+  auto recording = journal::to_recording(journal);
+  if (!recording) return tl::unexpected(recording.error());
+  const auto holds = [&](const char* name) {
+    return std::ranges::find(recording->events, name, &Event::name) != recording->events.end();
+  };
+  if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
+  if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
+  const Recording window = preprocess::perturbation_only(std::move(*recording));
+  return measurement::measure({&window, 1}, options);
+}
+
+LiveEstimate::LiveEstimate(std::function<void(const Estimate&)> done)
+    : done_(std::move(done)), thread_([this] { run(); }) {}
+
+LiveEstimate::~LiveEstimate() {
+  {
+    const std::scoped_lock lock(mutex_);
+    over_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void LiveEstimate::begin(journal::Header header, measurement::Options options) {
+  std::unique_lock lock(mutex_);
+  finished_.wait(lock, [&] { return !busy_; });
+  journal_ = {std::move(header), {}, {}, 0};
+  incoming_.clear();
+  options_ = std::move(options);
+  options_.passivity = false;
+  running_ = true;
+  finishing_ = false;
+}
+
+void LiveEstimate::add(std::span<const journal::Tick> ticks) {
+  const std::scoped_lock lock(mutex_);
+  if (running_) incoming_.insert(incoming_.end(), ticks.begin(), ticks.end());
+}
+
+void LiveEstimate::finish() {
+  std::unique_lock lock(mutex_);
+  if (!running_) return;
+  finishing_ = true;
+  wake_.notify_all();
+  finished_.wait(lock, [&] { return !running_; });
+}
+
+void LiveEstimate::make(std::unique_lock<std::mutex>& lock, bool final) {
+  std::vector<journal::Tick> came;
+  came.swap(incoming_);
+  busy_ = true;
+  lock.unlock();
+  journal_.ticks.insert(journal_.ticks.end(), came.begin(), came.end());
+  const double seen = perturbed(journal_);
+  if (seen < kShortest) {
+    if (final) done_({final, seen, bad_data(fmt::format("the perturbation went on for {:.1f} s only", seen))});
+  } else if (final || (!came.empty() && came.back().perturbing())) {
+    done_({final, seen, estimate(journal_, options_)});
+  }
+  lock.lock();
+  busy_ = false;
+}
+
+void LiveEstimate::run() {
+  // a thread of Linux has a priority of its own; where it is refused, nothing is lost
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  std::unique_lock lock(mutex_);
+  while (!over_) {
+    wake_.wait_for(lock, kInterval, [&] { return over_ || finishing_; });
+    if (over_) break;
+    if (!running_) continue;
+    const bool final = finishing_;
+    make(lock, final);
+    if (final) running_ = finishing_ = false;
+    finished_.notify_all();
+  }
+  running_ = false;
+  finished_.notify_all();
+}
+
+}  // namespace mbk::console

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "mbk/core/result.h"
+#include "mbk/journal/journal.h"
+#include "mbk/measurement/measure.h"
+#include "mbk/result/json.h"
+
+namespace mbk::console {
+
+/// What `mbk measure` makes of the perturbation in a journal, as far as it has come.
+/// @fails  data: nothing was perturbed yet; as journal::to_recording and measurement::measure.
+[[nodiscard]] Result<result::Measured> estimate(const journal::Journal& journal, const measurement::Options& options);
+
+/// M, B, K of a trial while it runs: about once a second `estimate` of all ticks so far, by a thread of its own that
+/// every other goes before. The last one, of the whole trial, is the one of its recording.
+class LiveEstimate {
+ public:
+  struct Estimate {
+    bool final = false;      ///< of the whole trial
+    double perturbed = 0.0;  ///< time of the perturbation that it saw [s]
+    Result<result::Measured> measured;
+  };
+
+  /// @param done  called from the thread with each estimate
+  explicit LiveEstimate(std::function<void(const Estimate&)> done);
+  LiveEstimate(const LiveEstimate&) = delete;
+  LiveEstimate& operator=(const LiveEstimate&) = delete;
+  ~LiveEstimate();
+
+  /// A trial begins; what was there is forgotten.
+  void begin(journal::Header header, measurement::Options options);
+
+  /// From the recorder's thread: takes a copy.
+  void add(std::span<const journal::Tick> ticks);
+
+  /// No more ticks will come: returns after the last estimate, the final one.
+  void finish();
+
+ private:
+  void run();
+  void make(std::unique_lock<std::mutex>& lock, bool final);
+
+  std::function<void(const Estimate&)> done_;
+  std::mutex mutex_;
+  std::condition_variable wake_, finished_;
+  std::vector<journal::Tick> incoming_;
+  journal::Journal journal_;  // of the thread, and of `begin` while that rests
+  measurement::Options options_;
+  bool running_ = false, finishing_ = false, over_ = false, busy_ = false;
+  std::thread thread_;
+};
+
+}  // namespace mbk::console

@@ -1,0 +1,299 @@
+// The console of mbk run in a browser: a run from its first click to its reports, stops, lost connections, strangers.
+import assert from "node:assert/strict";
+import { existsSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { closeBrowser, folder, mbk, open, pictures, start, violations } from "./browser.mjs";
+
+after(closeBrowser);
+
+const experiment = join(folder, "short.toml");
+writeFileSync(experiment, `
+[person]
+number = 7
+[session]
+soft_start_s = 0.5
+shortest_move_s = 0.5
+settle_s = 0.2
+[participant]
+kind = "arm"
+number = 1
+[[trial]]
+name = "relaxed"
+[trial.recording]
+condition = "relaxed, sinusoidal position perturbation"
+[trial.control]
+kind = "position"
+[trial.perturbation]
+kind = "multisine"
+duration_s = 14
+moving_in_s = 2
+[[trial]]
+name = "rigid"
+[trial.recording]
+condition = "rigid grasp, sinusoidal force perturbation"
+[trial.control]
+kind = "force"
+[trial.perturbation]
+kind = "multisine"
+peak_N = 4
+duration_s = 14
+moving_in_s = 2
+[trial.participant.correction]
+position_gain = 1.4
+[trial.participant.cocontraction]
+slope = 0.6
+`);
+
+/** A run with its console; addresses as it printed them. */
+async function run(name, ...args) {
+  const running = start("run", experiment, "--out", `${name}.h5`, "--console", "--quiet", ...args);
+  const address = (label) => running.until(new RegExp(`${label}: +(http://127\\.0\\.0\\.1:\\d+/\\S*)`)).then(([, url]) => url);
+  return Object.assign(running, { operator: await address("console"), participant: await address("screen"), viewing: await address("watch") });
+}
+
+/** The page at an address, at a size of its own; nothing of it may ask anyone but the console. */
+async function visit(address, options = {}) {
+  const visited = await open(address, { viewport: { width: 1920, height: 1080 }, ...options });
+  const { page } = visited;
+  const banner = (words) => page.waitForFunction((text) => document.querySelector(".banner-title")?.textContent?.includes(text), words, { timeout: 60_000 });
+  const foreign = () => visited.outside().filter((url) => !url.startsWith(new URL(address).origin));
+  return Object.assign(visited, { banner, foreign, click: (name) => page.getByRole("button", { name }).click({ timeout: 60_000 }) });
+}
+
+const take = (page, name) => page.screenshot({ path: join(pictures, `${name}.png`) });
+const ended = async ({ close }, running) => {
+  await close();
+  return running.code;
+};
+
+test("a whole run is clicked through, from the first trial to the reports", async () => {
+  const running = await run("whole", "--wait", "--speed", "4");
+  const operator = await visit(running.operator);
+  const { page, click, banner } = operator;
+  await banner("motors are off");
+  assert.deepEqual(await violations(page), []);
+  await take(page, "console-ready");
+
+  await page.getByRole("button", { name: "Begin: relaxed" }).focus();
+  await page.keyboard.press("Enter");
+  await banner("Running");
+  await page.getByLabel("Note for the recording").fill("talked to the nurse");
+  await click("Add the note");
+  await page.waitForSelector(".cells", { timeout: 60_000 });
+  await page.waitForTimeout(500);
+  assert.deepEqual(await violations(page), []);
+  await take(page, "console-running");
+
+  await page.getByRole("button", { name: "Begin the next: rigid" }).waitFor({ timeout: 60_000 });
+  assert.match(await page.textContent(".estimate h2"), /whole perturbation, 14 s/);
+  await click("Begin the next: rigid");
+  await banner("Running");
+  await page.waitForTimeout(1500);
+  await take(page, "console-force");
+  await click("End this trial early");
+  await click("Repeat this trial");
+  await banner("Running");
+  await page.getByRole("button", { name: "Finish" }).waitFor({ timeout: 60_000 });
+  await page.getByLabel("Note for the recording").fill("better");
+  await click("Add the note");
+  await click("Finish");
+  await banner("session is over");
+  const [report] = await Promise.all([page.context().waitForEvent("page"), page.getByRole("link", { name: "Open the report of relaxed" }).click()]);
+  await report.waitForSelector("main section");
+  assert.match(await report.textContent("main"), /stiffness/i);
+  await take(page, "console-over");
+  assert.deepEqual(await violations(page), []);
+  assert.deepEqual(operator.said, []);
+  assert.deepEqual(operator.foreign(), []);
+  assert.equal(await ended(operator, running), 0);
+
+  const of = (name) => JSON.parse(mbk("info", "--json", name).out).metadata;
+  assert.equal(of("whole_relaxed.h5").notes, "talked to the nurse");
+  assert.equal(of("whole_rigid.h5").ended, "ended early by the operator");
+  assert.equal(of("whole_rigid_2.h5").notes, "better");
+});
+
+/** Keeps the time of the newest sample that came, by the trial's clock [s]. */
+function watchArrivals() {
+  globalThis.WebSocket = class extends WebSocket {
+    constructor(...args) {
+      super(...args);
+      this.addEventListener("message", ({ data }) => {
+        if (!(data instanceof ArrayBuffer)) return;
+        const view = new DataView(data);
+        const last = 32 + 4 * view.getUint16(6, true) * (view.getUint32(8, true) - 1);
+        globalThis.newestSample = view.getFloat64(16, true) + view.getFloat32(last, true);
+      });
+    }
+  };
+}
+
+/** From the newest sample that was there at the press to the trip, by the trial's clock; and displayed frames until the page
+ * says the reason. */
+async function pressAndMeasure(page, press) {
+  await page.evaluate(() => {
+    const seen = (globalThis.stopSeen = { frames: 0, done: false, pressed: 0 });
+    const begin = () => { seen.pressed ||= globalThis.newestSample; };
+    document.querySelector(".stop").addEventListener("click", begin, { capture: true });
+    addEventListener("keydown", begin, { capture: true });
+    const count = () => {
+      if (seen.pressed) ++seen.frames;
+      const reason = /operator stopped it, at ([\d.]+) s/.exec(document.querySelector(".banner-words").textContent);
+      if (reason) Object.assign(seen, { done: true, tripped: Number(reason[1]) });
+      else requestAnimationFrame(count);
+    };
+    requestAnimationFrame(count);
+  });
+  await press();
+  await page.waitForFunction(() => globalThis.stopSeen.done, undefined, { timeout: 20_000 });
+  const { frames, tripped, pressed } = await page.evaluate(() => globalThis.stopSeen);
+  return `tripped ${(1000 * (tripped - pressed)).toFixed(0)} ms behind the newest sample that was there, reason displayed in frame ${frames}`;
+}
+
+test("the stop button and the space bar trip the gate; a reset takes two steps", async () => {
+  const running = await run("stopped", "--wait", "--speed", "1", "--trial", "relaxed");
+  const operator = await visit(running.operator, { script: watchArrivals });
+  const { page, click, banner } = operator;
+  await click("Begin: relaxed");
+  await banner("Running");
+  await page.waitForTimeout(1500);
+  const byButton = await pressAndMeasure(page, () => page.locator(".stop").click());
+  await page.getByRole("button", { name: "Reset …" }).waitFor();
+  assert.match(await page.textContent(".banner"), /Stopped.*the operator stopped it/);
+  assert.deepEqual(await violations(page), []);
+  await take(page, "console-stopped");
+  await click("Reset …");
+  await click("The reason is gone");
+  await click("Repeat this trial");
+  await banner("Running");
+  await page.waitForTimeout(1500);
+  await page.getByRole("button", { name: "End this trial early" }).focus();  // the space bar does not press it
+  const bySpace = await pressAndMeasure(page, () => page.keyboard.press("Space"));
+  console.log(`after the press: by the button ${byButton}; by the space bar ${bySpace}`);
+  await click("End the session");
+  assert.equal(await ended(operator, running), 5);
+  for (const name of ["stopped.h5", "stopped_2.h5"]) {
+    const { ended: how, ended_detail: why } = JSON.parse(mbk("info", "--json", name).out).metadata;
+    assert.equal(how, "safety stop");
+    assert.match(why, /operator/);
+  }
+});
+
+test("the space bar writes while a note is written, and stops again after Esc", async () => {
+  const running = await run("spaces", "--wait", "--speed", "1", "--trial", "relaxed");
+  const operator = await visit(running.operator);
+  const { page, click, banner } = operator;
+  await click("Begin: relaxed");
+  await banner("Running");
+  await page.getByLabel("Note for the recording").focus();
+  await page.keyboard.type("a b");
+  assert.equal(await page.inputValue("#note"), "a b");
+  assert.match(await page.textContent(".banner-title"), /Running/);
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Space");
+  await banner("Stopp");
+  await click("End the session");
+  assert.equal(await ended(operator, running), 5);
+});
+
+test("a lost connection is said, and the page finds back to nothing that is not there", async () => {
+  const running = await run("lost", "--wait", "--trial", "relaxed");
+  const operator = await visit(running.operator);
+  const { page, banner } = operator;
+  await banner("motors are off");
+  running.child.kill("SIGKILL");
+  await banner("Connection lost");
+  assert.match(await page.textContent(".banner-words"), /cannot stop the robot/);
+  assert.ok(await page.locator(".stop").isDisabled());
+  assert.deepEqual(await violations(page), []);
+  await take(page, "console-lost");
+  await operator.close();
+});
+
+test("a connection that was cut comes back by itself", async () => {
+  const running = await run("back", "--wait", "--trial", "relaxed");
+  const operator = await visit(running.operator);
+  const { page, banner } = operator;
+  await banner("motors are off");
+  running.child.kill("SIGSTOP");
+  await banner("Connection lost");
+  running.child.kill("SIGCONT");
+  await banner("motors are off");
+  await page.getByRole("button", { name: "No trial" }).click();
+  assert.equal(await ended(operator, running), 0);
+  assert.ok(!existsSync(join(folder, "back.h5")));
+});
+
+test("a wrong token and a foreign page get nothing, and that is logged", async () => {
+  const running = await run("strangers", "--wait", "--trial", "relaxed");
+  const { origin, host } = new URL(running.operator);
+  const stranger = await open(`${origin}/?token=0123`);
+  assert.match(await stranger.page.textContent("main"), /not right/);
+  await running.until(/refused: a wrong token/);
+  await stranger.close();
+  const own = await open(join(pictures, "..", "dist", "index.html"));
+  const opened = await own.page.evaluate((url) => new Promise((resolve) => {
+    const socket = new WebSocket(url);
+    socket.onopen = () => resolve(true);
+    socket.onerror = () => resolve(false);
+  }), `ws://${host}/stream?${new URL(running.operator).search.slice(1)}`);
+  assert.equal(opened, false);
+  await running.until(/refused: the origin/);
+  await own.close();
+  running.child.kill("SIGKILL");
+});
+
+test("who only watches sees everything and can do nothing", async () => {
+  const running = await run("watched", "--wait", "--speed", "4", "--trial", "relaxed");
+  const operator = await visit(running.operator);
+  const watching = await visit(running.viewing);
+  await operator.click("Begin: relaxed");
+  await watching.banner("Running");
+  assert.ok(await watching.page.locator(".stop").isDisabled());
+  assert.equal(await watching.page.locator(".actions button").count(), 0);
+  assert.match(await watching.page.textContent("footer"), /only watches/);
+  await watching.page.waitForTimeout(2500);
+  const rates = await Promise.all([operator, watching].map(({ page }) => page.evaluate(() => document.documentElement.dataset.framesPerSecond)));
+  console.log(`frames drawn per second by two pages: ${rates.join(", ")}`);
+  await watching.close();
+  await operator.click("Finish");
+  assert.equal(await ended(operator, running), 0);
+});
+
+test("the participant sees handle and target, mirrored and turned as the operator likes", async () => {
+  const running = await run("participant", "--wait", "--speed", "1", "--trial", "rigid");
+  const operator = await visit(running.operator);
+  const participant = await visit(running.participant);
+  const mirrored = await visit(`${running.participant}#mirrored&turned=90&magnified=1.5`);
+  const { page } = participant;
+  assert.match(await page.textContent(".please-wait"), /Please wait/);
+  await operator.click("Begin: rigid");
+  await operator.banner("Running");
+  const place = (of) => of.page.waitForFunction(() => document.querySelector("canvas").dataset.handle).then((handle) => handle.jsonValue());
+  await place(participant);
+  await page.waitForTimeout(6000);
+  assert.deepEqual(await violations(page), []);
+  assert.equal(await page.textContent(".please-wait"), "");
+  await take(page, "participant");
+  await take(mirrored.page, "participant-mirrored");
+  await page.getByText("View").click();
+  await page.getByLabel("mirrored, left and right").check();
+  await page.getByLabel("turned by").selectOption("180");
+  assert.match(page.url(), /#mirrored&turned=180/);
+  assert.deepEqual(await violations(page), []);
+  assert.deepEqual([...participant.said, ...mirrored.said], []);
+  assert.deepEqual(participant.foreign(), []);
+  await operator.click("End this trial early");
+  await operator.click("Finish");
+  await participant.close();
+  await mirrored.close();
+  assert.equal(await ended(operator, running), 0);
+});
+
+test("without --wait it goes on by itself, and stays while a page is open", async () => {
+  const running = await run("alone", "--fast", "--trial", "relaxed");
+  const code = await Promise.race([running.code, new Promise((resolve) => setTimeout(() => resolve("late"), 60_000))]);
+  assert.equal(code, 0);
+  assert.ok(existsSync(join(folder, "alone.h5")));
+});

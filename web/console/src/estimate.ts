@@ -1,0 +1,87 @@
+// M, B and K as they are known so far, with what is left of doubt.
+import type { Estimate } from "./stream";
+import { type Value, matrices, unitsOf } from "../../report/src/data";
+import { ellipsePanels } from "../../report/src/ellipses";
+import { h } from "../../report/src/dom";
+import { plainWarnings } from "../../report/src/words";
+import { fixed, withHalfWidth } from "../../report/src/format";
+
+const cells: [number, number][] = [[0, 0], [0, 1], [1, 0], [1, 1]];
+const kept = 24; // half widths of the last estimates that the small picture shows
+
+/** How the half widths of the diagonal have shrunk since the first estimate. */
+class Tightening {
+  private readonly first = new Map<string, number>();
+  private readonly history: number[] = [];
+
+  clear(): void {
+    this.first.clear();
+    this.history.length = 0;
+  }
+
+  /** Mean of half width over the first one, over the diagonal elements of all three matrices. */
+  add(errors: Record<string, Value[][]>): number[] {
+    const shares: number[] = [];
+    for (const { symbol } of matrices) {
+      for (const axis of [0, 1]) {
+        const error = errors[symbol]?.[axis]?.[axis];
+        if (error === null || error === undefined || !(error > 0)) continue;
+        const key = `${symbol}${axis}`;
+        if (!this.first.has(key)) this.first.set(key, error);
+        shares.push(error / (this.first.get(key) as number));
+      }
+    }
+    if (shares.length > 0) this.history.push(shares.reduce((sum, one) => sum + one, 0) / shares.length);
+    if (this.history.length > kept) this.history.splice(1, 1);
+    return this.history;
+  }
+}
+
+export class EstimatePanel {
+  readonly element = h("section", { class: "estimate", "aria-labelledby": "estimate-title" });
+  private readonly tightening = new Tightening();
+
+  constructor() {
+    this.show({});
+  }
+
+  show(estimate: Estimate): void {
+    const { result } = estimate;
+    const title = (words: string) => h("h2", { id: "estimate-title" }, "Impedance", h("small", {}, words));
+    if (!result) {
+      if (estimate.final === undefined) this.tightening.clear();
+      this.element.replaceChildren(title(""), h("p", { class: "not-yet" }, estimate.why ? `Not yet: ${estimate.why}.` : "M, B and K appear two seconds after the perturbation begins."));
+      return;
+    }
+    const units = unitsOf(result);
+    const history = this.tightening.add(result.standard_error as unknown as Record<string, Value[][]>);
+    const seconds = (estimate.perturbed_s ?? 0).toFixed(0);
+    const ellipses = ellipsePanels(result);
+    this.element.replaceChildren(
+      title(estimate.final ? ` of the whole perturbation, ${seconds} s` : ` so far, from ${seconds} s`),
+      h(
+        "div",
+        { class: "matrices" },
+        ...matrices.map(({ symbol, title: name }) =>
+          h(
+            "div",
+            { class: "matrix" },
+            h("p", { class: "matrix-name" }, h("strong", {}, symbol), ` ${name.toLowerCase()} [${units[symbol]}]`),
+            h("div", { class: "cells" }, ...cells.map(([i, j]) =>
+              withHalfWidth(result.model[symbol][i]?.[j] ?? null, result.standard_error[symbol][i]?.[j] ?? null, `${symbol}${i}${j}`))),
+          )),
+      ),
+      ellipses ?? "",
+      h(
+        "p",
+        { class: "tightening" },
+        history.length > 1
+          ? `95 % intervals, ${(100 * (history.at(-1) as number)).toFixed(0)} % as wide as in the first estimate. `
+          : "± is half of the 95 % interval. ",
+        `Model explains ${result.fit.VAF.map((value, k) => `${fixed(value, 1)} % in ${"xy"[k]}`).join(", ")}.`,
+        result.usable ? "" : h("strong", { class: "care-text" }, estimate.final ? " ▲ Not usable." : " ▲ Not usable yet."),
+      ),
+      h("ul", { class: "warnings" }, ...result.warnings.map(({ code, message }) => h("li", {}, `▲ ${plainWarnings[code]?.title ?? message}`))),
+    );
+  }
+}

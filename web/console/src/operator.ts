@@ -1,0 +1,256 @@
+// The operator's page: what happens, whether it is safe, and what to do next.
+import uplotLicence from "uplot/LICENSE?raw";
+import { h } from "../../report/src/dom";
+import { EstimatePanel } from "./estimate";
+import { histogram } from "./histogram";
+import { type ListedTrial, type State, Stream, type You } from "./stream";
+import { Traces } from "./traces";
+
+const period = 1000; // of a tick [µs]
+const signs = { waiting: "○", running: "▶", done: "✓", stopped: "■" };
+
+/** Writes only what has changed, so that a reader's place and a button's focus stay. */
+function text(element: HTMLElement, words: string): void {
+  if (element.textContent !== words) element.textContent = words;
+}
+
+const seconds = (value: number): string => `${Math.max(value, 0).toFixed(1)} s`;
+const clock = (value: number): string => `${Math.floor(value / 60)}:${String(Math.floor(value % 60)).padStart(2, "0")}`;
+
+class OperatorPage {
+  private state: State | undefined;
+  private you: You = { controls: false, may_stop: false, dropped_frames: 0 };
+  private connected = false;
+  private pressed = false; // stop was pressed, and the answer is not there yet
+  private shown = "";
+  private nextHistograms = 0;
+  private readonly traces = new Traces();
+  private readonly estimate = new EstimatePanel();
+  private frames = 0;
+  private counted = performance.now();
+
+  private readonly banner = h("div", { class: "banner", role: "status", "aria-live": "assertive" });
+  private readonly bannerTitle = h("p", { class: "banner-title" });
+  private readonly bannerWords = h("p", { class: "banner-words" });
+  private readonly stop = h("button", { type: "button", class: "stop" }, h("span", { "aria-hidden": true }, "■ "), "STOP", h("small", {}, "space bar"));
+  private readonly phase = h("p", { class: "phase" });
+  private readonly progress = h("progress", { max: 1, value: 0, "aria-label": "Progress of the trial" });
+  private readonly time = h("p", { class: "time" });
+  private readonly trials = h("ol", { class: "trials" });
+  private readonly actions = h("div", { class: "actions", role: "group", "aria-label": "What next" });
+  private readonly histograms = h("div", { class: "histograms" });
+  private readonly facts = h("p", { class: "facts-line" });
+  private readonly said = h("p", { class: "said", role: "status" });
+  private readonly note = h("textarea", { id: "note", rows: 2, maxlength: 600 });
+  private readonly addNote = h("button", { type: "submit" }, "Add the note");
+  private readonly notes = h("ul", { class: "notes" });
+  private readonly links = h("p", { class: "links" });
+
+  private readonly stream = new Stream({
+    state: (state) => {
+      this.state = state;
+      this.draw();
+    },
+    estimate: (estimate) => this.estimate.show(estimate),
+    frame: (frame) => this.traces.add(frame),
+    you: (you) => {
+      this.you = you;
+      this.draw();
+    },
+    refused: (why) => text(this.said, `Refused: ${why}.`),
+    connected: (connected) => {
+      this.connected = connected;
+      this.draw();
+    },
+  });
+
+  constructor(root: HTMLElement) {
+    this.banner.append(h("div", {}, this.bannerTitle, this.bannerWords));
+    const notes = h("form", { class: "note-form" },
+      h("label", { for: "note" }, "Note for the recording ", h("small", {}, "(here the space bar writes; Esc leaves)")), this.note, this.addNote);
+    notes.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const words = this.note.value.trim();
+      if (words && this.tell("note", { text: words })) this.note.value = "";
+      this.note.blur();
+    });
+    root.replaceWith(
+      h("div", { class: "operator" },
+        h("header", {}, this.banner, this.stop),
+        h("main", {},
+          h("section", { class: "now", "aria-labelledby": "now-title" },
+            h("h1", { id: "now-title" }, "Trials"), this.phase, this.progress, this.time, this.actions, this.said, this.trials, notes, this.notes),
+          h("section", { class: "signals", "aria-label": "Live signals" }, this.traces.element,
+            h("section", { class: "machine", "aria-label": "Timing of the loop" }, this.histograms, this.facts)),
+          this.estimate.element),
+        h("footer", {}, this.links,
+          h("details", { class: "licences" }, h("summary", {}, "Software inside this page, and its licence"),
+            h("p", {}, "The traces are drawn with uPlot."), h("pre", { tabindex: 0, role: "group", "aria-label": "uPlot: licence" }, uplotLicence)))));
+    this.stop.addEventListener("click", () => this.pressStop());
+    addEventListener("keydown", (event) => this.key(event), { capture: true });
+    addEventListener("keyup", (event) => {
+      if (event.code === "Space" && event.target !== this.note) event.preventDefault();
+    }, { capture: true });
+    const paint = () => {
+      if (this.traces.draw()) ++this.frames;
+      requestAnimationFrame(paint);
+    };
+    requestAnimationFrame(paint);
+    setInterval(() => this.count(), 1000);
+    this.draw();
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.target === this.note) {
+      if (event.key === "Escape") this.note.blur();
+      return;
+    }
+    if (event.code !== "Space") return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (!event.repeat) this.pressStop();
+  }
+
+  private pressStop(): void {
+    this.pressed = this.tell("stop");
+    this.draw();
+  }
+
+  private tell(command: string, more: Record<string, string> = {}): boolean {
+    text(this.said, "");
+    const sent = this.stream.send(command, more);
+    if (!sent) text(this.said, "Not sent: the connection is lost.");
+    return sent;
+  }
+
+  /** Frames that were drawn in the last second: for whoever measures it. */
+  private count(): void {
+    const now = performance.now();
+    document.documentElement.dataset["framesPerSecond"] = ((1000 * this.frames) / (now - this.counted)).toFixed(1);
+    this.frames = 0;
+    this.counted = now;
+  }
+
+  private draw(): void {
+    const { state } = this;
+    this.drawBanner(state);
+    this.stop.disabled = !this.connected || !this.you.may_stop || !state || state.over;
+    if (!state) return;
+    const trial = state.trials[state.current] as ListedTrial;
+    document.title = `${state.safety.tripped ? "STOPPED – " : ""}${trial.name} – mbk console`;
+    text(this.phase, state.over ? "the session is over" : state.running ? state.phase : this.waitingFor(state));
+    this.progress.value = state.running && state.duration_s > 0 ? Math.min(state.time_s / state.duration_s, 1) : 0;
+    text(this.time, state.running
+      ? `${clock(state.time_s)} of about ${clock(state.duration_s)}${state.perturbing ? ` · perturbation ${seconds(state.perturbation_s)} of ${seconds(trial.duration_s)}` : ""}`
+      : "");
+    if (state.said) text(this.said, state.said);
+    this.drawRarely(state);
+    this.drawHistograms(state);
+    text(this.facts, [
+      `${state.ticks} ticks, ${state.dropped_ticks} dropped`,
+      `${(state.disk_free_bytes / 1e9).toFixed(1)} GB free on the disk`,
+      `${state.viewers} ${state.viewers === 1 ? "page" : "pages"} open`,
+      this.you.dropped_frames > 0 ? `${this.you.dropped_frames} pictures left out here` : "",
+    ].filter(Boolean).join(" · "));
+  }
+
+  /** Once a second: a second page on the same machine wants its part of the processor too. */
+  private drawHistograms(state: State): void {
+    const now = performance.now();
+    if (now < this.nextHistograms && state.running) return;
+    this.nextHistograms = now + 1000;
+    this.histograms.replaceChildren(
+      histogram("Computing a tick:", state.times.compute, period),
+      histogram("Lateness of a tick:", state.times.lateness, period));
+  }
+
+  private waitingFor(state: State): string {
+    return { "": "measuring what was recorded", begin: "ready", after: "what next?", reset: "stopped" }[state.question];
+  }
+
+  private drawBanner(state: State | undefined): void {
+    const [kind, title, words] = this.situation(state);
+    if (!this.banner.classList.contains(kind)) this.banner.className = `banner ${kind}`;
+    text(this.bannerTitle, title);
+    text(this.bannerWords, words);
+  }
+
+  private situation(state: State | undefined): [string, string, string] {
+    if (!this.connected && state?.over) return ["rest", "○ The session is over", "mbk has ended. This page can be closed."];
+    if (!this.connected) {
+      return ["lost", "✕ Connection lost", "What is shown is old, and this page cannot stop the robot: use the stop button that cuts the motors' power, or the terminal. Trying again …"];
+    }
+    if (!state) return ["rest", "Connecting …", ""];
+    if (state.safety.tripped) {
+      this.pressed = false;
+      return ["tripped", "■ Stopped", state.safety.sentence];
+    }
+    if (this.pressed) return ["tripped", "■ Stopping …", ""];
+    if (state.over) return ["rest", "○ The session is over", "The reports can still be opened. Closing this page ends mbk."];
+    if (!state.running) return ["rest", "○ The motors are off", state.question === "" ? "" : "Nothing moves before you say so."];
+    if (state.phase === "done") return ["rest", "○ The motors are off", "The recording is written."];
+    if (state.safety.cut) return ["care", "▲ Running, torque limited", "The controller asks for more than the gate lets pass."];
+    return ["running", "▶ Running", "Within all limits."];
+  }
+
+  /** What holds buttons and links is made anew only where it changes. */
+  private drawRarely(state: State): void {
+    const shown = JSON.stringify([state.trials, state.current, state.running, state.question, state.reset_code, state.over, state.notes, this.you.controls, this.connected]);
+    if (shown === this.shown) return;
+    this.shown = shown;
+    const trial = state.trials[state.current] as ListedTrial;
+    this.traces.choose(trial.home_m, trial.reference_unit);
+    this.trials.replaceChildren(...state.trials.map((one, k) => this.listed(one, k === state.current)));
+    const focused = document.activeElement instanceof HTMLElement ? document.activeElement.dataset["command"] : undefined;
+    this.actions.replaceChildren(...this.buttons(state));
+    this.actions.querySelector<HTMLElement>(`[data-command="${focused}"]`)?.focus();
+    this.addNote.disabled = this.note.disabled = !this.connected || !this.you.controls;
+    this.notes.replaceChildren(...state.notes.map((note) => h("li", {}, note)));
+    const link = (address: string, name: string) => h("a", { href: address, target: "_blank", rel: "noopener" }, name);
+    this.links.replaceChildren(
+      ...(this.you.may_stop
+        ? [link(state.participant, "Participant's screen"), " · ", link(state.viewing, "A page that only watches"), " · "]
+        : []),
+      this.you.controls ? "This page controls." : this.you.may_stop ? "Another page controls; this one can stop." : "This page only watches.",
+      ` The gate is software: the button that cuts the motors' power stays necessary. ${state.software}`);
+  }
+
+  private listed(trial: ListedTrial, current: boolean): HTMLElement {
+    const token = encodeURIComponent(new URLSearchParams(location.search).get("token") ?? "");
+    const words = trial.progress === "waiting" ? clock(trial.duration_s) : trial.progress === "running" ? "running" : trial.ending;
+    return h("li", { class: trial.progress, "aria-current": current ? "step" : undefined },
+      h("span", { class: "sign", "aria-hidden": true }, signs[trial.progress]),
+      h("span", {}, h("strong", {}, trial.name), h("small", {}, [trial.condition, words].filter(Boolean).join(" · ")),
+        trial.report > 0 && h("a", { href: `/report/${trial.report}?token=${token}`, target: "_blank", rel: "noopener" }, `Open the report of ${trial.name}`),
+        trial.report_missing && h("small", { class: "care-text" }, `no report: ${trial.report_missing}`)));
+  }
+
+  private buttons(state: State): HTMLElement[] {
+    if (!this.you.controls || !this.connected || state.over) return [];
+    const button = (command: string, words: string, more: Record<string, string> = {}, kind = "") => {
+      const made = h("button", { type: "button", class: kind, "data-command": command }, words);
+      made.addEventListener("click", () => this.tell(command, more));
+      return made;
+    };
+    const last = state.current + 1 >= state.trials.length;
+    const name = (k: number) => state.trials[k]?.name ?? "";
+    if (state.running) return [button("end", "End this trial early")];
+    switch (state.question) {
+      case "begin":
+        return [button("start", `Begin: ${name(state.current)}`, {}, "main"), button("abort", "No trial: end the session")];
+      case "after":
+        return [button("next", last ? "Finish" : `Begin the next: ${name(state.current + 1)}`, {}, "main"), button("repeat", "Repeat this trial"),
+          ...(last ? [] : [button("abort", "End the session")])];
+      case "reset":
+        return state.reset_code
+          ? [button("reset", "The reason is gone and the person is well: reset", { code: state.reset_code }, "main"), button("abort", "End the session")]
+          : [button("reset", "Reset …"), button("abort", "End the session")];
+      default:
+        return [];
+    }
+  }
+}
+
+export function showOperator(root: HTMLElement): void {
+  new OperatorPage(root);
+}
