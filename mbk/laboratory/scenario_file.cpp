@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mbk/config/document.h"
+#include "mbk/config/trials.h"
 #include "mbk/laboratory/scenario.h"
 #include "mbk/robot_file/planar_keys.h"
 
@@ -545,22 +545,13 @@ Scenario read_scenario(const Section& root) {
 }
 
 Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file) {
-  const auto document = config::Document::parse(text, file.string());
-  if (!document) return tl::unexpected(document.error());
-  const auto trials = document->trials();
-  if (!trials) return tl::unexpected(trials.error());
-  std::vector<Scenario> scenarios;
-  for (const config::Trial& trial : *trials) {
-    const Section root = trial.document.root();
+  return config::read_trials(text, file, [&](const Section& root, const std::string& name) -> Result<Scenario> {
     for (const char* section : kSectionsOfExperiments) root.leave_to_others(section);
     Scenario scenario = read_scenario(root);
-    if (auto ok = trial.document.finish(); !ok) return tl::unexpected(ok.error());
     scenario.file_name = file.stem().string();
-    scenario.trial_name = trial.name;
-    scenarios.push_back(std::move(scenario));
-  }
-  if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());
-  return scenarios;
+    scenario.trial_name = name;
+    return scenario;
+  });
 }
 
 }  // namespace mbk::laboratory

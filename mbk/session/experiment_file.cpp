@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "mbk/config/document.h"
+#include "mbk/config/trials.h"
 #include "mbk/session/experiment.h"
 
 namespace mbk::session {
@@ -69,15 +69,9 @@ Person read_person(const Section& s) {
 }  // namespace
 
 Result<std::vector<Trial>> read_experiment(std::string_view text, const std::filesystem::path& file) {
-  const auto document = config::Document::parse(text, file.string());
-  if (!document) return tl::unexpected(document.error());
-  const auto parts = document->trials();
-  if (!parts) return tl::unexpected(parts.error());
-  std::vector<Trial> trials;
-  for (const config::Trial& part : *parts) {
-    const Section root = part.document.root();
+  return config::read_trials(text, file, [&](const Section& root, const std::string& name) -> Result<Trial> {
     Trial trial;
-    trial.name = part.name;
+    trial.name = name;
     trial.protocol = file.stem().string();
     trial.scenario = laboratory::read_scenario(root);
     if (!std::holds_alternative<laboratory::PlanarTrial>(trial.scenario.trial)) {
@@ -86,16 +80,13 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
                                       "take a planar robot; 'mbk simulate' makes recordings of one-axis machines"));
     }
     trial.scenario.file_name = trial.protocol;
-    trial.scenario.trial_name = trial.name;
+    trial.scenario.trial_name = name;
     trial.sequence = read_sequence(root.section("session"), trial.planar());
     trial.limits = read_limits(root.section("safety"));
     trial.person = read_person(root.section("person"));
     trial.device = read_device(root.section("device"), file.parent_path());
-    if (auto ok = part.document.finish(); !ok) return tl::unexpected(ok.error());
-    trials.push_back(std::move(trial));
-  }
-  if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());
-  return trials;
+    return trial;
+  });
 }
 
 std::map<std::string, std::string> metadata_of(const Person& person) {
