@@ -84,7 +84,9 @@ test("the Bode plot holds the response and both ends of its interval", () => onP
   const figure = page.locator("figure.chart-figure", { has: page.locator("#bode") });
   await figure.locator("details.data-table summary").focus();
   await page.keyboard.press("Enter");
-  const cells = await figure.locator("table.values tbody tr").first().locator("td").allTextContents();
+  const row = figure.locator("table.values tbody tr").first();
+  await row.waitFor();
+  const cells = await row.locator("td").allTextContents();
   const { frequency_response: r } = chosen.json;
   const got = cells.slice(0, 2).map((text) => parseFloat(text.replaceAll("−", "-")));
   assert.ok(Math.abs(got[0] / r.frequency_hz[0] - 1) < 1e-3, cells.join(" "));
