@@ -22,7 +22,8 @@ if(MBK_WEB)
                         "(tools/install-packages build), or configure with -DMBK_WEB=OFF and do without --report")
   endif()
   # In the folder where it will run, for a manager of versions may choose by folder.
-  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/web/report ${PROJECT_BINARY_DIR}/web/console)
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/web/report ${PROJECT_BINARY_DIR}/web/console
+       ${PROJECT_BINARY_DIR}/web/reproduction)
   execute_process(COMMAND ${MBK_NODE} --version WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/web/report
                   OUTPUT_VARIABLE version OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   mbk_node_command(MBK_NODE_COMMAND "${version}")

@@ -28,6 +28,7 @@ Action add_springs(CLI::App& app);
 Action add_sensor(CLI::App& app);
 Action add_teleop(CLI::App& app);
 Action add_validate(CLI::App& app);
+Action add_reproduce(CLI::App& app);
 Action add_robot(CLI::App& app);
 
 /// These two speak of the whole tree below `app`, as it is when they run.

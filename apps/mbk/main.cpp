@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
       {"sensor", mbk::app::add_sensor(app)},
       {"robot", mbk::app::add_robot(app)},
       {"validate", mbk::app::add_validate(app)},
+      {"reproduce", mbk::app::add_reproduce(app)},
       {"completion", mbk::app::add_completion(app)},
       {"manual", mbk::app::add_manual(app)},
   };

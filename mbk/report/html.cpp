@@ -19,24 +19,27 @@ std::string_view page_template() {
 
 }  // namespace
 
-Result<std::string> page(std::string_view report_json) {
-  const std::string_view whole = page_template();
-  const std::size_t place = whole.find(kPlaceOfData);
+Result<std::string> filled_page(std::string_view page, std::string_view json) {
+  const std::size_t place = page.find(kPlaceOfData);
   if (place == std::string_view::npos) {
-    return bad_usage("this mbk was built without the page of its reports",
-                     "build it with -DMBK_WEB=ON, which needs Node.js, or leave --report away");
+    return bad_usage("this mbk was built without its pages",
+                     "build it with -DMBK_WEB=ON, which needs Node.js, or do without an HTML file");
   }
-  std::string html(whole.substr(0, place));
-  html.reserve(whole.size() + report_json.size() + report_json.size() / 64);
-  for (const char c : report_json) {
+  std::string html(page.substr(0, place));
+  html.reserve(page.size() + json.size() + json.size() / 64);
+  for (const char c : json) {
     if (c == '<') {
       html += "\\u003c";
     } else {
       html += c;
     }
   }
-  html += whole.substr(place + kPlaceOfData.size());
+  html += page.substr(place + kPlaceOfData.size());
   return html;
+}
+
+Result<std::string> page(std::string_view report_json) {
+  return filled_page(page_template(), report_json);
 }
 
 }  // namespace mbk::report

@@ -56,15 +56,6 @@ measurement::Options published_procedure() {
   return options;
 }
 
-/// The scenario with the limb of a participant.
-Result<Scenario> with_limb(Scenario scenario, int number) {
-  const auto limb = participant::participant_limb(number);
-  if (!limb) return tl::unexpected(limb.error());
-  auto& arm = std::get<participant::ArmOptions>(std::get<PlanarTrial>(scenario.trial).load);
-  std::get<participant::TwoLinkArm::Options>(arm.limb).joints = limb->joints;
-  return scenario;
-}
-
 void switch_controller_off(Scenario& scenario) {
   std::get<participant::ArmOptions>(std::get<PlanarTrial>(scenario.trial).load).controller.position_gain = 0.0;
 }

@@ -37,6 +37,14 @@ Result<std::vector<laboratory::Scenario>> ready(std::string_view name) {
   return laboratory::read_scenarios(scenario->text, std::string(name) + ".toml");
 }
 
+Result<laboratory::Scenario> with_limb(laboratory::Scenario scenario, int number) {
+  const auto limb = participant::participant_limb(number);
+  if (!limb) return tl::unexpected(limb.error());
+  auto& arm = std::get<participant::ArmOptions>(std::get<laboratory::PlanarTrial>(scenario.trial).load);
+  std::get<participant::TwoLinkArm::Options>(arm.limb).joints = limb->joints;
+  return scenario;
+}
+
 Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, const StudyOptions& options) {
   const auto count = static_cast<int>(plans.size());
   std::vector<SimulatedTrial> trials(plans.size());

@@ -16,6 +16,10 @@ namespace mbk::validation {
 /// @fails  there is none of that name.
 [[nodiscard]] Result<std::vector<laboratory::Scenario>> ready(std::string_view name);
 
+/// The scenario of an arm with the limb of a participant (participant::participant_limb); everything else stays.
+/// @fails  as participant_limb
+[[nodiscard]] Result<laboratory::Scenario> with_limb(laboratory::Scenario scenario, int number);
+
 /// One simulated trial, measured.
 struct SimulatedTrial {
   double energy_absorbed = 0.0;   ///< by the limb [J]

@@ -1,0 +1,163 @@
+#include "mbk/reproduction/reproduce.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
+#include "apps/mbk/progress.h"
+#include "mbk/recording/write_file.h"
+#include "mbk/report/chart.h"
+#include "mbk/report/text.h"
+#include "mbk/reproduction/page.h"
+#include "mbk/result/reproduction_json.h"
+
+namespace mbk::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFallsShort = 1;
+
+struct Arguments {
+  fs::path folder;
+  std::vector<std::string> only;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  bool list = false, without_printed = false, json = false, quiet = false, overwrite = false;
+};
+
+/// One exhibit on each line.
+std::string list_text() {
+  std::string text;
+  for (const auto& [id, title] : reproduction::exhibit_names()) text += fmt::format("{:<16} {}\n", id, title);
+  return text;
+}
+
+/// "3.6" as "table-3.6"; what has no number keeps its words: "5.4 stiffness" as "table-5.4-stiffness".
+std::string table_file(const Exhibit& exhibit, std::size_t k) {
+  return exhibit.tables.size() == 1 ? exhibit.id : fmt::format("{}-{}", exhibit.id, k + 1);
+}
+
+/// What one exhibit leaves in the folders tables and figures.
+Result<void> write_exhibit(const Exhibit& exhibit, const Arguments& arguments) {
+  for (std::size_t k = 0; k < exhibit.tables.size(); ++k) {
+    const fs::path file = arguments.folder / "tables" / table_file(exhibit, k);
+    const auto csv =
+        recording::write_file(file.string() + ".csv", arguments.overwrite, result::to_csv(exhibit.tables[k]));
+    if (!csv) return csv;
+    const auto json = recording::write_file(file.string() + ".json", arguments.overwrite,
+                                            result::to_json(exhibit, exhibit.tables[k]));
+    if (!json) return json;
+  }
+  for (std::size_t k = 0; k < exhibit.charts.size(); ++k) {
+    const fs::path file = arguments.folder / "figures" / fmt::format("{}-{}.svg", exhibit.id, k + 1);
+    if (auto ok = recording::write_file(file, arguments.overwrite, report::chart_svg(exhibit.charts[k])); !ok)
+      return ok;
+  }
+  return {};
+}
+
+Result<void> make_folders(const Arguments& arguments) {
+  for (const char* folder : {"", "tables", "figures"}) {
+    std::error_code error;
+    fs::create_directories(arguments.folder / folder, error);
+    if (error)
+      return fail(ErrorKind::usage, error.message(), "name a folder that can be made", arguments.folder.string());
+  }
+  return {};
+}
+
+/// Everything, tables and figures first, so that the page is there only once all of it is.
+Result<void> write_all(const Reproduction& made, const Arguments& arguments, const std::string& document) {
+  if (auto ok = make_folders(arguments); !ok) return ok;
+  for (const Exhibit& exhibit : made.exhibits) {
+    if (auto ok = write_exhibit(exhibit, arguments); !ok) return ok;
+  }
+  const auto json = recording::write_file(arguments.folder / "reproduction.json", arguments.overwrite, document);
+  if (!json) return json;
+  const auto page = reproduction::page(made, document);
+  if (!page) return tl::unexpected(page.error());
+  return recording::write_file(arguments.folder / "index.html", arguments.overwrite, *page);
+}
+
+std::string summary_text(const Reproduction& made, const fs::path& folder) {
+  std::string text = fmt::format("{}: {} exhibits\n", (folder / "index.html").string(), made.exhibits.size());
+  text += fmt::format(
+      "  of the printed numbers that follow from other printed numbers {} agree within their rounding, "
+      "{} are slips of the source, {} differ\n",
+      made.count(Agreement::within_rounding), made.count(Agreement::slip), made.count(Agreement::differs));
+  return text;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.list) {
+    const auto ok = Output().write(list_text());
+    return ok ? kFine : report_error(ok.error());
+  }
+  const fs::path page = arguments.folder / "index.html";
+  if (auto ok = check_new_file(page, "--out", arguments.overwrite, {}); !ok) return report_error(ok.error());
+  auto source = reproduction::read_source(reproduction::source_text());
+  if (!source) return report_error(source.error());
+  if (arguments.without_printed) source->printed.clear();
+  Progress progress(arguments.quiet, "reproduce: ");
+  reproduction::ReproduceOptions options;
+  options.only = arguments.only;
+  options.seed = arguments.seed;
+  options.threads = arguments.threads;
+  options.progress = [&](int done, int of, std::string_view id) { progress.count(done, of, id); };
+  const auto made = reproduction::reproduce(*source, options);
+  if (!made) return report_error(made.error());
+  const std::string document = result::to_json(*made);
+  if (auto ok = write_all(*made, arguments, document); !ok) return report_error(ok.error());
+  const std::string text = arguments.json ? document : summary_text(*made, arguments.folder);
+  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  return made->count(Agreement::differs) == 0 ? kFine : kFallsShort;
+}
+
+}  // namespace
+
+Action add_reproduce(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("reproduce", "the thesis mbk grew from, table by table and figure by figure");
+  command->footer(
+      "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
+      "University of Alberta, 2013) that can be made again, beside the printed numbers: recomputed from\n"
+      "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the slips\n"
+      "in the source, its research questions and its future work.\n\n"
+      "Examples:\n"
+      "  mbk reproduce --out thesis              thesis/index.html, and tables and figures as files\n"
+      "  mbk reproduce --list                    what there is\n"
+      "  mbk reproduce --only table-3.6 --only slip-1 --out excess\n\n"
+      "Exit codes: 0 every printed number that follows from others agrees or is a known slip, 1 one\n"
+      "differs, 2 wrong usage, 3 bad data.");
+  CLI::Option* const out =
+      command->add_option("--out", arguments->folder, "the folder that everything goes to (thesis)")
+          ->type_name("FOLDER")
+          ->default_val("thesis")
+          ->check(not_empty());
+  command->add_option("--only", arguments->only, "only this exhibit; may be given several times (see --list)")
+      ->type_name("ID");
+  command->add_flag("--list", arguments->list, "name the exhibits and stop")->excludes(out);
+  command->add_option("--seed", arguments->seed, "of everything simulated; the same seed gives the same numbers (1)")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000'000));
+  command->add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
+      ->type_name("N")
+      ->check(whole_number(1, 1024));
+  command->add_flag("--without-printed", arguments->without_printed,
+                    "leave the printed numbers out; ours stay the same");
+  command->add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/1");
+  command->add_flag("--overwrite", arguments->overwrite, "replace files that are there");
+  command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,122 @@
+#include "mbk/reproduction/workbench.h"
+
+#include "mbk/measurement/measure.h"
+#include "mbk/numeric/parallel.h"
+#include "mbk/validation/simulated_trials.h"
+
+namespace mbk::reproduction {
+namespace {
+
+measurement::Options published_procedure() {
+  measurement::Options options;
+  options.preprocess.mode = Mode::reference;
+  options.identify.handle_mass = kHandleMass;
+  return options;
+}
+
+bool passive_as_published(const result::Measured& measured) {
+  for (const ModelPassivity& model : measured.passivity->models) {
+    if (model.method == Method::least_squares) return model.published_rule;
+  }
+  return false;
+}
+
+Result<TaskResult> perform(Task task, int participant, const Workbench& bench) {
+  TaskResult result;
+  result.participant = participant;
+  std::vector<Recording> recordings;
+  Vector truth;
+  for (int k = 1; k <= kTrials; ++k) {
+    const auto scenario = task_scenario(task, participant, bench.seed(participant, k));
+    if (!scenario) return tl::unexpected(scenario.error());
+    auto performance = laboratory::simulate(*scenario);
+    if (!performance) return tl::unexpected(performance.error());
+    const Vector one = impedance::stacked(performance->truth) / kTrials;
+    truth = k == 1 ? one : Vector(truth + one);
+    recordings.push_back(std::move(performance->recording));
+    auto measured = measurement::measure({&recordings.back(), 1}, published_procedure());
+    if (!measured) return tl::unexpected(measured.error());
+    result.trials.push_back(
+        {std::move(measured->identification), std::move(measured->energies.front()), passive_as_published(*measured)});
+  }
+  result.truth = impedance::unstacked(truth, 2);
+  measurement::Options options;
+  options.identify.handle_mass = kHandleMass;
+  auto pooled = measurement::measure(recordings, options);
+  if (!pooled) return tl::unexpected(pooled.error());
+  result.pooled = std::move(*pooled);
+  result.first = std::move(recordings.front());
+  return result;
+}
+
+}  // namespace
+
+const char* scenario_of(Task task) {
+  switch (task) {
+    case Task::relaxed_sinusoidal:
+      return "relaxed_sinusoidal";
+    case Task::relaxed_underdamped:
+      return "relaxed_underdamped";
+    case Task::rigid_underdamped:
+      return "rigid_underdamped_2N";
+    case Task::rigid_sinusoidal:
+      break;
+  }
+  return "rigid_sinusoidal_6N";
+}
+
+const char* text(Task task) {
+  switch (task) {
+    case Task::relaxed_sinusoidal:
+      return "relaxed, sinusoidal";
+    case Task::relaxed_underdamped:
+      return "relaxed, underdamped";
+    case Task::rigid_underdamped:
+      return "rigid, underdamped";
+    case Task::rigid_sinusoidal:
+      break;
+  }
+  return "rigid, sinusoidal";
+}
+
+std::vector<int> participants_of(Task task) {
+  switch (task) {
+    case Task::relaxed_sinusoidal:
+    case Task::rigid_underdamped:
+      return {1, 2, 3, 4, 5, 6};
+    case Task::relaxed_underdamped:
+      return {1, 4};
+    case Task::rigid_sinusoidal:
+      break;
+  }
+  return {1, 4, 5};  // three people did it; which is not said
+}
+
+Result<laboratory::Scenario> task_scenario(Task task, int participant, std::uint64_t seed) {
+  auto scenarios = validation::ready(scenario_of(task));
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  auto scenario = validation::with_limb(scenarios->front(), participant);
+  if (scenario) scenario->seed = seed;
+  return scenario;
+}
+
+std::uint64_t Workbench::seed(int participant, int trial) const {
+  return 1000 * (options_.seed - 1) + 10 * static_cast<std::uint64_t>(participant) + static_cast<std::uint64_t>(trial);
+}
+
+Result<const std::vector<TaskResult>*> Workbench::results(Task task) {
+  if (const auto found = results_.find(task); found != results_.end()) return &found->second;
+  const std::vector<int> people = participants_of(task);
+  std::vector<TaskResult> all(people.size());
+  const auto ran = numeric::parallel_for(static_cast<int>(people.size()), options_.threads, [&](int i) -> Result<void> {
+    const auto at = static_cast<std::size_t>(i);
+    auto result = perform(task, people[at], *this);
+    if (!result) return tl::unexpected(result.error());
+    all[at] = std::move(*result);
+    return {};
+  });
+  if (!ran) return tl::unexpected(ran.error());
+  return &(results_[task] = std::move(all));
+}
+
+}  // namespace mbk::reproduction

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "mbk/core/result.h"
+#include "mbk/impedance/model.h"
+#include "mbk/laboratory/scenario.h"
+#include "mbk/reproduction/source.h"
+#include "mbk/result/json.h"
+#include "mbk/trial/energy.h"
+#include "mbk/trial/identification.h"
+#include "mbk/trial/recording.h"
+
+namespace mbk::reproduction {
+
+/// What a participant was asked to do, and by what the hand was perturbed.
+enum class Task { relaxed_sinusoidal, relaxed_underdamped, rigid_underdamped, rigid_sinusoidal };
+
+/// The ready scenario of a task (laboratory/ready_scenarios.h).
+[[nodiscard]] const char* scenario_of(Task task);
+
+/// "relaxed, sinusoidal"
+[[nodiscard]] const char* text(Task task);
+
+/// Which of the six simulated participants did it: as many as in the source.
+[[nodiscard]] std::vector<int> participants_of(Task task);
+
+inline constexpr int kTrials = 4;             ///< of each participant and task (Dyck 2013, §3.4.2, §4.1)
+inline constexpr double kHandleMass = 0.194;  ///< Λ, the wrist support [kg] (§3.5.2)
+
+/// One trial by the published procedure, sample for sample.
+struct TaskTrial {
+  Identification identification;
+  Energy energy;
+  bool passive_by_model = false;  ///< theorem 3.2 as it was applied: estimates, symmetric parts only
+};
+
+/// All trials of one participant at one task.
+struct TaskResult {
+  int participant = 1;
+  impedance::Model truth;  ///< of the limb, mean over the trials
+  std::vector<TaskTrial> trials;
+  Recording first;          ///< of these
+  result::Measured pooled;  ///< all of them in one fit, by mbk's own procedure
+};
+
+struct WorkbenchOptions {
+  std::uint64_t seed = 1;
+  unsigned threads = 0;  ///< 0: as many as there are cores; the numbers do not depend on it
+};
+
+/// What several exhibits rest on: the numbers that are given, and simulated trials, which are made when they are first
+/// asked for. Not for several threads.
+class Workbench {
+ public:
+  Workbench(Given given, WorkbenchOptions options) : given_(std::move(given)), options_(options) {}
+
+  [[nodiscard]] const Given& given() const { return given_; }
+  [[nodiscard]] const WorkbenchOptions& options() const { return options_; }
+
+  /// The seed of a trial (1, 2, …) of a participant, the same for every task.
+  [[nodiscard]] std::uint64_t seed(int participant, int trial) const;
+
+  /// Everyone's trials of a task. They stay where they are.
+  /// @fails  as simulate and measure
+  [[nodiscard]] Result<const std::vector<TaskResult>*> results(Task task);
+
+ private:
+  Given given_;
+  WorkbenchOptions options_;
+  std::map<Task, std::vector<TaskResult>> results_;
+};
+
+/// The scenario of a task as a participant does it.
+/// @param participant  1 … 6
+/// @fails  as participant::participant_limb
+[[nodiscard]] Result<laboratory::Scenario> task_scenario(Task task, int participant, std::uint64_t seed);
+
+}  // namespace mbk::reproduction
