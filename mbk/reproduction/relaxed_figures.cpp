@@ -284,11 +284,16 @@ Result<void> figure_3_12(Workbench& bench, Exhibit& exhibit) {
   exhibit.related = {"slip-4", "figure-3.13"};
   const auto around = directions(16);
   for (const auto& [title, Z] : {std::pair{"(a) symmetric part", K}, std::pair{"(b) antisymmetric part", curl}}) {
-    Chart chart = plane(title, {"x and force x", "m, 150 N"}, {"y and force y", "m, 150 N"});
+    Chart chart = plane(title, {"x and force x", "m, 60 N"}, {"y and force y", "m, 60 N"});
     std::vector<Eigen::Vector2d> ends;
-    for (const Eigen::Vector2d& from : around) ends.emplace_back(from - Z * from / 150.0);
-    chart.series = {ellipse_curve("unit displacements", Matrix::Identity(2, 2), kOrigin, 1.0),
-                    rays("forces", around, ends)};
+    for (const Eigen::Vector2d& from : around) ends.emplace_back(from - Z * from / 60.0);
+    ChartSeries places;
+    places.name = "unit displacements";
+    for (const Eigen::Vector2d& at : around) {
+      places.x.push_back(at[0]);
+      places.y.push_back(at[1]);
+    }
+    chart.series = {rays("forces", around, ends), std::move(places)};
     exhibit.charts.push_back(std::move(chart));
   }
   return {};

@@ -172,6 +172,7 @@ Chart nyquist(const char* title, const char* border, double at, double low, doub
   }
   chart.series = {line(fmt::format("{:g} to {:g} Hz", low, high), re, im)};
   chart.vertical = {{at, border}};
+  if (at != 0.0) chart.vertical.push_back({0.0, "0"});
   return chart;
 }
 
@@ -196,14 +197,14 @@ Result<void> figure_4_8(Workbench& bench, Exhibit& exhibit) {
           "Three one-axis impedances made of P1's numbers along y (m = {:.2f} kg, b = {:.1f} N·s/m, k = {:.0f} "
           "N/m, rebuilt from table 3.3): a damper behind a spring, which is passive and no more; the arm itself, "
           "Re Z = b at every frequency, an excess of b; and the arm with a correction of its place that comes "
-          "{:g} s late, whose real part falls to −{:.1f} N·s/m: that is its shortage.",
+          "{:g} s late, whose real part falls to −{:.1f} N·s/m as the frequency goes to 0: that is its shortage.",
           m, b, k, kDelay, shortage),
       "The linear correction stands for the participant's controller, which is not linear; only its delay is taken "
       "over."};
   exhibit.related = {"table-3.6", "table-4.5"};
   exhibit.charts = {nyquist("(a) passive", "passive to the right", 0.0, 0.01, 20.0, behind_spring),
                     nyquist("(b) an excess of passivity δ", "δ", b, 0.5, 6.0, relaxed),
-                    nyquist("(c) a shortage of passivity λ", "−λ", -shortage, 0.5, 6.0, corrected)};
+                    nyquist("(c) a shortage of passivity λ", "−λ", -shortage, 0.2, 6.0, corrected)};
   return {};
 }
 
