@@ -47,7 +47,7 @@ TOML
 
 # 3. Run it. --fast uses a virtual clock, as fast as the machine can; without it the same takes its 25 s.
 rm -f "$out/p07.h5"
-"$mbk" run "$out/short.toml" --fast --no-console --quiet --out "$out/p07.h5" 
+"$mbk" run "$out/short.toml" --fast --no-console --quiet --out "$out/p07.h5"
 
 # 4. How it ended stands in the recording. Only the perturbation counts where it is measured
 #    again; the way there does not.
