@@ -111,7 +111,7 @@ class Pages(unittest.TestCase):
                         after = file is not None
                     elif after and re.fullmatch(r"(\w+\.)?[A-Z][a-z]\w{6,}", name):
                         tests = tests_in(file)
-                        names = tests | {one.split(".")[1] for one in tests}
+                        names = tests | {part for one in tests for part in one.split(".")}
                         self.assertIn(name, names, f"{page.name}:{number}: {file.name} has no such test")
                         checked += 1
         self.assertGreater(checked, 150)
