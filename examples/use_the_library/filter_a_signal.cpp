@@ -58,8 +58,8 @@ int main() {
       squares += std::pow((*filtered)(i, 0) - truth, 2);
     }
     const double rms = std::sqrt(squares / static_cast<double>(filtered->rows() - 2 * edge));
-    std::printf("%-13s amplitude %.5f %s, rms error %.2e %s (%.3f %%)\n", names[derivative], scale, units[derivative], rms,
-                units[derivative], 100.0 * rms / scale);
+    std::printf("%-13s amplitude %.5f %s, rms error %.2e %s (%.3f %%)\n", names[derivative], scale, units[derivative],
+                rms, units[derivative], 100.0 * rms / scale);
   }
   return 0;
 }

@@ -49,7 +49,8 @@ int main() {
     if (!Z) return report(Z.error());
     const auto decided = mbk::lti::positive_real(*Z);
     if (!decided) return report(decided.error());
-    std::printf("%s: %s\n", symmetric ? "its symmetric part" : "the model", decided->holds() ? "passive" : "not passive");
+    std::printf("%s: %s\n", symmetric ? "its symmetric part" : "the model",
+                decided->holds() ? "passive" : "not passive");
     for (const mbk::lti::ConditionOutcome& condition : decided->conditions) {
       if (!condition.holds()) std::printf("  %s\n", condition.line().c_str());
     }

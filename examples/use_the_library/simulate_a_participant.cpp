@@ -37,7 +37,8 @@ int main() {
   const auto performance = mbk::laboratory::simulate(scenario);
   if (!performance) return report(performance.error());
   std::printf("%.1f s, the limb absorbed %.2f J\n",
-              static_cast<double>(performance->recording.samples()) / scenario.rate.value, performance->energy_absorbed);
+              static_cast<double>(performance->recording.samples()) / scenario.rate.value,
+              performance->energy_absorbed);
 
   // Nothing that measures reads the truth, which lies in the recording's metadata.
   mbk::measurement::Options options;
@@ -56,6 +57,7 @@ int main() {
     std::printf("%-5s %9.4f %8.4f %9.4f  %s\n", names[static_cast<std::size_t>(i)].c_str(), found_values[i],
                 1.96 * error[i], true_values[i], units[i / 4]);
   }
-  for (const mbk::Warning& warning : measured->identification.warnings) std::printf("warning %s\n", warning.message.c_str());
+  for (const mbk::Warning& warning : measured->identification.warnings)
+    std::printf("warning %s\n", warning.message.c_str());
   return measured->identification.usable ? 0 : 1;
 }
