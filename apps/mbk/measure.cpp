@@ -7,6 +7,7 @@
 #include "apps/mbk/report_file.h"
 #include "mbk/analyse/summary.h"
 #include "mbk/numeric/parallel.h"
+#include "mbk/report/joint_domain_text.h"
 #include "mbk/report/passivity_text.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
@@ -95,6 +96,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
       if (one.force_comparison && one.by_sensor) {
         text += "\n" + report::by_sensor_text(one.identification, *one.by_sensor, *one.force_comparison);
       }
+      if (one.joints) text += "\n" + report::joint_domain_text(*one.joints);
       if (one.bootstrap) text += "\n" + report::bootstrap_text(*one.bootstrap);
       if (one.passivity) text += "\n" + report::passivity_line(*one.passivity);
     }
@@ -119,6 +121,7 @@ Action add(CLI::App& app, const char* name, const char* summary, const std::stri
   add_reading_options(*command, *arguments);
   add_sensor_options(*command, arguments->sensor);
   add_measuring_options(*command, *arguments);
+  add_domain_options(*command, *arguments);
   add_output_options(*command, *arguments, "mbk.result/1");
   if (with_findings) add_report_options(*command, *arguments);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
