@@ -140,6 +140,8 @@ Action add_measure(CLI::App& app, const std::string& typed) {
              "      one joint from a CSV file, the first 40 s to identify, the rest held back\n"
              "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
              "      several trials: one result each, their mean and the standard error between them\n"
+             "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"
+             "      at shoulder and elbow too; shoulder at (0.30, -0.57) m, upper arm 0.31 m, forearm 0.34 m\n"
              "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"
              "      one file for the browser or the printer: the result in plain words, ellipses, plots, glossary\n\n"
              "Exit codes: " +

@@ -208,9 +208,10 @@ void add_output_options(CLI::App& command, MeasureArguments& arguments, const st
 }
 
 void add_domain_options(CLI::App& command, MeasureArguments& arguments) {
-  add_choice(command, "--domain", arguments.domain, {"hand", "joint"},
-             "joint: M, B and K at shoulder and elbow too (or at the joints of the robot, where the arm is not known), in "
-             "the posture of the recording")
+  add_choice(
+      command, "--domain", arguments.domain, {"hand", "joint"},
+      "joint: M, B and K at shoulder and elbow too (or at the joints of the robot, where the arm is not known), in "
+      "the posture of the recording")
       ->group("Model");
   command
       .add_option("--arm", arguments.arm,

@@ -42,7 +42,7 @@ Result<Identification> measured(MeasureArguments arguments, const std::filesyste
 
 std::string source_line(const Identification& id, const char* which) {
   std::string text;
-  for (const SourceFile& source : id.sources) text += fmt::format("{}  {}\n", which, source.path);
+  for (const SourceFile& source : id.sources) text += fmt::format("{:<7} {}\n", which, source.path);
   if (!id.usable) text += fmt::format("  ! the {} result is not usable: 'mbk measure' says why\n", which);
   return text;
 }
@@ -57,9 +57,9 @@ int run(const MeasureArguments& arguments) {
   }
   const auto widths = analyse::analyse_width(both[0], both[1]);
   if (!widths) return report_error(widths.error());
-  const std::string shown = arguments.json ? result::width_to_json(both[0].sources, both[1].sources, *widths)
-                                           : source_line(both[0], "first") + source_line(both[1], "second") +
-                                                 report::width_text(*widths);
+  const std::string shown =
+      arguments.json ? result::width_to_json(both[0].sources, both[1].sources, *widths)
+                     : source_line(both[0], "first") + source_line(both[1], "second") + report::width_text(*widths);
   if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
   return widths->complete() && both[0].usable && both[1].usable ? kFine : kNotUsable;
 }
@@ -75,10 +75,11 @@ Action add_width(CLI::App& app) {
       "      what 'mbk measure --json --out relaxed.json' and so on wrote\n"
       "  mbk width relaxed.mat rigid.mat --method iv\n"
       "      both recordings measured alike first\n\n"
-      "√(Σ ln² λ) over the eigenvalues of Z₁⁻¹Z₂, symmetric parts of M, B and K each: 0 where both are equal,\n"
-      "√2 ln 7 = 2.75 where the second is seven times the first in every direction; the same in whatever axes\n"
-      "and units, at hand or joints. Below it how many times the second is the first, least and most, and along\n"
-      "which direction from x. A matrix that is not positive definite has no width (exit code 4).");
+      "√(Σ ln² λ) over the eigenvalues of Z₁⁻¹Z₂, symmetric parts of M, B and K each: 0 where both are\n"
+      "equal, √2 ln 7 = 2.75 where the second is seven times the first in every direction; the same in\n"
+      "whatever axes and units, at hand or joints. Beside it how many times the second is the first, least\n"
+      "and most, and along which direction from x. A matrix that is not positive definite has no width\n"
+      "(exit code 4).");
   add_reading_options(*command, *arguments);
   command->get_option("FILE")->expected(2)->description("two results of 'mbk measure --json', or recordings");
   add_sensor_options(*command, arguments->sensor);

@@ -32,8 +32,8 @@ Identification identification(const Vector2d& x0) {
   id.model.x0 = x0;
   id.covariance = Matrix::Zero(14, 14);
   std::mt19937 random(3);
-  const Matrix root = Matrix(14, 14).unaryExpr(
-      [&](double /*none*/) { return static_cast<double>(random()) / 4294967296.0 - 0.5; });
+  const Matrix root =
+      Matrix(14, 14).unaryExpr([&](double /*none*/) { return static_cast<double>(random()) / 4294967296.0 - 0.5; });
   Vector scales(14);
   scales << 0.05, 0.05, 0.05, 0.05, 0.3, 0.3, 0.3, 0.3, 3.0, 3.0, 3.0, 3.0, 0.002, 0.002;
   id.covariance = scales.asDiagonal() * (root * root.transpose()) * scales.asDiagonal();
@@ -96,9 +96,10 @@ TEST(JointDomain, ErrorsAreThoseOfAMonteCarlo) {
 TEST(JointDomain, OfTheRobotHasItsJacobian) {
   const robot::Geometry geometry;
   const Vector2d theta(1.1, 0.7);
-  const ArmPosture posture{ArmPosture::Of::robot,
-                           {Vector2d::Zero(), robot::elbow_position(geometry, theta), robot::hand_position(geometry, theta)},
-                           ""};
+  const ArmPosture posture{
+      ArmPosture::Of::robot,
+      {Vector2d::Zero(), robot::elbow_position(geometry, theta), robot::hand_position(geometry, theta)},
+      ""};
   const JointDomain found = analyse_joint_domain(identification(posture.points.back()), posture).value();
   EXPECT_LT((found.jacobian - robot::jacobian(geometry, theta)).norm(), kExact);
   EXPECT_LT((found.angles - theta).norm(), kExact);
@@ -124,7 +125,8 @@ TEST(JointDomain, WithoutACovarianceHasNoIntervals) {
 }
 
 TEST(JointDomain, RefusesAHandWithoutAnArmAndOneAxis) {
-  const ArmPosture hand{ArmPosture::Of::hand, {Vector2d(0.3, 0.0)}, "the arm is not drawn: the metadata lack forearm_m"};
+  const ArmPosture hand{
+      ArmPosture::Of::hand, {Vector2d(0.3, 0.0)}, "the arm is not drawn: the metadata lack forearm_m"};
   EXPECT_THAT(analyse_joint_domain(identification({0.3, 0.0}), hand).error().message, HasSubstr("lack forearm_m"));
   Identification one = identification({0.3, 0.0});
   one.axes = 1;

@@ -46,9 +46,9 @@ bool surely_positive(const Identification& id, int matrix) {
 
 Result<WidthFindings> analyse_width(const Identification& first, const Identification& second) {
   if (first.axes != second.axes) {
-    return bad_data(fmt::format("one has {} and the other {} ax{}s", first.axes, second.axes,
-                                second.axes == 1 ? "i" : "e"),
-                    "compare results with as many axes");
+    return bad_data(
+        fmt::format("one has {} and the other {} ax{}s", first.axes, second.axes, second.axes == 1 ? "i" : "e"),
+        "compare results with as many axes");
   }
   if (first.motion != second.motion && first.motion != Motion::unknown && second.motion != Motion::unknown) {
     return bad_data(fmt::format("one has its inertia in {} and the other in {}", units_of(first.motion).inertia,
@@ -76,8 +76,7 @@ Result<WidthFindings> analyse_width(const Identification& first, const Identific
     finding.distance = width->distance;
     finding.surely_positive = surely_positive(first, matrix) && surely_positive(second, matrix);
     finding.told_apart = differ(one, other, C1 + C2, n);
-    finding.distance95 =
-        numeric::interval95(width->distance, root(variance(width->by_first, width->by_second)));
+    finding.distance95 = numeric::interval95(width->distance, root(variance(width->by_first, width->by_second)));
     const bool known = !std::isnan(finding.distance95.first);
     if (known) finding.distance95.first = finding.told_apart ? std::max(0.0, finding.distance95.first) : 0.0;
     for (Index i = 0; i < n; ++i) {

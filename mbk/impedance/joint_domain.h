@@ -20,8 +20,8 @@ enum class ElbowAngle {
   base,        ///< as of the robot of Dyck (2013), fig. A.1: q₁ leaves the direction of the last link as it is
 };
 
-/// Two links in a plane, joints counted counter-clockwise. With a from shoulder (or base) to elbow, b from elbow to hand
-/// and R a quarter turn ahead,
+/// Two links in a plane, joints counted counter-clockwise. With a from shoulder (or base) to elbow, b from elbow to
+/// hand and R a quarter turn ahead,
 ///   J = [R(a + b), R b],  ∂²x/∂q₁² = −(a + b), ∂²x/∂q₁∂q₂ = ∂²x/∂q₂² = −b    (elbow against the first link)
 ///   J = [R a, R b],       ∂²x/∂q₁² = −a, ∂²x/∂q₁∂q₂ = 0, ∂²x/∂q₂² = −b        (against the base; Dyck 2013, eq. A.3)
 /// @param shoulder, elbow, hand  base frame [m]

@@ -61,9 +61,9 @@ TEST(TwoLinkMap, HasTheDerivativesOfTheHandsPlace) {
         EXPECT_LT((map.jacobian.col(i) - slope).norm(), kTruncation) << q.transpose();
         for (Index j = 0; j < 2; ++j) {
           const Vector2d dj = step * Vector2d::Unit(j);
-          const Vector2d bend = (links.hand(q + di + dj) - links.hand(q + di - dj) - links.hand(q - di + dj) +
-                                 links.hand(q - di - dj)) /
-                                (4.0 * step * step);
+          const Vector2d bend =
+              (links.hand(q + di + dj) - links.hand(q + di - dj) - links.hand(q - di + dj) + links.hand(q - di - dj)) /
+              (4.0 * step * step);
           EXPECT_NEAR(map.curvature[0](i, j), bend.x(), kTruncation) << q.transpose();
           EXPECT_NEAR(map.curvature[1](i, j), bend.y(), kTruncation) << q.transpose();
         }

@@ -17,8 +17,8 @@ Result<Matrix> positive_definite(const Matrix& Z, const char* which) {
   const double smallest = solver.eigenvalues().minCoeff(), largest = solver.eigenvalues().maxCoeff();
   constexpr double kSingular = 1e-12;  // of the largest: beside that, rounding decides the sign
   if (smallest > kSingular * std::abs(largest)) return symmetric;
-  return bad_data(fmt::format("the {} matrix is not positive definite: its smallest eigenvalue is {:.3g}", which,
-                              smallest));
+  return bad_data(
+      fmt::format("the {} matrix is not positive definite: its smallest eigenvalue is {:.3g}", which, smallest));
 }
 
 /// vᵀ dZ v by the numbers of Z row by row, 1×n².

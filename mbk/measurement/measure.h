@@ -25,7 +25,8 @@ struct Options {
 };
 
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
-/// @fails as its steps; where the joint domain is asked for and pooled recordings were made in different postures; where a recording has a source, the message names its file.
+/// @fails as its steps; where the joint domain is asked for and pooled recordings were made in different postures;
+/// where a recording has a source, the message names its file.
 [[nodiscard]] Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options);
 
 /// A result, and what shows how good it is.

@@ -36,12 +36,13 @@ std::string joint_domain_text(const JointDomain& joints) {
   const Eigen::Vector2d angles = 180.0 / std::numbers::pi * joints.angles;
   const Eigen::Vector2d &hand = joints.posture.points.back(), &base = joints.posture.points.front();
   std::string text = paragraph(
-      "  ", of_arm ? fmt::format("at the joints of the arm: 1 shoulder, at ({:.3f}, {:.3f}) m, {:.1f}° from x; 2 elbow, "
-                                 "{:.1f}° against the upper arm; hand at ({:.3f}, {:.3f}) m",
-                                 base.x(), base.y(), angles[0], angles[1], hand.x(), hand.y())
-                   : fmt::format("at the joints of the robot: 1 at {:.1f}° from x, 2 at {:.1f}° from −y, both against "
-                                 "its base; hand at ({:.3f}, {:.3f}) m",
-                                 angles[0], angles[1], hand.x(), hand.y()));
+      "  ", of_arm
+                ? fmt::format("at the joints of the arm: 1 shoulder, at ({:.3f}, {:.3f}) m, {:.1f}° from x; 2 elbow, "
+                              "{:.1f}° against the upper arm; hand at ({:.3f}, {:.3f}) m",
+                              base.x(), base.y(), angles[0], angles[1], hand.x(), hand.y())
+                : fmt::format("at the joints of the robot: 1 at {:.1f}° from x, 2 at {:.1f}° from −y, both against "
+                              "its base; hand at ({:.3f}, {:.3f}) m",
+                              angles[0], angles[1], hand.x(), hand.y()));
   const Units units = units_of(Motion::rotation);
   text += table({{"", "11", "12", "21", "22", ""},
                  matrix_row("inertia M", joints.M, joints.M_error, units.inertia),
@@ -52,8 +53,8 @@ std::string joint_domain_text(const JointDomain& joints) {
   };
   text += table({{"antisymmetry", "m_a " + between(joints.m_a, joints.m_a95, units.inertia)},
                  {"", "k_a " + between(joints.k_a, joints.k_a95, units.stiffness)},
-                 {"bias force", fmt::format("x {}, y {} N: what the hand exerts on the robot there, at rest", force(0),
-                                            force(1))}});
+                 {"bias force",
+                  fmt::format("x {}, y {} N: what the hand exerts on the robot there, at rest", force(0), force(1))}});
   return text + paragraph("  ", fmt::format("(M = JᵀMJ, B = JᵀBJ, K = JᵀKJ − Σ F ∂²x/∂q² of those at the hand, det J = "
                                             "{:.3g} m²; what is unsure of the posture is not in ±)",
                                             joints.jacobian.determinant()));

@@ -39,9 +39,10 @@ std::string width_text(const WidthFindings& widths) {
     if (directed) rows.back().push_back(times(one.ratios.back(), directed));
     rows.back().emplace_back(one.told_apart ? "" : "not told apart");
     if (!one.surely_positive) {
-      notes.push_back(fmt::format("{}: a smallest eigenvalue is not surely above zero, and without it the distance has "
-                                  "no upper end: do not trust the interval",
-                                  name));
+      notes.push_back(
+          fmt::format("{}: a smallest eigenvalue is not surely above zero, and without it the distance has "
+                      "no upper end: do not trust the interval",
+                      name));
     }
   }
   std::string text;
@@ -49,8 +50,9 @@ std::string width_text(const WidthFindings& widths) {
     rows.insert(rows.begin(), directed ? std::vector<std::string>{"", "width", "second to first, least", "most", ""}
                                        : std::vector<std::string>{"", "width", "second to first", ""});
     text += table(rows);
-    text += paragraph("  ", "(width √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % intervals. Noise alone gives "
-                            "a width above 0: it means something where both are told apart)");
+    text += paragraph("  ",
+                      "(width √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % intervals. Noise alone gives "
+                      "a width above 0: it means something where both are told apart)");
   }
   for (const std::string& note : notes) text += paragraph("  ! ", note);
   return text;
