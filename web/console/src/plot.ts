@@ -229,18 +229,22 @@ export class Plot {
       paint.lineWidth = (k < 2 ? 2 : 1.6) * sharp;
       paint.beginPath();
       let drawing = false;
+      let before = NaN; // twice the middle of the bucket before
       for (let number = first; number <= samples.last; ++number) {
-        const low = samples.low(number, line.from);
-        if (!Number.isFinite(low) || (k >= 2 && number % (2 * dash) >= dash)) {
+        const [low, high] = [samples.low(number, line.from), samples.high(number, line.from)];
+        const falls = low + high < before;
+        before = low + high;
+        if (!Number.isFinite(before) || (k >= 2 && number % (2 * dash) >= dash)) {
           drawing = false;
           continue;
         }
+        const [one, other] = falls ? [high, low] : [low, high];
         const x = this.x((number + 0.3) * width);
-        const y = this.y(line.scale * (low - line.offset));
+        const y = this.y(line.scale * (one - line.offset));
         if (drawing) paint.lineTo(x, y);
         else paint.moveTo(x, y);
         drawing = true;
-        paint.lineTo(this.x((number + 0.7) * width), this.y(line.scale * (samples.high(number, line.from) - line.offset)));
+        paint.lineTo(this.x((number + 0.7) * width), this.y(line.scale * (other - line.offset)));
       }
       paint.stroke();
     });
