@@ -31,6 +31,7 @@ struct Maker {
 [[nodiscard]] std::span<const Maker> rigid_tables();
 [[nodiscard]] std::span<const Maker> rigid_figures();
 [[nodiscard]] std::span<const Maker> reconstructed_tables();
+[[nodiscard]] std::span<const Maker> future_work();
 
 inline ReproducedCell cell(double ours) {
   ReproducedCell cell;

@@ -12,7 +12,7 @@ namespace {
 std::vector<Maker> all_makers() {
   std::vector<Maker> all;
   for (const auto part :
-       {relaxed_tables(), relaxed_figures(), rigid_tables(), rigid_figures(), reconstructed_tables()}) {
+       {relaxed_tables(), relaxed_figures(), rigid_tables(), rigid_figures(), reconstructed_tables(), future_work()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -8,7 +8,7 @@ namespace mbk::result {
 
 std::string width_to_json(const std::vector<SourceFile>& first, const std::vector<SourceFile>& second,
                           const WidthFindings& widths) {
-  Json json = header("mbk.width/1");
+  Json json = header("mbk.compare/1");
   json["first"] = inputs_json(first);
   json["second"] = inputs_json(second);
   json["width"] = Json::object();

@@ -8,7 +8,7 @@
 
 namespace mbk::result {
 
-/// Schema "mbk.width/1": how far inertia, damping and stiffness of two results are apart. A matrix without a width is
+/// Schema "mbk.compare/1": how far inertia, damping and stiffness of two results are apart. A matrix without a width is
 /// null and `refused` says why.
 [[nodiscard]] std::string width_to_json(const std::vector<SourceFile>& first, const std::vector<SourceFile>& second,
                                         const WidthFindings& widths);

@@ -10,7 +10,7 @@ from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, mak
                      write_csv)
 
 COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
-            "completion", "manual", "passivity", "teleop", "width")
+            "completion", "manual", "passivity", "teleop", "compare")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
                "robot": ("workspace", "describe", "identify", "force", "check")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
@@ -121,7 +121,7 @@ class Commands(Case):
             if command in SUBCOMMANDS:
                 continue  # their commands have tests of their own
             arguments = {"validate": [], "completion": ["bash"],
-                         "width": [make_log().path] * 2}.get(command, [make_log().path])
+                         "compare": [make_log().path] * 2}.get(command, [make_log().path])
             self.refused(WRONG_USAGE, command, *arguments, "--cutof=5", says=["--cutof", f"mbk {command} --help"])
 
     def test_unknown_commands_are_named(self):

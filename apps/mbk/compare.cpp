@@ -1,5 +1,3 @@
-#include "mbk/analyse/width.h"
-
 #include <fmt/format.h>
 
 #include <memory>
@@ -8,6 +6,7 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
+#include "mbk/analyse/width.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/report/width_text.h"
 #include "mbk/result/json.h"
@@ -66,14 +65,14 @@ int run(const MeasureArguments& arguments) {
 
 }  // namespace
 
-Action add_width(CLI::App& app) {
+Action add_compare(CLI::App& app) {
   auto arguments = std::make_shared<MeasureArguments>();
-  CLI::App* command = app.add_subcommand("width", "how far two limbs, or two states of one, are apart");
+  CLI::App* command = app.add_subcommand("compare", "what changed between two results: how far M, B and K are apart");
   command->footer(
       "Examples:\n"
-      "  mbk width relaxed.json rigid.json\n"
+      "  mbk compare relaxed.json rigid.json\n"
       "      what 'mbk measure --json --out relaxed.json' and so on wrote\n"
-      "  mbk width relaxed.mat rigid.mat --method iv\n"
+      "  mbk compare relaxed.mat rigid.mat --method iv\n"
       "      both recordings measured alike first\n\n"
       "√(Σ ln² λ) over the eigenvalues of Z₁⁻¹Z₂, symmetric parts of M, B and K each: 0 where both are\n"
       "equal, √2 ln 7 = 2.75 where the second is seven times the first in every direction; the same in\n"
@@ -88,7 +87,7 @@ Action add_width(CLI::App& app) {
   for (const char* name : {"--parts", "--pool", "--bootstrap", "--seed", "--decimate-check", "--threads"}) {
     command->remove_option(command->get_option(name));
   }
-  add_output_options(*command, *arguments, "mbk.width/1");
+  add_output_options(*command, *arguments, "mbk.compare/1");
   return [arguments] { return run(*arguments); };
 }
 
