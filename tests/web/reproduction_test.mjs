@@ -173,7 +173,7 @@ test("a filter by words and by provenance, with the keyboard alone", () => onPag
   assert.deepEqual(await shownArticles(page), []);
   assert.ok(await page.locator("#nothing").isVisible());
   for (const name of ["recomputed", "simulated"]) {
-    await page.getByLabel(name, { exact: true }).focus();
+    await page.getByRole("checkbox", { name: name, exact: true }).focus();
     await pressed(page, "Space");
   }
   await page.focus("#filter-text");
@@ -184,7 +184,7 @@ test("a filter by words and by provenance, with the keyboard alone", () => onPag
   assert.deepEqual(await shownArticles(page), all);
   assert.equal(await focusedId(page), "filter-text");
   // A table of another provenance than its exhibit is found by both.
-  await page.getByLabel("recomputed", { exact: true }).uncheck();
+  await page.getByRole("checkbox", { name: "recomputed", exact: true }).uncheck();
   assert.ok((await shownArticles(page)).includes("table-3.3"));
   assert.ok(!(await shownArticles(page)).includes("table-3.6"));
 }));

@@ -105,7 +105,7 @@ function enlarge(exhibit: Exhibit, drawings: string[], from: number): void {
 }
 
 export function chartsBlock(exhibit: Exhibit, drawings: string[]): HTMLElement {
-  return h("div", { class: exhibit.charts.length > 1 ? "charts several" : "charts" },
+  return h("div", { class: `charts${exhibit.charts.length > 1 ? " several" : ""}${exhibit.charts.length > 4 ? " many" : ""}` },
     ...exhibit.charts.map((chart, k) => {
       const drawing = drawings[k];
       if (!drawing) return h("p", { class: "none" }, `${chart.title}: no drawing.`);

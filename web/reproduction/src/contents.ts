@@ -2,7 +2,7 @@
 import { h } from "../../report/src/dom";
 import { type Agreement, type Exhibit, type Group, type Provenance, count, provenancesOf, shortName } from "./document";
 import { showDifferences } from "./tables";
-import { agreements, provenanceSign, provenances } from "./words";
+import { agreements, provenanceSign, provenances, scripted } from "./words";
 
 export interface Contents {
   element: HTMLElement;
@@ -35,9 +35,14 @@ function followReading(articles: Map<string, HTMLElement>, links: Map<string, HT
       else visible.delete(target.id);
     }
     const first = [...articles.keys()].find((id) => visible.has(id));
-    if (first === undefined || first === current) return;
+    // Between two exhibits the last one is still the current one; above all of them none is.
+    if (first === current || (first === undefined && scrollY > innerHeight)) return;
     if (current) links.get(current)?.removeAttribute("aria-current");
     current = first;
+    if (first === undefined) {
+      room.scrollTop = 0;
+      return;
+    }
     const link = links.get(first);
     link?.setAttribute("aria-current", "true");
     if (!link || room.scrollHeight <= room.clientHeight) return;
@@ -51,7 +56,7 @@ export function contents(groups: Group[], articles: Map<string, HTMLElement>): C
   const exhibits = groups.flatMap((group) => group.exhibits);
   const words = new Map(exhibits.map((exhibit) => [exhibit.id, wordsOf(exhibit)]));
   const links = new Map(exhibits.map((exhibit) => [exhibit.id,
-    h("a", { href: `#${exhibit.id}` }, provenanceSign(exhibit.provenance), h("span", { class: "entry" }, h("strong", {}, shortName(exhibit.id)), h("span", {}, exhibit.title)), ...signsOf(exhibit))]));
+    h("a", { href: `#${exhibit.id}` }, provenanceSign(exhibit.provenance), h("span", { class: "entry" }, h("strong", {}, shortName(exhibit.id)), h("span", {}, ...scripted(exhibit.title))), ...signsOf(exhibit))]));
   const lists = groups.map((group) => ({
     group,
     element: h("li", {}, h("a", { class: "group", href: `#${group.id}` }, group.title), h("ul", {}, ...group.exhibits.map(({ id }) => h("li", {}, links.get(id))))),

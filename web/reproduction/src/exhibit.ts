@@ -3,7 +3,7 @@ import { h } from "../../report/src/dom";
 import { chartsBlock } from "./charts";
 import { type Exhibit, count, shortName } from "./document";
 import { tableBlock } from "./tables";
-import { agreements, chip } from "./words";
+import { agreements, chip, scripted } from "./words";
 
 /** "8 agree within rounding", for what there is of it. */
 function tally(exhibit: Exhibit): HTMLElement | undefined {
@@ -45,8 +45,8 @@ export function exhibitArticle(exhibit: Exhibit, drawings: string[], known: Set<
   const reason = exhibit.provenance === "not recoverable";
   return h("article", { id: exhibit.id, "aria-labelledby": `${exhibit.id}-heading`, "data-kind": exhibit.kind, tabindex: -1 },
     h("p", { class: "exhibit-name" }, h("a", { href: `#${exhibit.id}`, title: "Link to this" }, shortName(exhibit.id)), chip(exhibit.provenance), tally(exhibit)),
-    h("h3", { id: `${exhibit.id}-heading` }, exhibit.title),
-    h("div", { class: reason ? "text reason" : "text" }, ...exhibit.text.map((paragraph) => h("p", {}, paragraph))),
+    h("h3", { id: `${exhibit.id}-heading` }, ...scripted(exhibit.title)),
+    h("div", { class: reason ? "text reason" : "text" }, ...exhibit.text.map((paragraph) => h("p", {}, ...scripted(paragraph)))),
     empty ? h("p", { class: "none" }, "Nothing is shown for this one.") : "",
     exhibit.charts.length > 0 ? chartsBlock(exhibit, drawings) : "",
     ...exhibit.tables.map((_, k) => tableBlock(exhibit, k, known)),

@@ -4,7 +4,7 @@ import { h, scrolling } from "../../report/src/dom";
 import { data, fixed, significant } from "../../report/src/format";
 import { download } from "../../report/src/sheet";
 import { type Cell, type Column, type Exhibit, type Table, shortName, tableFile } from "./document";
-import { agreements, chip, hidden } from "./words";
+import { agreements, chip, hidden, scripted } from "./words";
 
 const wide = 8; // columns, from which on ± stands below its number
 const minus = (text: string): string => text.replaceAll("-", "−");
@@ -64,14 +64,14 @@ function cellElement(table: Table, row: string, column: Column, cell: Cell, name
   const children: (Node | string | undefined)[] = [h("span", { class: "ours" }, ...oursOf(cell, column, name), mark(cell, slip))];
   if (cell.range && cell.range[0] !== null && cell.range[1] !== null) {
     const [low, high] = cell.range;
-    children.push(h("span", { class: "range" }, hidden("rounding leaves "), "[", data(low, fixed(low, decimals), `${name}-low`), ", ", data(high, fixed(high, decimals), `${name}-high`), "]"));
+    children.push(h("span", { class: "range" }, hidden("rounding leaves "), "[", data(low, fixed(low, decimals + 1), `${name}-low`), ", ", data(high, fixed(high, decimals + 1), `${name}-high`), "]"));
   }
   if (cell.printed !== null) {
     const shown = minus(cell.printed);
     children.push(h("span", { class: "printed" }, hidden("printed "), cell.printed_value === null ? shown : data(cell.printed_value, shown, `${name}-printed`)));
   }
   if (cell.difference !== null) {
-    children.push(h("span", { class: "difference" }, h("abbr", { title: "ours − printed" }, "Δ"), " ", data(cell.difference, signed(cell.difference, decimals), `${name}-difference`)));
+    children.push(h("span", { class: "difference" }, h("abbr", { title: "ours − printed" }, "Δ"), " ", data(cell.difference, signed(cell.difference, decimals + 1), `${name}-difference`)));
   }
   return h("td", { class: cell.agreement.replace(" ", "-"), title: factsOf(table, row, column, cell), tabindex: -1 }, ...children);
 }
@@ -134,9 +134,9 @@ export function tableBlock(exhibit: Exhibit, k: number, known: Set<string>): HTM
   const slip = table.slip !== null && known.has(table.slip) ? table.slip : undefined;
   const head = h("tr", {},
     table.what_rows_are ? h("th", { scope: "col" }, table.what_rows_are) : h("td", {}, hidden("row")),
-    ...table.columns.map((column) => h("th", { scope: "col" }, column.name, column.unit ? h("span", { class: "unit" }, column.unit) : "")));
+    ...table.columns.map((column) => h("th", { scope: "col" }, ...scripted(column.name), column.unit ? h("span", { class: "unit" }, column.unit) : "")));
   const rows = table.rows.map((row, r) =>
-    h("tr", {}, h("th", { scope: "row" }, row.name),
+    h("tr", {}, h("th", { scope: "row" }, ...scripted(row.name)),
       ...table.columns.map((column, c) => {
         const cell = row.cells[c];
         return cell ? cellElement(table, row.name, column, cell, `${id}-r${r + 1}c${c + 1}`, slip) : h("td", {});
@@ -151,15 +151,17 @@ export function tableBlock(exhibit: Exhibit, k: number, known: Set<string>): HTM
   const facts = h("p", { class: "cell-facts", role: "status" });
   walkable(grid, (text) => (facts.textContent = text));
 
-  const block = h("section", { class: "table-block", id, "aria-labelledby": `${id}-title` },
-    h("h4", { id: `${id}-title` }, table.title || shortName(exhibit.id)),
+  const cells = table.rows.flatMap((row) => row.cells);
+  const block = h("div", { class: "table-block", id },
+    h("h4", { id: `${id}-title` }, ...scripted(table.title || shortName(exhibit.id))),
     h("p", { class: "table-notes" }, table.provenance === exhibit.provenance && exhibit.tables.length === 1 ? "" : chip(table.provenance),
+      cells.some((cell) => cell.printed !== null) ? h("span", {}, "ours above, ", h("span", { class: "printed" }, "printed"), " below") : "",
       table.spread_is ? h("span", {}, `± ${table.spread_is}`) : "",
       table.slip === null ? "" : h("span", {}, "What differs is ", slip ? h("a", { href: `#${slip}` }, shortName(slip).toLowerCase()) : shortName(table.slip).toLowerCase())),
     table.rows.length > 0 && table.columns.length > 0 ? scrolling(table.title, grid) : h("p", { class: "none" }, "This table has no numbers."),
     facts,
     h("div", { class: "tools", role: "group", "aria-label": `Tools: ${table.title}` },
-      table.rows.some((row) => row.cells.some((cell) => cell.difference !== null)) ? differences : "",
+      cells.some((cell) => cell.difference !== null) ? differences : "",
       save,
       h("span", { class: "files" }, "Files beside this page: ", h("a", { href: `tables/${file}.csv` }, "CSV"), " ", h("a", { href: `tables/${file}.json` }, "JSON"))));
   differences.addEventListener("click", () => showDifferences(block, !block.classList.contains("with-differences")));

@@ -34,13 +34,13 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     sign: "!",
     name: "slip",
     word: "are slips of the source",
-    meaning: "It does not, and the source is at fault: the mark leads to the slip.",
+    meaning: "Rounding does not account for the difference, and the source is at fault: the mark leads to the slip.",
   },
   differs: {
     sign: "≠",
     name: "differs",
     word: "differ",
-    meaning: "It does not, and nothing explains it.",
+    meaning: "Rounding does not account for the difference, and nothing else does.",
   },
 };
 
@@ -50,5 +50,11 @@ export const provenanceSign = (provenance: Provenance): HTMLElement =>
 export const chip = (provenance: Provenance): HTMLElement =>
   h("span", { class: `chip ${provenances[provenance].name}`, "data-provenance": provenance, title: provenances[provenance].meaning },
     provenanceSign(provenance), provenances[provenance].word);
+
+/** k_xx with xx as a subscript: one letter with a short index, as formulas have it. */
+export function scripted(text: string): (Node | string)[] {
+  return text.split(/(?<![\p{L}\p{N}_])(\p{L}_[a-z0-9]{1,3})(?![\p{L}\p{N}_])/u).map((part, k) =>
+    k % 2 === 1 ? h("span", { class: "symbol" }, part.slice(0, 1), h("sub", {}, part.slice(2))) : part);
+}
 
 export const hidden = (text: string): HTMLElement => h("span", { class: "hidden" }, text);
