@@ -399,6 +399,15 @@ test("what stands in the document stays text", () => {
   });
 });
 
+test("an index is a subscript where it is one, and stays text", () => {
+  const file = changed(every, "indices", (page) => (page.reproduction.exhibits[0].text = ["k_xx, λ_max and 2·b_s of relaxed_sinusoidal, a_b_c"]));
+  return onPage(file, async (page) => {
+    assert.deepEqual(await page.$$eval("article .text:has(sub) .symbol", (all) => all.slice(0, 3).map((one) => [one.textContent, one.querySelector("sub").textContent])), [["kxx", "xx"], ["λmax", "max"], ["bs", "s"]]);
+    assert.match(await page.textContent("main"), /relaxed_sinusoidal, a_b_c/);
+    assert.equal(await page.locator('[id="table-4.1"] thead sub').count(), 12);
+  });
+});
+
 test("pictures to be looked at, and A4 pages on which nothing is too wide", async () => {
   for (const [name, file, fewest, most] of [["reproduction", real.file, 2, 7], ["reproduction-every-kind", every, 5, 12]]) {
     await onPage(file, async (page) => {
@@ -421,10 +430,10 @@ test("pictures to be looked at, and A4 pages on which nothing is too wide", asyn
     await page.screenshot({ path: join(pictures, "reproduction-enlarged.png") });
   });
   await onPage(real.file, async (page) => {
+    await page.locator('[id="table-3.6"] td').nth(3).focus();
     await page.evaluate(() => (location.hash = "table-3.6"));
     await page.waitForFunction(() => document.activeElement?.id === "table-3.6");
-    await page.locator('[id="table-3.6"]').getByRole("button", { name: "Show differences" }).click();
-    await page.locator('[id="table-3.6"] td').nth(2).focus();
+    await page.waitForSelector('nav a[href="#table-3.6"][aria-current]');
     await page.screenshot({ path: join(pictures, "reproduction-guide.png") });
-  }, { viewport: { width: 1280, height: 860 } });
+  }, { viewport: { width: 1280, height: 1060 }, deviceScaleFactor: 1.5 });
 });

@@ -105,7 +105,9 @@ function enlarge(exhibit: Exhibit, drawings: string[], from: number): void {
 }
 
 export function chartsBlock(exhibit: Exhibit, drawings: string[]): HTMLElement {
-  return h("div", { class: `charts${exhibit.charts.length > 1 ? " several" : ""}${exhibit.charts.length > 4 ? " many" : ""}` },
+  const n = exhibit.charts.length;
+  // Two beside each other can still be read; three are for an overview, of six participants, say.
+  return h("div", { class: `charts${n > 1 ? " several" : ""}${n >= 6 && n % 3 === 0 ? " in-threes" : ""}` },
     ...exhibit.charts.map((chart, k) => {
       const drawing = drawings[k];
       if (!drawing) return h("p", { class: "none" }, `${chart.title}: no drawing.`);

@@ -9,7 +9,7 @@ import "./style.css";
 /** An address with an exhibit behind # leads there, also where the filter hides it, and the keyboard goes on from there. */
 function followAddress(reveal: (id: string) => void): void {
   const go = () => {
-    const id = decodeURIComponent(location.hash.slice(1));
+    const id = location.hash.slice(1);
     reveal(id);
     const target = document.getElementById(id);
     target?.scrollIntoView();
