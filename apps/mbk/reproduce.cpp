@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr int kFallsShort = 1;
 
 struct Arguments {
-  fs::path folder;
+  fs::path folder = "thesis";
   std::vector<std::string> only;
   std::uint64_t seed = 1;
   unsigned threads = 0;
@@ -141,7 +141,6 @@ Action add_reproduce(CLI::App& app) {
   CLI::Option* const out =
       command->add_option("--out", arguments->folder, "the folder that everything goes to (thesis)")
           ->type_name("FOLDER")
-          ->default_val("thesis")
           ->check(not_empty());
   command->add_option("--only", arguments->only, "only this exhibit; may be given several times (see --list)")
       ->type_name("ID");

@@ -33,6 +33,9 @@ TYPED = {  # what has been typed → what is offered
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
     ("validate", ""): ["closed-loop", "coverage", "faults", "one-dimensional", "participant", "recovery", "robot",
                        "springs", "teleoperation", "transfer-function", "virtual-sensor"],
+    ("rep",): ["reproduce"],
+    ("reproduce", "--wi"): ["--without-printed"],
+    ("reproduce", "--on"): ["--only"],
     ("completion", ""): ["bash", "fish", "zsh"],
 }
 
@@ -106,6 +109,7 @@ class Bash(Shell):
         self.assertEqual(self.offered("measure", "--json", "o"), ["older", "one.mat"])
         self.assertIn("notes.txt", self.offered("measure", "--out", ""))
         self.assertEqual(self.offered("validate", "--charts", ""), ["older"])
+        self.assertEqual(self.offered("reproduce", "--out", ""), ["older"])
 
     def test_no_file_where_a_number_is_meant(self):
         self.assertEqual(self.offered("measure", "--rate", ""), [""])

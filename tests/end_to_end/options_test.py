@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Every option of mbk measure: it changes what is said, or is refused in one line; --out loses and leaves nothing."""
 
+import json
 import os
 import re
 import stat
@@ -10,7 +11,7 @@ from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, mak
                      write_csv)
 
 COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
-            "completion", "manual", "passivity", "teleop", "compare")
+            "completion", "manual", "passivity", "teleop", "compare", "reproduce")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
                "robot": ("workspace", "describe", "identify", "force", "check")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
@@ -106,6 +107,17 @@ class Values(Case):
         self.refused(WRONG_USAGE, "validate", "magic", "--runs", "1", says=["'magic'", "coverage", "springs"])
         self.refused(WRONG_USAGE, "validate", "--runs", "1", "--overwrite", says=["--overwrite", "--charts"])
 
+    def test_reproduce(self):
+        for option in ("--threads", "--seed"):
+            for value in (*NO_NUMBERS, "0", "-1", "1.5", "99999999999999999999"):
+                with self.subTest(option=option, value=value):
+                    self.refused(WRONG_USAGE, "reproduce", f"{option}={value}", says=option)
+        self.refused(WRONG_USAGE, "reproduce", "--out", "", says="--out")
+        self.refused(WRONG_USAGE, "reproduce", "--only", "table-9.9", "--quiet", "--out", self.folder / "made",
+                     says=["'table-9.9'", "mbk reproduce --list"])
+        self.refused(WRONG_USAGE, "reproduce", "--list", "--out", self.folder / "made", says=["--list", "--out"])
+        self.assertEqual(self.names(), [])
+
 
 def float_of(text):
     try:
@@ -120,7 +132,7 @@ class Commands(Case):
         for command in COMMANDS:
             if command in SUBCOMMANDS:
                 continue  # their commands have tests of their own
-            arguments = {"validate": [], "completion": ["bash"],
+            arguments = {"validate": [], "reproduce": [], "completion": ["bash"],
                          "compare": [make_log().path] * 2}.get(command, [make_log().path])
             self.refused(WRONG_USAGE, command, *arguments, "--cutof=5", says=["--cutof", f"mbk {command} --help"])
 
@@ -404,6 +416,60 @@ class Validate(Case):
         text = self.fine("validate", "--runs", "2", "--quiet").out
         self.assert_lines_fit(text)
         self.assertEqual(text.count("[92, 98]"), 26)
+
+
+class Reproduce(Case):
+    QUICK = ("--only", "table-3.6", "--only", "table-5.3", "--quiet")
+    FILES = ["index.html", "reproduction.json", "tables/table-3.6.csv", "tables/table-3.6.json",
+             "tables/table-5.3-1.csv", "tables/table-5.3-1.json", "tables/table-5.3-2.csv", "tables/table-5.3-2.json"]
+
+    def made(self, *options, folder="made"):
+        """What mbk reproduce says of two tables, and its files with their bytes."""
+        out = self.folder / folder
+        said = self.fine("reproduce", *self.QUICK, "--out", out, *options).out
+        files = sorted(path for path in out.rglob("*") if path.is_file())
+        return said, {str(path.relative_to(out)): path.read_bytes() for path in files}
+
+    def test_the_list_names_what_only_takes(self):
+        lines = self.fine("reproduce", "--list").out.splitlines()
+        names = [line.split()[0] for line in lines]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertLessEqual({"table-3.3", "table-3.6", "table-5.3"}, set(names))
+        for line in lines:
+            self.assertRegex(line, r"^[a-z][\w.-]* +\S")
+
+    def test_a_folder_of_its_own(self):
+        self.fine("reproduce", *self.QUICK, folder=self.folder)
+        self.assertEqual(self.names(), ["thesis"])
+
+    def test_files_and_summary(self):
+        said, files = self.made()
+        self.assertEqual(list(files), self.FILES)
+        self.assertIn("8 agree within their rounding, 8 are slips of the source, 0 differ", said)
+        self.assert_lines_fit(said, longest=200)
+        head = files["tables/table-3.6.csv"].decode().splitlines()[0]
+        self.assertEqual(head, "row,column,unit,printed,ours,difference,spread,range_low,range_high,agreement")
+
+    def test_what_is_there_stays_unless_it_may_be_replaced(self):
+        _, before = self.made()
+        self.refused(WRONG_USAGE, "reproduce", *self.QUICK, "--out", self.folder / "made", says="--overwrite")
+        _, again = self.made("--overwrite")
+        self.assertEqual(again, before)
+
+    def test_json_is_the_file_beside_the_page(self):
+        said, files = self.made("--json")
+        self.assertEqual(said.encode(), files["reproduction.json"])
+
+    def test_ours_are_the_same_without_the_printed(self):
+        def cells(files):
+            exhibits = json.loads(files["reproduction.json"])["exhibits"]
+            return [cell for one in exhibits for table in one["tables"] for row in table["rows"] for cell in row["cells"]]
+
+        beside, alone = cells(self.made()[1]), cells(self.made("--without-printed", folder="alone")[1])
+        self.assertEqual([cell["ours"] for cell in alone], [cell["ours"] for cell in beside])
+        self.assertEqual({cell["printed"] for cell in alone}, {None})
+        self.assertEqual({cell["agreement"] for cell in alone}, {"not compared"})
+        self.assertEqual(sum(cell["printed"] is not None for cell in beside), 16)
 
 
 if __name__ == "__main__":
