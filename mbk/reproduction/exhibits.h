@@ -28,6 +28,9 @@ struct Maker {
 // One span for each source file, in the order of the source.
 [[nodiscard]] std::span<const Maker> relaxed_tables();  ///< chapter 3
 [[nodiscard]] std::span<const Maker> reconstructed_tables();
+[[nodiscard]] std::span<const Maker> statements();
+[[nodiscard]] std::span<const Maker> slips();
+[[nodiscard]] std::span<const Maker> questions();
 
 inline ReproducedCell cell(double ours) {
   ReproducedCell cell;

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<Maker> all_makers() {
   std::vector<Maker> all;
-  for (const auto part : {relaxed_tables(), reconstructed_tables()}) {
+  for (const auto part : {relaxed_tables(), reconstructed_tables(), statements(), slips(), questions()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
