@@ -23,11 +23,11 @@ constexpr std::array kTasks = {Task::relaxed_sinusoidal, Task::relaxed_underdamp
 /// What all participants of a task come to.
 struct Outcome {
   int people = 0, trials = 0;
-  int passive_by_theorem = 0;              ///< trials, by the published rule and procedure
-  int absorbing = 0;                       ///< trials whose energy ended above zero
-  std::array<int, 3> verdicts{};           ///< of people, pooled: passive, active, undecided
+  int passive_by_theorem = 0;                ///< trials, by the published rule and procedure
+  int absorbing = 0;                         ///< trials whose energy ended above zero
+  std::array<int, 3> verdicts{};             ///< of people, pooled: passive, active, undecided
   double least_energy = 0, most_energy = 0;  ///< of a trial [J]
-  double mean_vaf = 0;                     ///< [%], of the published procedure
+  double mean_vaf = 0;                       ///< [%], of the published procedure
 };
 
 Result<Outcome> outcome_of(Workbench& bench, Task task) {
@@ -73,13 +73,13 @@ std::string simulate_command(const Workbench& bench, Task task) {
 }
 
 Result<void> with_dynamics(Workbench& bench, Exhibit& exhibit) {
-  ReproducedTable table = simulated_table("question-1", "Relaxed arms, four trials each in one fit, by mbk's own procedure",
-                                          "participant, perturbation",
-                                          {{"smallest index in the band", "N·s/m", 2},
-                                           {"its lower 95 %", "N·s/m", 2},
-                                           {"band", "", 0},
-                                           {"energy of all trials", "J", 2},
-                                           {"verdict", "", 0}});
+  ReproducedTable table = simulated_table(
+      "question-1", "Relaxed arms, four trials each in one fit, by mbk's own procedure", "participant, perturbation",
+      {{"smallest index in the band", "N·s/m", 2},
+       {"its lower 95 %", "N·s/m", 2},
+       {"band", "", 0},
+       {"energy of all trials", "J", 2},
+       {"verdict", "", 0}});
   int passive = 0, people = 0, by_theorem = 0, trials = 0;
   for (const Task task : {Task::relaxed_sinusoidal, Task::relaxed_underdamped}) {
     const auto results = bench.results(task);
@@ -110,10 +110,12 @@ Result<void> with_dynamics(Workbench& bench, Exhibit& exhibit) {
                   "with intervals and antisymmetric parts; by theorem 3.2 as it was applied, estimates and symmetric "
                   "parts only, {} trials are.",
                   of(passive, people), of(by_theorem, trials)),
-      fmt::format("Damping adds what stiffness alone cannot show: it makes up for an antisymmetric stiffness, but not at "
-                  "every frequency. With the printed antisymmetry P1 is passive only above {:.2f} Hz (slip 4).",
-                  impedance::nonpassive_below(p1).value_or(0.0)),
-      "Simulated: arms rebuilt from the printed ellipses, whose antisymmetric parts are zero; recomputed: the frequency."};
+      fmt::format(
+          "Damping adds what stiffness alone cannot show: it makes up for an antisymmetric stiffness, but not at "
+          "every frequency. With the printed antisymmetry P1 is passive only above {:.2f} Hz (slip 4).",
+          impedance::nonpassive_below(p1).value_or(0.0)),
+      "Simulated: arms rebuilt from the printed ellipses, whose antisymmetric parts are zero; recomputed: the "
+      "frequency."};
   exhibit.commands = {simulate_command(bench, Task::relaxed_sinusoidal)};
   exhibit.related = {"table-3.2", "table-3.4", "slip-2", "slip-4", "question-3"};
   exhibit.tables = {std::move(table)};
@@ -123,15 +125,15 @@ Result<void> with_dynamics(Workbench& bench, Exhibit& exhibit) {
 Result<void> with_a_task(Workbench& bench, Exhibit& exhibit) {
   const auto results = bench.results(Task::rigid_underdamped);
   if (!results) return tl::unexpected(results.error());
-  ReproducedTable table = simulated_table("question-2", "Holding the hand in place against pulses of 2 N, four trials each",
-                                          "participant",
-                                          {{"energy of all trials", "J", 2},
-                                           {"low", "J", 2},
-                                           {"high", "J", 2},
-                                           {"largest shortage", "N·s/m", 1},
-                                           {"VAF, published procedure", "%", 1},
-                                           {"decided by", "", 0},
-                                           {"verdict", "", 0}});
+  ReproducedTable table =
+      simulated_table("question-2", "Holding the hand in place against pulses of 2 N, four trials each", "participant",
+                      {{"energy of all trials", "J", 2},
+                       {"low", "J", 2},
+                       {"high", "J", 2},
+                       {"largest shortage", "N·s/m", 1},
+                       {"VAF, published procedure", "%", 1},
+                       {"decided by", "", 0},
+                       {"verdict", "", 0}});
   int active = 0;
   for (const TaskResult& result : **results) {
     const Passivity& passivity = *result.pooled.passivity;
@@ -148,10 +150,11 @@ Result<void> with_a_task(Workbench& bench, Exhibit& exhibit) {
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
   exhibit.text = {
       "The question: is the arm still passive while it carries out a motor task?",
-      fmt::format("Not necessarily. Of the simulated participants who hold their hand in place against pulses of 2 N {} "
-                  "are active: they give back more than they took. No M, B and K explains such data, so the energy "
-                  "decides.",
-                  of(active, static_cast<int>((*results)->size()))),
+      fmt::format(
+          "Not necessarily. Of the simulated participants who hold their hand in place against pulses of 2 N {} "
+          "are active: they give back more than they took. No M, B and K explains such data, so the energy "
+          "decides.",
+          of(active, static_cast<int>((*results)->size()))),
       fmt::format("What is active is the answer, not the limb: the same limb without its will is passive (question 1). "
                   "Simulated; {}.",
                   laboratory::kTunedGains)};
@@ -174,27 +177,28 @@ Result<void> with_other_protocols(Workbench& bench, Exhibit& exhibit) {
     const auto outcome = outcome_of(bench, kTasks[k]);
     if (!outcome) return tl::unexpected(outcome.error());
     outcomes[k] = *outcome;
-    table.rows.push_back({text(kTasks[k]),
-                          {words(of(outcome->passive_by_theorem, outcome->trials)),
-                           words(of(outcome->absorbing, outcome->trials)), cell(outcome->least_energy),
-                           cell(outcome->most_energy), cell(outcome->mean_vaf),
-                           words(fmt::format("{}, {}, {}", outcome->verdicts[0], outcome->verdicts[1],
-                                             outcome->verdicts[2]))}});
+    table.rows.push_back(
+        {text(kTasks[k]),
+         {words(of(outcome->passive_by_theorem, outcome->trials)), words(of(outcome->absorbing, outcome->trials)),
+          cell(outcome->least_energy), cell(outcome->most_energy), cell(outcome->mean_vaf),
+          words(fmt::format("{}, {}, {}", outcome->verdicts[0], outcome->verdicts[1], outcome->verdicts[2]))}});
   }
   const Outcome &sines = outcomes[2], &pulses = outcomes[3];
   exhibit.text = {
       "The question: how does the protocol influence the analysis? Can other perturbations elicit passive or active "
       "behaviour?",
-      fmt::format("They can, in the same arm. Against a lasting multisine the rigid simulated arms absorb energy in {} "
-                  "trials, against pulses in {}: a pulse has a direction that can be answered, a multisine has none for "
-                  "long. The relaxed ones absorb in {} and {}.",
-                  of(sines.absorbing, sines.trials), of(pulses.absorbing, pulses.trials),
-                  of(outcomes[0].absorbing, outcomes[0].trials), of(outcomes[1].absorbing, outcomes[1].trials)),
-      fmt::format("The method matters as much. By least squares and theorem 3.2, {} of those multisine trials are called "
-                  "passive, although all that absorb are: position and force come from a closed loop, and least squares "
-                  "is drawn towards minus the robot. mbk's verdict, from instruments and energy, calls {} of {} people "
-                  "passive.",
-                  of(sines.passive_by_theorem, sines.trials), sines.verdicts[0], sines.people),
+      fmt::format(
+          "They can, in the same arm. Against a lasting multisine the rigid simulated arms absorb energy in {} "
+          "trials, against pulses in {}: a pulse has a direction that can be answered, a multisine has none for "
+          "long. The relaxed ones absorb in {} and {}.",
+          of(sines.absorbing, sines.trials), of(pulses.absorbing, pulses.trials),
+          of(outcomes[0].absorbing, outcomes[0].trials), of(outcomes[1].absorbing, outcomes[1].trials)),
+      fmt::format(
+          "The method matters as much. By least squares and theorem 3.2, {} of those multisine trials are called "
+          "passive, although all that absorb are: position and force come from a closed loop, and least squares "
+          "is drawn towards minus the robot. mbk's verdict, from instruments and energy, calls {} of {} people "
+          "passive.",
+          of(sines.passive_by_theorem, sines.trials), sines.verdicts[0], sines.people),
       fmt::format("Simulated; {}.", laboratory::kTunedGains)};
   exhibit.commands = {simulate_command(bench, Task::rigid_sinusoidal), simulate_command(bench, Task::rigid_underdamped),
                       "mbk validate closed-loop --runs 4"};
@@ -209,8 +213,14 @@ Result<void> with_other_protocols(Workbench& bench, Exhibit& exhibit) {
 teleop::Teleoperator example_teleoperator() {
   using lti::Rational;
   teleop::Teleoperator result;
-  result.values = {{"master.m", Rational(1, 2)}, {"slave.m", Rational(4, 5)}, {"master.b", 1}, {"slave.b", 1},
-                   {"master.d", 10},             {"master.k", 100},           {"slave.d", 20}, {"slave.k", 200}};
+  result.values = {{"master.m", Rational(1, 2)},
+                   {"slave.m", Rational(4, 5)},
+                   {"master.b", 1},
+                   {"slave.b", 1},
+                   {"master.d", 10},
+                   {"master.k", 100},
+                   {"slave.d", 20},
+                   {"slave.k", 200}};
   return result;
 }
 
@@ -245,15 +255,14 @@ Result<ReproducedTable> bought(Workbench& bench, double least_excess, double pub
 }
 
 Result<ReproducedTable> measured_excess(Workbench& bench) {
-  ReproducedTable table =
-      simulated_table("question-4", "How passive or active: simulated participants, four trials each in one fit",
-                      "participant",
-                      {{"excess, relaxed", "N·s/m", 2},
-                       {"low", "N·s/m", 2},
-                       {"high", "N·s/m", 2},
-                       {"largest shortage, rigid, 2 N pulses", "N·s/m", 1},
-                       {"low ", "N·s/m", 1},
-                       {"high ", "N·s/m", 1}});
+  ReproducedTable table = simulated_table(
+      "question-4", "How passive or active: simulated participants, four trials each in one fit", "participant",
+      {{"excess, relaxed", "N·s/m", 2},
+       {"low", "N·s/m", 2},
+       {"high", "N·s/m", 2},
+       {"largest shortage, rigid, 2 N pulses", "N·s/m", 1},
+       {"low ", "N·s/m", 1},
+       {"high ", "N·s/m", 1}});
   const auto relaxed = bench.results(Task::relaxed_sinusoidal);
   if (!relaxed) return tl::unexpected(relaxed.error());
   const auto rigid = bench.results(Task::rigid_underdamped);
@@ -308,9 +317,8 @@ Result<void> how_much(Workbench& bench, Exhibit& exhibit) {
                   shown(0), shown(2), shown(3), shown(4)),
       fmt::format("Simulated: the first table; {}. Recomputed: the second, exactly, from the printed numbers.",
                   laboratory::kTunedGains)};
-  exhibit.commands = {
-      "mbk teleop examples/teleop/position_position.toml --parameter slave.k=0:2000 --excess 0:10:6",
-      simulate_command(bench, Task::relaxed_sinusoidal)};
+  exhibit.commands = {"mbk teleop examples/teleop/position_position.toml --parameter slave.k=0:2000 --excess 0:10:6",
+                      simulate_command(bench, Task::relaxed_sinusoidal)};
   exhibit.related = {"table-3.6", "table-4.5", "slip-1", "slip-5", "slip-11"};
   exhibit.tables = {std::move(*simulated), std::move(*teleoperation)};
   return {};

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "mbk/impedance/ellipse.h"
+
 namespace mbk::reproduction {
 
 ReproducedTable computed_table(std::string id, std::string title, std::string what_rows_are,
@@ -21,8 +23,9 @@ ReproducedTable computed_table(std::string id, std::string title, std::string wh
 }
 
 impedance::Model model_of(const PrintedArm& arm) {
-  return {symmetric_matrix(arm.ellipses[0]), symmetric_matrix(arm.ellipses[1]), symmetric_matrix(arm.ellipses[2]),
-          Vector::Zero(2)};
+  // Symmetric to the last digit, for what is decided exactly.
+  const auto exactly = [&](std::size_t k) { return impedance::symmetric_part(symmetric_matrix(arm.ellipses[k])); };
+  return {exactly(0), exactly(1), exactly(2), Vector::Zero(2)};
 }
 
 const PrintedArm& arm_of(const std::vector<PrintedArm>& arms, const std::string& name) {

@@ -45,10 +45,12 @@ Matrix2d differences(const Function& function, const Vector2d& at) {
 Result<void> jacobian_in_one_column(Workbench& /*bench*/, Exhibit& exhibit) {
   exhibit.text = {
       "Where: (A.3). Printed: two rows with one entry each, −d₁ sin θ₁ + d₂ cos θ₂ and d₁ cos θ₁ + d₂ sin θ₂.",
-      "Right: J = [[−d₁ sin θ₁, d₂ cos θ₂], [d₁ cos θ₁, d₂ sin θ₂]], det J = −d₁d₂ cos(θ₁ − θ₂). What is printed is the "
+      "Right: J = [[−d₁ sin θ₁, d₂ cos θ₂], [d₁ cos θ₁, d₂ sin θ₂]], det J = −d₁d₂ cos(θ₁ − θ₂). What is printed is "
+      "the "
       "sum of its columns: the velocity of the hand when both joints turn at 1 rad/s.",
       "What shows it: derivatives of the forward kinematics (A.1) by central differences, entry by entry.",
-      "What moves: nothing, if the program used the matrix; (5.2) and (5.3) need its inverse, which one column does not "
+      "What moves: nothing, if the program used the matrix; (5.2) and (5.3) need its inverse, which one column does "
+      "not "
       "have.",
       "Tests: Slips.JacobianIsThatOfTheKinematics; mbk/robot/kinematics_test.cpp, "
       "Jacobian.AgreesWithFiniteDifferences."};
@@ -99,8 +101,7 @@ Chart power_chart(const robot::Inertia& inertia) {
       return Vector2d(kSwing * std::sin(kOmega * at), 0.9 + kSwing * std::cos(kOmega * at));
     };
     const Vector2d rate = kSwing * kOmega * Vector2d(std::cos(kOmega * t), -std::sin(kOmega * t));
-    const Matrix2d I_rate =
-        (inertia.matrix(theta(t + kStep)) - inertia.matrix(theta(t - kStep))) / (2.0 * kStep);
+    const Matrix2d I_rate = (inertia.matrix(theta(t + kStep)) - inertia.matrix(theta(t - kStep))) / (2.0 * kStep);
     const auto power = [&](const Matrix2d& C) { return 0.5 * rate.dot((I_rate - 2.0 * C) * rate); };
     printed.x.push_back(t);
     printed.y.push_back(power(printed_coriolis(inertia, theta(t), rate)));
@@ -118,7 +119,8 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
       "Where: (A.6), the lower left entry of C. Printed: +½ α₂ cos(θ₁ − θ₂) θ̇₁.",
       "Right: −½ α₂ cos(θ₁ − θ₂) θ̇₁, with I₁₂ = −½ α₂ sin(θ₁ − θ₂). Only so is İ − 2C skew, and the work of the motors "
       "is what the links gain.",
-      "What shows it: İ by differences along a motion, and the symmetric part of İ − 2C, which has to vanish. The chart "
+      "What shows it: İ by differences along a motion, and the symmetric part of İ − 2C, which has to vanish. The "
+      "chart "
       "is the power that the links would gain from nowhere while both joints swing by 20° at 1 Hz. The second table "
       "checks α₁ to α₃ besides: a payload at the handle adds m JᵀJ.",
       "What moves: if the program has the printed sign, the identified α and the virtual force of table 5.3 by as much "
@@ -146,8 +148,7 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
   const Matrix2d got = inertia.with_payload(geometry, kPayload).matrix(kTheta);
   ReproducedTable payload = computed_table("slip-9 payload", "A payload of 1.5 kg at the handle", "entry",
                                            {{"I + m JᵀJ", "kg·m²", 6}, {"I with the changed α", "kg·m²", 6}});
-  for (const auto& [name, row, column] :
-       {std::tuple{"I₁₁", 0, 0}, {"I₁₂", 0, 1}, {"I₂₂", 1, 1}}) {
+  for (const auto& [name, row, column] : {std::tuple{"I₁₁", 0, 0}, {"I₁₂", 0, 1}, {"I₂₂", 1, 1}}) {
     payload.rows.push_back({name, {cell(wanted(row, column)), cell(got(row, column))}});
   }
   exhibit.tables = {std::move(table), std::move(payload)};
@@ -160,7 +161,8 @@ Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
       "Where: (D.3). Printed: K is the gradient of F_ext, and its lower left entry ∂f_x/∂y.",
       "Right: K = −grad F, as the program in appendix D has it, and the lower left entry is ∂f_y/∂x.",
       "What shows it: four springs in the frame of appendix D, off their equilibrium, by central differences of (D.1); "
-      "and P1's arm with an antisymmetric stiffness. Springs have a potential, so that ∂f_x/∂y and ∂f_y/∂x are equal and "
+      "and P1's arm with an antisymmetric stiffness. Springs have a potential, so that ∂f_x/∂y and ∂f_y/∂x are equal "
+      "and "
       "only the sign is wrong; in the arm the printed entry hides the antisymmetry.",
       "What moves: nothing that is printed.",
       "Tests: Slips.StiffnessIsMinusTheGradient; mbk/calibration/springs_test.cpp, "
@@ -182,9 +184,9 @@ Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
     for (Index row = 0; row < 2; ++row) {
       for (Index column = 0; column < 2; ++column) {
         const double printed = row == 1 && column == 0 ? gradient(0, 1) : gradient(row, column);
-        table.rows.push_back({fmt::format("k_{}{}", kAxes[static_cast<std::size_t>(row)],
-                                          kAxes[static_cast<std::size_t>(column)]),
-                              {cell(K(row, column)), cell(-gradient(row, column)), cell(printed)}});
+        table.rows.push_back(
+            {fmt::format("k_{}{}", kAxes[static_cast<std::size_t>(row)], kAxes[static_cast<std::size_t>(column)]),
+             {cell(K(row, column)), cell(-gradient(row, column)), cell(printed)}});
       }
     }
     return table;
@@ -203,12 +205,14 @@ Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
 
 Result<void> majority_of_the_workspace(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
-      "Where: section A.2. Printed: each joint moves through 40°, so that the hand covers the majority of the workspace.",
+      "Where: section A.2. Printed: each joint moves through 40°, so that the hand covers the majority of the "
+      "workspace.",
       "Right: what two joints of 40° sweep is d₁d₂ ∫∫ |cos(θ₁ − θ₂)| dθ₁dθ₂ ≤ d₁d₂ (40°)², a small share of the area "
       "that the limits of the joints leave.",
       "What shows it: the outline of the workspace by the limits of (A.2) and its area, and the largest area that any "
       "40° of both joints sweep; joint ranges that would sweep half of it.",
-      "What moves: no number. The α of table A.1 are identified in a part of the workspace; their model holds in all of "
+      "What moves: no number. The α of table A.1 are identified in a part of the workspace; their model holds in all "
+      "of "
       "it as far as its form does.",
       "Tests: Slips.FortyDegreesAreAPartOfTheWorkspace; mbk/robot/workspace_test.cpp."};
   exhibit.commands = {"mbk robot workspace --at 300,-50      # its area"};
@@ -220,8 +224,8 @@ Result<void> majority_of_the_workspace(Workbench& bench, Exhibit& exhibit) {
   const auto swept = [&](double range) { return geometry.d1 * geometry.d2 * 2.0 * (1.0 - std::cos(range)); };
   const double range = bench.given().number("setup", "joint range of appendix A, °") * std::numbers::pi / 180.0;
   const double half = std::acos(1.0 - 0.25 * workspace->area / (geometry.d1 * geometry.d2));
-  ReproducedTable table = computed_table("slip-20", "Swept by both joints, at most", "",
-                                         {{"area", "m²", 4}, {"of the workspace", "%", 1}});
+  ReproducedTable table =
+      computed_table("slip-20", "Swept by both joints, at most", "", {{"area", "m²", 4}, {"of the workspace", "%", 1}});
   const auto add = [&](std::string name, double area) {
     table.rows.push_back({std::move(name), {cell(area), cell(100.0 * area / workspace->area)}});
   };
@@ -254,14 +258,19 @@ Result<Vector> errors_of_converter(double from, double to) {
 
 Result<void> gauge_and_converter(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
-      "Where: (E.3) and the sentence on noise below it. Printed: the force of (E.2), slope and offset together, is "
-      "scaled with the lever arm; 0.01 N of noise on each axis.",
-      "Right: the voltage of no force has no moment, so only the slope scales: F = (L₀/L) · slope · (V − V₀). The 12-bit "
-      "converter over ±10 V has steps of 4.9 mV: its rounding alone is more than 0.01 N.",
-      "What shows it: the simulated gauge with a lever arm of 100 mm and its voltage turned into force both ways; and "
-      "the readings of a slow ramp through the converter, without any other noise.",
-      "What moves: nothing that is printed was measured with this sensor but spring constants. Offsets were tuned for "
-      "each experiment, which hides the first slip.",
+      "Where: (E.3), the sentence on intercepts below (E.2), and the noise. Printed: the force of (E.2) is scaled with "
+      "the lever arm; its intercept is tuned for each experiment; 0.01 N of noise on each axis.",
+      "Right: the voltage V₀ of no force has no moment, so the lever arm scales the slope alone, F = (L₀/L) · slope · "
+      "(V − V₀). The 12-bit converter over ±10 V has steps of 4.9 mV or 0.042 N: 0.01 N is a quarter of one.",
+      "What shows it: a voltage with the hand pulling at 100 mm, turned into force. With the intercept of the "
+      "calibration, "
+      "which is −slope · V₀, (E.3) is the same. With an intercept that was tuned in newtons on the scaled force, so "
+      "that "
+      "nothing reads zero, (E.3) scales it once more; with the slope scaled and the calibration's intercept kept, it "
+      "is "
+      "not scaled at all. Both are off by a constant. The readings of a slow ramp show the converter's rounding alone.",
+      "What moves: nothing that is printed, for forces were measured with a load cell and only spring constants with "
+      "this sensor, at L₀; a slope does not see an offset.",
       "Tests: Slips.LeverArmScalesTheSlopeAlone, Slips.ConverterIsCoarserThanTheNoise; "
       "mbk/calibration/sensor_force_test.cpp, ForceFromVoltage.LeverArmScalesTheSlopeAlone."};
   exhibit.commands = {"mbk sensor calibrate --help      # --lever-arm-mm, --bits, --range"};
@@ -270,12 +279,18 @@ Result<void> gauge_and_converter(Workbench& bench, Exhibit& exhibit) {
   const double slope = given.number("setup", "slope of Fx, N/V"), offset = given.number("setup", "offset of Fx, N");
   const double L0 = given.number("setup", "lever arm L0, m"), L = 0.1;
   ReproducedTable table = computed_table("slip-15", "Force from the voltage, the hand pulling at 100 mm", "force on x",
-                                         {{"voltage", "V", 3}, {"slope alone", "N", 3}, {"(E.3), as printed", "N", 3}});
+                                         {{"voltage", "V", 3},
+                                          {"(L₀/L) slope (V − V₀)", "N", 3},
+                                          {"(E.3), intercept of (E.2)", "N", 3},
+                                          {"(E.3), intercept tuned at 100 mm", "N", 3},
+                                          {"slope scaled, intercept of (E.2)", "N", 3}});
+  const double zero = -offset / slope, scale = L0 / L, tuned = -scale * slope * zero;
   for (const double force : {0.0, 5.0, -5.0}) {
-    const double voltage = (force * L / L0 - offset) / slope;
-    table.rows.push_back({fmt::format("{:g} N", force),
-                          {cell(voltage), cell(L0 / L * slope * (voltage + offset / slope)),
-                           cell(L0 / L * (slope * voltage + offset))}});
+    const double voltage = force * L / L0 / slope + zero;
+    table.rows.push_back(
+        {fmt::format("{:g} N", force),
+         {cell(voltage), cell(scale * slope * (voltage - zero) + 0.0), cell(scale * (slope * voltage + offset) + 0.0),
+          cell(scale * (slope * voltage + tuned)), cell(scale * slope * voltage + offset)}});
   }
   laboratory::StrainGaugeOptions options;
   options.arm = options.assumed_arm = L;
@@ -287,7 +302,7 @@ Result<void> gauge_and_converter(Workbench& bench, Exhibit& exhibit) {
   ReproducedTable chain = computed_table("slip-15 gauge", "The simulated gauge at 100 mm, which scales the slope alone",
                                          "force on x", {{"reading", "N", 3}});
   for (const double force : {0.0, 5.0, -5.0}) {
-    chain.rows.push_back({fmt::format("{:g} N", force), {cell(gauge->read({force, 0.0})[0])}});
+    chain.rows.push_back({fmt::format("{:g} N", force), {cell(gauge->read({force, 0.0})[0] + 0.0)}});
   }
   const calibration::Converter converter;
   const auto errors = errors_of_converter(-20.0, 20.0);

@@ -46,11 +46,11 @@ double printed_orientation(const Matrix& Z) {
 
 Result<void> orientation_of_an_ellipse(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
-      "Where: (3.17). Printed: θ = atan((λ_max − z_xx)/z_s).",
-      "Right: θ = ½ atan2(2 z_s, z_xx − z_yy), mod 180°.",
+      "Where: (3.17). Printed: θ = atan((λ_max − z_xx)/z_s).", "Right: θ = ½ atan2(2 z_s, z_xx − z_yy), mod 180°.",
       "What shows it: for z_s = 0 the printed form is 0/0 or divides by zero; with a small z_s λ_max − z_xx is lost in "
       "rounding; and it covers −90° to 90°, while tables 3.3 and 3.5 use 0° to 180°.",
-      "What moves: nothing. Of the twenty-four ellipses of tables 3.3 and 3.5 both forms have the same axis; the printed "
+      "What moves: nothing. Of the twenty-four ellipses of tables 3.3 and 3.5 both forms have the same axis; the "
+      "printed "
       "angles are those of the corrected form.",
       "Tests: Slips.OrientationIsThatOfTheAxis; mbk/impedance/ellipse_test.cpp, "
       "Ellipse.HasAnOrientationWhereTheFormulaOfTheSourceHasNone."};
@@ -61,8 +61,8 @@ Result<void> orientation_of_an_ellipse(Workbench& bench, Exhibit& exhibit) {
   ReproducedTable table = computed_table("slip-6", "Orientation by both forms", "z_xx, z_yy, z_s",
                                          {{"(3.17), as printed", "°", 2}, {"½ atan2", "°", 2}});
   const auto add = [&](const std::string& name, const Matrix& Z) {
-    table.rows.push_back({name,
-                          {number_or_none(printed_orientation(Z)), cell(kDegrees * impedance::ellipse(Z).orientation)}});
+    table.rows.push_back(
+        {name, {number_or_none(printed_orientation(Z)), cell(kDegrees * impedance::ellipse(Z).orientation)}});
   };
   add("P1's stiffness, table 3.3", model_of(arm_of(bench.given().sinusoidal, "P1")).K);
   add("100, 50, 0", Matrix{{100.0, 0.0}, {0.0, 50.0}});
@@ -83,8 +83,8 @@ Result<void> orientation_of_an_ellipse(Workbench& bench, Exhibit& exhibit) {
   }
   ReproducedTable all = computed_table("slip-6 all", "All ellipses of tables 3.3 and 3.5", "",
                                        {{"ellipses", "", 0}, {"(3.17) below 0°", "", 0}, {"apart, mod 180°", "°", 9}});
-  all.rows.push_back({"both tables",
-                      {cell(static_cast<double>(ellipses)), cell(static_cast<double>(negative)), cell(apart)}});
+  all.rows.push_back(
+      {"both tables", {cell(static_cast<double>(ellipses)), cell(static_cast<double>(negative)), cell(apart)}});
   exhibit.tables = {std::move(table), std::move(all)};
   return {};
 }
@@ -138,12 +138,13 @@ Result<void> smoothing_cutoff(Workbench& bench, Exhibit& exhibit) {
       "band is 0 to about 4 Hz.",
       "Tests: Slips.SchaferIsNearerToTheWeights; mbk/dsp/savitzky_golay_test.cpp, "
       "SavitzkyGolay.HasTheKnownCutoffsOfTheThesisFilter; mbk/dsp/butterworth_test.cpp."};
-  exhibit.commands = {"mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --sg-order 6 "
-                      "--sg-window 101 --cutoff 5      # the filters are named in the output"};
+  exhibit.commands = {
+      "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --sg-order 6 "
+      "--sg-window 101 --cutoff 5      # the filters are named in the output"};
   exhibit.related = {"figure-3.5", "statements"};
-  ReproducedTable table = computed_table(
-      "slip-7", "−3 dB of the smoothing filter at 1 kHz", "N, W",
-      {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
+  ReproducedTable table =
+      computed_table("slip-7", "−3 dB of the smoothing filter at 1 kHz", "N, W",
+                     {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
   for (const dsp::SavitzkyGolay& filter : {kSmoothing, dsp::SavitzkyGolay{6, 151}, dsp::SavitzkyGolay{4, 51}}) {
     const auto cutoff = dsp::savitzky_golay_cutoff(filter, kRate);
     if (!cutoff) return tl::unexpected(cutoff.error());
@@ -153,8 +154,9 @@ Result<void> smoothing_cutoff(Workbench& bench, Exhibit& exhibit) {
          {cell(nyquist * (filter.order + 1) / (1.6 * filter.window - 4.6)),
           cell(nyquist * (filter.order + 1) / (3.2 * filter.half_window() - 4.6)), cell(cutoff->value)}});
   }
-  ReproducedTable derivatives = computed_table("slip-7 derivatives", "−3 dB against the ideal differentiator, N = 6, W = 101",
-                                               "derivative", {{"cutoff", "Hz", 1}});
+  ReproducedTable derivatives =
+      computed_table("slip-7 derivatives", "−3 dB against the ideal differentiator, N = 6, W = 101", "derivative",
+                     {{"cutoff", "Hz", 1}});
   for (const int derivative : {1, 2}) {
     const auto cutoff = minus_3_db(kSmoothing, derivative);
     if (!cutoff) return tl::unexpected(cutoff.error());
@@ -183,13 +185,16 @@ Result<void> sign_of_the_errors(Workbench& bench, Exhibit& exhibit) {
       "What shows it: the text says three times that stiffness is over- and inertia underestimated, and that method 1 "
       "gives higher stiffness and lower inertia than method 2. Entries of the table under either reading, of k_xx and "
       "k_yy and of m.",
-      "What moves: the reconstruction of table 5.3 and figure 5.4. No conclusion moves, for the text has the right sign.",
+      "What moves: the reconstruction of table 5.3 and figure 5.4. No conclusion moves, for the text has the right "
+      "sign.",
       "Tests: Slips.ErrorsAreTheoreticalLessIdentified."};
-  exhibit.commands = {"mbk simulate rig_table_5_1 --trial K1_M1 --out rig.h5 && mbk measure rig.h5 --structure "
-                      "mass-spring --mode reference --procedure chapter5"};
+  exhibit.commands = {
+      "mbk simulate rig_table_5_1 --trial K1_M1 --out rig.h5 && mbk measure rig_K1_M1.h5 --structure "
+      "mass-spring --mode reference --procedure chapter5"};
   exhibit.related = {"table-5.3", "table-5.4", "slip-19"};
-  ReproducedTable table = computed_table("slip-12", "Statements of the text under either sign", "statement",
-                                         {{"theoretical + entry, as captioned", "", 0}, {"theoretical − entry", "", 0}});
+  ReproducedTable table =
+      computed_table("slip-12", "Statements of the text under either sign", "statement",
+                     {{"theoretical + entry, as captioned", "", 0}, {"theoretical − entry", "", 0}});
   const auto count = [&](const std::vector<PrintedRig>& rigs, std::size_t elements, const auto& holds) {
     std::array<int, 3> counts{};
     for (const PrintedRig& rig : rigs) {
@@ -204,9 +209,9 @@ Result<void> sign_of_the_errors(Workbench& bench, Exhibit& exhibit) {
     return counts;
   };
   const auto add = [&](const char* name, const std::array<int, 3>& counts) {
-    table.rows.push_back({name,
-                          {words(fmt::format("{} of {}", counts[0], counts[2])),
-                           words(fmt::format("{} of {}", counts[1], counts[2]))}});
+    table.rows.push_back(
+        {name,
+         {words(fmt::format("{} of {}", counts[0], counts[2])), words(fmt::format("{} of {}", counts[1], counts[2]))}});
   };
   const Given& given = bench.given();
   const auto higher = [](double, double one, double two) { return one > two; };
@@ -253,8 +258,7 @@ Result<Recording> sinusoidal_recording(const impedance::Model& model) {
   if (!y) return tl::unexpected(y.error());
   const auto at = [&](double t) {
     const auto a = x->at(t), b = y->at(t);
-    return perturbation::Jet<Eigen::Vector2d>{
-        {a.value, b.value}, {a.first, b.first}, {a.second, b.second}};
+    return perturbation::Jet<Eigen::Vector2d>{{a.value, b.value}, {a.first, b.first}, {a.second, b.second}};
   };
   return exact_recording(model, 62001, at, [&](double t) { return at(t).value; });
 }
@@ -271,20 +275,22 @@ Result<Recording> pulse_recording(const impedance::Model& model) {
 
 Result<void> samples_of_the_program(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
-      "Where: the two programs of appendix C. Printed: the filter starts one centre late and ends one early, the window "
+      "Where: the two programs of appendix C. Printed: the filter starts one centre late and ends one early, the "
+      "window "
       "opens at the sample before tstart, Λ stays in M, torques are called N/m, and the program for pulses filters the "
       "whole log before it cuts the pulses out.",
       "Right: every centre whose window lies inside counts; what lies outside a pulse is cut away before a filter that "
       "looks ahead can see it; Λ comes off the inertia; torques are N·m.",
       "What shows it: a recording of P1's arm without noise or friction, in mbk's reference mode, which is the program "
       "sample for sample, and the model that comes back from pulses in both modes.",
-      "What moves: every number of chapters 3 and 4, by less than its rounding: the centres hardly, the smearing by some "
-      "hundredths of a newton per metre. \"The final 10 s\" to validate are 9.899 s. Reference mode keeps all of it, "
+      "What moves: every number of chapters 3 and 4, by less than its rounding. \"The final 10 s\" to validate are "
+      "9.899 s. Reference mode keeps all of it, "
       "since its numbers have to be those of the program; default mode does it right, and each result names its mode.",
       "Tests: Slips.ProgramLosesACentreAtEachEnd, Slips.FilteringBeforeTheCutSmears; "
       "mbk/preprocess/windows_test.cpp, ReferenceWindows.SinusoidalIsSamples11999To61999."};
-  exhibit.commands = {"mbk simulate relaxed_underdamped --out pulses.h5 && mbk measure pulses.h5 --mode reference && "
-                      "mbk measure pulses.h5"};
+  exhibit.commands = {
+      "mbk simulate relaxed_underdamped --out pulses.h5 && mbk measure pulses.h5 --mode reference && "
+      "mbk measure pulses.h5"};
   exhibit.related = {"table-3.2", "table-3.4", "statements"};
   impedance::Model model = model_of(arm_of(bench.given().sinusoidal, "P1"));
   const auto lasting = sinusoidal_recording(model);
@@ -304,8 +310,9 @@ Result<void> samples_of_the_program(Workbench& bench, Exhibit& exhibit) {
   }
   ReproducedTable centres = computed_table("slip-13", "Centres of the filter in the window of 50 s", "",
                                            {{"possible", "", 0}, {"used by the program", "", 0}, {"seconds", "s", 3}});
-  centres.rows = {{"all", {cell(static_cast<double>(possible)), cell(static_cast<double>(used)),
-                           cell(static_cast<double>(used) / kRate.value)}},
+  centres.rows = {{"all",
+                   {cell(static_cast<double>(possible)), cell(static_cast<double>(used)),
+                    cell(static_cast<double>(used) / kRate.value)}},
                   {"first centre, as a sample of the log, from 0",
                    {cell(static_cast<double>(11999 + kSmoothing.half_window())), cell(static_cast<double>(first)),
                     cell(static_cast<double>(first) / kRate.value)}},
@@ -355,11 +362,11 @@ Result<void> offset_of_the_fit(Workbench& /*bench*/, Exhibit& exhibit) {
     force[i] = 2.0 * std::sin(phase);
     shifted[i] = 2.0 * std::sin(phase - 1.1);
   }
-  ReproducedTable table = computed_table("slip-14", "A force of 2 N at 1 Hz", "model", {{"VAF", "%", 1}, {"RMSE", "N", 3}});
+  ReproducedTable table =
+      computed_table("slip-14", "A force of 2 N at 1 Hz", "model", {{"VAF", "%", 1}, {"RMSE", "N", 3}});
   const auto add = [&](const char* name, const Vector& residual) {
-    table.rows.push_back({name,
-                          {cell(numeric::variance_accounted_for(force, residual)),
-                           cell(numeric::root_mean_square(residual))}});
+    table.rows.push_back(
+        {name, {cell(numeric::variance_accounted_for(force, residual)), cell(numeric::root_mean_square(residual))}});
   };
   add("off by 1 N", Vector::Constant(kSamples, 1.0));
   add("off by 10 N", Vector::Constant(kSamples, 10.0));
@@ -434,8 +441,10 @@ Result<identify::ContinuousFit> fitted(const SignalPair& pair, Index poles, Inde
 
 Result<void> improper_impedance(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
-      "Where: section 4.4.2. Printed: a transfer function with four poles and three zeros from place to force fits best.",
-      "Right: m s² + b s + k has two zeros and no pole: it is improper, and a function with more poles than zeros tends "
+      "Where: section 4.4.2. Printed: a transfer function with four poles and three zeros from place to force fits "
+      "best.",
+      "Right: m s² + b s + k has two zeros and no pole: it is improper, and a function with more poles than zeros "
+      "tends "
       "to 0 at high frequencies, where an inertia tends to infinity. Identify the admittance from the force, 1/(m s² + "
       "b s + k), and turn it round; or take the known force as instrument.",
       "What shows it: the arm of P2 along y, linear, on a robot of 1 kg and 8 N·s/m, moved by ±2 N as in the source, "
@@ -444,7 +453,8 @@ Result<void> improper_impedance(Workbench& bench, Exhibit& exhibit) {
       "be told without the recordings.",
       "Tests: Slips.InvertedAdmittanceIsTheImpedanceAndTheProperOneIsNot; mbk/identify/srivc_test.cpp."};
   exhibit.commands = {
-      "mbk simulate one_axis_random_binary --trial trial_1 --out binary.h5 && mbk tf binary.h5 --input -force_y "
+      "mbk simulate one_axis_random_binary --trial trial_1 --out binary.h5 && mbk tf binary_trial_1.h5 --input "
+      "-force_y "
       "--output hand_y --poles 2 --zeros 0 --invert position"};
   exhibit.related = {"table-4.4", "figure-4.7"};
   const impedance::Model p2 = model_of(arm_of(bench.given().sinusoidal, "P2"));
@@ -461,8 +471,9 @@ Result<void> improper_impedance(Workbench& bench, Exhibit& exhibit) {
   const double m = 1.0 / admittance->b[0];
   numbers.rows = {{"the arm", {cell(arm.m), cell(arm.b), cell(arm.k)}},
                   {"1/admittance, 2 poles", {cell(m), cell(m * admittance->a[1]), cell(m * admittance->a[0])}}};
-  ReproducedTable table = computed_table("slip-16 size", "Size of the impedance, place to force", "frequency",
-                                         {{"the arm", "N/m", 1}, {"1/admittance", "N/m", 1}, {"4 poles, 3 zeros", "N/m", 1}});
+  ReproducedTable table =
+      computed_table("slip-16 size", "Size of the impedance, place to force", "frequency",
+                     {{"the arm", "N/m", 1}, {"1/admittance", "N/m", 1}, {"4 poles, 3 zeros", "N/m", 1}});
   table.provenance = Provenance::simulated;
   Chart chart;
   chart.title = "Place to force: a proper function cannot follow an inertia";
@@ -500,14 +511,16 @@ Result<void> largest_discrepancy(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
       "Where: section 5.3.1. Printed: of all identified parameters the relative discrepancy between both methods is "
       "largest for k_xx.",
-      "Right: that holds for the discrepancy itself. Relative to the value, by either method or by theory, it is largest "
+      "Right: that holds for the discrepancy itself. Relative to the value, by either method or by theory, it is "
+      "largest "
       "for k_s, which is near zero in four of five springs' arrays; leaving k_s out, k_xx it is, on average.",
       "What shows it: the difference of both methods in table 5.4, which no sign touches, over the theoretical value "
       "and over what method 2 identified.",
       "What moves: no number. The conclusion that the error force is larger along x rests on the discrepancy itself, "
       "and stands.",
       "Tests: Slips.RelativeDiscrepancyIsLargestForTheOffDiagonal."};
-  exhibit.commands = {"mbk validate virtual-sensor --runs 4      # what a missing term of the robot's model does to M and K"};
+  exhibit.commands = {
+      "mbk reproduce --only table-5.3 --out folder      # both methods' stiffness, from which it follows"};
   exhibit.related = {"table-5.4", "slip-12", "statements"};
   struct Mean {
     double absolute = 0, to_theory = 0, to_method_2 = 0, largest = 0;
