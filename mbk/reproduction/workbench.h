@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <vector>
 
 #include "mbk/core/result.h"
@@ -14,6 +12,7 @@
 #include "mbk/trial/energy.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/recording.h"
+#include "mbk/validation/one_dimensional_trial.h"
 
 namespace mbk::reproduction {
 
@@ -48,6 +47,16 @@ struct TaskResult {
   result::Measured pooled;  ///< all of them in one fit, by mbk's own procedure
 };
 
+/// One trial of a rigid grasp along one axis (§4.4.2).
+struct OneAxisGrasp {
+  double vaf = 0.0;  ///< of the last part [%]
+  validation::one_dimensional::ValidationOutput output;
+  Recording recording;
+};
+
+/// Shortest time for which the force along one axis keeps its sign [s]. The source does not give it.
+inline constexpr double kSwitchingTime = 4.0;
+
 struct WorkbenchOptions {
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: as many as there are cores; the numbers do not depend on it
@@ -69,10 +78,15 @@ class Workbench {
   /// @fails  as simulate and measure
   [[nodiscard]] Result<const std::vector<TaskResult>*> results(Task task);
 
+  /// The five trials of the ready scenario one_axis_random_binary. They stay where they are.
+  /// @fails  as simulate and one_dimensional::attempted
+  [[nodiscard]] Result<const std::vector<OneAxisGrasp>*> one_axis_grasps();
+
  private:
   Given given_;
   WorkbenchOptions options_;
   std::map<Task, std::vector<TaskResult>> results_;
+  std::vector<OneAxisGrasp> one_axis_grasps_;
 };
 
 /// The scenario of a task as a participant does it.
