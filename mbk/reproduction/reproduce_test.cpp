@@ -109,7 +109,9 @@ TEST(Reproduce, TellsHowFarItIs) {
   ReproduceOptions options;
   options.only = {"table-3.6", "table-5.3"};
   std::vector<std::string> said;
-  options.progress = [&](int done, int of, std::string_view id) { said.push_back(fmt::format("{} {} {}", done, of, id)); };
+  options.progress = [&](int done, int of, std::string_view id) {
+    said.push_back(fmt::format("{} {} {}", done, of, id));
+  };
   ASSERT_TRUE(reproduce(printed(), options));
   EXPECT_THAT(said, ::testing::ElementsAre("0 2 table-3.6", "1 2 table-5.3"));
 }

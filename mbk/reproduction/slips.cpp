@@ -22,6 +22,11 @@ ReproducedTable computed_table(std::string id, std::string title, std::string wh
   return table;
 }
 
+std::vector<std::string> account(std::string where, std::string right, std::string shown, std::string moved,
+                                 std::string tests) {
+  return {std::move(where), std::move(right), std::move(shown), std::move(moved), std::move(tests)};
+}
+
 impedance::Model model_of(const PrintedArm& arm) {
   // Symmetric to the last digit, for what is decided exactly.
   const auto exactly = [&](std::size_t k) { return impedance::symmetric_part(symmetric_matrix(arm.ellipses[k])); };

@@ -13,6 +13,11 @@ namespace mbk::reproduction {
 [[nodiscard]] ReproducedTable computed_table(std::string id, std::string title, std::string what_rows_are,
                                              std::vector<ReproducedColumn> columns);
 
+/// The paragraphs of a slip: where it stands and what is printed, what is right, what shows it, what moves of the
+/// published results, and the tests that hold it.
+[[nodiscard]] std::vector<std::string> account(std::string where, std::string right, std::string shown,
+                                               std::string moved, std::string tests);
+
 /// M, B and K of a printed row, symmetric (exhibits.h).
 [[nodiscard]] impedance::Model model_of(const PrintedArm& arm);
 

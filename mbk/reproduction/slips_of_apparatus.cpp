@@ -43,7 +43,7 @@ Matrix2d differences(const Function& function, const Vector2d& at) {
 }  // namespace
 
 Result<void> jacobian_in_one_column(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (A.3). Printed: two rows with one entry each, −d₁ sin θ₁ + d₂ cos θ₂ and d₁ cos θ₁ + d₂ sin θ₂.",
       "Right: J = [[−d₁ sin θ₁, d₂ cos θ₂], [d₁ cos θ₁, d₂ sin θ₂]], det J = −d₁d₂ cos(θ₁ − θ₂). What is printed is "
       "the "
@@ -53,7 +53,7 @@ Result<void> jacobian_in_one_column(Workbench& /*bench*/, Exhibit& exhibit) {
       "not "
       "have.",
       "Tests: Slips.JacobianIsThatOfTheKinematics; mbk/robot/kinematics_test.cpp, "
-      "Jacobian.AgreesWithFiniteDifferences."};
+      "Jacobian.AgreesWithFiniteDifferences.");
   exhibit.commands = {"mbk robot workspace --at 300,-50      # the posture there"};
   exhibit.related = {"slip-9", "figure-A.1"};
   const robot::Geometry geometry;
@@ -115,7 +115,7 @@ Chart power_chart(const robot::Inertia& inertia) {
 }  // namespace
 
 Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (A.6), the lower left entry of C. Printed: +½ α₂ cos(θ₁ − θ₂) θ̇₁.",
       "Right: −½ α₂ cos(θ₁ − θ₂) θ̇₁, with I₁₂ = −½ α₂ sin(θ₁ − θ₂). Only so is İ − 2C skew, and the work of the motors "
       "is what the links gain.",
@@ -126,7 +126,7 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
       "What moves: if the program has the printed sign, the identified α and the virtual force of table 5.3 by as much "
       "as the Coriolis torque, which is small at 2 Hz and 10°.",
       "Tests: Slips.CoriolisMatrixMakesInertiaRateSkew; mbk/robot/dynamics_test.cpp, "
-      "Coriolis.MakesTheRateOfTheInertiaLessTwiceItselfSkew."};
+      "Coriolis.MakesTheRateOfTheInertiaLessTwiceItselfSkew.");
   exhibit.commands = {"mbk robot describe examples/robots/thesis.toml"};
   exhibit.related = {"slip-8", "table-A.1"};
   const robot::Inertia inertia;
@@ -157,7 +157,7 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
 }
 
 Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (D.3). Printed: K is the gradient of F_ext, and its lower left entry ∂f_x/∂y.",
       "Right: K = −grad F, as the program in appendix D has it, and the lower left entry is ∂f_y/∂x.",
       "What shows it: four springs in the frame of appendix D, off their equilibrium, by central differences of (D.1); "
@@ -166,7 +166,7 @@ Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
       "only the sign is wrong; in the arm the printed entry hides the antisymmetry.",
       "What moves: nothing that is printed.",
       "Tests: Slips.StiffnessIsMinusTheGradient; mbk/calibration/springs_test.cpp, "
-      "Springs.StiffnessIsMinusTheGradientOfTheForceAndSymmetric."};
+      "Springs.StiffnessIsMinusTheGradientOfTheForceAndSymmetric.");
   exhibit.commands = {
       "mbk springs field --spring k=120,l=90,anchor=565:183 --spring k=120,l=90,anchor=565:-183 --spring "
       "k=150,l=80,anchor=215:0 --grid-step 0.15"};
@@ -204,7 +204,7 @@ Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
 }
 
 Result<void> majority_of_the_workspace(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: section A.2. Printed: each joint moves through 40°, so that the hand covers the majority of the "
       "workspace.",
       "Right: what two joints of 40° sweep is d₁d₂ ∫∫ |cos(θ₁ − θ₂)| dθ₁dθ₂ ≤ d₁d₂ (40°)², a small share of the area "
@@ -214,7 +214,7 @@ Result<void> majority_of_the_workspace(Workbench& bench, Exhibit& exhibit) {
       "What moves: no number. The α of table A.1 are identified in a part of the workspace; their model holds in all "
       "of "
       "it as far as its form does.",
-      "Tests: Slips.FortyDegreesAreAPartOfTheWorkspace; mbk/robot/workspace_test.cpp."};
+      "Tests: Slips.FortyDegreesAreAPartOfTheWorkspace; mbk/robot/workspace_test.cpp.");
   exhibit.commands = {"mbk robot workspace --at 300,-50      # its area"};
   exhibit.related = {"table-A.1", "figure-A.2", "statements"};
   const robot::Geometry geometry;
@@ -257,7 +257,7 @@ Result<Vector> errors_of_converter(double from, double to) {
 }  // namespace
 
 Result<void> gauge_and_converter(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (E.3), the sentence on intercepts below (E.2), and the noise. Printed: the force of (E.2) is scaled with "
       "the lever arm; its intercept is tuned for each experiment; 0.01 N of noise on each axis.",
       "Right: the voltage V₀ of no force has no moment, so the lever arm scales the slope alone, F = (L₀/L) · slope · "
@@ -272,7 +272,7 @@ Result<void> gauge_and_converter(Workbench& bench, Exhibit& exhibit) {
       "What moves: nothing that is printed, for forces were measured with a load cell and only spring constants with "
       "this sensor, at L₀; a slope does not see an offset.",
       "Tests: Slips.LeverArmScalesTheSlopeAlone, Slips.ConverterIsCoarserThanTheNoise; "
-      "mbk/calibration/sensor_force_test.cpp, ForceFromVoltage.LeverArmScalesTheSlopeAlone."};
+      "mbk/calibration/sensor_force_test.cpp, ForceFromVoltage.LeverArmScalesTheSlopeAlone.");
   exhibit.commands = {"mbk sensor calibrate --help      # --lever-arm-mm, --bits, --range"};
   exhibit.related = {"figure-E.5", "statements"};
   const Given& given = bench.given();

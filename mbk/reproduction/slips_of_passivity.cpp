@@ -55,7 +55,7 @@ impedance::Model with_antisymmetry(impedance::Model model, double k_a) {
 }  // namespace
 
 Result<void> excess_of_the_largest(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: table 3.6 and the range in sections 3.6.3 and 4.5. Printed as the excess of passivity is half of the "
       "largest eigenvalue of B_s.",
       "Right: theorem 3.1 as it is meant asks for H(jω) ⪰ 2δI at every frequency. H is 2B_s where M and K are "
@@ -66,7 +66,7 @@ Result<void> excess_of_the_largest(Workbench& bench, Exhibit& exhibit) {
       "What moves: all eight cells of table 3.6, and the range of 4.3 to 7.2 N·s/m that section 4.5 builds on. The "
       "verdict that the relaxed arm has an excess stays, and an excess of 0.9 N·s/m is still exceeded by all.",
       "Tests: Slips.ExcessIsTheIndexOfTheRationalMatrix; mbk/impedance/passivity_index_test.cpp, "
-      "Table36.IsNotTheExcessOfPassivityInAnyCell."};
+      "Table36.IsNotTheExcessOfPassivityInAnyCell.");
   exhibit.commands = {"mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5"};
   exhibit.related = {"table-3.6", "table-3.3", "table-3.5", "slip-3", "question-4"};
   ReproducedTable table = computed_table("slip-1", "The published value and the excess itself", "participant",
@@ -95,7 +95,7 @@ Result<void> excess_of_the_largest(Workbench& bench, Exhibit& exhibit) {
 }
 
 Result<void> theorem_at_its_boundary(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: theorem 3.2, (3.19) to (3.25). Printed: of each matrix one diagonal element and the determinant must not "
       "be negative (leading principal minors).",
       "Right: that is enough for a positive definite matrix; a semidefinite one needs every principal minor, so k_yy, "
@@ -105,7 +105,7 @@ Result<void> theorem_at_its_boundary(Workbench& /*bench*/, Exhibit& exhibit) {
       "What moves: nothing that is printed, since no identified matrix lies on the boundary. A program that codes the "
       "theorem calls such a limb passive.",
       "Tests: Slips.BoundaryOfTheTheoremIsNotPassive; tests/pipeline/passive_models_test.cpp, "
-      "SymmetricModels.OfTheTheoremsBoundaryAreNotPassive."};
+      "SymmetricModels.OfTheTheoremsBoundaryAreNotPassive.");
   exhibit.commands = {"mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5"};
   exhibit.related = {"slip-3", "slip-4"};
   ReproducedTable table = computed_table(
@@ -133,7 +133,7 @@ Result<void> theorem_at_its_boundary(Workbench& /*bench*/, Exhibit& exhibit) {
 }
 
 Result<void> theorem_without_poles(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: theorem 3.1 (and lemma 4.2), applied to Z in section 3.6.3. Printed: all poles must have negative real "
       "parts.",
       "Right: Z = M s + B + K/s has poles at 0 and at infinity, so the theorem does not apply to it. What holds: "
@@ -144,7 +144,7 @@ Result<void> theorem_without_poles(Workbench& bench, Exhibit& exhibit) {
       "What moves: no number, for the residues M and K of the relaxed arm are positive definite. With a K that is not, "
       "H alone would show an excess that the limb does not have: the last row.",
       "Tests: Slips.PolesOfTheImpedanceAreNotWhatTheTheoremAsks; tests/pipeline/passive_models_test.cpp, "
-      "ExcessOfPassivity.IsTheInputPassivityIndexOfTheRationalMatrix."};
+      "ExcessOfPassivity.IsTheInputPassivityIndexOfTheRationalMatrix.");
   exhibit.commands = {"mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5"};
   exhibit.related = {"slip-1", "slip-2", "slip-17"};
   const impedance::Model p1 = model_of(arm_of(bench.given().sinusoidal, "P1"));
@@ -201,7 +201,7 @@ Chart index_chart(const impedance::Model& with, const impedance::Model& without)
 }  // namespace
 
 Result<void> antisymmetry_dropped(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: section 3.6.1.2 and theorem 3.2. Printed: below 15 % the antisymmetric parts of K and M are neglected, "
       "and the symmetric ones decide over all frequencies.",
       "Right: with k_a ≠ 0 the index tr(B_s)/2 − √( ((b_xx − b_yy)/2)² + b_s² + (ω m_a − k_a/ω)² ) falls without bound "
@@ -215,7 +215,7 @@ Result<void> antisymmetry_dropped(Workbench& bench, Exhibit& exhibit) {
       "most of the perturbation's band. No printed number moves. Random errors alone give z_mean a 95th percentile of "
       "about 31 % in one trial at 0.3 N of noise (a simulation), so that a share without an interval shows nothing.",
       "Tests: Slips.AntisymmetryMakesTheArmActiveAtLowFrequencies; mbk/impedance/passivity_index_test.cpp, "
-      "PassivityIndex.OfP1WithItsAntisymmetryIsNegativeAtLowFrequencies."};
+      "PassivityIndex.OfP1WithItsAntisymmetryIsNegativeAtLowFrequencies.");
   exhibit.commands = {
       "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5 --band 0.05:3      # against "
       "--band 0.5:3"};
@@ -251,7 +251,7 @@ Result<void> antisymmetry_dropped(Workbench& bench, Exhibit& exhibit) {
 }
 
 Result<void> hermitian_part(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: the sentence after (3.27), lemma 4.2 and (4.3). Printed: H = Z(jω) + Zᵀ(jω); Re Z(s) ≥ δ; the largest λ "
       "for which the inequality holds.",
       "Right: H = Z(jω) + Zᵀ(−jω); Re Z(jω) ≥ δ; the smallest λ. The first is not Hermitian, so that it has no order "
@@ -262,7 +262,7 @@ Result<void> hermitian_part(Workbench& bench, Exhibit& exhibit) {
       "What moves: nothing, if table 4.5 was computed with the smallest λ. Whether over a whole trial or at its end "
       "cannot be told from the table, and both differ.",
       "Tests: Slips.PrintedHermitianPartIsNotHermitian, Slips.EveryLargerShortageHoldsToo; "
-      "mbk/analyse/energy_blocks_test.cpp, LargestShortage.IsThatOfEverySample."};
+      "mbk/analyse/energy_blocks_test.cpp, LargestShortage.IsThatOfEverySample.");
   exhibit.commands = {
       "mbk simulate rigid_underdamped_2N --out rigid.h5 && mbk passivity rigid.h5      # shortage at "
       "the end and at its largest"};
@@ -342,7 +342,7 @@ std::string violated_text(const AbsoluteStability& stability) {
 }  // namespace
 
 Result<void> any_immittance(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: theorem 4.2. Printed: −a ≤ Re z_t2 ≤ b with conditions on b, and \"any immittance parameters\" in place "
       "of "
       "the impedance ones. Section 4.6 calls it theorem 4.1.",
@@ -357,7 +357,7 @@ Result<void> any_immittance(Workbench& /*bench*/, Exhibit& exhibit) {
       "What moves: nothing that is printed; a design that is judged in its y form with the theorem as printed may be "
       "called stable and is not.",
       "Tests: Slips.ImmittanceFormHidesAShortage; mbk/teleop/two_port_test.cpp, "
-      "WithShortage.TakesAFromTheImpedanceOfThatPortAlone."};
+      "WithShortage.TakesAFromTheImpedanceOfThatPortAlone.");
   exhibit.commands = {"mbk teleop examples/teleop/position_position.toml      # the largest shortage it allows"};
   exhibit.related = {"slip-17", "question-4", "slip-5"};
   const Rational a = 1;
@@ -400,7 +400,7 @@ Result<void> any_immittance(Workbench& /*bench*/, Exhibit& exhibit) {
 }
 
 Result<void> unnamed_poles(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: theorem 4.1. Printed: poles of z₁₁ and z₂₂ on the right and on the axis, and condition 3 on the axis.",
       "Right: the axis includes infinity; z₁₂ and z₂₁ must have no pole on the right either; and residues at a pole on "
       "the axis have to meet k₁₁ k₂₂ ≥ k₁₂ k₂₁.",
@@ -409,7 +409,7 @@ Result<void> unnamed_poles(Workbench& /*bench*/, Exhibit& exhibit) {
       "1 shows z₁₁ − z₁₂z₂₁/z₂₂: a negative mass, an impedance with a pole on the right, a negative spring.",
       "What moves: nothing that is printed, for the thesis applies the theorem to no network.",
       "Tests: Slips.NetworksMeetTheTheoremAndAreNotStable; mbk/teleop/llewellyn_test.cpp, "
-      "Llewellyn.AsksForJointResiduesThatTheTheoremDoesNotName."};
+      "Llewellyn.AsksForJointResiduesThatTheTheoremDoesNotName.");
   exhibit.commands = {"mbk teleop examples/teleop/narrow_resonance.toml      # each condition, decided exactly"};
   exhibit.related = {"slip-11", "slip-3"};
   using lti::Polynomial;
@@ -442,7 +442,7 @@ Result<void> unnamed_poles(Workbench& /*bench*/, Exhibit& exhibit) {
 }
 
 Result<void> sign_of_the_force(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (3.1) with F_h as output, F_h = Z V after (3.4), (4.3) and (5.2). Printed: with the F_h of (3.2), the "
       "force of the hand on the robot, all four have the other sign. (5.1) contradicts (5.2).",
       "Right: −F_h = Z V, E = −∫F_h·v dt, and J⁻ᵀ(I θ̈ + C θ̇ + F_r − τ) for the force on the robot.",
@@ -451,7 +451,7 @@ Result<void> sign_of_the_force(Workbench& bench, Exhibit& exhibit) {
       "What moves: nothing that is printed; the energies of figures 3.15, 3.17 and 4.3 to 4.5 are drawn with the right "
       "sign. Coded literally, a passive arm looks active.",
       "Tests: Slips.PrintedSignsTurnEnergyAndForce; mbk/analyse/energy_test.cpp, "
-      "AbsorbedEnergy.ChangesItsSignWithTheForce."};
+      "AbsorbedEnergy.ChangesItsSignWithTheForce.");
   exhibit.commands = {
       "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --channels "
       "x=hand_x,y=hand_y,Fx=-force_x,Fy=-force_y,xr=reference_x,yr=reference_y      # warns of the sign; exit code 4"};

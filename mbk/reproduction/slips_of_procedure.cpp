@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 
 #include "mbk/dsp/butterworth.h"
@@ -26,7 +25,6 @@ namespace mbk::reproduction {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr Hertz kRate(1000.0);
 constexpr dsp::SavitzkyGolay kSmoothing{6, 101};
 
@@ -45,7 +43,7 @@ double printed_orientation(const Matrix& Z) {
 }  // namespace
 
 Result<void> orientation_of_an_ellipse(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (3.17). Printed: θ = atan((λ_max − z_xx)/z_s).", "Right: θ = ½ atan2(2 z_s, z_xx − z_yy), mod 180°.",
       "What shows it: for z_s = 0 the printed form is 0/0 or divides by zero; with a small z_s λ_max − z_xx is lost in "
       "rounding; and it covers −90° to 90°, while tables 3.3 and 3.5 use 0° to 180°.",
@@ -53,7 +51,7 @@ Result<void> orientation_of_an_ellipse(Workbench& bench, Exhibit& exhibit) {
       "printed "
       "angles are those of the corrected form.",
       "Tests: Slips.OrientationIsThatOfTheAxis; mbk/impedance/ellipse_test.cpp, "
-      "Ellipse.HasAnOrientationWhereTheFormulaOfTheSourceHasNone."};
+      "Ellipse.HasAnOrientationWhereTheFormulaOfTheSourceHasNone.");
   exhibit.commands = {
       "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --json --out relaxed.json && mbk "
       "ellipse relaxed.json"};
@@ -127,7 +125,7 @@ Result<Chart> filter_chart(const dsp::SectionCascade& lowpass) {
 }  // namespace
 
 Result<void> smoothing_cutoff(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (3.6), and \"near unity over the 5 Hz bandwidth\" in section 3.5.1. Printed: f_c ≈ (N + 1)/(1.6 W − 4.6) "
       "of the Nyquist frequency.",
       "Right: Schafer's estimate is (N + 1)/(3.2 m − 4.6) with W = 2m + 1, which is (N + 1)/(1.6 W − 6.2). Applied "
@@ -137,7 +135,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Exhibit& exhibit) {
       "What moves: nothing; the formula only describes the filter. But at 5 Hz both filters halve the signal, so the "
       "band is 0 to about 4 Hz.",
       "Tests: Slips.SchaferIsNearerToTheWeights; mbk/dsp/savitzky_golay_test.cpp, "
-      "SavitzkyGolay.HasTheKnownCutoffsOfTheThesisFilter; mbk/dsp/butterworth_test.cpp."};
+      "SavitzkyGolay.HasTheKnownCutoffsOfTheThesisFilter; mbk/dsp/butterworth_test.cpp.");
   exhibit.commands = {
       "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --sg-order 6 "
       "--sg-window 101 --cutoff 5      # the filters are named in the output"};
@@ -179,7 +177,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Exhibit& exhibit) {
 }
 
 Result<void> sign_of_the_errors(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: table 5.4 and the equation above it. Printed: error = identified − theoretical.",
       "Right: the entries are theoretical − identified.",
       "What shows it: the text says three times that stiffness is over- and inertia underestimated, and that method 1 "
@@ -187,7 +185,7 @@ Result<void> sign_of_the_errors(Workbench& bench, Exhibit& exhibit) {
       "k_yy and of m.",
       "What moves: the reconstruction of table 5.3 and figure 5.4. No conclusion moves, for the text has the right "
       "sign.",
-      "Tests: Slips.ErrorsAreTheoreticalLessIdentified."};
+      "Tests: Slips.ErrorsAreTheoreticalLessIdentified.");
   exhibit.commands = {
       "mbk simulate rig_table_5_1 --trial K1_M1 --out rig.h5 && mbk measure rig_K1_M1.h5 --structure "
       "mass-spring --mode reference --procedure chapter5"};
@@ -274,7 +272,7 @@ Result<Recording> pulse_recording(const impedance::Model& model) {
 }  // namespace
 
 Result<void> samples_of_the_program(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: the two programs of appendix C. Printed: the filter starts one centre late and ends one early, the "
       "window "
       "opens at the sample before tstart, Λ stays in M, torques are called N/m, and the program for pulses filters the "
@@ -287,7 +285,7 @@ Result<void> samples_of_the_program(Workbench& bench, Exhibit& exhibit) {
       "9.899 s. Reference mode keeps all of it, "
       "since its numbers have to be those of the program; default mode does it right, and each result names its mode.",
       "Tests: Slips.ProgramLosesACentreAtEachEnd, Slips.FilteringBeforeTheCutSmears; "
-      "mbk/preprocess/windows_test.cpp, ReferenceWindows.SinusoidalIsSamples11999To61999."};
+      "mbk/preprocess/windows_test.cpp, ReferenceWindows.SinusoidalIsSamples11999To61999.");
   exhibit.commands = {
       "mbk simulate relaxed_underdamped --out pulses.h5 && mbk measure pulses.h5 --mode reference && "
       "mbk measure pulses.h5"};
@@ -345,13 +343,13 @@ Result<void> samples_of_the_program(Workbench& bench, Exhibit& exhibit) {
 }
 
 Result<void> offset_of_the_fit(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: (3.10). Printed: VAF from variances, \"100 % describes the data perfectly\".",
       "Right: a variance does not see a constant error, so that a model may be off by any offset at 100 %. It may also "
       "be negative (table 4.4 prints −2.9): then the model is worse than a constant. The RMSE has to stand beside it.",
       "What shows it: a force of 2 N at 1 Hz and models that are off by an offset, by a factor, or by the phase.",
       "What moves: no number; what a VAF of the source says of x₀ and of slow drift of the force is nothing.",
-      "Tests: Slips.VafDoesNotSeeAnOffset."};
+      "Tests: Slips.VafDoesNotSeeAnOffset.");
   exhibit.commands = {
       "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5      # VAF and RMSE of each axis"};
   exhibit.related = {"table-4.4", "table-5.5"};
@@ -440,7 +438,7 @@ Result<identify::ContinuousFit> fitted(const SignalPair& pair, Index poles, Inde
 }  // namespace
 
 Result<void> improper_impedance(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: section 4.4.2. Printed: a transfer function with four poles and three zeros from place to force fits "
       "best.",
       "Right: m s² + b s + k has two zeros and no pole: it is improper, and a function with more poles than zeros "
@@ -451,7 +449,7 @@ Result<void> improper_impedance(Workbench& bench, Exhibit& exhibit) {
       "with 0.02 N of noise; both forms fitted by the same method, and the size of the impedance of each.",
       "What moves: table 4.4. Part of what its VAF leaves is the form, not the central nervous system; how much cannot "
       "be told without the recordings.",
-      "Tests: Slips.InvertedAdmittanceIsTheImpedanceAndTheProperOneIsNot; mbk/identify/srivc_test.cpp."};
+      "Tests: Slips.InvertedAdmittanceIsTheImpedanceAndTheProperOneIsNot; mbk/identify/srivc_test.cpp.");
   exhibit.commands = {
       "mbk simulate one_axis_random_binary --trial trial_1 --out binary.h5 && mbk tf binary_trial_1.h5 --input "
       "-force_y "
@@ -508,7 +506,7 @@ Result<void> improper_impedance(Workbench& bench, Exhibit& exhibit) {
 }
 
 Result<void> largest_discrepancy(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
+  exhibit.text = account(
       "Where: section 5.3.1. Printed: of all identified parameters the relative discrepancy between both methods is "
       "largest for k_xx.",
       "Right: that holds for the discrepancy itself. Relative to the value, by either method or by theory, it is "
@@ -518,7 +516,7 @@ Result<void> largest_discrepancy(Workbench& bench, Exhibit& exhibit) {
       "and over what method 2 identified.",
       "What moves: no number. The conclusion that the error force is larger along x rests on the discrepancy itself, "
       "and stands.",
-      "Tests: Slips.RelativeDiscrepancyIsLargestForTheOffDiagonal."};
+      "Tests: Slips.RelativeDiscrepancyIsLargestForTheOffDiagonal.");
   exhibit.commands = {
       "mbk reproduce --only table-5.3 --out folder      # both methods' stiffness, from which it follows"};
   exhibit.related = {"table-5.4", "slip-12", "statements"};

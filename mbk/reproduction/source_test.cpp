@@ -45,7 +45,8 @@ TEST(Source, SaysWhatIsMissing) {
   const auto cut = read_source("{");
   ASSERT_FALSE(cut);
   EXPECT_EQ(cut.error().kind, ErrorKind::data);
-  const auto without = read_source(R"({"source": "a thesis", "given": {"3.3": {"columns": ["A"], "rows": {"P1": []}}}})");
+  const auto without =
+      read_source(R"({"source": "a thesis", "given": {"3.3": {"columns": ["A"], "rows": {"P1": []}}}})");
   ASSERT_FALSE(without);
   EXPECT_THAT(without.error().line(), HasSubstr("row 'P1' is too short"));
 }
