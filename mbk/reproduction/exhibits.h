@@ -31,6 +31,9 @@ struct Maker {
 [[nodiscard]] std::span<const Maker> rigid_tables();
 [[nodiscard]] std::span<const Maker> rigid_figures();
 [[nodiscard]] std::span<const Maker> reconstructed_tables();
+[[nodiscard]] std::span<const Maker> statements();
+[[nodiscard]] std::span<const Maker> slips();
+[[nodiscard]] std::span<const Maker> questions();
 [[nodiscard]] std::span<const Maker> future_work();
 
 inline ReproducedCell cell(double ours) {

@@ -82,15 +82,24 @@ const PrintedNumber* PrintedTable::find(const std::string& row, const std::strin
   return &found->second[static_cast<std::size_t>(at - columns.begin())];
 }
 
+double Given::number(const std::string& table, const std::string& row) const {
+  const auto found = tables.find(table);
+  const PrintedNumber* const number = found == tables.end() ? nullptr : found->second.find(row, "value");
+  return number == nullptr ? std::numeric_limits<double>::quiet_NaN() : number->value;
+}
+
 Result<Source> read_source(std::string_view text) {
   try {
     const Json json = Json::parse(text);
     const Json& given = json.at("given");
     Source source;
     source.name = json.at("source").get<std::string>();
-    source.given = {arms_of(given.at("3.3")), arms_of(given.at("3.5")),
+    source.given = {arms_of(given.at("3.3")),
+                    arms_of(given.at("3.5")),
                     rigs_of(given.at("5.1 stiffness"), given.at("5.4 stiffness"), 3),
-                    rigs_of(given.at("5.1 mass"), given.at("5.4 mass"), 1)};
+                    rigs_of(given.at("5.1 mass"), given.at("5.4 mass"), 1),
+                    {}};
+    for (const auto& [id, table] : given.items()) source.given.tables[id] = table_of(table);
     if (json.contains("printed")) {
       for (const auto& [id, table] : json.at("printed").items()) source.printed[id] = table_of(table);
     }

@@ -52,6 +52,10 @@ struct PrintedRig {
 struct Given {
   std::vector<PrintedArm> sinusoidal, underdamped;
   std::vector<PrintedRig> stiffnesses, masses;
+  std::map<std::string, PrintedTable> tables;  ///< all of them as they stand, by their ids
+
+  /// The number in the column "value" of a given table; NaN where there is none.
+  [[nodiscard]] double number(const std::string& table, const std::string& row) const;
 };
 
 /// What the source printed.
