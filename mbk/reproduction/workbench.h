@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <typeindex>
+#include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "mbk/core/result.h"
@@ -69,10 +72,24 @@ class Workbench {
   /// @fails  as simulate and measure
   [[nodiscard]] Result<const std::vector<TaskResult>*> results(Task task);
 
+  /// What `make` gives, made when a T is first asked for. It stays where it is.
+  /// @fails  as `make`
+  template <class T>
+  [[nodiscard]] Result<const T*> once(Result<T> (*make)(Workbench&)) {
+    std::shared_ptr<const void>& kept = kept_[typeid(T)];
+    if (kept == nullptr) {
+      auto made = make(*this);
+      if (!made) return tl::unexpected(made.error());
+      kept = std::make_shared<const T>(std::move(*made));
+    }
+    return static_cast<const T*>(kept.get());
+  }
+
  private:
   Given given_;
   WorkbenchOptions options_;
   std::map<Task, std::vector<TaskResult>> results_;
+  std::map<std::type_index, std::shared_ptr<const void>> kept_;
 };
 
 /// The scenario of a task as a participant does it.

@@ -141,8 +141,7 @@ void add_mean_errors(const Trials& trials, Force force, const char* prefix, Vali
 void add_differences(const Trials& trials, ValidationTable& table) {
   for_each_parameter([&](const std::string& name, Element element, const auto& belongs) {
     const Vector difference = values_of(trials, belongs, [&](const ForceTrial& trial) {
-      return element_of(trial.of(virtual_sensor).model, element) -
-             element_of(trial.of(sensor).model, element);
+      return element_of(trial.of(virtual_sensor).model, element) - element_of(trial.of(sensor).model, element);
     });
     table.rows.push_back(reported_row(
         fmt::format("virtual sensor − sensor: {} {}", name, kElementNames[static_cast<std::size_t>(element)]),
@@ -170,8 +169,7 @@ void add_vaf(const Trials& trials, ValidationTable& table) {
 void add_elastic_drives(const Trials& trials, ValidationTable& table) {
   for (const Force force : {sensor, virtual_sensor}) {
     for (Index axis = 0; axis < 2; ++axis) {
-      const Vector rmse =
-          values_of(trials, any, [&](const ForceTrial& trial) { return trial.of(force).rmse[axis]; });
+      const Vector rmse = values_of(trials, any, [&](const ForceTrial& trial) { return trial.of(force).rmse[axis]; });
       table.rows.push_back(
           at_most_row(fmt::format("elastic drives, {}: largest RMSE of F{}", text(force), axis == 0 ? "x" : "y"),
                       rmse.maxCoeff(), {}, "N"));

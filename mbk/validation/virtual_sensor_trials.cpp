@@ -114,8 +114,7 @@ Result<ForceTrial> perform(const laboratory::Scenario& scenario, const Robots& r
   const Recording& recording = performance->recording;
   Matrix acted(static_cast<Index>(force.size()), 2);
   for (std::size_t k = 0; k < force.size(); ++k) acted.row(static_cast<Index>(k)) = force[k].transpose();
-  const auto truth =
-      prepare_with(with_force(recording, acted), Force::sensor, robots, measurement.options.preprocess);
+  const auto truth = prepare_with(with_force(recording, acted), Force::sensor, robots, measurement.options.preprocess);
   if (!truth) return tl::unexpected(truth.error());
 
   ForceTrial trial;
