@@ -109,13 +109,18 @@ Result<PreparedDynamics> prepare_free_motion(const Recording& recording, const r
 }
 
 Result<validation::Robots> identified_robots(Workbench& bench) {
-  const auto motions = bench.once(make_free_motions);
-  if (!motions) return tl::unexpected(motions.error());
-  const FreeMotion& first = (*motions)->trials.front();
+  const auto scenarios = validation::ready("free_motion");
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  laboratory::Scenario scenario = scenarios->front();
+  scenario.seed = rig_seed(bench, scenario);
+  const auto performance = laboratory::simulate(scenario);
+  if (!performance) return tl::unexpected(performance.error());
   validation::Robots robots;
-  for (const auto& [friction, found] :
-       {std::pair{FrictionModel::viscous, &first.viscous}, std::pair{FrictionModel::full, &first.full}}) {
-    robots.models[static_cast<std::size_t>(friction)] = std::make_shared<robot::DynamicModel>(found->model);
+  for (const FrictionModel friction : {FrictionModel::viscous, FrictionModel::full}) {
+    auto found = published(performance->recording, friction);
+    if (!found) return tl::unexpected(found.error());
+    found->model.covariance.resize(0, 0);  // no interval of what rests on it is shown
+    robots.models[static_cast<std::size_t>(friction)] = std::make_shared<robot::DynamicModel>(std::move(found->model));
   }
   return robots;
 }

@@ -56,8 +56,8 @@ inline constexpr const char* kPublishedRobotOptions =
 [[nodiscard]] Result<PreparedDynamics> prepare_free_motion(const Recording& recording,
                                                            const robot::DynamicModel& model);
 
-/// The robot that virtual sensors rest on: the first free motion, without (FrictionModel::viscous) and with Coulomb
-/// friction. The source has the former.
+/// The robot that virtual sensors rest on: FreeMotion::viscous, which the source had, and `full` of the first of the
+/// free motions.
 /// @fails  as make_free_motions
 [[nodiscard]] Result<validation::Robots> identified_robots(Workbench& bench);
 

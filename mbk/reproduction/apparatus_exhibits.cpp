@@ -183,8 +183,8 @@ Result<void> figure_A_2(Workbench& /*bench*/, Exhibit& exhibit) {
   exhibit.text = {
       "Where the hand can be, from the printed link lengths of 10 and 10.5 inches and the printed limits: the outline "
       "is the edge of the joint space through the forward kinematics, exact but for the number of its points. The area "
-      "is not printed. The test location is that of the ready scenarios, which lies where the source shows its own; "
-      "the number itself is not in the text."};
+      "is not printed. The test location is that of the ready scenarios; the source gives its own from the shoulder "
+      "only, 52 cm in front of it, and where the shoulder was cannot be recovered."};
   exhibit.commands = {
       fmt::format("mbk robot workspace --at {:g},{:g} --out workspace.svg", 1e3 * trial.home[0], 1e3 * trial.home[1])};
   exhibit.related = {"table-A.1", "slip-8"};

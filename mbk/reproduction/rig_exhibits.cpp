@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mbk/calibration/springs.h"
+#include "mbk/identify/impedance_fit.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/numeric/statistics.h"
