@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
       {"tf", mbk::app::add_tf(app, mbk::app::command_line(argc, argv))},
       {"ellipse", mbk::app::add_ellipse(app)},
       {"passivity", mbk::app::add_passivity(app)},
+      {"width", mbk::app::add_width(app)},
       {"info", mbk::app::add_info(app)},
       {"convert", mbk::app::add_convert(app)},
       {"simulate", mbk::app::add_simulate(app)},

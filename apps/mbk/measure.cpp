@@ -7,6 +7,7 @@
 #include "apps/mbk/report_file.h"
 #include "mbk/analyse/summary.h"
 #include "mbk/numeric/parallel.h"
+#include "mbk/report/joint_domain_text.h"
 #include "mbk/report/passivity_text.h"
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
@@ -95,6 +96,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
       if (one.force_comparison && one.by_sensor) {
         text += "\n" + report::by_sensor_text(one.identification, *one.by_sensor, *one.force_comparison);
       }
+      if (one.joints) text += "\n" + report::joint_domain_text(*one.joints);
       if (one.bootstrap) text += "\n" + report::bootstrap_text(*one.bootstrap);
       if (one.passivity) text += "\n" + report::passivity_line(*one.passivity);
     }
@@ -119,6 +121,7 @@ Action add(CLI::App& app, const char* name, const char* summary, const std::stri
   add_reading_options(*command, *arguments);
   add_sensor_options(*command, arguments->sensor);
   add_measuring_options(*command, *arguments);
+  add_domain_options(*command, *arguments);
   add_output_options(*command, *arguments, "mbk.result/1");
   if (with_findings) add_report_options(*command, *arguments);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
@@ -137,6 +140,8 @@ Action add_measure(CLI::App& app, const std::string& typed) {
              "      one joint from a CSV file, the first 40 s to identify, the rest held back\n"
              "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
              "      several trials: one result each, their mean and the standard error between them\n"
+             "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"
+             "      at shoulder and elbow too; shoulder at (0.30, -0.57) m, upper arm 0.31 m, forearm 0.34 m\n"
              "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"
              "      one file for the browser or the printer: the result in plain words, ellipses, plots, glossary\n\n"
              "Exit codes: " +

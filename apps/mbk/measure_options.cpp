@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <map>
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
@@ -35,6 +39,25 @@ Result<void> check_order(const MeasureArguments& a) {
   if (auto ok = before("--from", a.from_s, "--to", a.to_s); !ok) return ok;
   if (auto ok = before("--from", a.from_s, "--split", a.split_s); !ok) return ok;
   return before("--split", a.split_s, "--to", a.to_s);
+}
+
+/// X,Y,UPPER,FORE[,left|right] as the metadata that a recording would hold; nothing where it is none.
+std::optional<std::map<std::string, std::string>> arm_metadata(const std::string& given) {
+  constexpr std::array kKeys = {"shoulder_x_m", "shoulder_y_m", "upper_arm_m", "forearm_m", "elbow"};
+  std::map<std::string, std::string> metadata = {{"elbow", "right"}};
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < kKeys.size(); ++k) {
+    const std::size_t end = std::min(given.find(',', begin), given.size());
+    const std::string word = given.substr(begin, end - begin);
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool number = error == std::errc() && stop == word.data() + word.size() && std::isfinite(value);
+    if (k < 2 ? !number : (k < 4 ? !number || !(value > 0.0) : word != "left" && word != "right")) return std::nullopt;
+    metadata[kKeys[k]] = word;
+    if (end == given.size()) return k >= 3 ? std::optional(metadata) : std::nullopt;
+    begin = end + 1;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -184,6 +207,24 @@ void add_output_options(CLI::App& command, MeasureArguments& arguments, const st
   command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
 }
 
+void add_domain_options(CLI::App& command, MeasureArguments& arguments) {
+  add_choice(
+      command, "--domain", arguments.domain, {"hand", "joint"},
+      "joint: M, B and K at shoulder and elbow too (or at the joints of the robot, where the arm is not known), in "
+      "the posture of the recording")
+      ->group("Model");
+  command
+      .add_option("--arm", arguments.arm,
+                  "the person's arm, where the recording does not hold it: place of the shoulder in the robot's frame, "
+                  "lengths of upper arm and forearm (to the grip), in metres; the elbow is to the right unless ',left' "
+                  "follows")
+      ->type_name("X,Y,UPPER,FORE")
+      ->check([](const std::string& given) {
+        return arm_metadata(given) ? "" : fmt::format("{} is not X,Y,UPPER,FORE in metres", quoted(given));
+      })
+      ->group("Model");
+}
+
 void add_report_options(CLI::App& command, MeasureArguments& arguments) {
   CLI::Option* const report =
       command
@@ -262,7 +303,11 @@ Result<measurement::Options> measurement_options(const MeasureArguments& a) {
     return bad_usage(fmt::format("--procedure {} belongs to --mode reference", a.procedure),
                      "add that, or leave --procedure out");
   }
+  if (!a.arm.empty() && a.domain != "joint" && !a.report) {
+    return bad_usage("--arm belongs to --domain joint, or to --report, which draws it", "add one, or leave --arm out");
+  }
   measurement::Options options;
+  options.joint_domain = a.domain == "joint";
   options.preprocess = *signals;
   preprocess::Options& p = options.preprocess;
   p.mode = a.mode == "reference" ? Mode::reference : Mode::improved;
@@ -338,6 +383,9 @@ Result<std::vector<Recording>> read_perturbations(const MeasureArguments& argume
                       recording.sources.empty() ? "" : recording.sources.front().path);
     }
     recording = preprocess::perturbation_only(std::move(recording));
+    for (const auto& [key, value] : arm_metadata(arguments.arm).value_or(std::map<std::string, std::string>{})) {
+      recording.metadata[key] = value;
+    }
   }
   return recordings;
 }

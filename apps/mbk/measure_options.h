@@ -39,6 +39,7 @@ struct MeasureArguments {
   unsigned threads = 0;
   bool json = false, quiet = false;
   Output output;
+  std::string domain = "hand", arm;
   std::optional<std::filesystem::path> report;
   std::string report_note;
 };
@@ -58,6 +59,9 @@ void add_measuring_options(CLI::App& command, MeasureArguments& arguments);
 /// Adds --json, --out, --overwrite, --quiet.
 void add_output_options(CLI::App& command, MeasureArguments& arguments, const std::string& schema);
 
+/// Adds --domain and --arm.
+void add_domain_options(CLI::App& command, MeasureArguments& arguments);
+
 /// Adds --report and --report-note; --overwrite then speaks of the report too.
 void add_report_options(CLI::App& command, MeasureArguments& arguments);
 
@@ -73,7 +77,7 @@ void add_report_options(CLI::App& command, MeasureArguments& arguments);
 /// voltages.
 [[nodiscard]] Result<std::vector<Recording>> read_recordings(const MeasureArguments& arguments);
 
-/// The same, of sessions' recordings only the perturbation.
+/// The same, of sessions' recordings only the perturbation; with --arm their metadata hold that arm.
 [[nodiscard]] Result<std::vector<Recording>> read_perturbations(const MeasureArguments& arguments);
 
 }  // namespace mbk::app

@@ -52,6 +52,7 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const std
   }
   const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
   if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
+  if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
   auto opened = console::Console::open(arguments.port, trials, signals,
                                        [](const std::string& line) { fmt::print(stderr, "mbk: console: {}\n", line); });
   if (!opened) return tl::unexpected(opened.error());

@@ -24,8 +24,8 @@ using journal::Tick;
 using session::Trial;
 
 constexpr std::size_t kMostPending = 8192;  // samples of a frame, at most
-constexpr int kStateBeats = 6;              // a state at least so often
-constexpr int kDiskBeats = 60;
+constexpr int kStateBeats = 12;             // a state at least so often
+constexpr int kDiskBeats = 120;
 
 Json times_json(const realtime::CycleRecord& record) {
   Json bins = Json::array();
@@ -93,7 +93,8 @@ Console::Console(const std::vector<Trial>& trials, session::Signals& signals)
     }
     trials_.push_back(std::move(listed));
   }
-  live_ = std::make_unique<LiveEstimate>([this](const LiveEstimate::Estimate& one) { estimated(one); });
+  live_ =
+      std::make_unique<session::LiveEstimate>([this](const session::LiveEstimate::Estimate& one) { estimated(one); });
 }
 
 Console::~Console() {
@@ -102,7 +103,6 @@ Console::~Console() {
 
 Result<std::unique_ptr<Console>> Console::open(std::uint16_t port, const std::vector<Trial>& trials,
                                                session::Signals& signals, std::function<void(const std::string&)> log) {
-  if (auto ok = operator_page(); !ok) return tl::unexpected(ok.error());
   std::unique_ptr<Console> console(new Console(trials, signals));
   Console& self = *console;
   auto server = Server::listen(port, {[&self](std::string_view path) { return self.page(path); },
@@ -151,6 +151,7 @@ void Console::begin(std::size_t index, const journal::Header& header, const meas
 }
 
 void Console::watch(std::span<const Tick> ticks) {
+  bool tripped = false;
   {
     const std::scoped_lock lock(mutex_);
     Times& apart = times_apart_[server_->status().viewers > 0 ? 1 : 0];
@@ -162,7 +163,10 @@ void Console::watch(std::span<const Tick> ticks) {
         times->lateness.add(static_cast<std::int64_t>(1e9 * tick.late));
       }
       const auto reason = static_cast<safety::Reason>(tick.reason);
-      if (reason != trip_.reason) trip_ = {reason, tick.time, tick.number, 0.0, 0.0};
+      if (reason != trip_.reason) {
+        trip_ = {reason, tick.time, tick.number, 0.0, 0.0};
+        tripped = true;
+      }
       changed_ = changed_ || tick.phase != last_.phase || tick.reason != last_.reason;
       last_ = tick;
       ++ticks_;
@@ -172,6 +176,7 @@ void Console::watch(std::span<const Tick> ticks) {
     pending_.insert(pending_.end(), taken.begin(), taken.end());
     skipped_samples_ += ticks.size() - taken.size();
   }
+  if (tripped) server_->beat();
   live_->add(ticks);
 }
 
@@ -297,7 +302,7 @@ void Console::decide(Action action) {
   decided_.notify_all();
 }
 
-void Console::estimated(const LiveEstimate::Estimate& estimate) {
+void Console::estimated(const session::LiveEstimate::Estimate& estimate) {
   std::string json =
       fmt::format(R"({{"type":"estimate","final":{},"perturbed_s":{:.3f},)", estimate.final, estimate.perturbed);
   if (estimate.measured) {

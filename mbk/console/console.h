@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "mbk/console/live_estimate.h"
 #include "mbk/console/server.h"
 #include "mbk/realtime/cycle_record.h"
+#include "mbk/session/live_estimate.h"
 #include "mbk/session/session.h"
 
 namespace mbk::console {
@@ -102,7 +102,7 @@ class Console {
   Result<void> reset(const std::string& code);
   void decide(Action action);
   void beat();
-  void estimated(const LiveEstimate::Estimate& estimate);
+  void estimated(const session::LiveEstimate::Estimate& estimate);
   [[nodiscard]] std::string state_locked() const;
 
   session::Signals& signals_;
@@ -128,7 +128,7 @@ class Console {
   Message estimate_;
   int beats_ = 0;
   std::uintmax_t disk_free_ = 0;
-  std::unique_ptr<LiveEstimate> live_;
+  std::unique_ptr<session::LiveEstimate> live_;
   std::unique_ptr<Server> server_;  // the last to be made, and the first to go
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -28,10 +29,11 @@ using boost::system::error_code;
 using net::ip::tcp;
 using namespace std::chrono_literals;
 
-constexpr auto kBeat = std::chrono::nanoseconds(1'000'000'000 / 60);
+// twice as often as screens are drawn, so that there is something new for every picture
+constexpr auto kBeat = std::chrono::nanoseconds(1'000'000'000 / 120);
 constexpr auto kRequestTime = 10s;       // for a request, and for its answer
 constexpr auto kSilence = 20s;           // of a viewer, after which it is gone
-constexpr std::size_t kMostFrames = 30;  // half a second
+constexpr std::size_t kMostFrames = 60;  // half a second
 constexpr int kSendBuffer = 256 << 10;   // [bytes] of the operating system
 constexpr std::size_t kMostConnections = 32;
 constexpr std::size_t kLongestMessage = 8 << 10;  // [bytes]
@@ -113,6 +115,12 @@ class Server::Implementation {
     wait_for_beat();
     thread_ = std::thread([this] { context_.run(); });
     return {};
+  }
+
+  /// What there is goes out.
+  void beat();
+  void beat_soon() {
+    net::post(context_, [this] { beat(); });
   }
 
   void send(Topic topic, Message message);
@@ -322,13 +330,17 @@ void Server::Implementation::accept() {
   });
 }
 
+void Server::Implementation::beat() {
+  handlers_.beat();
+  for (const auto& viewer : viewers_) viewer->introduce();
+}
+
 void Server::Implementation::wait_for_beat() {
   next_beat_ = std::max(next_beat_ + kBeat, std::chrono::steady_clock::now());
   timer_.expires_at(next_beat_);
   timer_.async_wait([this](error_code error) {
     if (error) return;
-    handlers_.beat();
-    for (const auto& viewer : viewers_) viewer->introduce();
+    beat();
     wait_for_beat();
   });
 }
@@ -461,6 +473,9 @@ const std::string& Server::token() const {
 }
 const std::string& Server::viewing_token() const {
   return implementation_->viewing_token();
+}
+void Server::beat() {
+  implementation_->beat_soon();
 }
 void Server::send(Topic topic, Message message) {
   implementation_->send(topic, std::move(message));

@@ -26,7 +26,7 @@ class Server {
   struct Handlers {
     std::function<std::optional<std::string>(std::string_view path)> page;  ///< HTML; nothing: not found
     std::function<Result<void>(const Command&)> command;                    ///< from a page that may give it
-    std::function<void()> beat;                                             ///< 60 times a second
+    std::function<void()> beat;                                             ///< 120 times a second
     std::function<void(const std::string&)> log;                            ///< one line about what was refused
   };
 
@@ -43,6 +43,9 @@ class Server {
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] const std::string& token() const;          ///< of the operator
   [[nodiscard]] const std::string& viewing_token() const;  ///< of those who watch
+
+  /// Calls the handler `beat` as soon as it can be, on the server's thread. From any thread.
+  void beat();
 
   /// To every viewer, and to those who come later. From `beat` and the other handlers only.
   void send(Topic topic, Message message);

@@ -42,8 +42,8 @@ struct Error {
 template <class Value>
 using Result = tl::expected<Value, Error>;
 
-/// An Error ready to be returned from a function that returns Result<…>. Whatever it quotes becomes printable, so that
-/// an error is one line.
+/// An Error ready to be returned from a function that returns `Result<…>`. Whatever it quotes becomes printable, so
+/// that an error is one line.
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorKind kind, std::string message, std::string remedy = "",
                                                 std::string where = "") {
   return tl::unexpected<Error>(

@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// Four doubles at a time, for inner loops. A body is written once with these and compiled twice:
 /// for every processor, and with MBK_X86_64_V3 for those that have AVX2 and fused multiply-add (x86-64-v3, 2013 and
 /// later). Which one runs is decided where the program runs. Eight at a time are for MBK_X86_64_V4 (AVX-512).

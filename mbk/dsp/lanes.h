@@ -8,6 +8,7 @@
 #include "mbk/dsp/butterworth.h"
 #include "mbk/dsp/savitzky_golay.h"
 
+/// @file
 /// The inner loops of filter_chain: four signals side by side, sample by sample. For the sources of this module only.
 namespace mbk::dsp {
 

@@ -6,6 +6,7 @@
 
 #include "mbk/dsp/derivative_filter.h"
 
+/// @file
 /// A recursive filter over a long record waits for its own last result. Cut into stretches of equal length that run
 /// side by side it does not, once the state at the beginning of each is known; and that is linear algebra:
 ///   x(begin of the next) = Φᵐ x(begin) + what the input of m samples adds from rest.

@@ -111,7 +111,11 @@ Result<void> Fitter::prepare() {
                      "choose a shorter one; the residual's correlation seldom lasts for a second");
   }
   lags_ = static_cast<Index>(std::llround(options_.hac_lag_s / r_.sample_time));
-  widening_ = numeric::newey_west_widening(static_cast<double>(lags_) / static_cast<double>(samples_));
+  const double coefficients = static_cast<double>(r_.Z.cols());
+  double independent = static_cast<double>(samples_);
+  if (how.cutoff) independent = std::min(independent, 2.0 * how.cutoff->value * data_s);
+  widening_ = numeric::newey_west_widening(static_cast<double>(lags_) / static_cast<double>(samples_)) *
+              numeric::fitted_widening(independent, coefficients);
   return {};
 }
 

@@ -43,7 +43,6 @@ struct TransferFunctionOptions {
                                                      double sample_time = 0.0);
 
 /// @param residuals of each experiment    @param inputs as long as these    @param lags ≥ 1
-/// @param free parameters that the residuals were fitted with
 [[nodiscard]] ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs,
                                            Index lags);
 

@@ -5,7 +5,7 @@
 
 namespace mbk::laboratory {
 
-/// A scenario file that is part of the program: examples/scenarios/<name>.toml as it stood when it was built.
+/// A scenario file that is part of the program: `examples/scenarios/<name>.toml` as it stood when it was built.
 struct ReadyScenario {
   std::string_view name;
   std::string_view text;

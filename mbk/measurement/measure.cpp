@@ -12,7 +12,9 @@
 #include "mbk/analyse/ellipses.h"
 #include "mbk/analyse/energy.h"
 #include "mbk/analyse/force_comparison.h"
+#include "mbk/analyse/joint_domain.h"
 #include "mbk/analyse/passivity.h"
+#include "mbk/analyse/posture.h"
 #include "mbk/identify/consistent_fit.h"
 #include "mbk/preprocess/resample.h"
 #include "mbk/preprocess/signals.h"
@@ -247,6 +249,36 @@ Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::
   return {};
 }
 
+/// The result at the joints of the posture in which it was measured.
+Result<JointDomain> at_joints(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                              const Identification& identification) {
+  constexpr double kSamePosture = 0.01;  // [m]: within it J changes by a few percent
+  const auto posture_of = [&](std::size_t k) {
+    const Preparation& how = trials[k].preparation;
+    return analyse::posture(sources[k].recording(), how.from_s, how.to_s).value_or(ArmPosture{});
+  };
+  const ArmPosture first = posture_of(0);
+  for (std::size_t k = 1; k < sources.size(); ++k) {
+    const ArmPosture other = posture_of(k);
+    double apart = other.of == first.of && other.points.size() == first.points.size()
+                       ? 0.0
+                       : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < std::min(first.points.size(), other.points.size()); ++i) {
+      apart = std::max(apart, (first.points[i] - other.points[i]).norm());
+    }
+    if (!(apart <= kSamePosture)) {
+      return sources[k].in_file({ErrorKind::data,
+                                 fmt::format("the pooled recordings were made in different postures, {:.3g} m apart "
+                                             "(at most {:g} m share one J)",
+                                             apart, kSamePosture),
+                                 "measure them one by one", ""});
+    }
+  }
+  auto found = analyse::analyse_joint_domain(identification, first);
+  if (!found) return sources[0].in_file(found.error());
+  return found;
+}
+
 Result<result::Measured> measure_prepared(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                           const Options& options) {
   auto identified = identify_by_both(trials, options.identify);
@@ -265,6 +297,11 @@ Result<result::Measured> measure_prepared(const std::vector<Source>& sources, co
     measured.bootstrap = std::move(*bootstrap);
   }
   if (auto ok = compare_with_sensor(sources, trials, options, measured); !ok) return tl::unexpected(ok.error());
+  if (options.joint_domain) {
+    auto joints = at_joints(sources, trials, measured.identification);
+    if (!joints) return tl::unexpected(joints.error());
+    measured.joints = std::move(*joints);
+  }
   if (options.passivity) {
     auto passivity = judge_passivity(sources, trials, options, measured);
     if (!passivity) {

@@ -20,11 +20,13 @@ struct Options {
   identify::Options identify;
   std::optional<Hertz> resample;      ///< put the samples on an even clock first
   bool passivity = true;              ///< judge it too
+  bool joint_domain = false;          ///< the result at the joints too
   std::optional<PassivityBand> band;  ///< in which a model is judged; absent: analyse::passivity_band
 };
 
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
-/// @fails as its steps; where a recording has a source, the message names its file.
+/// @fails as its steps; where the joint domain is asked for and pooled recordings were made in different postures;
+/// where a recording has a source, the message names its file.
 [[nodiscard]] Result<result::Measured> measure(std::span<const Recording> recordings, const Options& options);
 
 /// A result, and what shows how good it is.

@@ -179,4 +179,8 @@ double newey_west_widening(double b) {
   return 1.0 + within * (2.9694 + within * (0.4160 - within * 0.5324)) / 1.9600;
 }
 
+double fitted_widening(double independent, double coefficients) {
+  return std::sqrt(1.0 / (1.0 - std::clamp(coefficients / independent, 0.0, 0.5)));
+}
+
 }  // namespace mbk::numeric

@@ -57,4 +57,9 @@ struct LinearFit {
 /// Bartlett).
 [[nodiscard]] double newey_west_widening(double b);
 
+/// How much wider standard errors are than the residuals of a fit make them, which have lost what the coefficients
+/// took: √(n/(n − p)), n independent samples and p coefficients for each output. Samples that passed a low-pass are no
+/// more independent than 2 f_c T of them. Not below 1; where n < 2 p it stays at √2, for so little holds no interval.
+[[nodiscard]] double fitted_widening(double independent, double coefficients);
+
 }  // namespace mbk::numeric

@@ -15,11 +15,11 @@ namespace mbk::recording {
 [[nodiscard]] Result<std::string> encode_mat_level5(const Recording& recording);
 
 /// The same variables as MATLAB keeps them in HDF5, v7.3: dimensions in reverse order, texts as numbers of UTF-16,
-/// cells as references into #refs#, classes as attributes.
+/// cells as references into `#refs#`, classes as attributes.
 /// @fails  as mat_variables does.
 [[nodiscard]] Result<std::string> encode_mat_hdf5(const Recording& recording);
 
-/// /time and /channels/<name>, one-dimensional, with the attributes `unit` and `frame`; /events/time, value and name;
+/// /time and `/channels/<name>`, one-dimensional, with the attributes `unit` and `frame`; /events/time, value and name;
 /// metadata, `format` and `software` as attributes of the root.
 /// @fails  a name that HDF5 cannot hold; metadata called `format`.
 [[nodiscard]] Result<std::string> encode_hdf5(const Recording& recording);

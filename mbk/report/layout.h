@@ -7,6 +7,7 @@
 #include "mbk/trial/prepared_trial.h"
 #include "mbk/trial/warning.h"
 
+/// @file
 /// How tables and paragraphs of a terminal are set. For the sources of this module only.
 namespace mbk::report {
 

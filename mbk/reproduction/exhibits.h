@@ -26,7 +26,10 @@ struct Maker {
 };
 
 // One span for each source file, in the order of the source.
-[[nodiscard]] std::span<const Maker> relaxed_tables();  ///< chapter 3
+[[nodiscard]] std::span<const Maker> relaxed_tables();
+[[nodiscard]] std::span<const Maker> relaxed_figures();
+[[nodiscard]] std::span<const Maker> rigid_tables();
+[[nodiscard]] std::span<const Maker> rigid_figures();
 [[nodiscard]] std::span<const Maker> reconstructed_tables();
 [[nodiscard]] std::span<const Maker> rig_exhibits();             ///< chapters 3 and 5
 [[nodiscard]] std::span<const Maker> virtual_sensor_exhibits();  ///< chapter 5

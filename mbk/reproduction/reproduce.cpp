@@ -11,8 +11,8 @@ namespace {
 
 std::vector<Maker> all_makers() {
   std::vector<Maker> all;
-  for (const auto part :
-       {relaxed_tables(), reconstructed_tables(), rig_exhibits(), virtual_sensor_exhibits(), apparatus_exhibits()}) {
+  for (const auto part : {relaxed_tables(), relaxed_figures(), rigid_tables(), rigid_figures(), reconstructed_tables(),
+                          rig_exhibits(), virtual_sensor_exhibits(), apparatus_exhibits()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -161,11 +161,10 @@ Result<void> add_rig_commands(const Workbench& bench, Exhibit& exhibit) {
   if (!robot) return tl::unexpected(robot.error());
   const auto seed = trial_seed(bench, kSpringRigs, "K5_M5");
   if (!seed) return tl::unexpected(seed.error());
+  const std::string measure = "mbk measure rig_K5_M5.h5 --mode reference --procedure chapter5 --structure mass-spring";
   exhibit.commands = {
       std::move(*robot), fmt::format("mbk simulate {} --trial K5_M5{} --out rig.h5", kSpringRigs, *seed),
-      "mbk measure rig_K5_M5.h5 --mode reference --procedure chapter5 --structure mass-spring --force-source virtual "
-      "--robot robot.json      # method 1",
-      "mbk measure rig_K5_M5.h5 --mode reference --procedure chapter5 --structure mass-spring      # method 2",
+      measure + " --force-source virtual --robot robot.json      # method 1", measure + "      # method 2",
       "mbk validate virtual-sensor --runs 1      # linear fields, by mbk's own procedure"};
   return {};
 }

@@ -1,5 +1,7 @@
 #include "mbk/reproduction/workbench.h"
 
+#include <functional>
+
 #include "mbk/measurement/measure.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/validation/simulated_trials.h"
@@ -47,6 +49,35 @@ Result<TaskResult> perform(Task task, int participant, const Workbench& bench) {
   result.pooled = std::move(*pooled);
   result.first = std::move(recordings.front());
   return result;
+}
+
+Result<OneAxisGrasp> grasp(laboratory::Scenario scenario) {
+  namespace one_dimensional = validation::one_dimensional;
+  std::get<laboratory::RandomBinaryPlan>(scenario.perturbation.kind).sequence.switching_time = kSwitchingTime;
+  auto performance = laboratory::simulate(scenario);
+  if (!performance) return tl::unexpected(performance.error());
+  const auto axis = one_dimensional::axis_of(performance->recording);
+  if (!axis) return tl::unexpected(axis.error());
+  const auto attempt = one_dimensional::attempted(axis->impedance);
+  if (!attempt) return tl::unexpected(attempt.error());
+  return OneAxisGrasp{attempt->vaf, one_dimensional::validation_output(*attempt, axis->impedance),
+                      std::move(performance->recording)};
+}
+
+/// make(i) for i = 0, …, count − 1, several at a time, in their order.
+template <class Value>
+Result<std::vector<Value>> made(std::size_t count, unsigned threads,
+                                const std::function<Result<Value>(std::size_t)>& make) {
+  std::vector<Value> all(count);
+  const auto ran = numeric::parallel_for(static_cast<int>(count), threads, [&](int i) -> Result<void> {
+    const auto at = static_cast<std::size_t>(i);
+    auto value = make(at);
+    if (!value) return tl::unexpected(value.error());
+    all[at] = std::move(*value);
+    return {};
+  });
+  if (!ran) return tl::unexpected(ran.error());
+  return all;
 }
 
 }  // namespace
@@ -107,16 +138,23 @@ std::uint64_t Workbench::seed(int participant, int trial) const {
 Result<const std::vector<TaskResult>*> Workbench::results(Task task) {
   if (const auto found = results_.find(task); found != results_.end()) return &found->second;
   const std::vector<int> people = participants_of(task);
-  std::vector<TaskResult> all(people.size());
-  const auto ran = numeric::parallel_for(static_cast<int>(people.size()), options_.threads, [&](int i) -> Result<void> {
-    const auto at = static_cast<std::size_t>(i);
-    auto result = perform(task, people[at], *this);
-    if (!result) return tl::unexpected(result.error());
-    all[at] = std::move(*result);
-    return {};
+  auto all =
+      made<TaskResult>(people.size(), options_.threads, [&](std::size_t i) { return perform(task, people[i], *this); });
+  if (!all) return tl::unexpected(all.error());
+  return &(results_[task] = std::move(*all));
+}
+
+Result<const std::vector<OneAxisGrasp>*> Workbench::one_axis_grasps() {
+  if (!one_axis_grasps_.empty()) return &one_axis_grasps_;
+  const auto scenarios = validation::ready("one_axis_random_binary");
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  auto all = made<OneAxisGrasp>(scenarios->size(), options_.threads, [&](std::size_t i) {
+    laboratory::Scenario scenario = (*scenarios)[i];
+    scenario.seed = options_.seed + i;
+    return grasp(std::move(scenario));
   });
-  if (!ran) return tl::unexpected(ran.error());
-  return &(results_[task] = std::move(all));
+  if (!all) return tl::unexpected(all.error());
+  return &(one_axis_grasps_ = std::move(*all));
 }
 
 }  // namespace mbk::reproduction

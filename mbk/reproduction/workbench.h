@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "mbk/trial/energy.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/recording.h"
+#include "mbk/validation/one_dimensional_trial.h"
 
 namespace mbk::reproduction {
 
@@ -50,6 +50,16 @@ struct TaskResult {
   Recording first;          ///< of these
   result::Measured pooled;  ///< all of them in one fit, by mbk's own procedure
 };
+
+/// One trial of a rigid grasp along one axis (§4.4.2).
+struct OneAxisGrasp {
+  double vaf = 0.0;  ///< of the last part [%]
+  validation::one_dimensional::ValidationOutput output;
+  Recording recording;
+};
+
+/// Shortest time for which the force along one axis keeps its sign [s]. The source does not give it.
+inline constexpr double kSwitchingTime = 4.0;
 
 struct WorkbenchOptions {
   std::uint64_t seed = 1;
@@ -85,11 +95,16 @@ class Workbench {
     return static_cast<const T*>(kept.get());
   }
 
+  /// The five trials of the ready scenario one_axis_random_binary. They stay where they are.
+  /// @fails  as simulate and one_dimensional::attempted
+  [[nodiscard]] Result<const std::vector<OneAxisGrasp>*> one_axis_grasps();
+
  private:
   Given given_;
   WorkbenchOptions options_;
   std::map<Task, std::vector<TaskResult>> results_;
   std::map<std::type_index, std::shared_ptr<const void>> kept_;
+  std::vector<OneAxisGrasp> one_axis_grasps_;
 };
 
 /// The scenario of a task as a participant does it.

@@ -11,6 +11,7 @@
 #include "mbk/impedance/ellipse.h"
 #include "mbk/impedance/model.h"
 #include "mbk/result/force_comparison_json.h"
+#include "mbk/result/joint_domain_json.h"
 #include "mbk/result/json_parts.h"
 #include "mbk/result/json_reading.h"
 #include "mbk/result/passivity_json.h"
@@ -190,6 +191,7 @@ Json result_json(const Measured& measured) {
     json["ellipses"] = ellipses_json(*measured.findings);
     json["antisymmetry"] = antisymmetry_json(*measured.findings);
   }
+  if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));

@@ -14,6 +14,7 @@
 #include "mbk/trial/force_comparison.h"
 #include "mbk/trial/identification.h"
 #include "mbk/trial/inspection.h"
+#include "mbk/trial/joint_domain.h"
 #include "mbk/trial/passivity.h"
 #include "mbk/trial/recording.h"
 #include "mbk/trial/summary.h"
@@ -31,6 +32,7 @@ struct Measured {
   std::optional<BootstrapFindings> bootstrap;  ///< where it was asked for
   std::optional<ConsistentFit> consistent;     ///< nearest to the model that speaks for the limb
   std::optional<Passivity> passivity;
+  std::optional<JointDomain> joints;  ///< where it was asked for
   /// Where the force was computed and a sensor recorded it too: how both agree, and the model by the sensor.
   std::optional<ForceComparison> force_comparison;
   std::optional<Identification> by_sensor;

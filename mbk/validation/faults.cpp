@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -16,6 +15,7 @@
 #include "mbk/session/session.h"
 #include "mbk/validation/fault_kinds.h"
 #include "mbk/validation/study.h"
+#include "mbk/validation/temporary_folder.h"
 
 namespace mbk::validation {
 namespace {
@@ -34,29 +34,6 @@ constexpr double kForceTolerance = 0.05;
 constexpr double kAway = 0.015;
 
 constexpr std::array kTrialKinds = {TrialKind::position, TrialKind::force};
-
-/// A folder that goes when it does.
-class TemporaryFolder {
- public:
-  static Result<TemporaryFolder> create() {
-    std::string name = (fs::temp_directory_path() / "mbk-faults-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) return bad_data("no temporary folder", "set TMPDIR to one that exists", name);
-    return TemporaryFolder(name);
-  }
-  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  explicit TemporaryFolder(fs::path path) : path_(std::move(path)) {}
-  fs::path path_;
-};
 
 /// What became of one run.
 struct Outcome {
@@ -194,7 +171,7 @@ ValidationRow row_of(std::string what, double value, std::pair<double, double> w
 
 Result<ValidationTable> faults_study(const StudyOptions& options) {
   if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 20");
-  const auto folder = TemporaryFolder::create();
+  const auto folder = TemporaryFolder::create("mbk-faults");
   if (!folder) return tl::unexpected(folder.error());
   const auto ready = ready_trials();
   if (!ready) return tl::unexpected(ready.error());

@@ -7,12 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "mbk/dsp/decimate.h"
-#include "mbk/dsp/difference_equation.h"
-#include "mbk/identify/prediction_error.h"
 #include "mbk/identify/srivc.h"
 #include "mbk/numeric/parallel.h"
 #include "mbk/numeric/statistics.h"
+#include "mbk/validation/one_dimensional_trial.h"
 #include "mbk/validation/simulated_trials.h"
 #include "mbk/validation/study.h"
 
@@ -21,6 +19,10 @@ namespace {
 
 using laboratory::PlanarTrial;
 using laboratory::Scenario;
+using one_dimensional::Attempt;
+using one_dimensional::kPoles;
+using one_dimensional::kRate;
+using one_dimensional::kZeros;
 
 /// What of the participant is there.
 struct Condition {
@@ -43,99 +45,29 @@ constexpr double kHolds = 90.0;
 /// How many times as much as for the arm without its controller has to be left unexplained.
 constexpr double kContrast = 3.0;
 
-constexpr Index kPoles = 4, kZeros = 3;
-constexpr double kFrom = 12.0, kIdentify = 40.0, kValidate = 10.0;  // [s]
-constexpr double kRate = 50.0;                                      // [Hz] of the models
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// One axis of a trial, at the rate of the models.
-struct Axis {
-  SignalPair impedance;   ///< hand's place to the force on the robot
-  SignalPair admittance;  ///< commanded force to the hand's place
-};
-
-/// What was identified on the first part of a trial.
-struct Attempt {
-  Vector f, b;
-  bool holds = false;  ///< settled and stable
-  double vaf = -kNone;
-};
-
 struct Outcome {
-  Axis axis;
+  one_dimensional::Axis axis;
   Attempt impedance, admittance;  ///< the second only where it is reported
   bool continuous = false;        ///< whether a stable continuous-time model was found for the impedance; likewise
 };
 
-SignalPair first_part(const SignalPair& whole) {
-  SignalPair part = whole;
-  const auto count = static_cast<Index>(kIdentify * kRate);
-  part.time = whole.time.head(count);
-  part.input = whole.input.head(count);
-  part.output = whole.output.head(count);
-  return part;
-}
-
-/// y − x̂ over a whole trial; its initial state and its offset are the best ones.
-Vector simulation_error(const Attempt& attempt, const SignalPair& whole) {
-  Vector F(attempt.f.size() + 1);
-  F << 1.0, attempt.f;
-  return identify::without_discrete_free_motion(attempt.f,
-                                                whole.output - dsp::difference_equation(attempt.b, F, whole.input));
-}
-
-/// Of the last part [%].
-double validation_vaf(const Attempt& attempt, const SignalPair& whole) {
-  const auto count = static_cast<Index>(kValidate * kRate);
-  return numeric::variance_accounted_for(whole.output.tail(count), simulation_error(attempt, whole).tail(count));
-}
-
-Result<Attempt> attempted(const SignalPair& whole) {
-  identify::PredictionErrorOptions options;
-  options.poles = kPoles;
-  options.zeros = kZeros;
-  options.threads = 1;
-  options.most_iterations = 100;
-  auto fit = identify::fit_prediction_error({first_part(whole)}, options);
-  if (!fit) return tl::unexpected(fit.error());
-  Attempt attempt{std::move(fit->f), std::move(fit->b), fit->converged, 0.0};
-  attempt.vaf = validation_vaf(attempt, whole);
-  return attempt;
-}
-
-Result<Axis> axis_of(const Recording& recording) {
-  const double step = recording.time[1] - recording.time[0];
-  const auto begin = static_cast<Index>(kFrom / step), count = static_cast<Index>((kIdentify + kValidate) / step);
-  Matrix signals(count, 3);
-  signals << recording.find("hand_y")->values.segment(begin, count),
-      recording.find("force_y")->values.segment(begin, count),
-      recording.find("reference_y")->values.segment(begin, count);
-  const Hertz rate(1.0 / step);
-  const auto thin = dsp::decimate(signals, rate, static_cast<Index>(std::llround(rate.value / kRate)));
-  if (!thin) return tl::unexpected(thin.error());
-  const Index n = thin->rows();
-  const Vector time = Vector::LinSpaced(n, 0.0, static_cast<double>(n - 1)) / kRate;
-  const auto pair = [&](Index input, Index output) {
-    return SignalPair{.time = time, .input = thin->col(input), .output = thin->col(output), .step = 1.0 / kRate};
-  };
-  return Axis{pair(0, 1), pair(2, 0)};
-}
-
 Result<Outcome> perform(const Scenario& scenario, bool reported) {
   const auto performance = laboratory::simulate(scenario);
   if (!performance) return tl::unexpected(performance.error());
-  auto axis = axis_of(performance->recording);
+  auto axis = one_dimensional::axis_of(performance->recording);
   if (!axis) return tl::unexpected(axis.error());
-  auto impedance = attempted(axis->impedance);
+  auto impedance = one_dimensional::attempted(axis->impedance);
   if (!impedance) return tl::unexpected(impedance.error());
   if (!reported) return Outcome{std::move(*axis), std::move(*impedance), {}};
-  auto admittance = attempted(axis->admittance);
+  auto admittance = one_dimensional::attempted(axis->admittance);
   if (!admittance) return tl::unexpected(admittance.error());
   identify::ContinuousFitOptions options;
   options.poles = kPoles;
   options.zeros = kZeros;
   options.threads = 1;
-  const auto continuous = identify::fit_continuous({first_part(axis->impedance)}, options);
+  const auto continuous = identify::fit_continuous({one_dimensional::first_part(axis->impedance)}, options);
   if (!continuous) return tl::unexpected(continuous.error());
   return Outcome{std::move(*axis), std::move(*impedance), std::move(*admittance), continuous->converged};
 }
@@ -198,7 +130,7 @@ double median_across(Outcomes outcomes) {
     for (const Outcome& model : run) {
       for (const Outcome& trial : run) {
         if (&model == &trial) continue;
-        values.push_back(validation_vaf(model.impedance, trial.axis.impedance));
+        values.push_back(one_dimensional::validation_vaf(model.impedance, trial.axis.impedance));
       }
     }
   }
@@ -207,22 +139,17 @@ double median_across(Outcomes outcomes) {
 
 /// Fig. 4.7 in form.
 Chart force_chart(const Condition& condition, const Outcome& outcome) {
-  const SignalPair& whole = outcome.axis.impedance;
-  const auto count = static_cast<Index>(kValidate * kRate);
-  const Vector measured = whole.output.tail(count);
-  const Vector modelled = measured - simulation_error(outcome.impedance, whole).tail(count);
+  const auto output = one_dimensional::validation_output(outcome.impedance, outcome.axis.impedance);
   Chart chart;
   chart.title = fmt::format("{}: the last 10 s of a trial, which the model has not seen", condition.name);
   chart.x = {"time in the trial", "s"};
   chart.y = {"force of the hand on the robot", "N"};
-  for (const auto* signal : {&measured, &modelled}) {
+  for (const auto* signal : {&output.measured, &output.modelled}) {
     ChartSeries line;
-    line.name = signal == &measured ? "measured" : "model, from the measured motion";
+    line.name = signal == &output.measured ? "measured" : "model, from the measured motion";
     line.drawn = ChartSeries::Drawn::line;
-    for (Index i = 0; i < count; ++i) {
-      line.x.push_back(kIdentify + static_cast<double>(i) / kRate);
-      line.y.push_back((*signal)[i]);
-    }
+    line.x.assign(output.time.begin(), output.time.end());
+    line.y.assign(signal->begin(), signal->end());
     chart.series.push_back(std::move(line));
   }
   chart.notes = {

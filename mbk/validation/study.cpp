@@ -12,6 +12,8 @@ std::span<const Study> studies() {
       Study{"recovery", "bias, spread and coverage for a relaxed arm in the closed loop", 20, recovery_study},
       Study{"closed-loop", "least squares, instrumental variables and energy of an arm that acts back", 20,
             closed_loop_study},
+      Study{"live-estimate", "how often the 95 % intervals hold the truth while the trial still runs", 200,
+            live_estimate_study},
       Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", 3, springs_study},
       Study{"robot", "dynamics of the robot, from its free motion", 50, robot_study},
       Study{"virtual-sensor", "force, stiffness and mass without a force sensor", 4, virtual_sensor_study},

@@ -10,7 +10,7 @@ from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, mak
                      write_csv)
 
 COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
-            "completion", "manual", "passivity", "teleop")
+            "completion", "manual", "passivity", "teleop", "width")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
                "robot": ("workspace", "describe", "identify", "force", "check")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
@@ -35,7 +35,8 @@ NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
 WORDS = {"--mode": "default|reference", "--procedure": "chapter3|chapter5",
          "--protocol": "auto|sinusoidal|underdamped|free", "--method": "ls|iv", "--extension": "odd|even|constant",
          "--acceleration": "sensor|derivative", "--structure": "full|symmetric|mass-spring",
-         "--parameters-from": "identification|all", "--force-source": "sensor|virtual|observer"}
+         "--parameters-from": "identification|all", "--force-source": "sensor|virtual|observer",
+         "--domain": "hand|joint"}
 
 
 class Values(Case):
@@ -119,7 +120,8 @@ class Commands(Case):
         for command in COMMANDS:
             if command in SUBCOMMANDS:
                 continue  # their commands have tests of their own
-            arguments = {"validate": [], "completion": ["bash"]}.get(command, [make_log().path])
+            arguments = {"validate": [], "completion": ["bash"],
+                         "width": [make_log().path] * 2}.get(command, [make_log().path])
             self.refused(WRONG_USAGE, command, *arguments, "--cutof=5", says=["--cutof", f"mbk {command} --help"])
 
     def test_unknown_commands_are_named(self):
@@ -149,7 +151,8 @@ class Effects(Case):
         elsewhere = {"--help", "--channels", "--variable", "--parts", "--json", "--out", "--overwrite", "--quiet",
                      "--pool", "--decimate-check", "--report", "--report-note",
                      "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay",  # sensor_test.py
-                     "--robot"}  # robot_force_test.py
+                     "--robot",  # robot_force_test.py
+                     "--arm"}  # joint_domain_test.py
         self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
 
     def test_mode_and_procedure(self):

@@ -56,6 +56,8 @@ class Installed(unittest.TestCase):
                 numbers = [float(one) for one in said[matrix].split()]
                 # The same code on the same bytes, each printed with every digit.
                 self.assertEqual(numbers, [one for row in wanted[matrix] for one in row], (name, matrix))
+        for name in ("filter_a_signal", "judge_a_model", "simulate_a_participant"):  # what they say: tests/examples
+            self.assertTrue(ran(self.folder / "example" / name))
 
     def test_a_driver_is_built_from_its_example(self):
         example = self.prefix / "share/doc/mbk/examples/device_plugin"
@@ -122,8 +124,9 @@ class Installed(unittest.TestCase):
         for name in ("man/man1/mbk.1", "man/man1/mbk-springs-field.1", "bash-completion/completions/mbk",
                      "zsh/site-functions/_mbk", "fish/vendor_completions.d/mbk.fish", "doc/mbk/LICENSE",
                      "doc/mbk/THIRD_PARTY_NOTICES.md", "doc/mbk/copyright", "doc/mbk/docs/guide/install.md",
-                     "doc/mbk/examples/scenarios/relaxed_sinusoidal.toml"):
+                     "doc/mbk/examples/scenarios/relaxed_sinusoidal.toml", "doc/mbk/examples/01_measure/run.sh"):
             self.assertTrue((share / name).is_file(), name)
+        self.assertFalse((share / "doc/mbk/docs/site").exists())  # what builds the site, of no use without the tree
         mbk = self.prefix / "bin/mbk"
         self.assertEqual((share / "man/man1/mbk-measure.1").read_text(), ran(mbk, "manual", "measure"))
         self.assertEqual((share / "bash-completion/completions/mbk").read_text(), ran(mbk, "completion", "bash"))

@@ -1,5 +1,4 @@
 // The operator's page: what happens, whether it is safe, and what to do next.
-import uplotLicence from "uplot/LICENSE?raw";
 import { h } from "../../report/src/dom";
 import { EstimatePanel } from "./estimate";
 import { histogram } from "./histogram";
@@ -83,10 +82,10 @@ class OperatorPage {
           h("section", { class: "signals", "aria-label": "Live signals" }, this.traces.element,
             h("section", { class: "machine", "aria-label": "Timing of the loop" }, this.histograms, this.facts)),
           this.estimate.element),
-        h("footer", {}, this.links,
-          h("details", { class: "licences" }, h("summary", {}, "Software inside this page, and its licence"),
-            h("p", {}, "The traces are drawn with uPlot."), h("pre", { tabindex: 0, role: "group", "aria-label": "uPlot: licence" }, uplotLicence)))));
-    this.stop.addEventListener("click", () => this.pressStop());
+        h("footer", {}, this.links)));
+    // when it goes down, not when it is let go; a click without a pointer is that of a keyboard or a reading aid
+    this.stop.addEventListener("pointerdown", ({ button }) => button === 0 && this.pressStop());
+    this.stop.addEventListener("click", ({ detail }) => detail === 0 && this.pressStop());
     addEventListener("keydown", (event) => this.key(event), { capture: true });
     addEventListener("keyup", (event) => {
       if (event.code === "Space" && event.target !== this.note) event.preventDefault();

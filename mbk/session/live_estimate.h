@@ -13,7 +13,7 @@
 #include "mbk/measurement/measure.h"
 #include "mbk/result/json.h"
 
-namespace mbk::console {
+namespace mbk::session {
 
 /// What `mbk measure` makes of the perturbation in a journal, as far as it has come.
 /// @fails  data: nothing was perturbed yet; as journal::to_recording and measurement::measure.
@@ -58,4 +58,4 @@ class LiveEstimate {
   std::thread thread_;
 };
 
-}  // namespace mbk::console
+}  // namespace mbk::session

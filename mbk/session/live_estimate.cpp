@@ -1,4 +1,4 @@
-#include "mbk/console/live_estimate.h"
+#include "mbk/session/live_estimate.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -11,7 +11,7 @@
 #include "mbk/preprocess/perturbation_only.h"
 #include "mbk/trial/recording.h"
 
-namespace mbk::console {
+namespace mbk::session {
 namespace {
 
 constexpr auto kInterval = std::chrono::seconds(1);
@@ -114,4 +114,4 @@ void LiveEstimate::run() {
   finished_.notify_all();
 }
 
-}  // namespace mbk::console
+}  // namespace mbk::session

@@ -1,0 +1,33 @@
+"""Sphinx's part of the site; docs/site/pages.py makes what it reads. Nothing may come from the network."""
+
+import os
+
+project = "mbk"
+author = "the authors of mbk"
+project_copyright = "the authors of mbk, BSD 3-Clause"
+version = release = os.environ["MBK_VERSION"]
+
+extensions = ["myst_parser"]
+myst_enable_extensions = ["deflist"]
+myst_heading_anchors = 4
+suppress_warnings = ["myst.header"]  # the documents go from # to ### where that reads better
+exclude_patterns = []
+
+html_theme = "furo"
+html_title = f"mbk {release}"
+html_static_path = [os.environ["MBK_SITE_STATIC"]]
+html_css_files = ["katex/katex.min.css", "site.css"]
+html_show_sourcelink = False
+html_copy_source = False
+html_theme_options = {
+    "light_css_variables": {
+        "color-brand-primary": "#0f5c8c",
+        "color-brand-content": "#0f5c8c",
+        "font-stack": "system-ui, 'Segoe UI', 'DejaVu Sans', 'Noto Sans', sans-serif",
+        "font-stack--monospace": "ui-monospace, 'DejaVu Sans Mono', 'Noto Sans Mono', monospace",
+    },
+    "dark_css_variables": {"color-brand-primary": "#7cc4ee", "color-brand-content": "#7cc4ee"},
+    "footer_icons": [],
+}
+pygments_style = "friendly"
+highlight_language = "text"
