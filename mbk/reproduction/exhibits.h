@@ -31,6 +31,9 @@ struct Maker {
 [[nodiscard]] std::span<const Maker> rigid_tables();
 [[nodiscard]] std::span<const Maker> rigid_figures();
 [[nodiscard]] std::span<const Maker> reconstructed_tables();
+[[nodiscard]] std::span<const Maker> rig_exhibits();             ///< chapters 3 and 5
+[[nodiscard]] std::span<const Maker> virtual_sensor_exhibits();  ///< chapter 5
+[[nodiscard]] std::span<const Maker> apparatus_exhibits();       ///< appendices A and E
 [[nodiscard]] std::span<const Maker> statements();
 [[nodiscard]] std::span<const Maker> slips();
 [[nodiscard]] std::span<const Maker> questions();

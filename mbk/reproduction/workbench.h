@@ -2,6 +2,10 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <typeindex>
+#include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "mbk/core/result.h"
@@ -78,6 +82,19 @@ class Workbench {
   /// @fails  as simulate and measure
   [[nodiscard]] Result<const std::vector<TaskResult>*> results(Task task);
 
+  /// What `make` gives, made when a T is first asked for. It stays where it is.
+  /// @fails  as `make`
+  template <class T>
+  [[nodiscard]] Result<const T*> once(Result<T> (*make)(Workbench&)) {
+    std::shared_ptr<const void>& kept = kept_[typeid(T)];
+    if (kept == nullptr) {
+      auto made = make(*this);
+      if (!made) return tl::unexpected(made.error());
+      kept = std::make_shared<const T>(std::move(*made));
+    }
+    return static_cast<const T*>(kept.get());
+  }
+
   /// The five trials of the ready scenario one_axis_random_binary. They stay where they are.
   /// @fails  as simulate and one_dimensional::attempted
   [[nodiscard]] Result<const std::vector<OneAxisGrasp>*> one_axis_grasps();
@@ -86,6 +103,7 @@ class Workbench {
   Given given_;
   WorkbenchOptions options_;
   std::map<Task, std::vector<TaskResult>> results_;
+  std::map<std::type_index, std::shared_ptr<const void>> kept_;
   std::vector<OneAxisGrasp> one_axis_grasps_;
 };
 

@@ -5,156 +5,23 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "mbk/numeric/parallel.h"
 #include "mbk/numeric/statistics.h"
-#include "mbk/preprocess/prepare.h"
-#include "mbk/recording/inspection.h"
 #include "mbk/validation/robot_trials.h"
 #include "mbk/validation/simulated_trials.h"
 #include "mbk/validation/study.h"
+#include "mbk/validation/virtual_sensor_trials.h"
 
 namespace mbk::validation {
 namespace {
 
-using RobotModel = std::shared_ptr<const robot::DynamicModel>;
-
-/// Where the force of a measurement comes from: method 2 of the source, its method 1 with three models of the robot's
-/// friction, and the momentum observer, which is causal.
-enum Force { sensor, virtual_sensor, no_coulomb, no_friction, observer };
-constexpr int kForces = 5;
-
-constexpr std::array<const char*, kForces> kNames = {"sensor", "virtual sensor", "virtual sensor without Coulomb",
-                                                     "virtual sensor without friction", "momentum observer"};
-
-/// One robot, as three models of its friction found it.
-struct Robots {
-  std::array<RobotModel, 3> models;  ///< by FrictionModel
-
-  [[nodiscard]] RobotModel behind(Force force) const {
-    const FrictionModel friction = force == no_coulomb    ? FrictionModel::viscous
-                                   : force == no_friction ? FrictionModel::none
-                                                          : FrictionModel::full;
-    return models[static_cast<std::size_t>(friction)];
-  }
-};
-
-/// What one force made of one trial.
-struct Outcome {
-  impedance::Model model, standard_error;
-  Vector vaf;            ///< of the model, held back [%]
-  Eigen::Vector2d rmse;  ///< of the force against what acted, behind the same filters [N]
-};
-
-/// A trial of one rig, measured with every force.
-struct RigTrial {
-  std::string stiffness, mass;  ///< "K5", "M3"
-  impedance::Model truth;
-  std::array<Outcome, kForces> by;
-};
-
-using Trials = std::vector<RigTrial>;
-
-Result<Robots> identify_robots(std::uint64_t seed, const std::optional<robot::Capstan>& capstan) {
-  const auto recording = free_motion(seed, capstan);
-  if (!recording) return tl::unexpected(recording.error());
-  Robots robots;
-  for (const FrictionModel friction : {FrictionModel::full, FrictionModel::viscous, FrictionModel::none}) {
-    auto found = identified_robot(*recording, friction);
-    if (!found) return tl::unexpected(found.error());
-    robots.models[static_cast<std::size_t>(friction)] = std::make_shared<robot::DynamicModel>(std::move(found->model));
-  }
-  return robots;
-}
-
-/// The recording with another force.
-Recording with_force(Recording recording, const Matrix& force) {
-  for (Channel& channel : recording.channels) {
-    if (channel.name == "force_x") channel.values = force.col(0);
-    if (channel.name == "force_y") channel.values = force.col(1);
-  }
-  return recording;
-}
-
-Result<PreparedTrial> prepared(const Recording& recording, const preprocess::Options& options) {
-  const Inspection inspection = recording::inspect(recording);
-  if (options.force_source == ForceSource::sensor) return preprocess::prepare(recording, inspection, options);
-  const auto computed = preprocess::virtual_force(recording, inspection, *options.robot, options);
-  if (!computed) return tl::unexpected(computed.error());
-  return preprocess::prepare(computed->recording, recording::inspect(computed->recording), options, &*computed);
-}
-
-/// RMSE of each axis over the rows that count.
-Result<Eigen::Vector2d> force_rmse(const PreparedTrial& trial, const PreparedTrial& truth) {
-  Eigen::Vector2d squares(0.0, 0.0);
-  Index rows = 0;
-  for (const Stretch& stretch : truth.stretches) {
-    const Index begin = stretch.begin, size = std::min(stretch.size(), trial.force_hand_on_robot.rows() - begin);
-    if (size < stretch.size() || trial.time[begin] != truth.time[begin]) {
-      return bad_data("two forces of one recording were prepared differently");
-    }
-    squares += (trial.force_hand_on_robot - truth.force_hand_on_robot)
-                   .middleRows(begin, size)
-                   .colwise()
-                   .squaredNorm()
-                   .transpose();
-    rows += size;
-  }
-  return Eigen::Vector2d((squares / static_cast<double>(rows)).cwiseSqrt());
-}
-
-Result<Outcome> measured(const Recording& recording, Force force, const Robots& robots, const PreparedTrial& truth) {
-  measurement::Options options = mass_and_springs();
-  options.passivity = false;
-  preprocess::Options& signals = options.preprocess;
-  signals.cutoff = truth.preparation.cutoff;
-  signals.every = truth.preparation.every;
-  if (force != sensor) {
-    signals.force_source = force == observer ? ForceSource::observer : ForceSource::virtual_sensor;
-    signals.robot = robots.behind(force);
-  }
-  const auto trial = prepared(recording, signals);
-  if (!trial) return tl::unexpected(trial.error());
-  const auto rmse = force_rmse(*trial, truth);
-  if (!rmse) return tl::unexpected(rmse.error());
-  const auto found = measurement::measure({&recording, 1}, options);
-  if (!found) return tl::unexpected(found.error());
-  const Identification& identification = found->identification;
-  return Outcome{identification.model, identification.standard_error, identification.fit.vaf, *rmse};
-}
-
-Result<RigTrial> perform(laboratory::Scenario scenario, const Robots& robots) {
-  measure_currents(scenario);
-  std::vector<Eigen::Vector2d> force;
-  laboratory::SimulateOptions watching;
-  watching.watch = [&](const laboratory::TrueState& state) { force.push_back(state.force_hand_on_robot); };
-  const auto performance = laboratory::simulate(scenario, watching);
-  if (!performance) return tl::unexpected(performance.error());
-  const Recording& recording = performance->recording;
-  Matrix acted(static_cast<Index>(force.size()), 2);
-  for (std::size_t k = 0; k < force.size(); ++k) acted.row(static_cast<Index>(k)) = force[k].transpose();
-  const auto truth = prepared(with_force(recording, acted), mass_and_springs().preprocess);
-  if (!truth) return tl::unexpected(truth.error());
-
-  RigTrial trial;
-  std::tie(trial.stiffness, trial.mass) = rig_names(scenario.trial_name);
-  trial.truth = performance->truth;
-  for (int force_of = 0; force_of < kForces; ++force_of) {
-    auto outcome = measured(recording, static_cast<Force>(force_of), robots, *truth);
-    if (!outcome) return tl::unexpected(outcome.error().in(scenario.trial_name));
-    trial.by[static_cast<std::size_t>(force_of)] = std::move(*outcome);
-  }
-  return trial;
-}
-
-// --- the table
-// --------------------------------------------------------------------------------------------------------
+using enum Force;
+using Trials = std::vector<ForceTrial>;
 
 /// Elements of the parameters that table 5.4 has.
 enum Element { k_xx, k_yy, k_s, mass };
@@ -196,63 +63,59 @@ double allowed_error(const std::string& name, Element element) {
   return std::max(0.25 * std::abs(printed_error(name, element)), element == mass ? kMassError : kStiffness);
 }
 
-Vector values_of(const Trials& trials, const std::function<bool(const RigTrial&)>& belongs,
-                 const std::function<double(const RigTrial&)>& value) {
+Vector values_of(const Trials& trials, const std::function<bool(const ForceTrial&)>& belongs,
+                 const std::function<double(const ForceTrial&)>& value) {
   std::vector<double> values;
-  for (const RigTrial& trial : trials) {
+  for (const ForceTrial& trial : trials) {
     if (belongs(trial)) values.push_back(value(trial));
   }
   return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
 }
 
-bool any(const RigTrial& /*trial*/) {
+bool any(const ForceTrial& /*trial*/) {
   return true;
-}
-
-const Outcome& outcome(const RigTrial& trial, Force force) {
-  return trial.by[static_cast<std::size_t>(force)];
 }
 
 /// Calls for each element of each stiffness and for each mass: "K1", k_xx, the trials that have it.
 void for_each_parameter(
-    const std::function<void(const std::string&, Element, const std::function<bool(const RigTrial&)>&)>& call) {
+    const std::function<void(const std::string&, Element, const std::function<bool(const ForceTrial&)>&)>& call) {
   for (int k = 1; k <= 5; ++k) {
     const std::string name = fmt::format("K{}", k);
     for (const Element element : {k_xx, k_yy, k_s}) {
-      call(name, element, [name](const RigTrial& trial) { return trial.stiffness == name; });
+      call(name, element, [name](const ForceTrial& trial) { return trial.stiffness == name; });
     }
   }
   for (int m = 1; m <= 5; ++m) {
     const std::string name = fmt::format("M{}", m);
-    call(name, mass, [name](const RigTrial& trial) { return trial.mass == name; });
+    call(name, mass, [name](const ForceTrial& trial) { return trial.mass == name; });
   }
 }
 
 void add_force_rmse(const Trials& trials, ValidationTable& table) {
   constexpr double kRmse = 0.05;  // [N]
-  for (int force = 0; force < kForces; ++force) {
+  for (int at = 0; at < kForces; ++at) {
+    const auto force = static_cast<Force>(at);
     for (Index axis = 0; axis < 2; ++axis) {
-      const Vector rmse = values_of(
-          trials, any, [&](const RigTrial& trial) { return outcome(trial, static_cast<Force>(force)).rmse[axis]; });
-      table.rows.push_back(at_most_row(
-          fmt::format("{}: largest RMSE of F{}", kNames[static_cast<std::size_t>(force)], axis == 0 ? "x" : "y"),
-          rmse.maxCoeff(), force == virtual_sensor ? std::optional(kRmse) : std::nullopt, "N"));
+      const Vector rmse = values_of(trials, any, [&](const ForceTrial& trial) { return trial.of(force).rmse[axis]; });
+      table.rows.push_back(at_most_row(fmt::format("{}: largest RMSE of F{}", text(force), axis == 0 ? "x" : "y"),
+                                       rmse.maxCoeff(), force == virtual_sensor ? std::optional(kRmse) : std::nullopt,
+                                       "N"));
     }
   }
 }
 
 void add_errors(const Trials& trials, Force force, bool judged, ValidationTable& table) {
   for_each_parameter([&](const std::string& name, Element element, const auto& belongs) {
-    const Vector error = values_of(trials, belongs, [&](const RigTrial& trial) {
-      return element_of(outcome(trial, force).model, element) - element_of(trial.truth, element);
+    const Vector error = values_of(trials, belongs, [&](const ForceTrial& trial) {
+      return element_of(trial.of(force).model, element) - element_of(trial.truth, element);
     });
     const std::string what =
-        fmt::format("{}: {} {}", kNames[force], name, kElementNames[static_cast<std::size_t>(element)]);
+        fmt::format("{}: {} {}", text(force), name, kElementNames[static_cast<std::size_t>(element)]);
     ValidationRow row = judged ? bias_row(what, error, allowed_error(name, element), unit_of(element))
                                : reported_row(what, error, unit_of(element));
     if (force == sensor || force == virtual_sensor) {
-      row.coverage = values_of(trials, belongs, [&](const RigTrial& trial) {
-                       const Outcome& found = outcome(trial, force);
+      row.coverage = values_of(trials, belongs, [&](const ForceTrial& trial) {
+                       const Outcome& found = trial.of(force);
                        return std::abs(element_of(found.model, element) - element_of(trial.truth, element)) <=
                                       numeric::kNormal95 * element_of(found.standard_error, element)
                                   ? 1.0
@@ -266,20 +129,19 @@ void add_errors(const Trials& trials, Force force, bool judged, ValidationTable&
 /// Mean errors over all rigs, for what need not be seen one by one.
 void add_mean_errors(const Trials& trials, Force force, const char* prefix, ValidationTable& table) {
   for (const Element element : {k_xx, k_yy, k_s, mass}) {
-    const Vector error = values_of(trials, any, [&](const RigTrial& trial) {
-      return element_of(outcome(trial, force).model, element) - element_of(trial.truth, element);
+    const Vector error = values_of(trials, any, [&](const ForceTrial& trial) {
+      return element_of(trial.of(force).model, element) - element_of(trial.truth, element);
     });
     table.rows.push_back(reported_row(
-        fmt::format("{}{}: mean error of {}", prefix, kNames[force], kElementNames[static_cast<std::size_t>(element)]),
+        fmt::format("{}{}: mean error of {}", prefix, text(force), kElementNames[static_cast<std::size_t>(element)]),
         error, unit_of(element)));
   }
 }
 
 void add_differences(const Trials& trials, ValidationTable& table) {
   for_each_parameter([&](const std::string& name, Element element, const auto& belongs) {
-    const Vector difference = values_of(trials, belongs, [&](const RigTrial& trial) {
-      return element_of(outcome(trial, virtual_sensor).model, element) -
-             element_of(outcome(trial, sensor).model, element);
+    const Vector difference = values_of(trials, belongs, [&](const ForceTrial& trial) {
+      return element_of(trial.of(virtual_sensor).model, element) - element_of(trial.of(sensor).model, element);
     });
     table.rows.push_back(reported_row(
         fmt::format("virtual sensor − sensor: {} {}", name, kElementNames[static_cast<std::size_t>(element)]),
@@ -293,10 +155,10 @@ void add_vaf(const Trials& trials, ValidationTable& table) {
       for (Index axis = 0; axis < 2; ++axis) {
         const Vector vaf = values_of(
             trials,
-            [&](const RigTrial& trial) {
+            [&](const ForceTrial& trial) {
               return trial.stiffness == fmt::format("K{}", k) && trial.mass == fmt::format("M{}", m);
             },
-            [&](const RigTrial& trial) { return outcome(trial, virtual_sensor).vaf[axis]; });
+            [&](const ForceTrial& trial) { return trial.of(virtual_sensor).vaf[axis]; });
         table.rows.push_back(
             reported_row(fmt::format("virtual sensor: K{} M{} VAF {}", k, m, axis == 0 ? "x" : "y"), vaf, "%"));
       }
@@ -307,10 +169,9 @@ void add_vaf(const Trials& trials, ValidationTable& table) {
 void add_elastic_drives(const Trials& trials, ValidationTable& table) {
   for (const Force force : {sensor, virtual_sensor}) {
     for (Index axis = 0; axis < 2; ++axis) {
-      const Vector rmse =
-          values_of(trials, any, [&](const RigTrial& trial) { return outcome(trial, force).rmse[axis]; });
+      const Vector rmse = values_of(trials, any, [&](const ForceTrial& trial) { return trial.of(force).rmse[axis]; });
       table.rows.push_back(
-          at_most_row(fmt::format("elastic drives, {}: largest RMSE of F{}", kNames[force], axis == 0 ? "x" : "y"),
+          at_most_row(fmt::format("elastic drives, {}: largest RMSE of F{}", text(force), axis == 0 ? "x" : "y"),
                       rmse.maxCoeff(), {}, "N"));
     }
     add_mean_errors(trials, force, "elastic drives, ", table);
@@ -319,13 +180,13 @@ void add_elastic_drives(const Trials& trials, ValidationTable& table) {
 
 ChartSeries series_of(const Trials& trials, Force force, bool masses) {
   ChartSeries marks;
-  marks.name = kNames[force];
+  marks.name = text(force);
   for_each_parameter([&](const std::string& /*name*/, Element element, const auto& belongs) {
     if ((element == mass) != masses) return;
     marks.x.push_back(
-        values_of(trials, belongs, [&](const RigTrial& trial) { return element_of(trial.truth, element); }).mean());
-    marks.y.push_back(values_of(trials, belongs, [&](const RigTrial& trial) {
-                        return element_of(outcome(trial, force).model, element);
+        values_of(trials, belongs, [&](const ForceTrial& trial) { return element_of(trial.truth, element); }).mean());
+    marks.y.push_back(values_of(trials, belongs, [&](const ForceTrial& trial) {
+                        return element_of(trial.of(force).model, element);
                       }).mean());
   });
   return marks;
@@ -347,6 +208,7 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
         if (elastic && rig_names(scenario.trial_name).second != "M3") continue;
         auto& [plan, robot] = plans.emplace_back(scenario, elastic ? runs + run : run);
         plan.seed = scenario.seed + 1000 * (options.seed + run);
+        measure_currents(plan);
         if (elastic) planar(plan).robot.capstan = robot::Capstan{};
       }
     }
@@ -374,7 +236,7 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
       trials_count, options.threads,
       [&](int i) -> Result<void> {
         const auto& [scenario, robot] = plans[static_cast<std::size_t>(i)];
-        auto trial = perform(scenario, robots[robot]);
+        auto trial = perform(scenario, robots[robot], {});
         if (!trial) return tl::unexpected(trial.error());
         all[static_cast<std::size_t>(i)] = std::move(*trial);
         return {};
