@@ -93,7 +93,8 @@ Console::Console(const std::vector<Trial>& trials, session::Signals& signals)
     }
     trials_.push_back(std::move(listed));
   }
-  live_ = std::make_unique<session::LiveEstimate>([this](const session::LiveEstimate::Estimate& one) { estimated(one); });
+  live_ =
+      std::make_unique<session::LiveEstimate>([this](const session::LiveEstimate::Estimate& one) { estimated(one); });
 }
 
 Console::~Console() {

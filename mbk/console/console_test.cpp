@@ -82,9 +82,7 @@ class ConsoleOfASession : public testing::Test {
     viewing_token_ = viewing.substr(viewing.find("token=") + 6);
   }
 
-  [[nodiscard]] std::string host() const {
-    return "127.0.0.1:" + port_;
-  }
+  [[nodiscard]] std::string host() const { return "127.0.0.1:" + port_; }
 
   bool logged(std::string_view what) {
     const std::scoped_lock lock(mutex_);
@@ -150,9 +148,7 @@ class ConsoleOfASession : public testing::Test {
     if (error) return nullptr;
     return page;
   }
-  std::unique_ptr<Page> open(const std::string& token) {
-    return open(token, "http://" + host());
-  }
+  std::unique_ptr<Page> open(const std::string& token) { return open(token, "http://" + host()); }
 
   session::TrialOutcome perform(session::Session& session, const fs::path& target) {
     const session::Trial& trial = trials_.front();

@@ -73,7 +73,8 @@ Result<Held> perform(session::Trial trial, std::uint64_t seed, const std::filesy
   std::error_code ignored;
   std::filesystem::remove(performed->recording, ignored);
   if (failure) return tl::unexpected(*failure);
-  if (taken < kTimes.size()) return bad_data(fmt::format("the trial of seed {} ended before {:g} s", seed, kTimes[taken]), "");
+  if (taken < kTimes.size())
+    return bad_data(fmt::format("the trial of seed {} ended before {:g} s", seed, kTimes[taken]), "");
   return held;
 }
 
@@ -84,9 +85,8 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
   if (!trials) return tl::unexpected(trials.error());
   const auto folder = TemporaryFolder::create("mbk-live-estimate");
   if (!folder) return tl::unexpected(folder.error());
-  const auto runs = seeded_runs(options, 200, [&](std::uint64_t seed) -> Result<Held> {
-    return perform(trials->front(), seed, folder->path());
-  });
+  const auto runs = seeded_runs(
+      options, 200, [&](std::uint64_t seed) -> Result<Held> { return perform(trials->front(), seed, folder->path()); });
   if (!runs) return tl::unexpected(runs.error());
 
   ValidationTable table;

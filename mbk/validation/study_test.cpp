@@ -48,7 +48,8 @@ TEST(LiveEstimate, ItsIntervalsHoldTheTruth) {
   for (std::size_t at = 0; at < 4; ++at) {
     const ValidationRow& mean = table->rows[13 * at];
     ASSERT_TRUE(mean.judged());
-    EXPECT_GE(mean.value, 82.0) << mean.what;  // 90 % less three standard errors of the mean of 30 runs, each of spread 14 %
+    EXPECT_GE(mean.value, 82.0)
+        << mean.what;  // 90 % less three standard errors of the mean of 30 runs, each of spread 14 %
     double sum = 0.0;
     for (std::size_t k = 1; k <= 12; ++k) sum += table->rows[13 * at + k].value;
     EXPECT_NEAR(mean.value, sum / 12, 1e-9) << mean.what;
