@@ -15,6 +15,7 @@
 #include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/read.h"
 #include "mbk/report/text.h"
+#include "mbk/session/live_estimate.h"
 #include "mbk/session/plan.h"
 #include "mbk/session/session.h"
 
@@ -134,7 +135,8 @@ Measured measure(const session::TrialOutcome& outcome, const Trial& trial, RunCo
   auto recording = recording::read(outcome.recording, {});
   if (!recording) return {recording.error().line() + "\n", true};
   const Recording perturbed = preprocess::perturbation_only(std::move(*recording));
-  const auto measured = console.measured(perturbed, measurement_options_of(trial));
+  const auto measured = console.measured(
+      perturbed, session::across_missed_ticks(perturbed, trial.scenario.rate, measurement_options_of(trial)));
   if (!measured) return {fmt::format("not measured: {}\n", measured.error().line()), true};
   const Identification& identification = measured->identification;
   return {report::result_text(identification, std::nullopt),

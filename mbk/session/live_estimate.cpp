@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "mbk/preprocess/perturbation_only.h"
+#include "mbk/recording/inspection.h"
 #include "mbk/trial/recording.h"
 
 namespace mbk::session {
@@ -33,6 +34,11 @@ void cut_unread(Recording& recording, int latency) {
 
 }  // namespace
 
+measurement::Options across_missed_ticks(const Recording& recording, Hertz rate, measurement::Options options) {
+  if (!options.resample && !recording::inspect(recording).gaps.empty()) options.resample = rate;
+  return options;
+}
+
 Result<result::Measured> estimate(const journal::Journal& journal, const measurement::Options& options) {
   auto recording = journal::to_recording(journal);
   if (!recording) return tl::unexpected(recording.error());
@@ -42,7 +48,7 @@ Result<result::Measured> estimate(const journal::Journal& journal, const measure
   if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
   if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
   const Recording window = preprocess::perturbation_only(std::move(*recording));
-  return measurement::measure({&window, 1}, options);
+  return measurement::measure({&window, 1}, across_missed_ticks(window, Hertz(journal.header.rate), options));
 }
 
 LiveEstimate::LiveEstimate(std::function<void(const Estimate&)> done)

@@ -41,6 +41,27 @@ TEST(Recovery, IsTheSameOnAnyNumberOfThreads) {
   for (std::size_t k = 0; k < one->rows.size(); ++k) EXPECT_EQ(one->rows[k].value, two->rows[k].value);
 }
 
+TEST(LiveEstimate, ItsIntervalsHoldTheTruth) {
+  const auto table = live_estimate_study({.runs = 30, .seed = 5});  // `mbk validate live-estimate` takes 200
+  expect_met(table);
+  ASSERT_EQ(table->rows.size(), 4u * 13);
+  for (std::size_t at = 0; at < 4; ++at) {
+    const ValidationRow& mean = table->rows[13 * at];
+    ASSERT_TRUE(mean.judged());
+    EXPECT_GE(mean.value, 82.0)
+        << mean.what;  // 90 % less three standard errors of the mean of 30 runs, each of spread 14 %
+    double sum = 0.0;
+    for (std::size_t k = 1; k <= 12; ++k) sum += table->rows[13 * at + k].value;
+    EXPECT_NEAR(mean.value, sum / 12, 1e-9) << mean.what;
+  }
+}
+
+TEST(LiveEstimate, IsTheSameOnAnyNumberOfThreads) {
+  const auto one = live_estimate_study({.runs = 2, .threads = 1}), two = live_estimate_study({.runs = 2, .threads = 2});
+  ASSERT_TRUE(one && two);
+  for (std::size_t k = 0; k < one->rows.size(); ++k) EXPECT_EQ(one->rows[k].value, two->rows[k].value);
+}
+
 TEST(Springs, RigsOfBothTablesAreFound) {
   const auto table = springs_study({.runs = 1, .seed = 5});
   expect_met(table);
