@@ -242,8 +242,9 @@ Result<void> force_task(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
       "A participant who is told to keep the force at zero while the robot moves the hand, by a loop of their own over "
       "the "
-      "force. Example: the same arm with that loop and without. With it the hand yields, and what is identified is no "
-      "longer the limb's impedance.",
+      "force. Example: the same arm with that loop and without. What is identified with it is no longer the limb's "
+      "impedance: the loop comes a reaction time late, which makes the stiffness negative along one direction and "
+      "leaves more of the force unexplained.",
       fmt::format("Simulated: {}. Open: a study with people.", laboratory::kTunedGains)};
   exhibit.related = {"table-3.2"};
   exhibit.commands = {"mbk simulate force_task --out force.h5 && mbk measure force.h5 --handle-mass 0.194"};

@@ -1,4 +1,4 @@
-// Tables that follow from other printed numbers: 3.6 and 5.3.
+// Tables that follow from other printed numbers, 3.6 and 5.3, and what no number leads to.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -95,6 +95,39 @@ Result<void> table_5_3(Workbench& bench, Exhibit& exhibit) {
   add(bench.given().stiffnesses, stiffness);
   add(bench.given().masses, mass);
   exhibit.tables = {std::move(stiffness), std::move(mass)};
+  return {};
+}
+
+Result<void> lost(Workbench& /*bench*/, Exhibit& exhibit) {
+  exhibit.text = {
+      "What was never published, or is lost in the text of the thesis, cannot be computed and is not invented. Where "
+      "something else can show the same, that stands in its place and says so."};
+  exhibit.related = {"table-3.1", "table-3.2", "table-5.1", "table-5.6", "figure-3.12", "figure-3.13", "table-4.4"};
+  ReproducedTable table;
+  table.id = "lost";
+  table.title = "What is missing, and what stands in its place";
+  table.provenance = Provenance::not_recoverable;
+  table.what_rows_are = "what";
+  table.columns = {{"why it cannot be had", "", 0}, {"in its place", "", 0}};
+  const auto add = [&](const char* what, const char* why, const char* instead) {
+    table.rows.push_back({what, {words(why), words(instead)}});
+  };
+  add("recordings of all trials", "not published", "simulated trials with the same protocols");
+  add("numbers in tables 3.2, 3.4, 4.1, 4.2, 5.6", "their bodies are lost in the text",
+      "the same tables of simulated participants");
+  add("entries of table 5.3", "its body is lost", "table 5.1 less table 5.4; not the standard deviations");
+  add("antisymmetric parts of the participants' M and K", "only z_mean of P1's K is printed, without its sign",
+      "symmetric limbs; k_a of P1 in figure 3.12 and slip 4");
+  add("spring constants and lengths behind tables 3.1 and 5.1", "not published",
+      "arrays that were found for the printed K");
+  add("data of Mussa-Ivaldi et al. in figure 3.13 (b)", "another paper's", "nothing");
+  add("frequencies and phases of the ten sines", "only their range is printed", "0.1 to 2.9 Hz with random phases");
+  add("how long the random binary force keeps its sign", "not published", "4 s at least; other times in mbk validate");
+  add("link lengths of the participants", "not published", "0.31 and 0.34 m");
+  add("what the participants willed", "no one knows", "an intermittent controller with tuned gains");
+  add("photographs and drawings of apparatus (figures 3.2, 3.3, 3.7, 5.1, D.1, D.2, E.1 to E.4)", "pictures, no data",
+      "nothing");
+  exhibit.tables = {std::move(table)};
   return {};
 }
 
