@@ -41,7 +41,7 @@ std::string list_text() {
   return text;
 }
 
-/// "3.6" as "table-3.6"; what has no number keeps its words: "5.4 stiffness" as "table-5.4-stiffness".
+/// The exhibit's id, with a number where it has several tables: "table-3.6", "table-5.4-2".
 std::string table_file(const Exhibit& exhibit, std::size_t k) {
   return exhibit.tables.size() == 1 ? exhibit.id : fmt::format("{}-{}", exhibit.id, k + 1);
 }

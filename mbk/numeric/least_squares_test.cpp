@@ -129,6 +129,23 @@ TEST(NeweyWest, IsTheTextbookCovarianceForWhiteResiduals) {
   EXPECT_TRUE(V.isApprox(textbook, 0.03));
 }
 
+TEST(NeweyWest, FittedWideningGivesBackWhatTheCoefficientsTook) {
+  EXPECT_DOUBLE_EQ(fitted_widening(100.0, 7.0), std::sqrt(100.0 / 93.0));
+  EXPECT_NEAR(fitted_widening(1e12, 7.0), 1.0, 1e-11);
+  EXPECT_DOUBLE_EQ(fitted_widening(7.0, 7.0), std::sqrt(2.0));  // nothing is left: not infinite, but no interval
+  // white residuals of a fit have (n − p)/n of the noise's variance in the mean
+  constexpr int kRows = 12, kColumns = 3, kRuns = 20000;
+  constexpr double kVariance = 1.0 / 12.0;
+  double sum = 0.0;
+  for (unsigned run = 0; run < kRuns; ++run) {
+    const Matrix all = noise(kRows, kColumns + 1, run);
+    const Matrix Z = all.leftCols(kColumns);
+    const Vector y = all.col(kColumns);
+    sum += (y - Z * (Z.transpose() * Z).ldlt().solve(Z.transpose() * y)).squaredNorm() / (kRows * kVariance);
+  }
+  EXPECT_NEAR(std::sqrt(kRuns / sum), fitted_widening(kRows, kColumns), 0.01);
+}
+
 TEST(NeweyWest, WideningIsNoneForShortLagsAndTheFixedBLimitForLongOnes) {
   EXPECT_EQ(newey_west_widening(0.0), 1.0);
   EXPECT_NEAR(newey_west_widening(1.0) * 1.96, 4.813, 1e-3);  // Kiefer & Vogelsang 2005: 4.813 with all lags
