@@ -7,7 +7,7 @@
 
 namespace mbk::report {
 
-/// A page of web/ with its document where the page has @MBK_REPORT_DATA@. Every '<' of the document is written
+/// A page of web/ with its document where the page has `@MBK_REPORT_DATA@`. Every '<' of the document is written
 /// `\u003c`, so that nothing in it can end the element that holds it.
 /// @fails  usage: there is no such place: the program was built without its pages (MBK_WEB=OFF).
 [[nodiscard]] Result<std::string> filled_page(std::string_view page, std::string_view json);

@@ -55,7 +55,7 @@ Result<void> jacobian_in_one_column(Workbench& /*bench*/, Exhibit& exhibit) {
       "Tests: Slips.JacobianIsThatOfTheKinematics; mbk/robot/kinematics_test.cpp, "
       "Jacobian.AgreesWithFiniteDifferences.");
   exhibit.commands = {"mbk robot workspace --at 300,-50      # the posture there"};
-  exhibit.related = {"slip-9", "figure-A.1"};
+  exhibit.related = {"slip-9", "figure-A.2"};
   const robot::Geometry geometry;
   const Matrix2d J = robot::jacobian(geometry, kTheta);
   const Matrix2d numerical =

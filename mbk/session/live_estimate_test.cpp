@@ -1,6 +1,8 @@
 #include "mbk/session/live_estimate.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -30,7 +32,7 @@ journal::Journal recorded() {
   const Trial trial = read_experiment(kExperiment, "experiment.toml").value().front();
   const auto robot = laboratory::SimulatedDevice::create(trial.scenario).value();
   journal::Journal journal{header_of(trial, robot->facts(), make_plan(trial)->schedule), {}, {}, 0};
-  const auto target = std::filesystem::temp_directory_path() / "mbk_live_estimate.h5";
+  const auto target = std::filesystem::temp_directory_path() / fmt::format("mbk_live_estimate_{}.h5", getpid());
   std::filesystem::remove(target);
   Session session({true, 0.0});
   const auto outcome = session.perform(*robot, trial, target, [&](std::span<const journal::Tick> ticks) {

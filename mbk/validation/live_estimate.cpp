@@ -61,12 +61,15 @@ Result<Held> perform(session::Trial trial, std::uint64_t seed, const std::filesy
   std::size_t taken = 0;
   std::optional<Error> failure;
   const auto watch = [&](std::span<const journal::Tick> ticks) {
-    journal.ticks.insert(journal.ticks.end(), ticks.begin(), ticks.end());
-    if (taken == kTimes.size() || ticks.back().perturbation_time < kTimes[taken]) return;
-    auto now = held_by(journal, options, truth);
-    if (!now) failure = now.error();
-    if (now) held[taken] = *now;
-    session.signals().end_trial = ++taken == kTimes.size();
+    for (const journal::Tick& tick : ticks) {  // whichever of them come together
+      if (taken == kTimes.size()) return;
+      journal.ticks.push_back(tick);
+      if (tick.perturbation_time < kTimes[taken]) continue;
+      auto now = held_by(journal, options, truth);
+      if (!now) failure = now.error();
+      if (now) held[taken] = *now;
+      session.signals().end_trial = ++taken == kTimes.size();
+    }
   };
   const auto performed = session.perform(**robot, trial, folder / fmt::format("{}.h5", seed), watch);
   if (!performed) return tl::unexpected(performed.error());

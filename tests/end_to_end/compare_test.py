@@ -70,10 +70,10 @@ class Width(Case):
         self.refused(3, "compare", self.stored(), one, says="axis")
         self.refused(WRONG_USAGE, "compare", self.stored(), says="FILE")
         self.refused(WRONG_USAGE, "compare", self.stored(), self.stored("b.json"), self.stored("c.json"))
-        self.bad_data(self.folder / "nothing.json", self.stored(), command="width", says="no such file")
+        self.bad_data(self.folder / "nothing.json", self.stored(), command="compare", says="no such file")
         several = self.folder / "several.json"
         self.fine("measure", make_log().path, make_log().path, "--json", "--quiet", "--out", several)
-        self.bad_data(several, self.stored(), command="width", says="2 results")
+        self.bad_data(several, self.stored(), command="compare", says="2 results")
 
 
 if __name__ == "__main__":

@@ -132,7 +132,7 @@ class Whole(Case):
         command = next(command for command in exhibit["commands"] if command.startswith("mbk simulate"))
         simulate, measure = (part.split("#")[0].split() for part in command.split("&&"))
         self.fine(*simulate[1:], "--quiet", folder=self.folder)
-        model = self.fine(*measure[1:], "--json", "--quiet", folder=self.folder).json
+        model = self.fine(*measure[1:], "--json", "--quiet", folder=self.folder).json["model"]
         table, = exhibit["tables"]
         first = table["rows"][0]["cells"]
         names = [column["name"] for column in table["columns"]]

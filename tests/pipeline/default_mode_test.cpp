@@ -90,8 +90,8 @@ TEST_P(DefaultMode, PoolingTwoTrialsShrinksTheErrorsByTheRootOfTwo) {
     sum += (0.5 * (one + other)).cwiseQuotient(flat(measured({a, b}).standard_error)).mean();
   }
   // A standard error from some 50 correlation times is itself known to 10 % or so, and the elements of one trial err
-  // together; five pairs halve that. The widening for long lags adds 2 %.
-  EXPECT_NEAR(sum / kPairs, std::sqrt(2.0), 0.15);
+  // together; five pairs halve that. The widenings for long lags and for what was fitted add 2.5 %.
+  EXPECT_NEAR(sum / kPairs, 1.025 * std::sqrt(2.0), 0.15);
 }
 
 class GoldenLog : public testing::TestWithParam<const char*> {};
