@@ -131,10 +131,12 @@ Result<void> lost(Workbench& /*bench*/, Exhibit& exhibit) {
   return {};
 }
 
-constexpr std::array kMakers = {Maker{Exhibit::Kind::table, 3, "table-3.6", "Excess of passivity of the relaxed arm",
-                                      Provenance::recomputed, table_3_6},
-                                Maker{Exhibit::Kind::table, 5, "table-5.3", "Identified stiffness and mass of the rigs",
-                                      Provenance::recomputed, table_5_3}};
+constexpr std::array kMakers = {
+    Maker{Exhibit::Kind::table, 3, "table-3.6", "Excess of passivity of the relaxed arm", Provenance::recomputed,
+          table_3_6},
+    Maker{Exhibit::Kind::table, 5, "table-5.3", "Identified stiffness and mass of the rigs", Provenance::recomputed,
+          table_5_3},
+    Maker{Exhibit::Kind::table, 0, "lost", "What cannot be had, and why", Provenance::not_recoverable, lost}};
 
 }  // namespace
 
