@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mbk/laboratory/scenario.h"
 #include "mbk/numeric/statistics.h"
 
 namespace mbk::reproduction {
@@ -24,6 +25,16 @@ std::vector<double> of_trials(const TaskResult& result, const std::function<doub
   std::vector<double> values;
   for (const TaskTrial& trial : result.trials) values.push_back(quantity(trial));
   return values;
+}
+
+Result<const TaskResult*> first_of(Workbench& bench, Task task) {
+  const auto results = bench.results(task);
+  if (!results) return tl::unexpected(results.error());
+  return &(*results)->front();
+}
+
+std::string tuned_gains_note() {
+  return fmt::format("Simulated: {}.", laboratory::kTunedGains);
 }
 
 std::string person(int participant) {

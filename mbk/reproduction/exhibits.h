@@ -66,6 +66,13 @@ inline ReproducedCell words(std::string text) {
 [[nodiscard]] std::vector<double> of_trials(const TaskResult& result,
                                             const std::function<double(const TaskTrial&)>& quantity);
 
+/// What the first participant did at a task.
+/// @fails  as Workbench::results
+[[nodiscard]] Result<const TaskResult*> first_of(Workbench& bench, Task task);
+
+/// Said where a simulated participant who corrects place or force had a part.
+[[nodiscard]] std::string tuned_gains_note();
+
 /// "P1"
 [[nodiscard]] std::string person(int participant);
 

@@ -34,12 +34,6 @@ ReproducedTable table_of(const Exhibit& exhibit, std::string title, std::string 
   return table;
 }
 
-Result<const TaskResult*> first_of(Workbench& bench, Task task) {
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
-  return &(*results)->front();
-}
-
 /// The position–position design of examples/teleop/position_position.toml.
 constexpr const char* kDesign = R"(
 [architecture]
@@ -118,7 +112,7 @@ Result<void> cns_model(Workbench& bench, Exhibit& exhibit) {
       "methods on, whose truth is known. Example: how much of the force along one axis a linear model explains, trial "
       "by "
       "trial; the same arm with its controller off is explained to more than 95 %.",
-      fmt::format("Simulated: {}.", laboratory::kTunedGains)};
+      tuned_gains_note()};
   exhibit.related = {"table-4.4", "table-4.1"};
   exhibit.commands = {"mbk validate one-dimensional", "mbk validate participant"};
   const auto grasps = bench.one_axis_grasps();
@@ -158,8 +152,7 @@ Result<void> reaction_time(Workbench& bench, Exhibit& exhibit) {
       "from then to the end of the pulse, mean of the sixteen pulses of the first trial. It absorbs before it can "
       "react "
       "and generates after, so that what is generated comes from the will.",
-      "Open: M, B and K of these 150 ms alone, from all onsets at once.",
-      fmt::format("Simulated: {}.", laboratory::kTunedGains)};
+      "Open: M, B and K of these 150 ms alone, from all onsets at once.", tuned_gains_note()};
   exhibit.related = {"figure-4.5", "figure-4.3"};
   exhibit.commands = {fmt::format(
       "mbk simulate rigid_underdamped_2N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {} --json",
@@ -245,7 +238,7 @@ Result<void> force_task(Workbench& bench, Exhibit& exhibit) {
       "force. Example: the same arm with that loop and without. What is identified with it is no longer the limb's "
       "impedance: the loop comes a reaction time late, which makes the stiffness negative along one direction and "
       "leaves more of the force unexplained.",
-      fmt::format("Simulated: {}. Open: a study with people.", laboratory::kTunedGains)};
+      tuned_gains_note(), "Open: a study with people."};
   exhibit.related = {"table-3.2"};
   exhibit.commands = {"mbk simulate force_task --out force.h5 && mbk measure force.h5 --handle-mass 0.194"};
   auto scenarios = validation::ready("force_task");
@@ -336,7 +329,7 @@ Result<void> impedance_width(Workbench& bench, Exhibit& exhibit) {
       "= 2.75 where one is seven times the other. Example: P1 relaxed and P1 rigid under sines, the latter by "
       "instrumental "
       "variables, four trials in one fit each, with 95 % intervals.",
-      "Open: what it is in people, healthy and not.", fmt::format("Simulated: {}.", laboratory::kTunedGains)};
+      "Open: what it is in people, healthy and not.", tuned_gains_note()};
   exhibit.related = {"table-4.3", "future-work-6"};
   exhibit.commands = {fmt::format(
       "mbk simulate relaxed_sinusoidal --seed {0} --out relaxed.h5 && mbk simulate rigid_sinusoidal_6N --seed {0} "

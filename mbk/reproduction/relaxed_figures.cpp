@@ -28,13 +28,6 @@ constexpr std::array<double, 3> kReference = {1.5, 10.0, 75.0};
 /// z_mean of participant P1's stiffness [%], from the caption of figure 3.12.
 constexpr double kAntisymmetryOfP1 = 11.5;
 
-/// The first trial of the first participant at a task.
-Result<const TaskResult*> first_of(Workbench& bench, Task task) {
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
-  return &(*results)->front();
-}
-
 std::string simulate_command(Task task, const Workbench& bench) {
   return fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk measure p1.h5 --handle-mass {} --report p1.html",
                      scenario_of(task), bench.seed(1, 1), kHandleMass);

@@ -17,15 +17,11 @@
 namespace mbk::reproduction {
 namespace {
 
-std::string tuned() {
-  return fmt::format("Simulated: {}.", laboratory::kTunedGains);
-}
-
 Result<void> figure_4_1(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
       "Twenty seconds of pulses and ten of sines, as recorded, of the first trial of P1, with the force that "
       "the robot was commanded to exert.",
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"figure-3.4"};
   for (const auto& [task, from, to] :
        {std::tuple{Task::rigid_underdamped, 16.0, 36.0}, std::tuple{Task::rigid_sinusoidal, 20.0, 30.0}}) {
@@ -52,13 +48,13 @@ Result<void> energy_figure(Workbench& bench, Task task, Exhibit& exhibit) {
 }
 
 Result<void> figure_4_3(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {"It falls: against small pulses the arm generates energy, whoever's arm it is.", tuned()};
+  exhibit.text = {"It falls: against small pulses the arm generates energy, whoever's arm it is.", tuned_gains_note()};
   exhibit.related = {"table-4.3", "table-4.5", "figure-4.5"};
   return energy_figure(bench, Task::rigid_underdamped, exhibit);
 }
 
 Result<void> figure_4_4(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {"It rises: the same participants absorb where no instant is left to answer to.", tuned()};
+  exhibit.text = {"It rises: the same participants absorb where no instant is left to answer to.", tuned_gains_note()};
   exhibit.related = {"table-4.3", "figure-4.3"};
   return energy_figure(bench, Task::rigid_sinusoidal, exhibit);
 }
@@ -102,7 +98,7 @@ Result<void> figure_4_5(Workbench& bench, Exhibit& exhibit) {
       "The pulse with the median energy of P1's first trial, relaxed, rigid at 2 N, and rigid at 8 N. The rigid arm "
       "absorbs while it is pushed away, before it can react, and generates on the way back. At 2 N it gives back more "
       "than it took, at 8 N less. The two rigid trials differ in the amplitude alone.",
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"figure-4.3", "future-work-3"};
   exhibit.commands = {fmt::format(
       "mbk simulate rigid_underdamped_8N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {} --json",
@@ -130,7 +126,7 @@ Result<void> figure_4_5(Workbench& bench, Exhibit& exhibit) {
 Result<void> figure_4_6(Workbench& bench, Exhibit& exhibit) {
   const auto grasps = bench.one_axis_grasps();
   if (!grasps) return tl::unexpected(grasps.error());
-  exhibit.text = {"Thirty seconds of the first trial along the y axis.", tuned()};
+  exhibit.text = {"Thirty seconds of the first trial along the y axis.", tuned_gains_note()};
   exhibit.related = {"table-4.4", "figure-4.7"};
   exhibit.commands = {"mbk simulate one_axis_random_binary --out binary.h5"};
   exhibit.charts = signal_charts("one axis", (*grasps)->front().recording, 12.0, 42.0, 1);
@@ -145,7 +141,7 @@ Result<void> figure_4_7(Workbench& bench, Exhibit& exhibit) {
       fmt::format("The last 10 s of the first trial, which the model has not seen: measured, and by a model of "
                   "four poles and three zeros from the measured motion. VAF {:.1f} %.",
                   first.vaf),
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"table-4.4"};
   exhibit.commands = {"mbk validate one-dimensional --charts charts"};
   Chart chart = over_time("Force along one axis", {"force of the hand on the robot", "N"});

@@ -6,16 +6,10 @@
 
 #include "mbk/impedance/ellipse.h"
 #include "mbk/impedance/passivity_index.h"
-#include "mbk/laboratory/scenario.h"
 #include "mbk/reproduction/exhibits.h"
 
 namespace mbk::reproduction {
 namespace {
-
-/// Said where a participant who corrects position had a part.
-std::string tuned() {
-  return fmt::format("Simulated: {}.", laboratory::kTunedGains);
-}
 
 Result<void> table_4_1(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
@@ -23,7 +17,7 @@ Result<void> table_4_1(Workbench& bench, Exhibit& exhibit) {
       "against pulses of 2 N. As in the source, no model explains half of the force, and its numbers scatter from "
       "trial "
       "to trial: the participant's own corrections are no impedance. Judge by the energy instead (figure 4.3).",
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"table-4.3", "figure-4.3"};
   return add_impedances(bench, Task::rigid_underdamped, "4.1", "Rigid arm, underdamped force perturbations", exhibit);
 }
@@ -35,7 +29,7 @@ Result<void> table_4_2(Workbench& bench, Exhibit& exhibit) {
       "participants did it is not said; ours are P1, P4 and P5. Least squares finds them active here too, because it "
       "is "
       "drawn towards minus the robot's impedance: see table 4.3.",
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"table-4.3", "figure-4.4"};
   return add_impedances(bench, Task::rigid_sinusoidal, "4.2", "Rigid arm, sinusoidal force perturbations", exhibit);
 }
@@ -142,7 +136,7 @@ Result<void> table_4_3(Workbench& bench, Exhibit& exhibit) {
       "Under 2 N pulses the participant answers each pulse itself: no instrument is valid, no model explains half of "
       "the "
       "force, and the energy decides: active.",
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"table-4.1", "table-4.2", "figure-4.3", "figure-4.4"};
   exhibit.commands = {
       fmt::format("mbk simulate rigid_sinusoidal_6N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}",
@@ -209,7 +203,7 @@ Result<void> table_4_4(Workbench& bench, Exhibit& exhibit) {
       "to be a model; the same arm without its controller is explained to 95 % and more (mbk validate "
       "one-dimensional).",
       "How long the force keeps its sign is not published: 4 s at least here, as in the last rows of that study.",
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"figure-4.6", "figure-4.7", "slip-16"};
   exhibit.commands = {"mbk validate one-dimensional"};
   ReproducedTable table;
@@ -231,7 +225,7 @@ Result<void> table_4_5(Workbench& bench, Exhibit& exhibit) {
   exhibit.text = {
       "The shortage of passivity λ(t) = −E(t)/∫v·v dt, from the data alone. (4.3) asks for the smallest λ that holds "
       "up to every instant, the largest of λ(t); the source prints \"largest\" (slip 5). Mean of four trials.",
-      tuned()};
+      tuned_gains_note()};
   exhibit.related = {"figure-4.3", "slip-5"};
   exhibit.commands = {
       fmt::format("mbk simulate rigid_underdamped_2N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}",
