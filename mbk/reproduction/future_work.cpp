@@ -339,10 +339,8 @@ Result<void> impedance_width(Workbench& bench, Exhibit& exhibit) {
   if (!relaxed) return tl::unexpected(relaxed.error());
   const auto rigid = first_of(bench, Task::rigid_sinusoidal);
   if (!rigid) return tl::unexpected(rigid.error());
-  const result::Measured& held = (*rigid)->pooled;
-  const bool first = held.identification.method == Method::instrumental_variables || !held.alternative;
   const auto widths =
-      analyse::analyse_width((*relaxed)->pooled.identification, first ? held.identification : *held.alternative);
+      analyse::analyse_width((*relaxed)->pooled.identification, (*rigid)->by(Method::instrumental_variables));
   if (!widths) return tl::unexpected(widths.error());
   ReproducedTable table = table_of(exhibit, "P1, relaxed to rigid", "matrix",
                                    {{"width", "", 2},

@@ -65,21 +65,9 @@ ReproducedCell by_energy(const std::vector<TaskResult>& results) {
       std::ssize(all));
 }
 
-const ModelPassivity* passivity_by(const TaskResult& result, Method method) {
-  for (const ModelPassivity& model : result.pooled.passivity->models) {
-    if (model.method == method) return &model;
-  }
-  return nullptr;
-}
-
-const Identification& model_by(const TaskResult& result, Method method) {
-  const bool first = result.pooled.identification.method == method || !result.pooled.alternative;
-  return first ? result.pooled.identification : *result.pooled.alternative;
-}
-
 ReproducedCell by_instruments(const std::vector<TaskResult>& results) {
   const auto passive = std::ranges::count_if(results, [](const TaskResult& result) {
-    const ModelPassivity* model = passivity_by(result, Method::instrumental_variables);
+    const ModelPassivity* model = result.passivity_by(Method::instrumental_variables);
     return model != nullptr && model->published_rule;
   });
   return majority(passive, std::ssize(results));
@@ -98,13 +86,13 @@ void add_bias_rows(const TaskResult& result, ReproducedTable& table) {
     table.rows.push_back(std::move(row));
   };
   const auto published = [&](Method method) {
-    const ModelPassivity* model = passivity_by(result, method);
+    const ModelPassivity* model = result.passivity_by(method);
     if (model == nullptr) return std::string("no model");
     return std::string(model->published_rule ? "passive" : "active");
   };
   add("the limb itself", result.truth, "passive");
-  add("least squares", model_by(result, Method::least_squares).model, published(Method::least_squares));
-  add("instrumental variables", model_by(result, Method::instrumental_variables).model,
+  add("least squares", result.by(Method::least_squares).model, published(Method::least_squares));
+  add("instrumental variables", result.by(Method::instrumental_variables).model,
       published(Method::instrumental_variables));
   ReproducedRow energy{person(result.participant) + ", energy", std::vector<ReproducedCell>(6)};
   energy.cells.push_back(words(fmt::format("{}, {:+.2f} J", text(result.pooled.passivity->energy->verdict),

@@ -16,11 +16,16 @@ measurement::Options published_procedure() {
   return options;
 }
 
-bool passive_as_published(const result::Measured& measured) {
+const ModelPassivity* passivity_of(const result::Measured& measured, Method method) {
   for (const ModelPassivity& model : measured.passivity->models) {
-    if (model.method == Method::least_squares) return model.published_rule;
+    if (model.method == method) return &model;
   }
-  return false;
+  return nullptr;
+}
+
+bool passive_as_published(const result::Measured& measured) {
+  const ModelPassivity* model = passivity_of(measured, Method::least_squares);
+  return model != nullptr && model->published_rule;
 }
 
 Result<TaskResult> perform(Task task, int participant, const Workbench& bench) {
@@ -80,7 +85,26 @@ Result<std::vector<Value>> made(std::size_t count, unsigned threads,
   return all;
 }
 
+Result<std::vector<OneAxisGrasp>> make_grasps(Workbench& bench) {
+  const auto scenarios = validation::ready("one_axis_random_binary");
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  return made<OneAxisGrasp>(scenarios->size(), bench.options().threads, [&](std::size_t i) {
+    laboratory::Scenario scenario = (*scenarios)[i];
+    scenario.seed = bench.options().seed + i;
+    return grasp(std::move(scenario));
+  });
+}
+
 }  // namespace
+
+const Identification& TaskResult::by(Method method) const {
+  const bool chosen = pooled.identification.method == method || !pooled.alternative;
+  return chosen ? pooled.identification : *pooled.alternative;
+}
+
+const ModelPassivity* TaskResult::passivity_by(Method method) const {
+  return passivity_of(pooled, method);
+}
 
 const char* scenario_of(Task task) {
   switch (task) {
@@ -145,16 +169,7 @@ Result<const std::vector<TaskResult>*> Workbench::results(Task task) {
 }
 
 Result<const std::vector<OneAxisGrasp>*> Workbench::one_axis_grasps() {
-  if (!one_axis_grasps_.empty()) return &one_axis_grasps_;
-  const auto scenarios = validation::ready("one_axis_random_binary");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  auto all = made<OneAxisGrasp>(scenarios->size(), options_.threads, [&](std::size_t i) {
-    laboratory::Scenario scenario = (*scenarios)[i];
-    scenario.seed = options_.seed + i;
-    return grasp(std::move(scenario));
-  });
-  if (!all) return tl::unexpected(all.error());
-  return &(one_axis_grasps_ = std::move(*all));
+  return once(make_grasps);
 }
 
 }  // namespace mbk::reproduction

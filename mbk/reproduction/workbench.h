@@ -49,6 +49,11 @@ struct TaskResult {
   std::vector<TaskTrial> trials;
   Recording first;          ///< of these
   result::Measured pooled;  ///< all of them in one fit, by mbk's own procedure
+
+  /// Of the pooled trials: the model that a method found, or the only one there is.
+  [[nodiscard]] const Identification& by(Method method) const;
+  /// The passivity of that model; nullptr where it was not judged.
+  [[nodiscard]] const ModelPassivity* passivity_by(Method method) const;
 };
 
 /// One trial of a rigid grasp along one axis (§4.4.2).
@@ -104,7 +109,6 @@ class Workbench {
   WorkbenchOptions options_;
   std::map<Task, std::vector<TaskResult>> results_;
   std::map<std::type_index, std::shared_ptr<const void>> kept_;
-  std::vector<OneAxisGrasp> one_axis_grasps_;
 };
 
 /// The scenario of a task as a participant does it.
