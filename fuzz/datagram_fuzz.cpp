@@ -29,7 +29,12 @@ void check(std::span<const std::byte> bytes) {
 std::vector<std::string> seeds() {
   drivers::StateDatagram state;
   state.raw = {3, 0.5, {1.0, -2.0}, {0.1, 0.2}, {9.8, 0.0}, true};
-  return {text_of(drivers::encode(state)),
+  drivers::StateDatagram second = state;
+  second.version = 2;
+  second.drives_measure = true;
+  second.measured = {0.5, -0.5};
+  second.fault = 7;
+  return {text_of(drivers::encode(state)), text_of(drivers::encode(second)),
           text_of(drivers::encode(drivers::CommandDatagram{5, 50, 9, {0.5, 1.0}, true, true, true}))};
 }
 

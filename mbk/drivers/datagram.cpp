@@ -10,9 +10,12 @@ namespace {
 
 constexpr std::uint32_t kStateMagic = 0x534B424D, kCommandMagic = 0x434B424D;  // "MBKS", "MBKC"
 constexpr std::size_t kChecksumBytes = 4;
+constexpr std::array kStateLengths = {kStateBytes1, kStateBytes2};
+constexpr std::array kCommandLengths = {kCommandBytes};
 
-constexpr std::uint16_t kStop = 1, kMotorsOn = 2, kForce = 4, kAcceleration = 8, kExpired = 16;  // of a state
-constexpr std::uint16_t kEnabled = 1, kGreeting = 2, kLockStep = 4;                              // of a command
+constexpr std::uint16_t kStop = 1, kMotorsOn = 2, kForce = 4, kAcceleration = 8, kExpired = 16,
+                        kDrivesMeasure = 32;                         // of a state
+constexpr std::uint16_t kEnabled = 1, kGreeting = 2, kLockStep = 4;  // of a command
 
 template <class Number>
 using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t,
@@ -67,13 +70,15 @@ void seal(std::span<std::byte> bytes) noexcept {
 }
 
 /// What can be said before a field is read. Wrong versions come before wrong checksums: another version may be longer.
-Refusal check(std::span<const std::byte> bytes, std::size_t length, std::uint32_t magic) noexcept {
+/// @param lengths  of version 1, 2, …
+Refusal check(std::span<const std::byte> bytes, std::span<const std::size_t> lengths, std::uint32_t magic) noexcept {
   constexpr std::size_t kHead = sizeof(std::uint32_t) + sizeof(std::uint16_t);
   if (bytes.size() < kHead) return Refusal::length;
   Reading head(bytes);
   if (head.get<std::uint32_t>() != magic) return Refusal::magic;
-  if (head.get<std::uint16_t>() != kDatagramVersion) return Refusal::version;
-  if (bytes.size() != length) return Refusal::length;
+  const auto version = head.get<std::uint16_t>();
+  if (version < 1 || version > lengths.size()) return Refusal::version;
+  if (bytes.size() != lengths[version - 1U]) return Refusal::length;
   if (Reading(bytes.last(kChecksumBytes)).get<std::uint32_t>() != checksum_of(bytes)) return Refusal::checksum;
   return Refusal::none;
 }
@@ -105,13 +110,14 @@ std::string_view text(Refusal refusal) {
   return "";
 }
 
-std::array<std::byte, kStateBytes> encode(const StateDatagram& d) noexcept {
-  std::array<std::byte, kStateBytes> bytes{};
+StateBytes encode(const StateDatagram& d) noexcept {
+  StateBytes bytes(kStateLengths[d.version >= kNewestStateVersion ? 1 : 0]);
   Writing out(bytes);
   out.put(kStateMagic);
-  out.put(kDatagramVersion);
+  out.put(d.version);
   out.put(static_cast<std::uint16_t>(flag(d.raw.stop, kStop) | flag(d.enabled, kMotorsOn) | flag(d.has_force, kForce) |
-                                     flag(d.has_acceleration, kAcceleration) | flag(d.watchdog_expired, kExpired)));
+                                     flag(d.has_acceleration, kAcceleration) | flag(d.watchdog_expired, kExpired) |
+                                     flag(d.version >= 2 && d.drives_measure, kDrivesMeasure)));
   out.put(d.session);
   out.put(d.rejected);
   out.put(d.raw.sequence);
@@ -120,6 +126,10 @@ std::array<std::byte, kStateBytes> encode(const StateDatagram& d) noexcept {
   out.put(d.raw.encoder);
   out.put(d.raw.force);
   out.put(d.raw.acceleration);
+  if (d.version >= 2) {
+    out.put(d.measured);
+    out.put(d.fault);
+  }
   seal(bytes);
   return bytes;
 }
@@ -128,7 +138,7 @@ std::array<std::byte, kCommandBytes> encode(const CommandDatagram& d) noexcept {
   std::array<std::byte, kCommandBytes> bytes{};
   Writing out(bytes);
   out.put(kCommandMagic);
-  out.put(kDatagramVersion);
+  out.put(kCommandVersion);
   out.put(static_cast<std::uint16_t>(flag(d.enabled, kEnabled) | flag(d.greeting, kGreeting) |
                                      flag(d.lock_step, kLockStep)));
   out.put(d.session);
@@ -140,7 +150,8 @@ std::array<std::byte, kCommandBytes> encode(const CommandDatagram& d) noexcept {
 }
 
 Refusal decode(std::span<const std::byte> bytes, StateDatagram& into) noexcept {
-  if (const Refusal refusal = check(bytes, kStateBytes, kStateMagic); refusal != Refusal::none) return refusal;
+  if (const Refusal refusal = check(bytes, kStateLengths, kStateMagic); refusal != Refusal::none) return refusal;
+  into.version = Reading(bytes.subspan(sizeof(std::uint32_t))).get<std::uint16_t>();
   Reading in = body_of(bytes);
   const auto flags = in.get<std::uint16_t>();
   into.raw.stop = (flags & kStop) != 0;
@@ -156,11 +167,14 @@ Refusal decode(std::span<const std::byte> bytes, StateDatagram& into) noexcept {
   into.raw.encoder = in.get_pair();
   into.raw.force = in.get_pair();
   into.raw.acceleration = in.get_pair();
+  into.drives_measure = into.version >= 2 && (flags & kDrivesMeasure) != 0;
+  into.measured = into.version >= 2 ? in.get_pair() : Eigen::Vector2d(0.0, 0.0);
+  into.fault = into.version >= 2 ? in.get<std::uint32_t>() : 0;
   return Refusal::none;
 }
 
 Refusal decode(std::span<const std::byte> bytes, CommandDatagram& into) noexcept {
-  if (const Refusal refusal = check(bytes, kCommandBytes, kCommandMagic); refusal != Refusal::none) return refusal;
+  if (const Refusal refusal = check(bytes, kCommandLengths, kCommandMagic); refusal != Refusal::none) return refusal;
   Reading in = body_of(bytes);
   const auto flags = in.get<std::uint16_t>();
   into.enabled = (flags & kEnabled) != 0;

@@ -13,19 +13,24 @@
 /// four bytes are the CRC-32 (zlib's, polynomial 0xEDB88320) of all before them. docs/guide/devices.md lists the bytes.
 namespace mbk::drivers {
 
-inline constexpr std::uint16_t kDatagramVersion = 1;
-inline constexpr std::size_t kStateBytes = 92, kCommandBytes = 44;
+inline constexpr std::uint16_t kCommandVersion = 1;
+inline constexpr std::uint16_t kNewestStateVersion = 2;  ///< of a state; 1 is accepted too
+inline constexpr std::size_t kStateBytes1 = 92, kStateBytes2 = 112, kCommandBytes = 44;
 
-/// From the robot: one sample.
+/// From the robot: one sample. Version 2 adds what its drives measure and its own fault code.
 struct StateDatagram {
-  std::uint32_t session = 0;      ///< of the last greeting; 0 before the first
-  std::uint32_t rejected = 0;     ///< datagrams that the robot has not believed since it began
-  std::uint64_t answered = 0;     ///< sequence of the newest command that it obeys
-  device::RawState raw;           ///< in the robot's own units, with its own sequence
-  bool enabled = false;           ///< the motors are on
-  bool has_force = true;          ///< a force sensor is fitted
-  bool has_acceleration = true;   ///< an accelerometer is fitted
-  bool watchdog_expired = false;  ///< no command came in time: the motors stay off until the next greeting
+  std::uint16_t version = 1;              ///< 1 or 2
+  std::uint32_t session = 0;              ///< of the last greeting; 0 before the first
+  std::uint32_t rejected = 0;             ///< datagrams that the robot has not believed since it began
+  std::uint64_t answered = 0;             ///< sequence of the newest command that it obeys
+  device::RawState raw;                   ///< in the robot's own units, with its own sequence
+  bool enabled = false;                   ///< the motors are on
+  bool has_force = true;                  ///< a force sensor is fitted
+  bool has_acceleration = true;           ///< an accelerometer is fitted
+  bool watchdog_expired = false;          ///< no command came in time: the motors stay off until the next greeting
+  bool drives_measure = false;            ///< version 2: `measured` is meant
+  Eigen::Vector2d measured = {0.0, 0.0};  ///< version 2: what the drives exert, in the unit of the command
+  std::uint32_t fault = 0;                ///< version 2: the robot's own fault code; 0: none
 };
 
 /// To the robot.
@@ -43,7 +48,27 @@ struct CommandDatagram {
 enum class Refusal : std::uint8_t { none, length, magic, version, checksum };
 [[nodiscard]] std::string_view text(Refusal refusal);
 
-[[nodiscard]] std::array<std::byte, kStateBytes> encode(const StateDatagram& datagram) noexcept;
+/// A state as bytes, as many as its version has.
+class StateBytes {
+ public:
+  StateBytes() = default;
+  explicit StateBytes(std::size_t size) : size_(size) {}
+  [[nodiscard]] std::byte* data() noexcept { return bytes_.data(); }
+  [[nodiscard]] const std::byte* data() const noexcept { return bytes_.data(); }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::byte* begin() noexcept { return bytes_.data(); }
+  [[nodiscard]] std::byte* end() noexcept { return bytes_.data() + size_; }
+  [[nodiscard]] const std::byte* begin() const noexcept { return bytes_.data(); }
+  [[nodiscard]] const std::byte* end() const noexcept { return bytes_.data() + size_; }
+  std::byte& operator[](std::size_t i) noexcept { return bytes_[i]; }
+  bool operator==(const StateBytes&) const = default;
+
+ private:
+  std::array<std::byte, kStateBytes2> bytes_{};
+  std::size_t size_ = kStateBytes1;
+};
+
+[[nodiscard]] StateBytes encode(const StateDatagram& datagram) noexcept;
 [[nodiscard]] std::array<std::byte, kCommandBytes> encode(const CommandDatagram& datagram) noexcept;
 
 /// What stands in `into` is meant only where nothing is refused. A number need not be finite.

@@ -43,6 +43,27 @@ TEST(Datagram, AStateComesBackAsItWas) {
   EXPECT_TRUE(came.watchdog_expired);
 }
 
+TEST(Datagram, AStateOfVersionTwoBringsTorqueAndFaultToo) {
+  StateDatagram sent = some_state();
+  sent.version = 2;
+  sent.drives_measure = true;
+  sent.measured = {0.5, -1.25};
+  sent.fault = 0xE17;
+  const StateBytes bytes = encode(sent);
+  EXPECT_EQ(bytes.size(), 112U);
+  StateDatagram came;
+  ASSERT_EQ(decode(bytes, came), Refusal::none);
+  EXPECT_EQ(encode(came), bytes);
+  EXPECT_EQ(came.measured, sent.measured);
+  EXPECT_EQ(came.fault, 0xE17U);
+  EXPECT_TRUE(came.drives_measure);
+  // one that says version 1 at this length is refused, and so is version 2 cut to the length of version 1
+  StateBytes wrong = bytes;
+  wrong[4] = std::byte{1};
+  EXPECT_EQ(decode(wrong, came), Refusal::length);
+  EXPECT_EQ(decode(std::span(bytes).first(kStateBytes1), came), Refusal::length);
+}
+
 TEST(Datagram, ACommandComesBackAsItWas) {
   const CommandDatagram sent{3, 50, std::numeric_limits<std::uint64_t>::max(), {0.5, -2.0}, true, false, true};
   CommandDatagram came;
@@ -75,7 +96,7 @@ TEST(Datagram, EveryOtherLengthIsRefused) {
   const auto good = encode(some_state());
   std::vector<std::byte> bytes(good.begin(), good.end());
   StateDatagram came;
-  for (std::size_t length = 0; length < kStateBytes; ++length) {
+  for (std::size_t length = 0; length < kStateBytes1; ++length) {
     EXPECT_NE(decode(std::span(bytes).first(length), came), Refusal::none) << length;
   }
   bytes.push_back(std::byte{0});
@@ -86,7 +107,7 @@ TEST(Datagram, AnotherKindOrVersionIsNamed) {
   StateDatagram came;
   EXPECT_EQ(decode(encode(CommandDatagram{}), came), Refusal::magic);
   auto newer = encode(some_state());
-  newer[4] = std::byte{2};
+  newer[4] = std::byte{3};
   EXPECT_EQ(decode(newer, came), Refusal::version);
 }
 

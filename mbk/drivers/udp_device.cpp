@@ -94,7 +94,7 @@ Error UdpDevice::no_answer() const {
 }
 
 void UdpDevice::take_all() noexcept {
-  std::array<std::byte, 2 * kStateBytes> bytes{};
+  std::array<std::byte, 2 * kStateBytes2> bytes{};
   UdpAddress from;
   for (int i = 0; i < kMostAtOnce; ++i) {
     const int size = socket_->receive(bytes, from);
