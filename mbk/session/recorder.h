@@ -21,7 +21,8 @@ using Watch = std::function<void(std::span<const journal::Tick>)>;
 
 /// Takes the loop's ticks to the journal from a thread of its own: a block at least every 50 ms, and a third thread
 /// that waits for the disk, so that a slow disk holds nobody up. Free space is looked at once a second. Where the file
-/// fails, Signals::recording falls, and what could not be written is tried again at the end.
+/// fails, or there is no memory for what comes, Signals::recording falls, and what could not be written is tried again
+/// at the end. A watch that throws is not called again; the recording goes on.
 class Recorder {
  public:
   Recorder(realtime::BoundedRing<journal::Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch);
@@ -30,13 +31,16 @@ class Recorder {
   ~Recorder();
 
   /// Takes what is left, writes the ending and closes the journal. The loop is over.
+  /// @returns  the ending as it was written: with the ticks that were dropped, and what failed besides
   /// @fails  data: ticks could not be written; the message says how many and why.
-  [[nodiscard]] Result<void> finish(journal::Ending ending);
+  [[nodiscard]] Result<journal::Ending> finish(journal::Ending ending);
 
  private:
-  void record();
-  void keep_syncing();
+  void record() noexcept;
+  void keep_syncing() noexcept;
   bool drain();
+  void show(std::span<const journal::Tick> ticks) noexcept;
+  void failed(const char* why) noexcept;
   void write_pending();
   void stop_threads();
 
@@ -46,6 +50,7 @@ class Recorder {
   Watch watch_;
   std::vector<journal::Tick> pending_;
   std::optional<Error> failure_;
+  std::string remark_;  // what failed beside the file: of the recorder's thread until that is over
   std::atomic<bool> over_{false};
   std::mutex mutex_;
   std::condition_variable wake_;

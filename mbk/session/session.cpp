@@ -8,6 +8,7 @@
 
 #include "mbk/core/printable.h"
 #include "mbk/core/version.h"
+#include "mbk/realtime/signal_stack.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/write.h"
 #include "mbk/session/plan.h"
@@ -124,6 +125,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   realtime::BoundedRing<Tick> ring(kRing);
   Recorder recorder(ring, std::move(*writer), *signals_, watch);
   std::thread loop([&] {
+    const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
       run_loop(robot, plan->sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
     } else if (pace_.virtual_clock) {
@@ -139,14 +141,14 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
 
   outcome.trip = gate_->trip();
   outcome.ending = ending_of(*gate_, *signals_, outcome.times);
-  auto closed = recorder.finish(outcome.ending);
-  outcome.ending.dropped = ring.dropped();
+  const auto closed = recorder.finish(outcome.ending);
   if (!closed) {
     Error error = closed.error();
     if (gate_->tripped()) error.message += "; safety stop: " + outcome.ending.detail;
     error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
     return tl::unexpected(error);
   }
+  outcome.ending = *closed;
   if (auto recording = recover(outcome.journal, target, false, false); !recording) {
     return tl::unexpected(recording.error());
   }
