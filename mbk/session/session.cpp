@@ -10,6 +10,7 @@
 
 #include "mbk/core/printable.h"
 #include "mbk/core/version.h"
+#include "mbk/realtime/signal_stack.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/write.h"
 #include "mbk/recording/write_file.h"
@@ -161,6 +162,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   realtime::BoundedRing<Tick> ring(kRing);
   Recorder recorder(ring, std::move(*writer), *signals_, watch);
   std::thread loop([&] {
+    const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
       run_loop(robot, plan->sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
     } else if (pace_.virtual_clock) {
@@ -177,7 +179,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   outcome.trip = gate_->trip();
   outcome.motors = gate_->motors();
   outcome.ending = ending_of(*gate_, *signals_, outcome.times);
-  auto closed = recorder.finish(outcome.ending);
+  const auto closed = recorder.finish(outcome.ending);
   outcome.journal = recorder.journal();
   if (!closed) {
     Error error = closed.error();
@@ -185,6 +187,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
     error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
     return tl::unexpected(error);
   }
+  outcome.ending = *closed;
   const auto recovered = recover(outcome.journal, target, {.ending = outcome.ending});
   if (!recovered) return tl::unexpected(recovered.error());
   outcome.damage = recovered->damage;
