@@ -1,21 +1,15 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string_view>
 
 #include "mbk/core/result.h"
 
 namespace mbk::recording {
 
-/// Makes a file that appears whole or not at all: `fill` writes it under a temporary name in the same folder, then it
-/// is flushed to the disk and renamed. What fails leaves nothing behind.
-/// @param fill writes the file of the given name (which is there, empty, and ours); false where it could not
+/// Makes a file that appears whole or not at all: it is written under a temporary name in the same folder, flushed to
+/// the disk and renamed. What fails leaves nothing behind; only where the folder cannot be flushed the file is there.
 /// @fails  usage: the file is there and `overwrite` is false. data: the folder cannot be written, the disk is full.
-[[nodiscard]] Result<void> write_file(const std::filesystem::path& file, bool overwrite,
-                                      const std::function<bool(const std::filesystem::path& temporary)>& fill);
-
-/// The same for a text.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, bool overwrite, std::string_view text);
 
 }  // namespace mbk::recording
