@@ -35,6 +35,7 @@ struct Arguments {
   std::optional<std::uint64_t> seed;
   std::optional<int> person;
   std::optional<double> speed;
+  std::optional<Readers> readers;
   bool as_fast_as_possible = false, dry_run = false, measure = true, quiet = false;
   ConsoleArguments console;
 };
@@ -56,6 +57,7 @@ Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
   for (Trial& trial : chosen) {
     if (arguments.seed) trial.scenario.seed = *arguments.seed;
     if (arguments.person) trial.person.number = *arguments.person;
+    if (arguments.readers) trial.scenario.readers = *arguments.readers;
   }
   return chosen;
 }
@@ -107,6 +109,14 @@ std::string outcome_text(const session::TrialOutcome& outcome, const session::Pa
     text += fmt::format("  lateness: {}; {} ticks missed\n", time_text(outcome.times.lateness), outcome.times.missed);
     if (!outcome.setup.refused.empty()) text += fmt::format("  {}\n", outcome.setup.refused);
   }
+  return text;
+}
+
+/// What is wrong with the journal, which was kept then.
+std::string damage_text(const session::TrialOutcome& outcome) {
+  std::string text;
+  for (const std::string& sentence : outcome.damage.sentences()) text += fmt::format("  ! {}\n", sentence);
+  if (!text.empty()) text += fmt::format("  the journal is kept: {}\n", outcome.journal.string());
   return text;
 }
 
@@ -178,6 +188,7 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
   if (!outcome) return report_error(outcome.error());
   std::string text = outcome_text(*outcome, pace) + console.finish(*outcome);
   const bool stopped = outcome->trip.reason != safety::Reason::none;
+  text += damage_text(*outcome);
   Measured measured;
   if (!stopped && arguments.measure) {
     measured = measure(*outcome, trial, console);
@@ -185,6 +196,11 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
   }
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
   if (auto ok = console.keep_notes(); !ok) return report_error(ok.error());
+  if (outcome->incomplete) {
+    const int code = report_error({ErrorKind::data, outcome->ending.how,
+                                   "look at the disk before the next trial; the journal is kept", target.string()});
+    return stopped ? kSafetyStop : code;
+  }
   if (console.decides(stopped || measured.poor)) {
     const auto then = console.after_trial(session, stopped);
     repeat = then == AfterTrial::repeat;
@@ -256,7 +272,8 @@ Action add_run(CLI::App& app) {
       "NAME.h5.journal first; where the program or the machine went down, 'mbk recover' makes a recording of it.\n"
       "The gate limits force, torque, speed and place in software; it is no certified safety function. With people,\n"
       "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable, 5 safety stop.");
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost, 4 computed but not usable,\n"
+      "5 safety stop.");
   command->add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
       ->required()
       ->check(suggests(ready_scenario_names()));
@@ -273,6 +290,7 @@ Action add_run(CLI::App& app) {
       ->check(whole_number(1, 999'999));
   command->add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: as fast as the machine can");
   command->add_option("--speed", arguments->speed, "virtual clock: so many seconds for each second")->type_name("X");
+  add_readers_option(*command, arguments->readers);
   command->add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
   command->add_flag("!--no-measure", arguments->measure, "record only");
   command->add_flag("--quiet", arguments->quiet, "no status line");

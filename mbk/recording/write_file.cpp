@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -26,10 +27,10 @@ int write_whole(int descriptor, std::string_view text) {
 }
 
 /// A file that is made here, so that nothing that is there is followed or replaced, and on the disk when this ends.
-int write_new(const fs::path& file, std::string_view text) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+int write_new(const fs::path& file, std::string_view text, std::optional<Readers> readers) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, readers ? 0600 : 0666);
   if (descriptor < 0) return errno;
-  int code = write_whole(descriptor, text);
+  int code = readers && ::fchmod(descriptor, permissions(*readers)) != 0 ? errno : write_whole(descriptor, text);
   if (code == 0 && ::fsync(descriptor) != 0) code = errno;
   if (::close(descriptor) != 0 && code == 0) code = errno;
   return code;
@@ -60,7 +61,7 @@ struct Temporary {
 
 }  // namespace
 
-Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text) {
+Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text, std::optional<Readers> readers) {
   const auto cannot = [&](int code) -> Result<void> {
     if (code == EEXIST) {
       return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
@@ -78,10 +79,18 @@ Result<void> write_file(const fs::path& file, bool overwrite, std::string_view t
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const Temporary temporary{folder / fmt::format(".{}.{}.part", file.filename().string(), ::getpid())};
   ::unlink(temporary.path.c_str());  // of a process of that number that went down
-  if (const int error = write_new(temporary.path, text); error != 0) return cannot(error);
+  if (const int error = write_new(temporary.path, text, readers); error != 0) return cannot(error);
   if (const int error = give_name(temporary.path, file, overwrite); error != 0) return cannot(error);
   if (const int error = flush_names(folder); error != 0) return cannot(error);
   return {};
+}
+
+Readers readers_of(const fs::path& file) {
+  std::error_code code;
+  const fs::perms allowed = fs::status(file, code).permissions();
+  if (code || allowed == fs::perms::unknown) return Readers::owner;
+  if ((allowed & fs::perms::others_read) != fs::perms::none) return Readers::all;
+  return (allowed & fs::perms::group_read) != fs::perms::none ? Readers::group : Readers::owner;
 }
 
 }  // namespace mbk::recording

@@ -66,7 +66,7 @@ LiveEstimate::~LiveEstimate() {
 void LiveEstimate::begin(journal::Header header, measurement::Options options) {
   std::unique_lock lock(mutex_);
   finished_.wait(lock, [&] { return !busy_; });
-  journal_ = {std::move(header), {}, {}, 0};
+  journal_ = {std::move(header), {}, {}, {}};
   incoming_.clear();
   options_ = std::move(options);
   options_.passivity = false;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 
@@ -50,19 +51,50 @@ bool Recorder::drain() {
 
 void Recorder::write_pending() {
   if (pending_.empty()) return;
-  if (auto ok = writer_.append(pending_); !ok) {
-    failure_ = ok.error();
-    signals_.recording = false;
-    if (pending_.size() > kMostPending) pending_.erase(pending_.begin(), pending_.end() - kMostPending);
-    return;
-  }
-  pending_.clear();
+  const std::span<const Tick> all = pending_;
+  std::size_t written = 0;
   failure_.reset();
+  while (written < all.size() && !failure_) {
+    const auto block = all.subspan(written, std::min(all.size() - written, journal::Writer::kLongest));
+    if (auto ok = writer_.append(block); !ok) failure_ = ok.error();
+    if (!failure_) written += block.size();
+  }
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
+  if (failure_) {
+    signals_.recording = false;
+    const std::size_t over = pending_.size() - std::min(pending_.size(), kMostPending);
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(over));
+    given_up_ += over;
+  }
+  if (written == 0) return;
   {
     const std::scoped_lock lock(mutex_);
     dirty_ = true;
   }
   wake_.notify_all();
+}
+
+void Recorder::look_after_file() {
+  using Place = journal::Writer::Place;
+  const Place place = writer_.place();
+  if (place != Place::here) {
+    signals_.recording = false;
+    const std::string lost_name = writer_.file().string();
+    if (place == Place::cut && remark_.empty()) {
+      remark_ = fmt::format("{} was cut short by another program while it was written", lost_name);
+    } else if (place == Place::gone) {
+      const auto saved = writer_.save_elsewhere();
+      misplaced_ = saved ? std::nullopt : std::optional(saved.error());
+      if (saved) {
+        remark_ = fmt::format("{} was removed or replaced while it was written; what it held went on in {}", lost_name,
+                              writer_.file().filename().string());
+      }
+    }
+  }
+  const std::filesystem::path folder = writer_.file().parent_path();
+  std::error_code error;
+  const auto space = std::filesystem::space(folder.empty() ? std::filesystem::path(".") : folder, error);
+  if (!error && space.available < kLeastSpace) signals_.recording = false;
 }
 
 void Recorder::record() {
@@ -76,10 +108,7 @@ void Recorder::record() {
     }
     if (Clock::now() >= next_look) {
       next_look = Clock::now() + 1s;
-      std::error_code error;
-      const auto space = std::filesystem::space(
-          writer_.file().parent_path().empty() ? std::filesystem::path(".") : writer_.file().parent_path(), error);
-      if (!error && space.available < kLeastSpace) signals_.recording = false;
+      look_after_file();
     }
     if (!more) std::this_thread::sleep_for(5ms);
   }
@@ -95,16 +124,19 @@ void Recorder::keep_syncing() {
     if (!dirty_) return;
     dirty_ = false;
     lock.unlock();
-    if (!writer_.sync()) signals_.recording = false;
+    if (!writer_.reaches_disk()) signals_.recording = false;
     lock.lock();
   }
 }
 
-Result<void> Recorder::finish(journal::Ending ending) {
+Result<void> Recorder::finish(journal::Ending& ending) {
   stop_threads();
+  look_after_file();
   write_pending();
-  ending.dropped = ticks_.dropped() + pending_.size();
+  ending.dropped = ticks_.dropped() + pending_.size() + given_up_;
+  if (!remark_.empty()) ending.detail += (ending.detail.empty() ? "" : "; ") + remark_;
   const auto ended = writer_.end(ending);
+  if (misplaced_) return tl::unexpected(*misplaced_);
   if (!pending_.empty() && failure_) {
     Error error = *failure_;
     error.message = fmt::format("{} ticks were not written: {}", pending_.size(), error.message);

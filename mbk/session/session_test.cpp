@@ -56,6 +56,7 @@ class SessionFolder : public testing::Test {
   }
 
   static constexpr Pace kFast{true, 0.0};
+  static inline const RecoverOptions kKeep{.keep = true};
   fs::path folder_, target_;
 };
 
@@ -146,12 +147,13 @@ TEST_F(SessionFolder, AnUnfinishedJournalIsRecovered) {
   {
     auto writer = journal::Writer::create(journal_of(target_), journal::Header{}, 10).value();
     std::vector<journal::Tick> ticks(500);
-    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = 1e-3 * static_cast<double>(i);
+    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = 1e-3 * static_cast<double>(ticks[i].number = i);
     ASSERT_TRUE(writer.append(ticks));
   }
-  const auto recovered = recover(journal_of(target_), target_, false, false);
+  const auto recovered = recover(journal_of(target_), target_);
   ASSERT_TRUE(recovered) << recovered.error().line();
-  EXPECT_EQ(recovered->samples(), 500);
+  EXPECT_EQ(recovered->recording.samples(), 500);
+  EXPECT_TRUE(recovered->removed);
   EXPECT_EQ(recording::read(target_, {})->metadata.at("ended"), "interrupted");
   EXPECT_FALSE(fs::exists(journal_of(target_)));
 }
@@ -161,16 +163,19 @@ TEST_F(SessionFolder, RecoversAsOftenAsOneLikesAndReplacesNothingElse) {
     fs::remove(journal_of(target_));
     auto writer = journal::Writer::create(journal_of(target_), journal::Header{}, 10).value();
     std::vector<journal::Tick> ticks(50);
-    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = first + 1e-3 * static_cast<double>(i);
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      ticks[i].number = i;
+      ticks[i].time = first + 1e-3 * static_cast<double>(i);
+    }
     ASSERT_TRUE(writer.append(ticks));
   };
   write_journal(0.0);
-  ASSERT_TRUE(recover(journal_of(target_), target_, false, true));
+  ASSERT_TRUE(recover(journal_of(target_), target_, kKeep));
   const auto made = fs::last_write_time(target_);
-  EXPECT_TRUE(recover(journal_of(target_), target_, false, true));
+  EXPECT_TRUE(recover(journal_of(target_), target_, kKeep));
   EXPECT_EQ(fs::last_write_time(target_), made);
   write_journal(0.5);
-  const auto refused = recover(journal_of(target_), target_, false, false);
+  const auto refused = recover(journal_of(target_), target_);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   EXPECT_EQ(fs::last_write_time(target_), made);
