@@ -1,13 +1,17 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <cerrno>
+#include <exception>
 #include <memory>
 #include <new>
+#include <string_view>
 #include <vector>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/memory.h"
+#include "apps/mbk/output.h"
 #include "mbk/core/version.h"
 #include "mbk/report/text.h"
 
@@ -43,9 +47,17 @@ std::string one_line(const CLI::App* app, const CLI::Error& error) {
   return fmt::format("mbk: '{}' is no command; see 'mbk --help'\n", words.front());
 }
 
-}  // namespace
+/// On standard error where there is no memory to make a line in. What cannot be written is lost: the exit code tells.
+void say_plainly(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const ssize_t wrote = write(STDERR_FILENO, text.data(), text.size());
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(wrote));
+  }
+}
 
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   mbk::app::prefer_large_pages();
   CLI::App app{
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
@@ -88,13 +100,23 @@ int main(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? 0 : 2;
   }
-  try {
-    for (const auto& [name, action] : commands) {
-      if (app.got_subcommand(name)) return action();
-    }
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "mbk: not enough memory for this recording; choose a part of it with --from and --to\n");
-    return 3;
+  for (const auto& [name, action] : commands) {
+    if (app.got_subcommand(name)) return action();
   }
-  return 2;
+  return mbk::app::kWrongUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    say_plainly("mbk: not enough memory; of a recording choose a part with --from and --to\n");
+  } catch (const std::exception& error) {
+    say_plainly("mbk: ");
+    say_plainly(error.what());
+    say_plainly("; nothing more was done\n");
+  }
+  return mbk::app::kBadData;
 }
