@@ -383,7 +383,20 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
   return real(thread, attributes, work, argument);
 }
 
-// A thread that blocks SIGSYS would be killed at its next system call.
+// SIGSYS stays the shim's: a thread that blocks it would be killed at its next system call.
+int sigaction(int signal, const struct sigaction* action, struct sigaction* old) {
+  static int (*real)(int, const struct sigaction*, struct sigaction*);
+  if (real == NULL) *(void**)&real = dlsym(RTLD_NEXT, "sigaction");
+  if (signal == SIGSYS && counts != &before_the_file) {
+    if (old != NULL) memset(old, 0, sizeof *old);
+    return 0;
+  }
+  if (action == NULL) return real(signal, action, old);
+  struct sigaction without = *action;
+  sigdelset(&without.sa_mask, SIGSYS);
+  return real(signal, &without, old);
+}
+
 static const sigset_t* without_sigsys(int how, const sigset_t* set, sigset_t* copy) {
   if (set == NULL || how == SIG_UNBLOCK) return set;
   *copy = *set;

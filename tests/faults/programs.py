@@ -225,7 +225,7 @@ class Task:
         if ran.code < 0:
             return f"death by {signal.Signals(-ran.code).name}"
         told = self.was_told(ran, fault)
-        return told or self.judge_files(ran, folder) or ""
+        return told or self.judge_files(ran, folder, fault) or ""
 
     def was_told(self, ran, fault):
         if ran.code == FINE and self.shown(ran.out) != self.shown(self.reference.out):
@@ -239,7 +239,7 @@ class Task:
         """What two runs without a fault print alike."""
         return out
 
-    def judge_files(self, ran, folder):
+    def judge_files(self, ran, folder, fault):
         left = contents(folder)
         for name, before in contents(self.inputs).items():
             if name not in self.outputs and left.get(name) != before and not self.may_go(name, left):
@@ -334,15 +334,17 @@ class Session(Task):
             return ""
         return super().was_told(ran, fault)
 
-    def judge_files(self, ran, folder):
-        return self.judge_robot(ran) or self.judge_rows(ran, folder)
+    def judge_files(self, ran, folder, fault):
+        return self.judge_robot(ran, fault) or self.judge_rows(ran, folder)
 
-    def judge_robot(self, ran):
+    def judge_robot(self, ran, fault):
         """The motors end without torque: off, and before that on a ramp."""
         commands = ran.robot.commands
         driven = [k for k, (enabled, *_) in enumerate(commands) if enabled]
         if not driven:
             return ""
+        if fault.group == "socket" and fault.sticky:
+            return ""  # nothing reaches it any more: its own watchdog has to switch off
         if driven[-1] == len(commands) - 1:
             return "the robot's last command leaves the motors on"
         size = [max(abs(one), abs(other)) for _, one, other in commands]
