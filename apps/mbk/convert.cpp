@@ -4,6 +4,7 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "mbk/recording/write.h"
 
@@ -55,11 +56,10 @@ int run(Arguments arguments) {
     return report_error(ok.error());
   }
   for (const std::string& lost : recording::lost_in(recording, *format)) {
-    fmt::print(stderr, "mbk: {}: not written: {}\n", output.file->string(), lost);
+    say("mbk: {}: not written: {}\n", output.file->string(), lost);
   }
   if (reading.quiet) return kFine;
-  for (const std::string& note : recording.notes)
-    fmt::print(stderr, "mbk: {}: {}\n", reading.files.front().string(), note);
+  for (const std::string& note : recording.notes) say("mbk: {}: {}\n", reading.files.front().string(), note);
   if (auto ok = Output().write(summary_line(recording, *output.file, *format)); !ok) return report_error(ok.error());
   return kFine;
 }

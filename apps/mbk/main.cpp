@@ -6,12 +6,15 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/memory.h"
+#include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/process.h"
 #include "mbk/core/version.h"
 #include "mbk/report/text.h"
 
@@ -97,8 +100,12 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
+    std::ostringstream out, wrong;
+    for (auto* stream : {&out, &wrong}) stream->exceptions(std::ios::badbit);  // where there is no memory
+    const int code = app.exit(error, out, wrong);
+    mbk::app::say_text(wrong.str());
+    if (auto ok = mbk::app::Output().write(out.str()); !ok) return mbk::app::report_error(ok.error());
+    return code == 0 ? mbk::app::kFine : mbk::app::kWrongUsage;
   }
   for (const auto& [name, action] : commands) {
     if (app.got_subcommand(name)) return action();
@@ -109,6 +116,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  mbk::app::prepare_process();
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

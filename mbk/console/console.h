@@ -28,6 +28,16 @@ enum class Question {
   reset,  ///< after a stop
 };
 
+/// What the robot says of itself between trials, and after one.
+struct RobotStatus {
+  std::string motors = "unknown";     ///< "on", "off"
+  std::optional<bool> confirmed_off;  ///< absent: it does not say
+  bool stop_button = false;           ///< pressed
+  bool link = false;
+  std::uint32_t fault = 0;  ///< its own code; 0: none
+  std::string sentence;     ///< for people
+};
+
 /// The pages of a session: what happens is shown, and what is asked for there is done. Fed by the recorder, never by
 /// the loop: the loop sees nothing of it but Signals.
 class Console {
@@ -69,13 +79,16 @@ class Console {
   void show_report(std::string html, std::string why = "");
 
   /// Asks the page, and waits until it decides: start, repeat, next, abort or reset; or a note came, and the question
-  /// is to be asked again. A stop while it waits asks for a reset before anything else.
+  /// is to be asked again. A stop while it waits asks for a reset before anything else. Where the program is asked to
+  /// end (Signals::end_session) the answer is abort.
   [[nodiscard]] Action ask(Question question);
+
+  void show_robot(const RobotStatus& status);
 
   /// What the answer came to, where it could not be done.
   void say(std::string message);
 
-  /// The session is over: waits until nobody watches any more.
+  /// The session is over: waits until nobody watches any more, or Signals::end_session.
   void wait_until_left();
 
   /// Remarks that belong to the recording of the trial that is running or was last, and are not in it yet.
@@ -126,6 +139,7 @@ class Console {
   Times times_;
   std::array<Times, 2> times_apart_;  // without pages, with pages
   safety::Trip trip_;
+  RobotStatus robot_;
   Message estimate_;
   int beats_ = 0;
   std::uintmax_t disk_free_ = 0;

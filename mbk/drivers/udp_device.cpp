@@ -19,6 +19,10 @@ constexpr double kAskAgain = 0.02;                                   // [s]
 constexpr int kMostAtOnce = 256;  // datagrams of one tick: a flood must not hold the loop up
 constexpr int kGoodbyes = 5;
 
+/// Of the last words: beyond any that a session reaches, exact as a double, and the highest where a robot keeps the low
+/// 31 or 32 bits alone and takes them for a signed number.
+constexpr std::uint64_t kLastSequence = (std::uint64_t{1} << 52U) + 0x7FFFFFFFU;
+
 std::int64_t after(double seconds) noexcept {
   return monotonic_ns() + std::llround(1e9 * seconds);
 }
@@ -34,6 +38,7 @@ UdpDevice::UdpDevice(UdpOptions options, const Fittings& fittings) : options_(st
   facts_.has_force = fittings.has_force;
   facts_.has_acceleration = fittings.has_acceleration;
   facts_.keeps_time = !options_.lock_step;
+  facts_.acknowledges = true;
   facts_.force_latency = fittings.force_latency;
 }
 
@@ -53,6 +58,7 @@ Result<void> UdpDevice::start() {
   if (!robot) return tl::unexpected(robot.error());
   auto socket = UdpSocket::open({0, options_.local_port});
   if (!socket) return tl::unexpected(socket.error());
+  has_last_words_ = false;
   robot_ = *robot;
   socket_ = std::move(*socket);
   counts_ = {};
@@ -64,12 +70,21 @@ Result<void> UdpDevice::start() {
   last_.greeting = true;
   last_.lock_step = options_.lock_step;
   last_.sequence = 1;
+  CommandDatagram off = last_;
+  off.greeting = false;
+  off.sequence = kLastSequence;
+  last_words_ = encode(off);
+  has_last_words_ = true;
   for (const std::int64_t until = after(options_.answer_within); !heard_ && monotonic_ns() < until;) {
     if (!send_last()) break;
     if (socket_->wait(kAskAgain)) take_all();
   }
   last_.greeting = false;
   if (!heard_) return tl::unexpected(no_answer());
+  if (newest_.enabled) {
+    return bad_data(fmt::format("{}: the robot says that its motors are on, before any command", facts_.name),
+                    "switch them off at the robot: its program must answer a greeting with its motors off");
+  }
   const auto differs = [&](const char* what, const char* key, bool sent, bool expected) -> Result<void> {
     if (sent == expected) return {};
     return bad_data(fmt::format("{}: of {} the robot has {}, and the experiment expects {}", facts_.name, what,
@@ -144,7 +159,15 @@ bool UdpDevice::read(device::State& state) noexcept {
     take_all();
   }
   state = fittings_.wiring.state(newest_.raw);
-  return !broken_ && !newest_.watchdog_expired;
+  state.answered = newest_.answered > 0 ? newest_.answered - 1 : 0;  // the greeting is no command
+  state.motors = newest_.enabled ? device::Motors::on : device::Motors::off;
+  state.has_force = newest_.has_force;
+  state.has_acceleration = newest_.has_acceleration;
+  state.watchdog_expired = newest_.watchdog_expired;
+  state.drives_measure = newest_.drives_measure;
+  state.drive_torque = fittings_.wiring.torque(newest_.measured);
+  state.fault = newest_.fault;
+  return !broken_;
 }
 
 bool UdpDevice::send_last() noexcept {
@@ -168,6 +191,11 @@ void UdpDevice::stop() noexcept {
     nanosleep(&kPause, nullptr);
     send_last();
   }
+}
+
+void UdpDevice::emergency_off() noexcept {
+  if (!has_last_words_) return;
+  for (int i = 0; i < kGoodbyes; ++i) socket_->send(last_words_, robot_);
 }
 
 }  // namespace mbk::drivers

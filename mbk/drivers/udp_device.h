@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -26,9 +28,10 @@ struct UdpOptions {
 
 /// A robot that is reached by datagrams (datagram.h). `start` greets it with a number of its own, so that what belongs
 /// to an earlier session counts for neither side. `read` takes the newest state that has come; what comes from someone
-/// else, is broken, or is older than what came before is not believed, but counted. The link is broken where the
-/// network is not there, or where the robot says that its watchdog has expired. In lock-step `read` waits for the
-/// answer to the last command, and asks again where it gets lost.
+/// else, is broken, or is older than what came before is not believed, but counted. What the robot reports of itself (the
+/// command that it obeys, motors, sensors, watchdog, fault) is passed on; the gate judges it. The link is broken where
+/// the network is not there. In lock-step `read` waits for the answer to the last command, and asks again where it gets
+/// lost.
 class UdpDevice : public device::Device {
  public:
   /// What came and what did not, since `start`.
@@ -46,14 +49,18 @@ class UdpDevice : public device::Device {
 
   [[nodiscard]] const device::Facts& facts() const override { return facts_; }
 
-  /// @fails  data: the address is not known; the port is taken; no answer, with what came instead; the robot has other
-  ///         sensors than `fittings` says.
+  /// @fails  data: the address is not known; the port is taken; no answer, with what came instead; the robot's motors
+  ///         are on; it has other sensors than `fittings` says.
   [[nodiscard]] Result<void> start() override;
   bool read(device::State& state) noexcept override;
   bool write(const device::Command& command) noexcept override;
 
   /// Says "motors off" several times, so that one lost datagram does no harm.
   void stop() noexcept override;
+
+  /// Sends "motors off", encoded in `start`, with a sequence beyond every other of the session: no command that is
+  /// still under way, or that another thread of the dying program still sends, is believed after it.
+  void emergency_off() noexcept override;
 
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
@@ -76,6 +83,8 @@ class UdpDevice : public device::Device {
   CommandDatagram last_;
   StateDatagram newest_;
   bool heard_ = false, broken_ = false;
+  std::array<std::byte, kCommandBytes> last_words_{};
+  std::atomic<bool> has_last_words_{false};
 };
 
 }  // namespace mbk::drivers

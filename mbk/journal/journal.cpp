@@ -58,7 +58,9 @@ std::string text_of(const Ending& ending) {
                {"detail", ending.detail},
                {"dropped", ending.dropped},
                {"overruns", ending.overruns},
-               {"ticks", ending.ticks}});
+               {"ticks", ending.ticks},
+               {"trip", ending.trip},
+               {"motors", ending.motors}});
 }
 
 /// Not to be met twice, and no secret.

@@ -36,6 +36,8 @@ struct Ending {
   std::uint64_t dropped = 0;   ///< ticks that did not reach the file
   std::uint64_t overruns = 0;  ///< ticks that went by without a wake-up
   std::uint64_t ticks = 0;     ///< that the loop made, with those that were dropped; 0: not said
+  std::string trip;            ///< code of the safety stop; empty without one
+  std::string motors;          ///< what is known of the motors after it: safety::sentence; empty: nothing
 };
 
 /// Writes a trial tick by tick to a file that is only ever appended to, in blocks with a checksum each, so that

@@ -243,9 +243,10 @@ Header header_of(const Json& json) {
 }
 
 Ending ending_of(const Json& json) {
-  Ending ending{printable(json.at("how").get<std::string>()), printable(json.at("detail").get<std::string>()),
-                json.at("dropped").get<std::uint64_t>(), json.at("overruns").get<std::uint64_t>(),
-                json.value("ticks", std::uint64_t{0})};
+  Ending ending{printable(json.at("how").get<std::string>()),  printable(json.at("detail").get<std::string>()),
+                json.at("dropped").get<std::uint64_t>(),       json.at("overruns").get<std::uint64_t>(),
+                json.value("ticks", std::uint64_t{0}),         printable(json.value("trip", std::string())),
+                printable(json.value("motors", std::string()))};
   if (ending.ticks > kLargestNumber) throw std::runtime_error("more ticks than there can be");
   return ending;
 }

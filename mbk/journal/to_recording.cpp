@@ -134,12 +134,14 @@ void add_events(Recording& recording, const Journal& journal) {
 /// Says how the trial ended, and what of it is missing.
 void add_ending(Recording& recording, const Journal& journal, const Rows& rows) {
   const Ending ending =
-      journal.ending.value_or(Ending{"interrupted", "the program or the machine went down while it recorded", 0, 0, 0});
+      journal.ending.value_or(Ending{"interrupted", "the program or the machine went down while it recorded"});
   auto& metadata = recording.metadata;
   metadata["ended"] = journal.ended();
   std::string detail = ending.detail;
   if (!journal.ending && journal.damage.bytes > 0) detail += ", or the end of the journal is damaged";
   if (!detail.empty()) metadata["ended_detail"] = detail;
+  if (!ending.trip.empty()) metadata["trip"] = ending.trip;
+  if (!ending.motors.empty()) metadata["motors_off"] = ending.motors;
   if (ending.dropped > 0) metadata["ticks_dropped"] = std::to_string(ending.dropped);
   if (ending.overruns > 0) metadata["ticks_missed"] = std::to_string(ending.overruns);
   if (!journal.damage.any()) return;

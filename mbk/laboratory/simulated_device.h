@@ -37,6 +37,7 @@ class SimulatedDevice : public device::Device {
   SensorSuite sensors_;
   SensorSuite::Reading reading_{};
   std::uint64_t sequence_ = 0;
+  bool enabled_ = false;
 };
 
 }  // namespace mbk::laboratory

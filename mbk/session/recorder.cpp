@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <filesystem>
+
+#include "mbk/realtime/signal_stack.h"
 
 namespace mbk::session {
 namespace {
@@ -21,8 +24,13 @@ constexpr std::uintmax_t kLeastSpace = 16 << 20;  // [bytes] beside what is rese
 
 Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch)
     : ticks_(ticks), writer_(std::move(writer)), signals_(signals), watch_(std::move(watch)) {
-  recording_ = std::thread([this] { record(); });
-  syncing_ = std::thread([this] { keep_syncing(); });
+  try {
+    recording_ = std::thread([this] { record(); });
+    syncing_ = std::thread([this] { keep_syncing(); });
+  } catch (...) {
+    stop_threads();
+    throw;
+  }
 }
 
 Recorder::~Recorder() {
@@ -45,8 +53,29 @@ bool Recorder::drain() {
   pending_.resize(before + kBlock);
   const std::size_t came = ticks_.pop(pending_.data() + before, kBlock);
   pending_.resize(before + came);
-  if (watch_ && came > 0) watch_(std::span(pending_).subspan(before));
+  if (watch_ && came > 0) show(std::span(pending_).subspan(before));
   return came == kBlock;
+}
+
+void Recorder::show(std::span<const Tick> ticks) noexcept {
+  try {
+    try {
+      watch_(ticks);
+    } catch (const std::exception& error) {
+      watch_ = nullptr;
+      remark_ = fmt::format("nothing was shown from tick {} on: {}", ticks.front().number, error.what());
+    }
+  } catch (...) {  // of another kind, or no memory to say so
+    watch_ = nullptr;
+  }
+}
+
+void Recorder::failed(const char* why) noexcept {
+  signals_.recording = false;
+  try {
+    remark_ = fmt::format("the recorder failed: {}", why);
+  } catch (...) {  // the ticks that are missing tell of it
+  }
 }
 
 void Recorder::write_pending() {
@@ -97,27 +126,39 @@ void Recorder::look_after_file() {
   if (!error && space.available < kLeastSpace) signals_.recording = false;
 }
 
-void Recorder::record() {
+void Recorder::record() noexcept {
+  const realtime::SignalStack stack;
   using Clock = std::chrono::steady_clock;
   auto next_block = Clock::now() + kBlockTime, next_look = Clock::now();
   while (!over_) {
-    const bool more = drain();
-    if (more || Clock::now() >= next_block) {
-      write_pending();
-      next_block = Clock::now() + kBlockTime;
-    }
-    if (Clock::now() >= next_look) {
-      next_look = Clock::now() + 1s;
-      look_after_file();
+    bool more = false;
+    try {
+      more = drain();
+      if (more || Clock::now() >= next_block) {
+        write_pending();
+        next_block = Clock::now() + kBlockTime;
+      }
+      if (Clock::now() >= next_look) {
+        next_look = Clock::now() + 1s;
+        look_after_file();
+      }
+    } catch (const std::exception& error) {
+      failed(error.what());
+      more = false;
     }
     if (!more) std::this_thread::sleep_for(5ms);
   }
-  while (drain()) {
+  try {
+    while (drain()) {
+    }
+    write_pending();
+  } catch (const std::exception& error) {
+    failed(error.what());
   }
-  write_pending();
 }
 
-void Recorder::keep_syncing() {
+void Recorder::keep_syncing() noexcept {
+  const realtime::SignalStack stack;
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [&] { return dirty_ || closing_; });
@@ -129,8 +170,10 @@ void Recorder::keep_syncing() {
   }
 }
 
-Result<void> Recorder::finish(journal::Ending& ending) {
+Result<journal::Ending> Recorder::finish(journal::Ending ending) {
   stop_threads();
+  while (drain()) {
+  }
   look_after_file();
   write_pending();
   ending.dropped = ticks_.dropped() + pending_.size() + given_up_;
@@ -142,7 +185,8 @@ Result<void> Recorder::finish(journal::Ending& ending) {
     error.message = fmt::format("{} ticks were not written: {}", pending_.size(), error.message);
     return tl::unexpected(error);
   }
-  return ended;
+  if (!ended) return tl::unexpected(ended.error());
+  return ending;
 }
 
 }  // namespace mbk::session

@@ -10,6 +10,7 @@
 
 #include "mbk/core/printable.h"
 #include "mbk/core/version.h"
+#include "mbk/realtime/signal_stack.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/write.h"
 #include "mbk/recording/write_file.h"
@@ -36,10 +37,24 @@ std::string now_text() {
 journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
   journal::Ending ending;
   ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
-  if (gate.tripped()) ending.detail = safety::sentence(gate.trip());
+  if (gate.tripped()) {
+    ending.detail = safety::sentence(gate.trip());
+    ending.trip = safety::code(gate.trip().reason);
+  }
+  ending.motors = safety::sentence(gate.motors());
   ending.overruns = times.missed;
   ending.ticks = times.ticks;
   return ending;
+}
+
+/// Starts the robot, and looks at its stop button before anything moves.
+Result<void> start(device::Device& robot) {
+  if (auto ok = robot.start(); !ok) return ok;
+  device::State state;
+  robot.read(state);
+  if (!state.stop) return {};
+  robot.stop();
+  return bad_usage(fmt::format("{}: the stop button is pressed", robot.facts().name), "release it, then begin again");
 }
 
 /// To the bit, but that one NaN is as good as another.
@@ -109,7 +124,13 @@ fs::path journal_of(const fs::path& recording) {
   return recording.string() + ".journal";
 }
 
+void Session::see_idle(const IdleState& state) {
+  const std::scoped_lock lock(gate_mutex_);
+  if (gate_) gate_->see_idle(state.stop_button, state.confirmed_off);
+}
+
 Result<void> Session::reset() {
+  const std::scoped_lock lock(gate_mutex_);
   if (gate_) {
     if (auto ok = gate_->reset(); !ok) return ok;
   }
@@ -145,7 +166,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   auto writer = journal::Writer::create(outcome.journal, header_of(trial, robot.facts(), plan->schedule), expected);
   if (!writer) return tl::unexpected(writer.error());
   NotBegun guard{outcome.journal};
-  if (auto ok = robot.start(); !ok) return tl::unexpected(ok.error());
+  if (auto ok = start(robot); !ok) return tl::unexpected(ok.error());
   guard.robot = &robot;
 
   gate_ = std::move(plan->gate);
@@ -154,6 +175,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   realtime::BoundedRing<Tick> ring(kRing);
   Recorder recorder(ring, std::move(*writer), *signals_, watch);
   std::thread loop([&] {
+    const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
       run_loop(robot, plan->sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
     } else if (pace_.virtual_clock) {
@@ -169,8 +191,9 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   loop.join();
 
   outcome.trip = gate_->trip();
+  outcome.motors = gate_->motors();
   outcome.ending = ending_of(*gate_, *signals_, outcome.times);
-  auto closed = recorder.finish(outcome.ending);
+  const auto closed = recorder.finish(outcome.ending);
   outcome.journal = recorder.journal();
   if (!closed) {
     Error error = closed.error();
@@ -178,6 +201,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
     error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
     return tl::unexpected(error);
   }
+  outcome.ending = *closed;
   const auto recovered = recover(outcome.journal, target, {.ending = outcome.ending});
   if (!recovered) return tl::unexpected(recovered.error());
   outcome.damage = recovered->damage;

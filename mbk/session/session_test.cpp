@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/recording/read.h"
@@ -102,6 +103,30 @@ TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
   EXPECT_NE(refused.error().line().find("reset"), std::string::npos);
   ASSERT_TRUE(session.reset());
   EXPECT_TRUE(session.perform(*second, t, folder_ / "second.h5"));
+}
+
+TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
+  const Trial t = trial();
+  for (const bool known : {true, false}) {
+    auto robot = SimulatedDevice::create(t.scenario).value();
+    Session session(kFast);
+    int calls = 0;
+    const fs::path target = folder_ / (known ? "known.h5" : "unknown.h5");
+    const auto outcome = session.perform(*robot, t, target, [&](std::span<const journal::Tick>) {
+      if (++calls < 3) return;
+      if (known) throw std::runtime_error("the screen is broken");
+      throw 3;
+    });
+    ASSERT_TRUE(outcome) << outcome.error().line();
+    EXPECT_EQ(calls, 3);
+    EXPECT_EQ(outcome->ending.how, "completed");
+    EXPECT_EQ(outcome->trip.reason, safety::Reason::none);
+    EXPECT_EQ(outcome->ending.detail.find("the screen is broken") != std::string::npos, known);
+    const auto recording = recording::read(target, {});
+    ASSERT_TRUE(recording) << recording.error().line();
+    EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
+    if (known) EXPECT_NE(recording->metadata.at("ended_detail").find("nothing was shown from tick"), std::string::npos);
+  }
 }
 
 TEST_F(SessionFolder, EndsEarlyWhenAsked) {
