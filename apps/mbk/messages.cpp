@@ -100,8 +100,8 @@ void say_text(std::string_view text) noexcept {
     const int error = write_whole(text);
     const std::scoped_lock lock(all.mutex);
     if (error != 0) all.lose(1, error);
-  } catch (...) {
-    count_lost_message();
+  } catch (...) {  // no memory to keep it in
+    if (write_whole(text) != 0) count_lost_message();
   }
 }
 
