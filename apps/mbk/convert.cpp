@@ -5,6 +5,7 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/readers_option.h"
 #include "mbk/recording/write.h"
 
 namespace mbk::app {
