@@ -219,7 +219,10 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
     if (auto ok = session::annotate(outcome->recording, notes); !ok) return report_error(ok.error());
   }
   if (auto ok = console.keep_notes(); !ok) return report_error(ok.error());
-  if (!written) return report_error(written.error());
+  if (!written) {
+    const int code = report_error(written.error());
+    return stopped ? kSafetyStop : code;
+  }
   if (signals.end_session) return stopped ? kSafetyStop : kFine;
   if (console.decides(stopped || measured.poor)) {
     const auto then = console.after_trial(session, stopped);
