@@ -10,7 +10,6 @@ namespace mbk::numeric {
 /// `done(i)` after each, never two at a time. What the calls write must be apart for each i; then nothing depends on
 /// the number of threads or their order.
 /// @fails  where a call fails: with the error of the smallest such i that was reached; no new ones are begun after it.
-/// An exception of a call is thrown on to the caller once the threads are over.
 [[nodiscard]] Result<void> parallel_for(int count, unsigned threads, const std::function<Result<void>(int)>& work,
                                         const std::function<void(int)>& done = {});
 

@@ -22,7 +22,7 @@ void crash() {
   const char* const how = std::getenv("MBK_CRASH");
   if (how == nullptr) return;
   if (std::strcmp(how, "pointer") == 0) {
-    int* volatile nowhere = nullptr;
+    volatile int* volatile nowhere = nullptr;
     *nowhere = 1;
   }
   if (std::strcmp(how, "stack") == 0) overflow(how, 0);
