@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <new>
@@ -58,6 +60,31 @@ void say_plainly(std::string_view text) noexcept {
     if (wrote <= 0) return;
     text.remove_prefix(static_cast<std::size_t>(wrote));
   }
+}
+
+constexpr std::string_view kNoMemory = "mbk: not enough memory; of a recording choose a part with --from and --to\n";
+
+/// Where an exception has nowhere to go: before main begins, and out of a destructor that needs memory, as that of a
+/// JSON tree does. No memory is no error of mbk; anything else is, and ends as it would. In a trial it goes on as
+/// SIGABRT, for which last_words.h waits.
+[[noreturn]] void end_without_memory() noexcept {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    say_plainly(kNoMemory);
+    struct sigaction last_words {};
+    if (sigaction(SIGABRT, nullptr, &last_words) == 0 && last_words.sa_handler == SIG_DFL) {
+      std::_Exit(mbk::app::kBadData);
+    }
+  } catch (...) {
+    __gnu_cxx::__verbose_terminate_handler();
+  }
+  std::abort();
+}
+
+/// Before the tables of CLI11 are filled, which is before main.
+[[gnu::constructor(101)]] void expect_no_memory() noexcept {
+  std::set_terminate(end_without_memory);
 }
 
 int run(int argc, char** argv) {
@@ -120,7 +147,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
-    say_plainly("mbk: not enough memory; of a recording choose a part with --from and --to\n");
+    say_plainly(kNoMemory);
   } catch (const std::exception& error) {
     say_plainly("mbk: ");
     say_plainly(error.what());
