@@ -1,5 +1,7 @@
 #include "mbk/validation/fault_kinds.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -435,8 +437,8 @@ const std::vector<FaultKind>& fault_kinds() {
   return kKinds;
 }
 
-std::string_view fault_experiment(TrialKind kind) {
-  return kind == TrialKind::position ? R"(
+std::string fault_experiment(TrialKind kind, double perturbed) {
+  constexpr std::string_view kPosition = R"(
 [recording]
 condition = "relaxed, position perturbation"
 [robot]
@@ -447,7 +449,7 @@ kind = "position"
 [perturbation]
 kind = "multisine"
 peak_deg = 2
-duration_s = 6
+duration_s = {:g}
 moving_in_s = 1
 [participant]
 kind = "arm"
@@ -455,8 +457,8 @@ number = 1
 [participant.remnant]
 floor_N = 0.1
 cutoff_hz = 1.5
-)"
-                                     : R"(
+)";
+  constexpr std::string_view kForce = R"(
 [recording]
 condition = "rigid grasp, force perturbation"
 [robot]
@@ -467,7 +469,7 @@ kind = "force"
 [perturbation]
 kind = "multisine"
 peak_N = 6
-duration_s = 6
+duration_s = {:g}
 [participant]
 kind = "arm"
 number = 1
@@ -484,6 +486,7 @@ floor_N = 0.15
 per_force = 0.08
 cutoff_hz = 1.5
 )";
+  return fmt::format(fmt::runtime(kind == TrialKind::position ? kPosition : kForce), perturbed);
 }
 
 }  // namespace mbk::validation
