@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using session::Session;
 using session::Trial;
 
-constexpr int kSafetyStop = 5;
+constexpr int kSafetyStop = 5, kMotorsNotOff = 7;
 
 struct Arguments {
   std::string experiment;
@@ -101,10 +101,12 @@ class StatusLine {
 std::string outcome_text(const session::TrialOutcome& outcome, const session::Pace& pace) {
   std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ending.how);
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
+  text += "\n  motors: " + safety::sentence(outcome.motors);
   text += fmt::format("\n  {} ticks, {} dropped; compute per tick: {}\n", outcome.times.ticks, outcome.ending.dropped,
                       time_text(outcome.times.compute));
   if (!pace.virtual_clock) {
     text += fmt::format("  lateness: {}; {} ticks missed\n", time_text(outcome.times.lateness), outcome.times.missed);
+    text += fmt::format("  time between commands: {}\n", time_text(outcome.times.interval));
     if (!outcome.setup.refused.empty()) text += fmt::format("  {}\n", outcome.setup.refused);
   }
   return text;
@@ -159,6 +161,21 @@ fs::path next_free(const fs::path& target) {
   return free;
 }
 
+/// The loudest thing that this program says.
+std::string alarm(const safety::MotorsOff& motors) {
+  const std::string line(report::kLineColumns, '!');
+  return fmt::format(
+      "\a\n{0}\n!!  MOTORS NOT CONFIRMED OFF\n!!  Press the hardware stop button: cut the motors' power. Let nobody "
+      "touch the "
+      "robot.\n{0}\n{1}\n\n",
+      line, report::wrapped("The motors are " + safety::sentence(motors) + ".", report::kLineColumns));
+}
+
+/// Exit code of a trial that was stopped.
+int stop_code(const session::TrialOutcome& outcome) {
+  return outcome.motors.state == safety::MotorsOff::State::missing ? kMotorsNotOff : kSafetyStop;
+}
+
 /// One trial: on the robot, into the file, and measured.
 /// @returns  an exit code where no trial may follow
 std::optional<int> perform(Session& session, const Trial& trial, std::size_t index, const fs::path& target,
@@ -176,6 +193,10 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
     });
   }();
   if (!outcome) return report_error(outcome.error());
+  if (outcome->motors.state == safety::MotorsOff::State::missing) fmt::print(stderr, "{}", alarm(outcome->motors));
+  console.show_robot(outcome->motors);
+  std::optional<session::IdleWatch> idle;
+  if (!trial.device.simulated()) idle.emplace(**robot, console.watching(session));
   std::string text = outcome_text(*outcome, pace) + console.finish(*outcome);
   const bool stopped = outcome->trip.reason != safety::Reason::none;
   Measured measured;
@@ -188,14 +209,20 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
   if (console.decides(stopped || measured.poor)) {
     const auto then = console.after_trial(session, stopped);
     repeat = then == AfterTrial::repeat;
-    if (then == AfterTrial::end) return stopped ? kSafetyStop : kFine;
+    if (then == AfterTrial::end) return stopped ? stop_code(*outcome) : kFine;
     return std::nullopt;
   }
   const bool terminal = isatty(STDIN_FILENO) == 1;
   if (stopped) {
-    if (!terminal || !ask("Is the reason gone? Reset the gate and do the trial again?")) return kSafetyStop;
-    if (auto ok = session.reset(); !ok) return report_error(ok.error());
-    repeat = true;
+    if (!terminal) return stop_code(*outcome);
+    while (!repeat) {
+      if (!ask("Is the reason gone? Reset the gate and do the trial again?")) return stop_code(*outcome);
+      if (auto ok = session.reset(); !ok) {
+        report_error(ok.error());
+      } else {
+        repeat = true;
+      }
+    }
   } else if (measured.poor && terminal) {
     repeat = ask("The data are poor. Do the trial again?");
   } else if (measured.poor) {
@@ -222,7 +249,7 @@ int run(const Arguments& arguments) {
   Session session(pace);
   auto console = RunConsole::open(arguments.console, *trials, session.signals());
   if (!console) return report_error(console.error());
-  if (!console->may_begin(session)) return kFine;
+  if (!console->may_begin(session, trials->front())) return kFine;
   std::optional<int> code;
   for (std::size_t index = 0; index < trials->size() && !code; ++index) {
     const Trial& trial = (*trials)[index];
@@ -256,7 +283,8 @@ Action add_run(CLI::App& app) {
       "NAME.h5.journal first; where the program or the machine went down, 'mbk recover' makes a recording of it.\n"
       "The gate limits force, torque, speed and place in software; it is no certified safety function. With people,\n"
       "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable, 5 safety stop.");
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable, 5 safety stop,\n"
+      "7 the robot did not confirm that its motors are off: cut their power.");
   command->add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
       ->required()
       ->check(suggests(ready_scenario_names()));

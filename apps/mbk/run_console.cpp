@@ -63,8 +63,41 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const std
   return run;
 }
 
-bool RunConsole::may_begin(session::Session& session) {
+void RunConsole::show_robot(const safety::MotorsOff& motors) {
+  if (!console_) return;
+  using State = safety::MotorsOff::State;
+  console::RobotStatus status;
+  status.link = motors.state != State::cannot_say;
+  status.motors = motors.state == State::confirmed ? "off" : "unknown";
+  if (motors.state == State::confirmed || motors.state == State::missing) {
+    status.confirmed_off = motors.state == State::confirmed;
+  }
+  status.sentence = safety::sentence(motors);
+  console_->show_robot(status);
+}
+
+std::function<void(const session::IdleState&)> RunConsole::watching(session::Session& session) {
+  return [&session, console = console_.get()](const session::IdleState& seen) {
+    session.see_idle(seen);
+    if (console == nullptr) return;
+    console::RobotStatus status;
+    status.link = seen.link;
+    status.stop_button = seen.stop_button;
+    status.fault = seen.fault;
+    status.motors = seen.motors == device::Motors::on ? "on" : seen.motors == device::Motors::off ? "off" : "unknown";
+    if (seen.motors != device::Motors::unknown) status.confirmed_off = seen.confirmed_off;
+    console->show_robot(status);
+  };
+}
+
+bool RunConsole::may_begin(session::Session& session, const Trial& first) {
   if (!console_ || !wait_) return true;
+  std::unique_ptr<device::Device> robot;
+  std::optional<session::IdleWatch> idle;
+  if (!first.device.simulated()) {
+    if (auto made = session::make_device(first.device, first.scenario)) robot = std::move(*made);
+    if (robot && robot->start()) idle.emplace(*robot, watching(session));
+  }
   while (true) {
     const Action decided = console_->ask(Question::begin);
     if (decided == Action::start) return true;

@@ -35,12 +35,19 @@ class RunConsole {
   [[nodiscard]] static Result<RunConsole> open(const ConsoleArguments& arguments,
                                                const std::vector<session::Trial>& trials, session::Signals& signals);
 
-  /// With --wait, waits for the page.   @returns  false where it would rather not
-  [[nodiscard]] bool may_begin(session::Session& session);
+  /// With --wait, waits for the page, and shows the robot of the first trial meanwhile.
+  /// @returns  false where it would rather not
+  [[nodiscard]] bool may_begin(session::Session& session, const session::Trial& first);
 
   [[nodiscard]] Result<void> begin(std::size_t index, const session::Trial& trial, const device::Facts& facts,
                                    const std::filesystem::path& target);
   void watch(std::span<const journal::Tick> ticks);
+
+  /// What the robot said of its motors after a trial.
+  void show_robot(const safety::MotorsOff& motors);
+  /// What an IdleWatch is to call: the session and the page learn of the robot between trials.
+  [[nodiscard]] std::function<void(const session::IdleState&)> watching(session::Session& session);
+
   /// @returns  what pages cost the loop, where there were any for a part of the time; else nothing
   [[nodiscard]] std::string finish(const session::TrialOutcome& outcome);
 

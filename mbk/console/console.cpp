@@ -222,6 +222,12 @@ Action Console::ask(Question question) {
   return *decision_;
 }
 
+void Console::show_robot(const RobotStatus& status) {
+  const std::scoped_lock lock(mutex_);
+  robot_ = status;
+  changed_ = true;
+}
+
 void Console::say(std::string message) {
   const std::scoped_lock lock(mutex_);
   said_ = std::move(message);

@@ -28,6 +28,16 @@ enum class Question {
   reset,  ///< after a stop
 };
 
+/// What the robot says of itself between trials, and after one.
+struct RobotStatus {
+  std::string motors = "unknown";     ///< "on", "off"
+  std::optional<bool> confirmed_off;  ///< absent: it does not say
+  bool stop_button = false;           ///< pressed
+  bool link = false;
+  std::uint32_t fault = 0;  ///< its own code; 0: none
+  std::string sentence;     ///< for people
+};
+
 /// The pages of a session: what happens is shown, and what is asked for there is done. Fed by the recorder, never by
 /// the loop: the loop sees nothing of it but Signals.
 class Console {
@@ -71,6 +81,8 @@ class Console {
   /// Asks the page, and waits until it decides: start, repeat, next, abort or reset; or a note came, and the question
   /// is to be asked again. A stop while it waits asks for a reset before anything else.
   [[nodiscard]] Action ask(Question question);
+
+  void show_robot(const RobotStatus& status);
 
   /// What the answer came to, where it could not be done.
   void say(std::string message);
@@ -126,6 +138,7 @@ class Console {
   Times times_;
   std::array<Times, 2> times_apart_;  // without pages, with pages
   safety::Trip trip_;
+  RobotStatus robot_;
   Message estimate_;
   int beats_ = 0;
   std::uintmax_t disk_free_ = 0;

@@ -10,7 +10,14 @@ namespace mbk::device {
 
 using Eigen::Vector2d;
 
-/// What a robot of two joints reads at one tick, in SI units, base frame.
+/// What a robot says of its motors.
+enum class Motors : std::uint8_t {
+  unknown,  ///< it says nothing
+  off,
+  on
+};
+
+/// What a robot of two joints reads at one tick, in SI units, base frame, and what it reports of itself.
 struct State {
   std::uint64_t sequence = 0;          ///< of the robot's own samples, from 1; the same again: nothing new has come
   double time = 0.0;                   ///< on the robot's clock [s]
@@ -18,6 +25,15 @@ struct State {
   Vector2d force = {0.0, 0.0};         ///< of the hand on the robot [N]; zero without a sensor
   Vector2d acceleration = {0.0, 0.0};  ///< of the hand [m/s²]; zero without a sensor
   bool stop = false;                   ///< somebody presses the stop button
+
+  std::uint64_t answered = 0;          ///< commands up to the one that it obeys: 1 the first since `start`; 0: none
+  Motors motors = Motors::unknown;     ///< as they are in truth, not as they were told to be
+  bool has_force = true;               ///< the force sensor is there
+  bool has_acceleration = true;        ///< the accelerometer is there
+  bool watchdog_expired = false;       ///< no command came in time: its motors stay off
+  bool drives_measure = false;         ///< `drive_torque` is meant
+  Vector2d drive_torque = {0.0, 0.0};  ///< of the motors as its drives measure it, at the joints [N·m]
+  std::uint32_t fault = 0;             ///< its own fault code; 0: none
 };
 
 /// What it shall do until the next tick.
@@ -33,6 +49,7 @@ struct Facts {
   bool has_force = true;         ///< a force sensor is fitted
   bool has_acceleration = true;  ///< an accelerometer is fitted
   bool keeps_time = true;        ///< it moves on by itself; false: it waits for each command, as a simulation may
+  bool acknowledges = false;     ///< its states say which command it obeys, and whether its motors are on
   int force_latency = 0;  ///< ticks by which force and acceleration are older than the angles of their State ≥ 0
 };
 

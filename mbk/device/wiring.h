@@ -32,6 +32,11 @@ struct Wiring {
   /// θ = radians_per_count (counts − count_offset), F = R G (reading − offset) with R of θ₂.
   [[nodiscard]] State state(const RawState& raw) const noexcept;
 
+  /// τ of a command, or of a torque that the drives measure in its unit [N·m].
+  [[nodiscard]] Vector2d torque(const Vector2d& command) const noexcept {
+    return torque_per_command.cwiseProduct(command);
+  }
+
   /// The command in the robot's unit: τ / torque_per_command.
   [[nodiscard]] Vector2d command(const Vector2d& torque) const noexcept;
 };

@@ -34,6 +34,7 @@ UdpDevice::UdpDevice(UdpOptions options, const Fittings& fittings) : options_(st
   facts_.has_force = fittings.has_force;
   facts_.has_acceleration = fittings.has_acceleration;
   facts_.keeps_time = !options_.lock_step;
+  facts_.acknowledges = true;
   facts_.force_latency = fittings.force_latency;
 }
 
@@ -70,6 +71,10 @@ Result<void> UdpDevice::start() {
   }
   last_.greeting = false;
   if (!heard_) return tl::unexpected(no_answer());
+  if (newest_.enabled) {
+    return bad_data(fmt::format("{}: the robot says that its motors are on, before any command", facts_.name),
+                    "switch them off at the robot: its program must answer a greeting with its motors off");
+  }
   const auto differs = [&](const char* what, const char* key, bool sent, bool expected) -> Result<void> {
     if (sent == expected) return {};
     return bad_data(fmt::format("{}: of {} the robot has {}, and the experiment expects {}", facts_.name, what,
@@ -144,7 +149,15 @@ bool UdpDevice::read(device::State& state) noexcept {
     take_all();
   }
   state = fittings_.wiring.state(newest_.raw);
-  return !broken_ && !newest_.watchdog_expired;
+  state.answered = newest_.answered > 0 ? newest_.answered - 1 : 0;  // the greeting is no command
+  state.motors = newest_.enabled ? device::Motors::on : device::Motors::off;
+  state.has_force = newest_.has_force;
+  state.has_acceleration = newest_.has_acceleration;
+  state.watchdog_expired = newest_.watchdog_expired;
+  state.drives_measure = newest_.drives_measure;
+  state.drive_torque = fittings_.wiring.torque(newest_.measured);
+  state.fault = newest_.fault;
+  return !broken_;
 }
 
 bool UdpDevice::send_last() noexcept {

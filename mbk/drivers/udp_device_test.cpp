@@ -156,20 +156,45 @@ TEST(UdpDevice, BelievesNobodyElse) {
   EXPECT_EQ(device->counts().foreign, 1U);
 }
 
-TEST(UdpDevice, SaysThatTheLinkIsBrokenWhenTheWatchdogHasExpired) {
+TEST(UdpDevice, PassesOnWhatTheRobotReportsOfItself) {
+  Peer peer;
+  Fittings fittings;
+  fittings.wiring.torque_per_command = {0.5, -2.0};
+  auto device = UdpDevice::create(peer.options(), fittings).value();
+  ASSERT_TRUE(peer.welcome(*device));
+  EXPECT_TRUE(device->facts().acknowledges);
+  device::State state;
+  ASSERT_TRUE(device->read(state));
+  EXPECT_EQ(state.answered, 0U);  // the greeting is no command
+  EXPECT_EQ(state.motors, device::Motors::off);
+  EXPECT_FALSE(state.drives_measure);
+
+  ASSERT_TRUE(device->write({0, {1.0, 1.0}, true}));
+  peer.obey(peer.hear());
+  StateDatagram reported = peer.state(11);
+  reported.version = 2;
+  reported.enabled = reported.watchdog_expired = reported.drives_measure = true;
+  reported.has_force = false;
+  reported.measured = {1.0, 0.25};
+  reported.fault = 17;
+  peer.say(reported);
+  state = read_until(*device, 11);
+  EXPECT_EQ(state.answered, 1U);
+  EXPECT_EQ(state.motors, device::Motors::on);
+  EXPECT_TRUE(state.watchdog_expired);
+  EXPECT_FALSE(state.has_force);
+  EXPECT_TRUE(state.has_acceleration);
+  EXPECT_TRUE(state.drives_measure);
+  EXPECT_EQ(state.drive_torque, Eigen::Vector2d(0.5, -0.5));
+  EXPECT_EQ(state.fault, 17U);
+}
+
+TEST(UdpDevice, RefusesARobotWhoseMotorsAreOnBeforeAnyCommand) {
   Peer peer;
   auto device = UdpDevice::create(peer.options(), {}).value();
-  ASSERT_TRUE(peer.welcome(*device));
-  StateDatagram expired = peer.state(11);
-  expired.watchdog_expired = true;
-  peer.say(expired);
-  device::State state;
-  bool link = true;
-  for (int i = 0; i < 5000 && link; ++i) {
-    link = device->read(state);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_FALSE(link);
+  const auto refused = peer.welcome(*device, [](StateDatagram& d) { d.enabled = true; });
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().line().find("motors are on"), std::string::npos) << refused.error().line();
 }
 
 TEST(UdpDevice, StopsSeveralTimes) {
@@ -349,11 +374,11 @@ class Serving {
 };
 
 /// Reads until `done` is said of the newest state, at most kLong.   @returns  whether it was
-bool soon(UdpDevice& device, const std::function<bool(const StateDatagram&)>& done, bool link = true) {
+bool soon(UdpDevice& device, const std::function<bool(const StateDatagram&)>& done) {
   device::State state;
   for (int i = 0; i < static_cast<int>(1e3 * kLong); ++i) {
     const bool fine = device.read(state);
-    if (done(device.newest()) && fine == link) return true;
+    if (done(device.newest()) && fine) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return false;
@@ -389,15 +414,12 @@ TEST(UdpRobot, SwitchesItsMotorsOffUntilTheNextGreetingWhereNoCommandComes) {
   auto device = serving.device(false, 0.02);
   ASSERT_TRUE(device->start());
   device->write({0, {1.0, 0.0}, true});
-  EXPECT_TRUE(soon(
-      *device, [](const StateDatagram& d) { return d.watchdog_expired && !d.enabled; }, false));
+  EXPECT_TRUE(soon(*device, [](const StateDatagram& d) { return d.watchdog_expired && !d.enabled; }));
   EXPECT_FALSE(serving.adding().enabled());
   device->write({1, {1.0, 0.0}, true});
-  EXPECT_TRUE(soon(
-      *device, [](const StateDatagram& d) { return d.answered == 3 && !d.enabled; }, false));
+  EXPECT_TRUE(soon(*device, [](const StateDatagram& d) { return d.answered == 3 && !d.enabled; }));
   device->stop();
-  EXPECT_TRUE(soon(
-      *device, [](const StateDatagram& d) { return d.answered == 4; }, false));
+  EXPECT_TRUE(soon(*device, [](const StateDatagram& d) { return d.answered == 4; }));
   ASSERT_TRUE(device->start());
   device::State state;
   EXPECT_TRUE(device->read(state));

@@ -77,14 +77,18 @@ Header header_of(const Json& json) {
 }
 
 std::string text_of(const Ending& ending) {
-  return Json{
-      {"how", ending.how}, {"detail", ending.detail}, {"dropped", ending.dropped}, {"overruns", ending.overruns}}
+  return Json{{"how", ending.how},           {"detail", ending.detail}, {"dropped", ending.dropped},
+              {"overruns", ending.overruns}, {"trip", ending.trip},     {"motors", ending.motors}}
       .dump();
 }
 
 Ending ending_of(const Json& json) {
-  return {json.at("how").get<std::string>(), json.at("detail").get<std::string>(),
-          json.at("dropped").get<std::uint64_t>(), json.at("overruns").get<std::uint64_t>()};
+  return {json.at("how").get<std::string>(),
+          json.at("detail").get<std::string>(),
+          json.at("dropped").get<std::uint64_t>(),
+          json.at("overruns").get<std::uint64_t>(),
+          json.value("trip", ""),
+          json.value("motors", "")};
 }
 
 /// Takes the payload of one block.   @throws  what JSON throws at a text that is none

@@ -33,6 +33,8 @@ struct Ending {
   std::string detail;          ///< a sentence; may be empty
   std::uint64_t dropped = 0;   ///< ticks that did not reach the file
   std::uint64_t overruns = 0;  ///< ticks that went by without a wake-up
+  std::string trip;            ///< code of the safety stop; empty without one
+  std::string motors;          ///< what is known of the motors after it: safety::sentence; empty: nothing
 };
 
 /// Writes a trial tick by tick to a file that is only ever appended to: blocks of ticks, each with a checksum, so that

@@ -10,7 +10,7 @@ namespace mbk::journal {
 struct Tick {
   std::uint64_t number = 0;              ///< from 0, in the trial; a gap: ticks that were dropped
   double time = 0.0;                     ///< since the trial's first tick, by the loop's clock [s]
-  double late = 0.0;                     ///< [s]
+  double late = 0.0;                     ///< from the command before to this one, beyond a tick [s]
   double perturbation_time = -1.0;       ///< of the schedule [s]; negative outside the perturbation
   std::array<double, 2> joint{};         ///< as measured [rad]
   std::array<double, 2> force{};         ///< of the hand on the robot, as measured [N]

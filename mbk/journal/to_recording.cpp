@@ -82,9 +82,11 @@ Result<Recording> to_recording(const Journal& journal) {
   recording.metadata = header.metadata;
   recording.metadata["rate_hz"] = fmt::format("{:g}", header.rate);
   const Ending ending =
-      journal.ending.value_or(Ending{"interrupted", "the program or the machine went down while it recorded", 0, 0});
+      journal.ending.value_or(Ending{"interrupted", "the program or the machine went down while it recorded"});
   recording.metadata["ended"] = ending.how;
   if (!ending.detail.empty()) recording.metadata["ended_detail"] = ending.detail;
+  if (!ending.trip.empty()) recording.metadata["trip"] = ending.trip;
+  if (!ending.motors.empty()) recording.metadata["motors_off"] = ending.motors;
   if (ending.dropped > 0) recording.metadata["ticks_dropped"] = std::to_string(ending.dropped);
   if (ending.overruns > 0) recording.metadata["ticks_missed"] = std::to_string(ending.overruns);
   double latest = 0.0;

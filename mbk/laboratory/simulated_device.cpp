@@ -9,6 +9,7 @@ SimulatedDevice::SimulatedDevice(const Scenario& scenario, std::unique_ptr<parti
     : load_(std::move(load)), loop_(std::move(loop)), sensors_(std::move(sensors)) {
   facts_.name = "simulated robot, " + (scenario.condition.empty() ? scenario.file_name : scenario.condition);
   facts_.keeps_time = false;
+  facts_.acknowledges = true;
   facts_.force_latency = 1;
 }
 
@@ -37,11 +38,14 @@ bool SimulatedDevice::read(device::State& state) noexcept {
   state.force = reading_.force;
   state.acceleration = reading_.acceleration;
   state.stop = false;
+  state.answered = sequence_;
+  state.motors = enabled_ ? device::Motors::on : device::Motors::off;
   return true;
 }
 
 bool SimulatedDevice::write(const device::Command& command) noexcept {
   const Vector2d torque = command.enabled ? command.torque : Vector2d::Zero();
+  enabled_ = command.enabled;
   truth_ = loop_.hold(torque, sensors_.next_interval());
   reading_ = sensors_.read(truth_);
   loop_.advance();

@@ -41,6 +41,7 @@ class SimulatedDevice : public device::Device {
   SensorSuite::Reading reading_{};
   TrueState truth_;
   std::uint64_t sequence_ = 0;
+  bool enabled_ = false;
 };
 
 }  // namespace mbk::laboratory

@@ -30,6 +30,7 @@ void WallClock::start() noexcept {
 }
 
 double WallClock::wait() noexcept {
+  const std::int64_t due = next_;
   if (const std::int64_t behind = monotonic_ns() - next_; behind >= period_) {
     const std::int64_t over = behind / period_;
     missed_ += static_cast<std::uint64_t>(over);
@@ -38,7 +39,7 @@ double WallClock::wait() noexcept {
   const timespec until{next_ / kSecond, next_ % kSecond};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
   }
-  const std::int64_t late = monotonic_ns() - next_;
+  const std::int64_t late = monotonic_ns() - due;  // also of the ticks that went by
   next_ += period_;
   return static_cast<double>(late) / static_cast<double>(kSecond);
 }

@@ -15,8 +15,11 @@ class Clock {
 
   /// Sleeps until the next tick. A tick that is already over is not made up for: the ticks go on from the first one
   /// that is still to come, and those between count as missed.
-  /// @returns  by how much the tick is late [s] ≥ 0
+  /// @returns  by how much the wake-up is late, with the ticks that went by before it [s] ≥ 0
   virtual double wait() noexcept = 0;
+
+  /// From one tick to the next [s].
+  [[nodiscard]] virtual double period() const noexcept = 0;
 
   /// Since `start` [s].
   [[nodiscard]] virtual double now() const noexcept = 0;
@@ -39,6 +42,7 @@ class WallClock : public Clock {
   explicit WallClock(double period) noexcept;
   void start() noexcept override;
   double wait() noexcept override;
+  [[nodiscard]] double period() const noexcept override { return 1e-9 * static_cast<double>(period_); }
   [[nodiscard]] double now() const noexcept override;
   [[nodiscard]] std::uint64_t missed() const noexcept override { return missed_; }
 
@@ -55,6 +59,7 @@ class VirtualClock : public Clock {
   explicit VirtualClock(double period, double speed = 0.0) noexcept;
   void start() noexcept override;
   double wait() noexcept override;
+  [[nodiscard]] double period() const noexcept override { return period_; }
   [[nodiscard]] double now() const noexcept override;
   [[nodiscard]] std::uint64_t missed() const noexcept override { return missed_; }
 

@@ -24,8 +24,14 @@ const robot::Geometry& geometry() {
   return geometry;
 }
 
+/// Its force, motion and torques follow no dynamics: what the motion shows of the motors is looked at elsewhere.
+Limits without_torque(Limits limits = {}) {
+  limits.torque_error = 0.0;
+  return limits;
+}
+
 Gate gate(const Limits& limits = {}) {
-  return Gate::create(limits, geometry(), kHome, kTick).value();
+  return Gate::create(without_torque(limits), robot::PlanarRobot{geometry()}, kHome, kTick).value();
 }
 
 double handle_force(const Vector2d& joint, const Vector2d& torque) {
@@ -37,7 +43,7 @@ Observation moving(int tick) {
   const double t = tick * kTick, w = 2.0 * std::numbers::pi, r = 0.01;
   const Vector2d out(std::cos(w * t), std::sin(w * t));
   Observation seen;
-  seen.time = t;
+  seen.time = seen.report.time = t;
   seen.joint = robot::joint_angles(geometry(), kHome + r * out).value();
   seen.acceleration = -r * w * w * out + Vector2d(1e-6 * tick, 0.0);
   seen.force = {3.0 * std::sin(w * t), 1.0 + 1e-6 * tick};
@@ -278,6 +284,158 @@ TEST(Gate, AControllerThatSwingsBetweenItsLimitsIsStoppedToo) {
   EXPECT_EQ(ticks_of_swinging(2), -1);
 }
 
+/// A robot without friction that the gate's torque drives for real, on the end of a hand like a spring.
+class Driven : public testing::Test {
+ protected:
+  /// What the motors exert of a command, and what the robot says of it.
+  std::function<Vector2d(const Vector2d& commanded, bool enabled)> motors =
+      [](const Vector2d& commanded, bool enabled) { return enabled ? commanded : Vector2d(0.0, 0.0); };
+  std::function<void(Observation&)> spoil = [](Observation&) {};
+
+  Driven() {
+    robot_.geometry = geometry();
+    robot_.friction = {};
+    joint_ = robot::joint_angles(geometry(), kHome).value();
+  }
+
+  /// One millisecond.
+  void tick(const Vector2d& asked) {
+    const Vector2d hand = robot::hand_position(geometry(), joint_);
+    const Vector2d velocity = robot::jacobian(geometry(), joint_) * rate_;
+    const Vector2d force = -(150.0 * (hand - kHome) + 12.0 * velocity) + Vector2d(0.0, 1e-6 * ticks_);
+    Observation seen;
+    seen.time = kTick * ticks_;
+    seen.keeps_time = true;
+    seen.joint = joint_;
+    seen.force = force;
+    seen.has_acceleration = false;
+    seen.report.time = 10.0 + seen.time;
+    seen.report.acknowledges = true;
+    seen.report.answered = sent_;
+    seen.report.motors = decision_.enabled ? Motors::on : Motors::off;
+    spoil(seen);
+    const Vector2d torque = motors(decision_.torque, decision_.enabled);
+    decision_ = gate_.step(seen, asked);
+    ++sent_;
+    ++ticks_;
+    constexpr int kSteps = 10;
+    for (int i = 0; i < kSteps; ++i) {
+      rate_ += kTick / kSteps * robot_.acceleration(joint_, rate_, torque, force);
+      joint_ += kTick / kSteps * rate_;
+    }
+  }
+
+  static Vector2d asked(int i) { return {0.6 * std::sin(0.015 * i), 0.6 * std::cos(0.011 * i) - 0.6}; }
+
+  int drive(int most) {
+    for (int i = 0; i < most && !gate_.tripped(); ++i) tick(asked(static_cast<int>(ticks_)));
+    return static_cast<int>(ticks_);
+  }
+  void settle() {
+    for (int i = 0; i < 700 && !gate_.settled(); ++i) tick({0.0, 0.0});
+  }
+
+  robot::PlanarRobot robot_;
+  Vector2d joint_, rate_ = {0.0, 0.0};
+  Gate gate_ = Gate::create(
+                   Limits{},
+                   [] {
+                     robot::PlanarRobot robot;
+                     robot.friction = {};
+                     return robot;
+                   }(),
+                   kHome, kTick)
+                   .value();
+  Gate::Decision decision_;
+  std::uint64_t sent_ = 0, ticks_ = 0;
+};
+
+TEST_F(Driven, MotorsThatFollowAreConfirmedOff) {
+  drive(2000);
+  ASSERT_FALSE(gate_.tripped()) << sentence(gate_.trip());
+  EXPECT_EQ(gate_.motors().state, MotorsOff::State::not_asked);
+  gate_.release();
+  settle();
+  EXPECT_FALSE(gate_.tripped()) << sentence(gate_.trip());
+  EXPECT_EQ(gate_.motors().state, MotorsOff::State::confirmed) << sentence(gate_.motors());
+  EXPECT_TRUE(gate_.motors().by_motion);
+  EXPECT_LT(gate_.motors().after, 0.06);
+}
+
+TEST_F(Driven, MotorsThatPullTheWrongWayAreSeenInTheMotion) {
+  drive(500);
+  motors = [](const Vector2d& commanded, bool) { return Vector2d(-commanded); };
+  const int found = drive(1000);
+  EXPECT_EQ(gate_.trip().reason, Reason::torque_disagrees) << sentence(gate_.trip());
+  EXPECT_LT(found, 800);
+}
+
+TEST_F(Driven, MotorsThatStayOnTheLastTorqueAreNeverCalledOff) {
+  drive(1800);
+  ASSERT_FALSE(gate_.tripped());
+  motors = [held = Vector2d(0.9, -0.7)](const Vector2d&, bool) { return held; };
+  gate_.release();
+  settle();  // flag and answer say "off"; the hand is pushed all the same
+  EXPECT_EQ(gate_.motors().state, MotorsOff::State::missing) << sentence(gate_.motors());
+  EXPECT_EQ(gate_.motors().why, MotorsOff::Why::motion);
+  EXPECT_EQ(gate_.trip().reason, Reason::motors_on);
+  EXPECT_FALSE(gate_.reset()) << "while the motors may be on";
+  gate_.see_idle(false, true);
+  EXPECT_TRUE(gate_.reset());
+}
+
+TEST_F(Driven, EachMissingPartOfAConfirmationIsNamed) {
+  struct Case {
+    MotorsOff::Why why;
+    std::function<void(Observation&)> spoil;
+  };
+  const std::vector<Case> cases = {
+      {MotorsOff::Why::flag, [](Observation& o) { o.report.motors = Motors::on; }},
+      {MotorsOff::Why::not_answered, [](Observation& o) { o.report.answered = 2; }},
+      {MotorsOff::Why::no_state, [](Observation& o) { o.fresh = false; }},
+      {MotorsOff::Why::no_state, [](Observation& o) { o.link = false; }},
+      {MotorsOff::Why::drives,
+       [](Observation& o) {
+         o.report.drives_measure = true;
+         o.report.drive_torque = {0.0, 2.0};
+       }},
+  };
+  for (const Case& one : cases) {
+    SetUp();
+    gate_ = Gate::create(Limits{}, robot_, kHome, kTick).value();
+    sent_ = ticks_ = 0;
+    decision_ = {};
+    spoil = [](Observation&) {};
+    drive(300);
+    gate_.release();
+    spoil = one.spoil;
+    settle();
+    EXPECT_EQ(gate_.motors().state, MotorsOff::State::missing);
+    EXPECT_EQ(gate_.motors().why, one.why) << sentence(gate_.motors());
+    EXPECT_NE(sentence(gate_.motors()).find("NOT CONFIRMED OFF"), std::string::npos);
+  }
+}
+
+TEST_F(Driven, ARobotThatSaysNothingOfItsMotorsIsNotCalledOff) {
+  spoil = [](Observation& o) { o.report.acknowledges = false; };
+  drive(300);
+  ASSERT_FALSE(gate_.tripped()) << sentence(gate_.trip());
+  gate_.release();
+  settle();
+  EXPECT_EQ(gate_.motors().state, MotorsOff::State::cannot_say);
+}
+
+TEST_F(Driven, DrivesThatMeasureAnotherTorqueTrip) {
+  drive(300);
+  spoil = [this](Observation& o) {
+    o.report.drives_measure = true;
+    o.report.drive_torque = decision_.torque + Vector2d(0.0, 0.8);
+  };
+  const int found = drive(1000);
+  EXPECT_EQ(gate_.trip().reason, Reason::torque_disagrees);
+  EXPECT_LE(found, 300 + 55);
+}
+
 TEST(Gate, KeepsTheLastTwoSeconds) {
   Gate g = gate();
   for (int i = 0; i < 5000; ++i) g.step(moving(i), {0.1, 0.0});
@@ -302,7 +460,7 @@ TEST(Limits, AreRefusedOutsideTheirRange) {
   const auto refused = [](auto change) {
     Limits limits;
     change(limits);
-    return !Gate::create(limits, geometry(), kHome, kTick);
+    return !Gate::create(limits, robot::PlanarRobot{geometry()}, kHome, kTick);
   };
   EXPECT_TRUE(refused([](Limits& l) { l.handle_force = 0.0; }));
   EXPECT_TRUE(refused([](Limits& l) { l.joint_torque[1] = -1.0; }));

@@ -17,7 +17,9 @@ Result<void> check(const Limits& limits) {
                             {"safety: tracking error", limits.tracking, "rad"},
                             {"safety: jump of an encoder", limits.encoder_jump, "rad"},
                             {"safety: torque at a resting encoder", limits.frozen_torque, "N·m"},
-                            {"safety: silence of the link", limits.link_silence, "s"}});
+                            {"safety: silence of the link", limits.link_silence, "s"},
+                            {"safety: reply of the motors", limits.motors_reply, "s"},
+                            {"safety: time for the motors to go off", limits.motors_off, "s"}});
       !ok) {
     return ok;
   }
@@ -25,7 +27,10 @@ Result<void> check(const Limits& limits) {
                               {"safety: excursion", limits.excursion, "m"},
                               {"safety: time of a frozen reading", limits.frozen, "s"},
                               {"safety: accelerometer against encoders", limits.accelerometer, "m/s²"},
-                              {"safety: lateness", limits.lateness, "s"}});
+                              {"safety: lateness", limits.lateness, "s"},
+                              {"safety: lag of the answer", limits.answer_lag, "s"},
+                              {"safety: age of a state", limits.state_age, "s"},
+                              {"safety: torque of the motors against the command", limits.torque_error, "N·m"}});
       !ok) {
     return ok;
   }

@@ -28,7 +28,13 @@ struct Limits {
   double frozen_torque = 0.3;             ///< an encoder may rest while its torque changes by less [N·m] > 0
   double accelerometer = 4.0;  ///< |encoders' − accelerometer's|, over 40 ms; over 0.5 s less [m/s²]; 0: not checked
   double link_silence = 0.01;  ///< longest time without a new state [s] > 0
-  double lateness = 0.02;      ///< of a tick, where the robot does not wait for it [s]; 0: not checked
+  double lateness = 0.02;      ///< of a command after the one before, beyond a tick [s]; 0: not checked
+  double answer_lag = 0.02;    ///< commands that have left since the one that the robot obeys [s]; 0: not checked
+  double state_age = 0.02;     ///< of a state, by the robot's clock [s]; 0: not checked
+  double motors_reply = 0.1;   ///< longest time that the robot may say "motors off" while it is driven [s] > 0
+  double motors_off = 0.5;     ///< after the stop, until the robot must have said that its motors are off [s] > 0
+  double torque_error = 0.5;   ///< of the motors' torque, as drives or motion show it, against the command [N·m];
+                               ///< 0: not checked
 };
 
 /// @fails  usage: a limit is out of its range, with its name and unit; the rectangle is empty.

@@ -20,7 +20,7 @@ constexpr std::array<Words, kReasons> kWords = {{
     {Reason::stop_button, "stop-button", "the stop button was pressed", "", "release it, then reset"},
     {Reason::operator_stop, "operator-stop", "the operator stopped it", "", ""},
     {Reason::link_lost, "link-lost", "the robot was silent for", "s", "look at its cable, power and program"},
-    {Reason::late, "late", "a tick came late by", "s", "use a real-time kernel or fewer programs beside it"},
+    {Reason::late, "late", "a command left late by", "s", "use a real-time kernel or fewer programs beside it"},
     {Reason::recording_failed, "recording-failed", "the recording could not be kept up", "",
      "look at the disk and its free space"},
     {Reason::controller_not_finite, "controller-not-finite", "the controller asked for a torque that is no number", "",
@@ -51,6 +51,26 @@ constexpr std::array<Words, kReasons> kWords = {{
      "look at the gains, or who holds the handle"},
     {Reason::limited_too_long, "limited-too-long", "the controller asked for more than its limits for", "s",
      "it may run away: look at its gains and at the limits"},
+    {Reason::robot_fault, "robot-fault", "the robot reports a fault of its own", "", "see its manual for the code"},
+    {Reason::robot_watchdog, "robot-watchdog", "the robot says that no command reached it in time", "",
+     "look at its cable, and at watchdog_ms"},
+    {Reason::robot_clock, "robot-clock",
+     "the robot's clock was off, from one state to the next or against this one, by", "s",
+     "its program must stamp each state with the time of the sample"},
+    {Reason::state_old, "state-old", "the robot's states were too old by its own clock:", "s",
+     "look at the network and at what delays its program"},
+    {Reason::answer_late, "answer-late", "the robot obeyed a command that was too old:", "s",
+     "its drives may hold the last torque: look at its program and cable"},
+    {Reason::answer_wrong, "answer-wrong", "the robot acknowledged a command that it cannot have", "",
+     "its program must send back the number of the newest command that it obeys"},
+    {Reason::motors_off, "motors-off", "the robot said that its motors are off, while they were commanded on, for", "s",
+     "look at its enabling switch, brakes and drives"},
+    {Reason::motors_on, "motors-on", "the robot did not confirm that its motors are off", "",
+     "cut the motors' power with the hardware stop button"},
+    {Reason::sensor_missing, "sensor-missing", "the robot says that a sensor is gone that was there at the start", "",
+     "look at its plug and supply"},
+    {Reason::torque_disagrees, "torque-disagrees", "the torque of a motor was beside its command by", "N·m",
+     "drives, force sensor, or inertia and friction in [robot]: one of them is wrong"},
 }};
 
 const Words& words(Reason reason) {
@@ -78,6 +98,7 @@ std::string sentence(const Trip& trip) {
   const Words& w = words(trip.reason);
   std::string text(w.what);
   if (!w.unit.empty()) text += fmt::format(" {:.4g} {} (limit {:.4g} {})", trip.value, w.unit, trip.limit, w.unit);
+  if (trip.reason == Reason::robot_fault) text += fmt::format(" (code {:.0f})", trip.value);
   text += fmt::format(", at {:.3f} s", trip.time);
   if (!w.advice.empty()) text += fmt::format("; {}", w.advice);
   return text;

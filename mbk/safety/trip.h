@@ -6,7 +6,7 @@
 
 namespace mbk::safety {
 
-/// Why the gate switched the motors off.
+/// Why the gate switched the motors off. Journals hold the numbers: new ones go to the end.
 enum class Reason : std::uint8_t {
   none,
   stop_button,    ///< of the robot
@@ -32,9 +32,19 @@ enum class Reason : std::uint8_t {
   excursion,
   tracking,
   limited_too_long,
+  robot_fault,       ///< its own fault code
+  robot_watchdog,    ///< the robot says that no command reached it in time
+  robot_clock,       ///< stands still, runs backward, too fast, or is not finite
+  state_old,         ///< states are older than they may be
+  answer_late,       ///< the robot obeys old commands
+  answer_wrong,      ///< it acknowledges what was never sent, or takes an acknowledgement back
+  motors_off,        ///< it says "motors off" while it is driven
+  motors_on,         ///< its motors were not confirmed to be off after the end of the trial
+  sensor_missing,    ///< a sensor that was there is gone
+  torque_disagrees,  ///< drives or motion show another torque than was commanded
 };
 
-inline constexpr int kReasons = static_cast<int>(Reason::limited_too_long) + 1;
+inline constexpr int kReasons = static_cast<int>(Reason::torque_disagrees) + 1;
 
 /// "force-jump": for files and machines.
 [[nodiscard]] std::string_view code(Reason reason);

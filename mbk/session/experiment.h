@@ -28,6 +28,11 @@ struct Person {
   bool withdrawn = false;  ///< the person has withdrawn: no further trial, and the data are not to be used
 };
 
+/// Limits that the file does not give, and that therefore follow from what a trial of positions plans (make_plan).
+struct LimitsFromPlan {
+  bool speed = false, excursion = false, tracking = false;
+};
+
 /// One trial of an experiment: which robot it runs on, how that is driven, what the gate allows, and for a simulated
 /// robot who holds it.
 struct Trial {
@@ -35,6 +40,7 @@ struct Trial {
   laboratory::Scenario scenario;  ///< planar; its robot, control, perturbation and sensors
   control::SequenceOptions sequence;
   safety::Limits limits;
+  LimitsFromPlan from_plan;
   DevicePlan device;
   Person person;
   std::string protocol;  ///< name of the file without folder and ending

@@ -42,6 +42,11 @@ safety::Limits read_limits(const Section& s) {
   l.accelerometer = s.number("accelerometer_m_per_s2", l.accelerometer, at_least(0));
   l.link_silence = s.number("link_silence_ms", l.link_silence, above(0));
   l.lateness = s.number("lateness_ms", l.lateness, at_least(0));
+  l.answer_lag = s.number("answer_lag_ms", l.answer_lag, at_least(0));
+  l.state_age = s.number("state_age_ms", l.state_age, at_least(0));
+  l.motors_reply = s.number("motors_reply_ms", l.motors_reply, above(0));
+  l.motors_off = s.number("motors_off_ms", l.motors_off, above(0));
+  l.torque_error = s.number("torque_error_Nm", l.torque_error, at_least(0));
   return l;
 }
 
@@ -82,7 +87,9 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     trial.scenario.file_name = trial.protocol;
     trial.scenario.trial_name = name;
     trial.sequence = read_sequence(root.section("session"), trial.planar());
-    trial.limits = read_limits(root.section("safety"));
+    const Section safety = root.section("safety");
+    trial.limits = read_limits(safety);
+    trial.from_plan = {!safety.has("speed_mm_per_s"), !safety.has("excursion_mm"), !safety.has("tracking_deg")};
     trial.person = read_person(root.section("person"));
     trial.device = read_device(root.section("device"), file.parent_path());
     return trial;

@@ -1,5 +1,6 @@
 #include "mbk/session/loop.h"
 
+#include <algorithm>
 #include <ctime>
 
 namespace mbk::session {
@@ -25,6 +26,33 @@ std::array<double, 2> pair(const Eigen::Vector2d& v) noexcept {
   return {v[0], v[1]};
 }
 
+safety::Motors motors_of(device::Motors motors) noexcept {
+  switch (motors) {
+    case device::Motors::unknown:
+      break;
+    case device::Motors::off:
+      return safety::Motors::off;
+    case device::Motors::on:
+      return safety::Motors::on;
+  }
+  return safety::Motors::unknown;
+}
+
+safety::RobotReport report_of(const device::Facts& facts, const device::State& state) noexcept {
+  safety::RobotReport report;
+  report.time = state.time;
+  report.acknowledges = facts.acknowledges;
+  report.answered = state.answered;
+  report.motors = motors_of(state.motors);
+  report.force_sensor = state.has_force || !facts.has_force;
+  report.accelerometer = state.has_acceleration || !facts.has_acceleration;
+  report.watchdog_expired = state.watchdog_expired;
+  report.drives_measure = state.drives_measure;
+  report.drive_torque = state.drive_torque;
+  report.fault = state.fault;
+  return report;
+}
+
 }  // namespace
 
 void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
@@ -32,27 +60,36 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
   const device::Facts& facts = robot.facts();
   device::State state;
   std::uint64_t last_sequence = 0;
-  double compute = 0.0, first_time = 0.0;
+  double compute = 0.0, first_time = 0.0, left = 0.0;
   bool link = true;
   clock.start();
-  for (std::uint64_t number = 0;; ++number) {
+  for (std::uint64_t number = 0; !gate.settled(); ++number) {
     const double late = clock.wait();
     const std::int64_t begin = monotonic_ns();
-    link = robot.read(state) && link;
+    const bool reads = robot.read(state);
+    link = link && reads;
     if (signals.end_trial.load(std::memory_order_relaxed)) sequence.end_early();
-    const control::Sequencer::Step step = gate.tripped() ? control::Sequencer::Step{} : sequence.step(state.joint);
+    const bool over = gate.tripped() || gate.off();
+    const control::Sequencer::Step step = over ? control::Sequencer::Step{} : sequence.step(state.joint);
+    if (step.phase == control::Phase::done && !gate.tripped()) gate.release();
 
+    const double now = clock.now();
+    if (number == 0) {
+      first_time = now;
+      left = now - clock.period();
+    }
     safety::Observation seen;
-    seen.time = clock.now();
-    if (number == 0) first_time = seen.time;
-    seen.time -= first_time;
+    seen.time = now - first_time;
     seen.fresh = state.sequence != last_sequence;
-    seen.link = link;
+    seen.link = gate.off() ? reads : link;
     seen.stop_button = state.stop;
     seen.operator_stop = signals.operator_stop.load(std::memory_order_relaxed);
     seen.recording = signals.recording.load(std::memory_order_relaxed) &&
                      (facts.keeps_time ? ticks.room() > ticks.capacity() / 4 : wait_for_room(ticks));
-    seen.late = facts.keeps_time ? late : 0.0;
+    const double overdue = std::max(0.0, now - left - clock.period());  // what a stall inside a tick costs is in it
+    seen.late = facts.keeps_time ? overdue : 0.0;
+    seen.keeps_time = facts.keeps_time;
+    seen.report = report_of(facts, state);
     seen.joint = state.joint;
     seen.force = state.force;
     seen.acceleration = state.acceleration;
@@ -64,11 +101,14 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     const safety::Gate::Decision decision = gate.step(seen, step.torque);
     link = robot.write({number, decision.torque, decision.enabled}) && link;
     last_sequence = state.sequence;
+    const double leaves = clock.now();
+    if (number > 0) times.interval.add(static_cast<std::int64_t>(1e9 * (leaves - left)));
+    left = leaves;
 
     journal::Tick tick;
     tick.number = number;
     tick.time = seen.time;
-    tick.late = late;
+    tick.late = overdue;
     tick.perturbation_time = step.perturbation_time;
     tick.joint = pair(state.joint);
     tick.force = pair(state.force);
@@ -89,7 +129,6 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     times.compute.add(took);
     times.lateness.add(static_cast<std::int64_t>(1e9 * late));
     ++times.ticks;
-    if (gate.off() || (!gate.tripped() && step.phase == control::Phase::done)) break;
   }
   times.missed += clock.missed();
   robot.stop();

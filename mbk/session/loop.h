@@ -24,12 +24,14 @@ struct Signals {
 struct LoopTimes {
   realtime::CycleRecord compute;   ///< from the wake-up to the command's end
   realtime::CycleRecord lateness;  ///< of the wake-up
+  realtime::CycleRecord interval;  ///< from one command that left to the next
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;  ///< ticks that went by without a wake-up
 };
 
 /// Runs a trial from the first tick to the last: wait, read the robot, decide, pass the gate, write the robot, hand the
-/// tick over. Ends where the sequence is done, or a trip's ramp is over. Nothing in it allocates, locks, prints or
+/// tick over. Where the sequence is done, or a trip's ramp is over, it goes on with motors off until the robot has
+/// confirmed that, or has not within Limits::motors_off (Gate::motors). Nothing in it allocates, locks, prints or
 /// touches a file. A robot that waits for its commands (Facts::keeps_time) is made to wait for a recorder that lags,
 /// up to two seconds; any other is not, and a lagging recorder trips the gate.
 void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,

@@ -26,9 +26,28 @@ Result<void> within(const char* what, double value, double limit, double scale, 
                    "perturb less, or raise the limit if that is safe for this person and this robot");
 }
 
+/// What a hand that follows the schedule does at most.
+struct PlannedMotion {
+  double speed = 0.0;      ///< [m/s]
+  double excursion = 0.0;  ///< from home [m]
+};
+
+/// Limits that follow from the plan: a hand that is driven the wrong way is stopped before it is fast.
+safety::Limits limits_of(const Trial& trial, const PlannedMotion& planned) {
+  constexpr double kMore = 1.5, kMoreSpeed = 0.05, kMoreWay = 0.015, kTracking = 4.0 * kDegree;  // [1, m/s, m, rad]
+  safety::Limits limits = trial.limits;
+  if (!std::holds_alternative<control::PositionMode>(trial.planar().control)) return limits;
+  const double speed = std::max(planned.speed, trial.sequence.move_speed);
+  if (trial.from_plan.speed) limits.speed = std::min(limits.speed, kMore * speed + kMoreSpeed);
+  if (trial.from_plan.excursion) limits.excursion = std::min(limits.excursion, kMore * planned.excursion + kMoreWay);
+  if (trial.from_plan.tracking) limits.tracking = std::min(limits.tracking, kTracking);
+  return limits;
+}
+
 /// What the schedule asks of a hand that follows it.
-Result<void> check_path(const control::TrialControl& control, const Trial& trial) {
+Result<PlannedMotion> check_path(const control::TrialControl& control, const Trial& trial) {
   const safety::Limits& limits = trial.limits;
+  PlannedMotion planned;
   const robot::Geometry& geometry = trial.planar().robot.robot.geometry;
   const Eigen::Vector2d home = trial.planar().home;
   const double step = 1.0 / trial.scenario.rate.value;
@@ -40,14 +59,16 @@ Result<void> check_path(const control::TrialControl& control, const Trial& trial
     if (limits.excursion > 0.0) {
       if (auto ok = within("the way from home", (hand - home).norm(), limits.excursion, 1e3, "mm", "excursion_mm", t);
           !ok) {
-        return ok;
+        return tl::unexpected(ok.error());
       }
     }
     if (auto ok =
             within("the hand's speed", (hand - last).norm() / step, limits.speed, 1e3, "mm/s", "speed_mm_per_s", t);
         !ok) {
-      return ok;
+      return tl::unexpected(ok.error());
     }
+    planned.excursion = std::max(planned.excursion, (hand - home).norm());
+    planned.speed = std::max(planned.speed, (hand - last).norm() / step);
     const double outside =
         std::max((limits.workspace_low - hand).maxCoeff(), (hand - limits.workspace_high).maxCoeff());
     if (outside > 0.0) {
@@ -65,7 +86,7 @@ Result<void> check_path(const control::TrialControl& control, const Trial& trial
     }
     last = hand;
   }
-  return {};
+  return planned;
 }
 
 /// Takes the peaks out of the ticks as they come.
@@ -116,8 +137,7 @@ Result<Plan> make_plan(const Trial& trial) {
   if (!control) return tl::unexpected(control.error());
   auto sequence = control::Sequencer::create(*control, trial.sequence, geometry, sample_time);
   if (!sequence) return tl::unexpected(sequence.error());
-  auto gate = safety::Gate::create(trial.limits, geometry, planar.home, sample_time);
-  if (!gate) return tl::unexpected(gate.error());
+  if (auto ok = safety::check(trial.limits); !ok) return tl::unexpected(ok.error());
   if (schedule->quantity() == perturbation::Quantity::force) {
     const perturbation::Facts facts = schedule->facts();
     if (auto ok =
@@ -126,8 +146,12 @@ Result<Plan> make_plan(const Trial& trial) {
       return tl::unexpected(ok.error());
     }
   }
-  if (auto ok = check_path(*control, trial); !ok) return tl::unexpected(ok.error());
-  return Plan{std::move(*schedule), std::move(*control), std::move(*sequence), std::move(*gate)};
+  const auto planned = check_path(*control, trial);
+  if (!planned) return tl::unexpected(planned.error());
+  const safety::Limits limits = limits_of(trial, *planned);
+  auto gate = safety::Gate::create(limits, planar.robot.robot, planar.home, sample_time);
+  if (!gate) return tl::unexpected(gate.error());
+  return Plan{limits, std::move(*schedule), std::move(*control), std::move(*sequence), std::move(*gate)};
 }
 
 Result<Rehearsal> rehearse(const Trial& trial) {
@@ -161,7 +185,7 @@ Result<Rehearsal> rehearse(const Trial& trial) {
 }
 
 std::string plan_text(const Trial& trial, const Plan& plan, const Rehearsal& rehearsal) {
-  const safety::Limits& limits = trial.limits;
+  const safety::Limits& limits = plan.limits;
   const double perturbation = plan.schedule.duration();
   std::string text = fmt::format("{}{}{}\n", trial.protocol, trial.name.empty() ? "" : ", trial " + trial.name,
                                  trial.scenario.condition.empty() ? "" : ": " + trial.scenario.condition);

@@ -11,12 +11,15 @@ namespace mbk::session {
 
 /// What a trial will do, found to keep its limits.
 struct Plan {
+  safety::Limits limits;  ///< of the gate: those of the trial, with what follows from the plan
   perturbation::Schedule schedule;
   control::TrialControl control;
   control::Sequencer sequence;
   safety::Gate gate;
 };
 
+/// In a trial of positions a limit that the experiment does not give follows from the plan, where that is lower than
+/// the one by default: speed 1.5 times the planned one + 50 mm/s, way from home 1.5 times + 15 mm, tracking error 4°.
 /// @fails  usage: the schedule asks for more than the gate allows (force, speed, excursion, workspace, joint margin),
 /// with
 ///         value, limit and time; as make_schedule, TrialControl, Sequencer and Gate.

@@ -33,9 +33,23 @@ std::string now_text() {
 journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
   journal::Ending ending;
   ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
-  if (gate.tripped()) ending.detail = safety::sentence(gate.trip());
+  if (gate.tripped()) {
+    ending.detail = safety::sentence(gate.trip());
+    ending.trip = safety::code(gate.trip().reason);
+  }
+  ending.motors = safety::sentence(gate.motors());
   ending.overruns = times.missed;
   return ending;
+}
+
+/// Starts the robot, and looks at its stop button before anything moves.
+Result<void> start(device::Device& robot) {
+  if (auto ok = robot.start(); !ok) return ok;
+  device::State state;
+  robot.read(state);
+  if (!state.stop) return {};
+  robot.stop();
+  return bad_usage(fmt::format("{}: the stop button is pressed", robot.facts().name), "release it, then begin again");
 }
 
 /// Whether the recording is there already and holds the same: the program went down before it removed the journal.
@@ -78,7 +92,13 @@ fs::path journal_of(const fs::path& recording) {
   return recording.string() + ".journal";
 }
 
+void Session::see_idle(const IdleState& state) {
+  const std::scoped_lock lock(gate_mutex_);
+  if (gate_) gate_->see_idle(state.stop_button, state.confirmed_off);
+}
+
 Result<void> Session::reset() {
+  const std::scoped_lock lock(gate_mutex_);
   if (gate_) {
     if (auto ok = gate_->reset(); !ok) return ok;
   }
@@ -112,7 +132,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   const auto expected = static_cast<std::uint64_t>(plan->sequence.duration(0.5) / sample_time);
   auto writer = journal::Writer::create(outcome.journal, header_of(trial, robot.facts(), plan->schedule), expected);
   if (!writer) return tl::unexpected(writer.error());
-  if (auto ok = robot.start(); !ok) {
+  if (auto ok = start(robot); !ok) {
     std::error_code ignored;
     fs::remove(outcome.journal, ignored);
     return tl::unexpected(ok.error());
@@ -138,6 +158,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   loop.join();
 
   outcome.trip = gate_->trip();
+  outcome.motors = gate_->motors();
   outcome.ending = ending_of(*gate_, *signals_, outcome.times);
   auto closed = recorder.finish(outcome.ending);
   outcome.ending.dropped = ring.dropped();

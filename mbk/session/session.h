@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "mbk/device/device.h"
 #include "mbk/realtime/thread_setup.h"
 #include "mbk/session/experiment.h"
+#include "mbk/session/idle_watch.h"
 #include "mbk/session/loop.h"
 #include "mbk/session/recorder.h"
 
@@ -26,7 +28,8 @@ struct TrialOutcome {
   std::filesystem::path recording;  ///< absent file where it could not be made: the journal then still is
   std::filesystem::path journal;    ///< removed once the recording is there
   journal::Ending ending;
-  safety::Trip trip;  ///< Reason::none where nothing tripped
+  safety::Trip trip;         ///< Reason::none where nothing tripped
+  safety::MotorsOff motors;  ///< whether the robot has confirmed that they are off
   LoopTimes times;
   realtime::ThreadSetup setup;
 };
@@ -39,8 +42,8 @@ class Session {
   /// Everything that can be known to fail is asked before the robot moves.
   /// @param target  of the recording (.h5); the journal stands beside it as NAME.h5.journal
   /// @param watch  see Recorder; may be empty
-  /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; the robot keeps
-  ///         its own time and the clock is virtual; a limit or check
+  /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; the robot's stop
+  ///         button is pressed; the robot keeps its own time and the clock is virtual; a limit or check
   ///         failed, which the message names. data: the robot does not answer; the folder, space or disk.
   [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const Trial& trial,
                                              const std::filesystem::path& target, const Watch& watch = {});
@@ -54,8 +57,12 @@ class Session {
   /// By the operator, after a trip.   @fails  as Gate::reset
   [[nodiscard]] Result<void> reset();
 
+  /// What IdleWatch saw, so that a reset knows of the stop button and the motors. From any thread.
+  void see_idle(const IdleState& state);
+
  private:
   Pace pace_;
+  std::mutex gate_mutex_;  // between trials: reset and see_idle
   std::optional<safety::Gate> gate_;
   std::unique_ptr<Signals> signals_ = std::make_unique<Signals>();
 };

@@ -96,6 +96,7 @@ void push(FaultRun& run, const Vector2d& force, double rise) {
 /// So that a push meets one limit before all others.
 safety::Limits& only(FaultRun& run) {
   safety::Limits& limits = run.trial.limits;
+  run.trial.from_plan = {};
   limits.measured_force = limits.force_jump = 1e3;
   limits.limited_for = 10.0;
   limits.speed = 10.0;
@@ -129,7 +130,7 @@ Vector2d towards_joint_limits(const session::Trial& trial) {
 
 std::vector<FaultKind> sensors() {
   const std::vector<Reason> stuck = {Reason::encoder_frozen, Reason::accelerometer_disagrees, Reason::tracking,
-                                     Reason::limited_too_long};
+                                     Reason::limited_too_long, Reason::torque_disagrees};
   std::vector<FaultKind> kinds = {
       {"encoder 1 stands still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, 0)},
       {"encoder 2 stands still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, 1)},
@@ -197,8 +198,8 @@ std::vector<FaultKind> sensors() {
        spoiled([](State& state, int) { state.acceleration.setZero(); })},
       {"force drifts by 20 to 100 N/s",
        Onset::anywhere,
-       {2500, 2500},
-       {Reason::measured_force},
+       {500, 500},
+       {Reason::measured_force, Reason::torque_disagrees},
        [](FaultRun& run, Random& random) {
          const Vector2d rate = random.uniform(20.0, 100.0) * direction(random);
          run.fault.reading = [=](State& state, int k) {
@@ -210,7 +211,8 @@ std::vector<FaultKind> sensors() {
        Onset::moving,
        {1000, 7000},
        {Reason::tracking, Reason::limited_too_long, Reason::accelerometer_disagrees, Reason::speed,
-        Reason::acceleration, Reason::excursion, Reason::encoder_jump, Reason::measured_force},
+        Reason::acceleration, Reason::excursion, Reason::encoder_jump, Reason::measured_force,
+        Reason::torque_disagrees},
        [](FaultRun& run, Random& random) {
          const auto axis = static_cast<Eigen::Index>(random.below(2));
          run.fault.reading = [=, at = 0.0](State& state, int k) mutable {
@@ -291,7 +293,8 @@ std::vector<FaultKind> runaways() {
                                          Reason::measured_force,
                                          Reason::accelerometer_disagrees,
                                          Reason::encoder_jump,
-                                         Reason::force_jump};
+                                         Reason::force_jump,
+                                         Reason::torque_disagrees};
   return {
       {"motors pull the wrong way",
        Onset::moving,

@@ -106,7 +106,8 @@ Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64
       return true;
     };
   }
-  FaultyDevice device(**robot, run.trial.planar().robot.robot.geometry, run.fault, onset, keeps_time, kTrialEnds + 100);
+  FaultyDevice device(**robot, run.trial.planar().robot.robot.geometry, run.fault, onset, keeps_time,
+                      kTrialEnds + 1000);
   session::Session session({true, 0.0, &clock});
   std::atomic<std::int64_t> begun{-1};
   const auto watch = [&](std::span<const journal::Tick> ticks) {

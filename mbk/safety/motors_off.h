@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace mbk::safety {
+
+/// Whether the robot has confirmed that its motors are off.
+struct MotorsOff {
+  enum class State : std::uint8_t {
+    not_asked,   ///< they are driven
+    waiting,     ///< off was commanded; the robot has not confirmed it yet
+    confirmed,   ///< as reported by the robot
+    missing,     ///< it did not, within Limits::motors_off
+    cannot_say,  ///< the robot reports nothing of its motors
+  };
+  /// The first thing that is missing for a confirmation.
+  enum class Why : std::uint8_t { nothing, no_state, not_answered, flag, drives, motion };
+
+  State state = State::not_asked;
+  double after = 0.0;      ///< from the first command with motors off to the confirmation, or to giving up [s]
+  bool by_motion = false;  ///< confirmed by the motion too: encoders and force sensor show no torque of the motors
+  Why why = Why::nothing;
+  double torque = 0.0;  ///< that drives or motion show [N·m]
+};
+
+/// "confirmed", "not confirmed", "not reported": for files and machines.
+[[nodiscard]] std::string_view code(MotorsOff::State state);
+
+/// "confirmed off by the robot 0.045 s after the stop", "NOT CONFIRMED OFF: …": for people.
+[[nodiscard]] std::string sentence(const MotorsOff& motors);
+
+}  // namespace mbk::safety
