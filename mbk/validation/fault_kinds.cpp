@@ -440,7 +440,7 @@ const std::vector<FaultKind>& fault_kinds() {
   return kKinds;
 }
 
-std::string fault_experiment(TrialKind kind, double perturbed) {
+std::string fault_experiment(TrialKind kind, double perturbed, double moving_in) {
   constexpr std::string_view kPosition = R"(
 [recording]
 condition = "relaxed, position perturbation"
@@ -473,6 +473,7 @@ kind = "force"
 kind = "multisine"
 peak_N = 6
 duration_s = {:g}
+moving_in_s = {:g}
 [participant]
 kind = "arm"
 number = 1
@@ -489,7 +490,7 @@ floor_N = 0.15
 per_force = 0.08
 cutoff_hz = 1.5
 )";
-  return fmt::format(fmt::runtime(kind == TrialKind::position ? kPosition : kForce), perturbed);
+  return fmt::format(fmt::runtime(kind == TrialKind::position ? kPosition : kForce), perturbed, moving_in);
 }
 
 }  // namespace mbk::validation

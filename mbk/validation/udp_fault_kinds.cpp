@@ -81,8 +81,8 @@ Make latched() {
   };
 }
 
-/// The last torque before the motors were switched off, for ever.
-Make latched_at_stop() {
+/// A torque that they take up as they are told to switch off.
+Make on_at_stop() {
   return [](RobotFault& fault, Random&) {
     fault.begins = RobotFault::Begins::at_stop;
     fault.drive = [](const Vector2d&, int) { return Vector2d(0.8, -0.8); };
@@ -414,10 +414,10 @@ std::vector<UdpFaultKind> drives() {
        }},
       {"off-late",
        "the motors go off 300 ms after they were told, and the robot says so honestly",
-       Expected::at_stop,
+       Expected::no_harm,
        {0, 0},
-       {"motors-on"},
-       SafeState::either,
+       {},
+       SafeState::confirmed,
        "",
        1,
        all({at_stop(),
@@ -433,7 +433,7 @@ std::vector<UdpFaultKind> drives() {
        SafeState::not_confirmed,
        cut,
        1,
-       all({latched_at_stop(), says_motors(true)})},
+       all({on_at_stop(), says_motors(true)})},
       {"stays-on-says-off",
        "told to switch off, the motors keep a torque; the robot says that they are off",
        Expected::at_stop,
@@ -442,7 +442,7 @@ std::vector<UdpFaultKind> drives() {
        SafeState::not_confirmed,
        cut,
        1,
-       latched_at_stop()},
+       on_at_stop()},
       {"stays-on-measured",
        "told to switch off, the motors keep a torque and measure it; the robot says they are off",
        Expected::at_stop,
@@ -451,7 +451,7 @@ std::vector<UdpFaultKind> drives() {
        SafeState::not_confirmed,
        cut,
        2,
-       latched_at_stop()},
+       on_at_stop()},
       {"stays-on-without-torque",
        "told to switch off, the robot says that its motors are on; they have no torque",
        Expected::at_stop,
@@ -479,7 +479,7 @@ std::vector<UdpFaultKind> words() {
        "the robot answers commands that were never sent",
        Expected::trip,
        {5, 5},
-       {"answer-late"},
+       {"answer-wrong", "answer-late"},
        SafeState::either,
        "",
        1,
@@ -488,7 +488,7 @@ std::vector<UdpFaultKind> words() {
        "the answers run backwards",
        Expected::trip,
        {25, 25},
-       {"answer-late"},
+       {"answer-wrong", "answer-late"},
        SafeState::not_confirmed,
        "",
        1,
@@ -633,7 +633,7 @@ std::vector<UdpFaultKind> words() {
 }
 
 std::vector<UdpFaultKind> clocks() {
-  const Reasons clock_reason = {"robot-clock", "state-old"};
+  const Reasons clock_reason = with({"robot-clock", "state-old"}, kMoves);  // motion is measured by this clock
   return {
       {"clock-still",
        "the robot's clock stands still",
@@ -1122,7 +1122,7 @@ std::vector<UdpFaultKind> links() {
        "a second robot of the same session sends states from the same port",
        Expected::trip,
        {15, 15},
-       {"encoder-jump", "answer-late", "robot-clock", "state-old", "force-jump", "motors-off"},
+       {"encoder-jump", "answer-late", "answer-wrong", "robot-clock", "state-old", "force-jump", "motors-off"},
        SafeState::either,
        "one robot at one address",
        1,
