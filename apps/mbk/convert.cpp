@@ -4,6 +4,7 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "mbk/recording/write.h"
 
@@ -14,6 +15,7 @@ struct Arguments {
   MeasureArguments reading;  ///< its files: those to read, and last the one to write
   std::string format;
   bool overwrite = false;
+  std::optional<Readers> readers;
 };
 
 Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output, bool parts) {
@@ -49,15 +51,15 @@ int run(Arguments arguments) {
   const auto recordings = read_recordings(reading);
   if (!recordings) return report_error(recordings.error());
   const Recording& recording = recordings->front();
-  if (auto ok = recording::write(recording, *output.file, *format, output.overwrite); !ok) {
+  const Readers readers = arguments.readers.value_or(Readers::owner);
+  if (auto ok = recording::write(recording, *output.file, *format, output.overwrite, readers); !ok) {
     return report_error(ok.error());
   }
   for (const std::string& lost : recording::lost_in(recording, *format)) {
-    fmt::print(stderr, "mbk: {}: not written: {}\n", output.file->string(), lost);
+    say("mbk: {}: not written: {}\n", output.file->string(), lost);
   }
   if (reading.quiet) return kFine;
-  for (const std::string& note : recording.notes)
-    fmt::print(stderr, "mbk: {}: {}\n", reading.files.front().string(), note);
+  for (const std::string& note : recording.notes) say("mbk: {}: {}\n", reading.files.front().string(), note);
   if (auto ok = Output().write(summary_line(recording, *output.file, *format)); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -84,6 +86,7 @@ Action add_convert(CLI::App& app) {
       ->type_name("mat5|mat73|hdf5|csv")
       ->check(not_empty());
   command->add_flag("--overwrite", arguments->overwrite, "replace the file to write where it is there");
+  add_readers_option(*command, arguments->readers);
   command->add_flag("--quiet", arguments->reading.quiet, "only say what is lost");
   return [arguments] { return run(*arguments); };
 }

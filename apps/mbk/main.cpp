@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <exception>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <vector>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/memory.h"
+#include "apps/mbk/messages.h"
+#include "apps/mbk/output.h"
+#include "apps/mbk/process.h"
 #include "mbk/core/version.h"
 #include "mbk/report/text.h"
 
@@ -46,6 +50,7 @@ std::string one_line(const CLI::App* app, const CLI::Error& error) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  mbk::app::prepare_process();
   mbk::app::prefer_large_pages();
   CLI::App app{
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
@@ -85,16 +90,22 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
+    std::ostringstream out, wrong;
+    const int code = app.exit(error, out, wrong);
+    mbk::app::say_text(wrong.str());
+    if (auto ok = mbk::app::Output().write(out.str()); !ok) return mbk::app::report_error(ok.error());
+    return code == 0 ? mbk::app::kFine : mbk::app::kWrongUsage;
   }
   try {
     for (const auto& [name, action] : commands) {
       if (app.got_subcommand(name)) return action();
     }
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "mbk: not enough memory for this recording; choose a part of it with --from and --to\n");
-    return 3;
+    mbk::app::say("mbk: not enough memory for this recording; choose a part of it with --from and --to\n");
+    return mbk::app::kBadData;
+  } catch (const std::exception& error) {
+    mbk::app::say("mbk: {}; this is an error of mbk\n", error.what());
+    return mbk::app::kBadData;
   }
   return 2;
 }

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <system_error>
 
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "mbk/recording/write_file.h"
 
@@ -14,7 +17,7 @@ namespace mbk::app {
 
 int report_error(const Error& error) {
   std::fflush(stdout);
-  fmt::print(stderr, "mbk: {}\n", error.line());
+  say("mbk: {}\n", error.line());
   switch (error.kind) {
     case ErrorKind::usage:
       return kWrongUsage;
@@ -53,8 +56,13 @@ Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) con
 
 Result<void> Output::write(const std::string& text) const {
   if (file) return recording::write_file(*file, overwrite, text);
+  flush_messages();  // at a terminal both stand below one another, in the order in which they came
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    return bad_data("standard output could not be written", "is the disk full?");
+    const int error = errno;
+    return bad_data(fmt::format("standard output could not be written: {}", std::strerror(error)),
+                    error == ENOSPC  ? "free space on the disk"
+                    : error == EPIPE ? "what it was piped into has ended before it had read everything"
+                                     : "see where it goes");
   }
   return {};
 }

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <chrono>
-#include <cstdio>
 #include <string>
 #include <string_view>
+
+#include "apps/mbk/messages.h"
 
 namespace mbk::app {
 
@@ -19,12 +18,12 @@ class Progress {
   /// "what3 of 8: name".
   void count(int done, int of, std::string_view name = "") {
     if (of < 2 || !due()) return;
-    fmt::print(stderr, "{}{} of {}{}{}\n", what_, done, of, name.empty() ? "" : ": ", name);
+    say("{}{} of {}{}{}\n", what_, done, of, name.empty() ? "" : ": ", name);
   }
 
   /// A share of the one that is under way: "what40 %".
   void reached(double fraction) {
-    if (due()) fmt::print(stderr, "{}{:.0f} %\n", what_, 100.0 * fraction);
+    if (due()) say("{}{:.0f} %\n", what_, 100.0 * fraction);
   }
 
  private:

@@ -5,6 +5,7 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "mbk/report/text.h"
 #include "mbk/session/session.h"
 
 namespace mbk::app {
@@ -14,8 +15,29 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   fs::path journal, out;
-  bool overwrite = false, keep = false;
+  session::RecoverOptions options;
 };
+
+std::string paragraph(std::string_view first, std::string_view text) {
+  constexpr std::size_t kIndent = 4;
+  std::string lines = fmt::format("  {} {}", first, report::wrapped(text, report::kLineColumns - kIndent));
+  for (std::size_t at = lines.find('\n'); at != lines.npos; at = lines.find('\n', at + 1))
+    lines.insert(at + 1, kIndent, ' ');
+  return lines + '\n';
+}
+
+std::string outcome_text(const session::Recovered& recovered, const Arguments& arguments, const fs::path& out) {
+  const Recording& recording = recovered.recording;
+  const auto& metadata = recording.metadata;
+  const auto detail = metadata.find("ended_detail");
+  std::string text = fmt::format("{}: {} samples, {:.3f} s; {}{}\n", out.string(), recording.samples(),
+                                 recording.time[recording.samples() - 1], metadata.at("ended"),
+                                 detail == metadata.end() ? "" : ": " + detail->second);
+  if (!recovered.damage.any()) return text;
+  for (const std::string& sentence : recovered.damage.sentences()) text += paragraph("!", sentence);
+  if (!recovered.damage.lost.empty()) text += "  the recording has a row of NaN for each missing tick\n";
+  return text + fmt::format("  the journal is kept: {}\n", arguments.journal.string());
+}
 
 int run(const Arguments& arguments) {
   fs::path out = arguments.out;
@@ -26,15 +48,12 @@ int run(const Arguments& arguments) {
     else
       out += ".h5";
   }
-  const auto recording = session::recover(arguments.journal, out, arguments.overwrite, arguments.keep);
-  if (!recording) return report_error(recording.error());
-  const auto& metadata = recording->metadata;
-  const auto detail = metadata.find("ended_detail");
-  const std::string text = fmt::format("{}: {} samples, {:.3f} s; {}{}\n", out.string(), recording->samples(),
-                                       recording->time[recording->samples() - 1], metadata.at("ended"),
-                                       detail == metadata.end() ? "" : ": " + detail->second);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
-  return kFine;
+  const auto recovered = session::recover(arguments.journal, out, arguments.options);
+  if (!recovered) return report_error(recovered.error());
+  if (auto ok = Output().write(outcome_text(*recovered, arguments, out)); !ok) return report_error(ok.error());
+  if (!recovered->incomplete) return kFine;
+  return report_error({ErrorKind::data, recovered->recording.metadata.at("ended"),
+                       "'mbk info' of the recording shows where; keep the journal", out.string()});
 }
 
 }  // namespace
@@ -47,15 +66,19 @@ Action add_recover(CLI::App& app) {
       "  mbk recover p07_relaxed.h5.journal\n"
       "      writes p07_relaxed.h5 and then removes the journal\n"
       "  mbk recover p07_relaxed.h5.journal --out p07.mat --keep\n\n"
-      "Every block of the journal has a checksum; what is whole comes back, and what is not is left out and said.\n"
-      "'mbk info' of the recording says how it ended.");
+      "Every block of the journal has a checksum, and its ticks are numbered. Every whole block comes back, wherever\n"
+      "it stands; a tick that is missing becomes a row of NaN and is said, here and in the recording ('ended',\n"
+      "'ticks_lost', 'gaps'). A journal that is not exactly as it was written is never removed. 'mbk info' of the\n"
+      "recording says how it ended.\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost (the recording is there).");
   command->add_option("JOURNAL", arguments->journal, "NAME.h5.journal, beside where the recording should be")
       ->required();
   command->add_option("--out", arguments->out, "the recording to write (NAME.h5)")
       ->type_name("REC")
       ->check(not_empty());
-  command->add_flag("--overwrite", arguments->overwrite, "replace a recording that is there");
-  command->add_flag("--keep", arguments->keep, "leave the journal where it is");
+  command->add_flag("--overwrite", arguments->options.overwrite, "replace a recording that is there");
+  command->add_flag("--keep", arguments->options.keep, "leave the journal where it is");
+  add_readers_option(*command, arguments->options.readers);
   return [arguments] { return run(*arguments); };
 }
 

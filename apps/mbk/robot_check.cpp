@@ -39,14 +39,18 @@ int run(const Arguments& arguments) {
   }
   const std::vector<session::Finding> findings = session::check_setup(*setup);
   bool wrong = session::worst(findings) == session::Finding::Verdict::wrong;
-  fmt::print("{}{}", session::setup_text(*setup), findings_text(findings));
+  if (auto ok = Output().write(session::setup_text(*setup) + findings_text(findings)); !ok) {
+    return report_error(ok.error());
+  }
   if (!arguments.live) return wrong ? kNotUsable : kFine;
   const auto robot = session::make_device(setup->device, setup->scenario);
   if (!robot) return report_error(robot.error());
   const auto record = session::watch_robot(**robot, setup->scenario.rate, *arguments.live);
   if (!record) return report_error(record.error());
   const auto seen = session::check_live(*setup, (*robot)->facts(), *record);
-  fmt::print("{}{}", session::live_text(*setup, (*robot)->facts(), *record), findings_text(seen));
+  if (auto ok = Output().write(session::live_text(*setup, (*robot)->facts(), *record) + findings_text(seen)); !ok) {
+    return report_error(ok.error());
+  }
   wrong = wrong || session::worst(seen) == session::Finding::Verdict::wrong;
   return wrong ? kNotUsable : kFine;
 }

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <memory>
 #include <string>
 
@@ -50,7 +48,8 @@ int run(const Arguments& arguments) {
       return report_error(ok.error());
     }
   }
-  fmt::print("{}", arguments.json ? result::to_json(made->summary) : report::force_text(made->summary));
+  const std::string text = arguments.json ? result::to_json(made->summary) : report::force_text(made->summary);
+  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 

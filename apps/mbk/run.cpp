@@ -1,21 +1,28 @@
 #include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
-#include <iostream>
+#include <array>
+#include <cerrno>
 #include <limits>
 #include <memory>
 #include <optional>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/last_words.h"
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/run_console.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
+#include "apps/mbk/stop_signals.h"
 #include "mbk/preprocess/perturbation_only.h"
 #include "mbk/recording/read.h"
 #include "mbk/report/text.h"
 #include "mbk/session/live_estimate.h"
+#include "mbk/session/personal_data.h"
 #include "mbk/session/plan.h"
 #include "mbk/session/session.h"
 
@@ -35,6 +42,7 @@ struct Arguments {
   std::optional<std::uint64_t> seed;
   std::optional<int> person;
   std::optional<double> speed;
+  std::optional<Readers> readers;
   bool as_fast_as_possible = false, dry_run = false, measure = true, quiet = false;
   ConsoleArguments console;
 };
@@ -56,6 +64,7 @@ Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
   for (Trial& trial : chosen) {
     if (arguments.seed) trial.scenario.seed = *arguments.seed;
     if (arguments.person) trial.person.number = *arguments.person;
+    if (arguments.readers) trial.scenario.readers = *arguments.readers;
   }
   return chosen;
 }
@@ -82,12 +91,12 @@ class StatusLine {
     const std::string line = fmt::format("{}{:6.1f} s  {}  |F| {:4.1f} N  torque {:+.2f} {:+.2f} N·m",
                                          trial_.empty() ? "" : trial_ + ": ", tick.time, control::text(phase),
                                          std::hypot(tick.force[0], tick.force[1]), tick.torque[0], tick.torque[1]);
-    fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "", line, terminal_ ? "" : "\n");
+    say("{}{}{}", terminal_ ? "\r\033[K" : "", line, terminal_ ? "" : "\n");
     shown_ = true;
   }
 
   ~StatusLine() {
-    if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
+    if (shown_ && terminal_) say_text("\r\033[K");
   }
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
@@ -109,6 +118,14 @@ std::string outcome_text(const session::TrialOutcome& outcome, const session::Pa
     text += fmt::format("  time between commands: {}\n", time_text(outcome.times.interval));
     if (!outcome.setup.refused.empty()) text += fmt::format("  {}\n", outcome.setup.refused);
   }
+  return text;
+}
+
+/// What is wrong with the journal, which was kept then.
+std::string damage_text(const session::TrialOutcome& outcome) {
+  std::string text;
+  for (const std::string& sentence : outcome.damage.sentences()) text += fmt::format("  ! {}\n", sentence);
+  if (!text.empty()) text += fmt::format("  the journal is kept: {}\n", outcome.journal.string());
   return text;
 }
 
@@ -145,11 +162,29 @@ Measured measure(const session::TrialOutcome& outcome, const Trial& trial, RunCo
           !identification.usable || identification.fit.vaf.minCoeff() < kPoor};
 }
 
-/// At a terminal.
-bool ask(const char* question) {
-  fmt::print(stderr, "{} [y/N] ", question);
-  std::string answer;
-  return std::getline(std::cin, answer) && !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
+/// At a terminal. What was typed before the question is no answer to it.
+bool ask(const char* question, const session::Signals& signals) {
+  tcflush(STDIN_FILENO, TCIFLUSH);
+  say("{} [y/N] ", question);
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  while (!signals.end_session) {
+    constexpr int kWait = 100;  // [ms]
+    if (poll(&input, 1, kWait) <= 0) continue;
+    std::array<char, 256> line{};
+    const ssize_t came = read(STDIN_FILENO, line.data(), line.size());
+    if (came < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    return came > 0 && (line[0] == 'y' || line[0] == 'Y');
+  }
+  return false;
+}
+
+/// What standard error did not take goes where it can still be read: to standard output, and into the recording.
+std::string lost_messages_text(std::vector<std::string>& notes) {
+  const LostMessages lost = take_lost_messages();
+  if (lost.count == 0) return {};
+  notes.push_back(
+      fmt::format("{} message{} of mbk to standard error lost: {}", lost.count, lost.count == 1 ? "" : "s", lost.why));
+  return fmt::format("  {}\n", notes.back());
 }
 
 /// relaxed.h5 → relaxed_2.h5, the first that is not there yet.
@@ -171,9 +206,19 @@ std::string alarm(const safety::MotorsOff& motors) {
       line, report::wrapped("The motors are " + safety::sentence(motors) + ".", report::kLineColumns));
 }
 
-/// Exit code of a trial that was stopped.
-int stop_code(const session::TrialOutcome& outcome) {
-  return outcome.motors.state == safety::MotorsOff::State::missing ? kMotorsNotOff : kSafetyStop;
+/// Whatever else went wrong.   @returns  whether there was reason to
+bool sound_alarm(const Session& session) {
+  const safety::Gate* const gate = session.gate();
+  if (gate == nullptr || gate->motors().state != safety::MotorsOff::State::missing) return false;
+  say("{}", alarm(gate->motors()));
+  return true;
+}
+
+/// Exit code of a trial after which none follows; what is worst counts.
+int code_of(const session::TrialOutcome& outcome) {
+  if (outcome.motors.state == safety::MotorsOff::State::missing) return kMotorsNotOff;
+  if (outcome.trip.reason != safety::Reason::none) return kSafetyStop;
+  return outcome.incomplete ? kBadData : kFine;
 }
 
 /// One trial: on the robot, into the file, and measured.
@@ -184,39 +229,60 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
   auto robot = session::make_device(trial.device, trial.scenario);
   if (!robot) return report_error(robot.error());
   if (auto ok = console.begin(index, trial, (*robot)->facts(), target); !ok) return report_error(ok.error());
+  session::Signals& signals = session.signals();
+  std::optional<StopSignals::Trial> running(std::in_place);
+  if (signals.end_session) return kFine;
   const auto outcome = [&] {
-    const StopKeys keys(session.signals());
+    const LastWords last_words(**robot);
+    const StopKeys keys(signals);
     StatusLine line(trial.name, arguments.quiet);
     return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) {
       line.show(ticks);
       console.watch(ticks);
     });
   }();
-  if (!outcome) return report_error(outcome.error());
-  if (outcome->motors.state == safety::MotorsOff::State::missing) fmt::print(stderr, "{}", alarm(outcome->motors));
+  running.reset();
+  const bool alarming = sound_alarm(session);
+  const auto failed = [&](const Error& error) {
+    const int code = report_error(error);
+    return alarming ? kMotorsNotOff : code;
+  };
+  if (!outcome) return failed(outcome.error());
   console.show_robot(outcome->motors);
   std::optional<session::IdleWatch> idle;
   if (!trial.device.simulated()) idle.emplace(**robot, console.watching(session));
-  std::string text = outcome_text(*outcome, pace) + console.finish(*outcome);
+  std::vector<std::string> notes;
+  std::string text = outcome_text(*outcome, pace) + console.finish(*outcome) + lost_messages_text(notes);
   const bool stopped = outcome->trip.reason != safety::Reason::none;
+  text += damage_text(*outcome);
   Measured measured;
-  if (!stopped && arguments.measure) {
+  if (!stopped && arguments.measure && !signals.end_session) {
     measured = measure(*outcome, trial, console);
     text += measured.text;
   }
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
-  if (auto ok = console.keep_notes(); !ok) return report_error(ok.error());
+  const auto written = Output().write(text);
+  if (!notes.empty()) {
+    if (auto ok = session::annotate(outcome->recording, notes); !ok) return failed(ok.error());
+  }
+  if (auto ok = console.keep_notes(); !ok) return failed(ok.error());
+  if (!written) return failed(written.error());
+  if (outcome->incomplete) {
+    report_error({ErrorKind::data, outcome->ending.how, "look at the disk before the next trial; the journal is kept",
+                  target.string()});
+    return code_of(*outcome);
+  }
+  if (signals.end_session) return code_of(*outcome);
   if (console.decides(stopped || measured.poor)) {
     const auto then = console.after_trial(session, stopped);
     repeat = then == AfterTrial::repeat;
-    if (then == AfterTrial::end) return stopped ? stop_code(*outcome) : kFine;
+    if (then == AfterTrial::end) return code_of(*outcome);
     return std::nullopt;
   }
   const bool terminal = isatty(STDIN_FILENO) == 1;
   if (stopped) {
-    if (!terminal) return stop_code(*outcome);
+    if (!terminal) return code_of(*outcome);
     while (!repeat) {
-      if (!ask("Is the reason gone? Reset the gate and do the trial again?")) return stop_code(*outcome);
+      if (!ask("Is the reason gone? Reset the gate and do the trial again?", signals)) return code_of(*outcome);
       if (auto ok = session.reset(); !ok) {
         report_error(ok.error());
       } else {
@@ -224,16 +290,36 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
       }
     }
   } else if (measured.poor && terminal) {
-    repeat = ask("The data are poor. Do the trial again?");
+    repeat = ask("The data are poor. Do the trial again?", signals);
   } else if (measured.poor) {
-    fmt::print(stderr, "mbk: the data of {} are poor; think of repeating the trial\n", target.string());
+    say("mbk: the data of {} are poor; think of repeating the trial\n", target.string());
   }
   return std::nullopt;
+}
+
+/// @returns  the exit code, where no signal ended the session outside of a trial
+int perform_all(Session& session, const std::vector<Trial>& trials, const session::Pace& pace,
+                const Arguments& arguments) {
+  auto console = RunConsole::open(arguments.console, trials, session.signals());
+  if (!console) return report_error(console.error());
+  if (!console->may_begin(session, trials.front())) return kFine;
+  std::optional<int> code;
+  for (std::size_t index = 0; index < trials.size() && !code; ++index) {
+    const fs::path target = target_of(arguments, trials[index], trials.size() > 1);
+    for (bool repeat = true; repeat && !code && !session.signals().end_session;) {
+      code = perform(session, trials[index], index, next_free(target), pace, arguments, *console, repeat);
+    }
+  }
+  if (auto ok = console->end(); !ok) return report_error(ok.error());
+  return code.value_or(kFine);
 }
 
 int run(const Arguments& arguments) {
   const auto trials = trials_of(arguments);
   if (!trials) return report_error(trials.error());
+  for (const std::string& warning : session::personal_warnings(*trials)) {
+    say("mbk: {}: warning: {}\n", arguments.experiment, warning);
+  }
   if (arguments.dry_run) return dry_run(*trials, arguments.experiment);
   session::Pace pace;
   pace.virtual_clock = arguments.as_fast_as_possible || arguments.speed.has_value();
@@ -247,19 +333,15 @@ int run(const Arguments& arguments) {
     }
   }
   Session session(pace);
-  auto console = RunConsole::open(arguments.console, *trials, session.signals());
-  if (!console) return report_error(console.error());
-  if (!console->may_begin(session, trials->front())) return kFine;
-  std::optional<int> code;
-  for (std::size_t index = 0; index < trials->size() && !code; ++index) {
-    const Trial& trial = (*trials)[index];
-    const fs::path target = target_of(arguments, trial, trials->size() > 1);
-    for (bool repeat = true; repeat && !code;) {
-      code = perform(session, trial, index, next_free(target), pace, arguments, *console, repeat);
-    }
+  int code = kFine, ended_by = 0;
+  {
+    const StopSignals signals(session.signals());
+    const BackgroundMessages messages;
+    code = perform_all(session, *trials, pace, arguments);
+    ended_by = signals.ended_by();
   }
-  if (auto ok = console->end(); !ok) return report_error(ok.error());
-  return code.value_or(kFine);
+  if (ended_by != 0 && code == kFine) end_by(ended_by);
+  return code;
 }
 
 }  // namespace
@@ -283,8 +365,8 @@ Action add_run(CLI::App& app) {
       "NAME.h5.journal first; where the program or the machine went down, 'mbk recover' makes a recording of it.\n"
       "The gate limits force, torque, speed and place in software; it is no certified safety function. With people,\n"
       "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable, 5 safety stop,\n"
-      "7 the robot did not confirm that its motors are off: cut their power.");
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost, 4 computed but not usable,\n"
+      "5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
   command->add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
       ->required()
       ->check(suggests(ready_scenario_names()));
@@ -301,6 +383,7 @@ Action add_run(CLI::App& app) {
       ->check(whole_number(1, 999'999));
   command->add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: as fast as the machine can");
   command->add_option("--speed", arguments->speed, "virtual clock: so many seconds for each second")->type_name("X");
+  add_readers_option(*command, arguments->readers);
   command->add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
   command->add_flag("!--no-measure", arguments->measure, "record only");
   command->add_flag("--quiet", arguments->quiet, "no status line");

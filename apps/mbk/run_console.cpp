@@ -5,11 +5,13 @@
 
 #include <algorithm>
 
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/report_file.h"
 #include "mbk/console/page.h"
 #include "mbk/control/trial_control.h"
 #include "mbk/report/html.h"
+#include "mbk/session/personal_data.h"
 #include "mbk/session/plan.h"
 
 namespace mbk::app {
@@ -54,12 +56,12 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const std
   if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
   if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
   auto opened = console::Console::open(arguments.port, trials, signals,
-                                       [](const std::string& line) { fmt::print(stderr, "mbk: console: {}\n", line); });
+                                       [](const std::string& line) { say("mbk: console: {}\n", line); });
   if (!opened) return tl::unexpected(opened.error());
   run.console_ = std::move(*opened);
   run.wait_ = arguments.wait;
-  fmt::print(stderr, "console:              {}\nparticipant's screen: {}\nonly to watch:        {}\n",
-             run.console_->address(), run.console_->participant_address(), run.console_->viewing_address());
+  say("console:              {}\nparticipant's screen: {}\nonly to watch:        {}\n", run.console_->address(),
+      run.console_->participant_address(), run.console_->viewing_address());
   return run;
 }
 
@@ -153,6 +155,12 @@ Result<result::Measured> RunConsole::measured(const Recording& recording, const 
 Result<void> RunConsole::keep_notes() {
   if (!console_ || last_.empty()) return {};
   const auto notes = console_->take_notes();
+  for (const std::string& note : notes) {
+    const std::string warning = session::personal_warning("the note", note, false);
+    if (warning.empty()) continue;
+    say("mbk: warning: {}\n", warning);
+    console_->say(warning);
+  }
   return notes.empty() ? Result<void>{} : session::annotate(last_, notes);
 }
 
@@ -189,7 +197,7 @@ AfterTrial RunConsole::after_trial(session::Session& session, bool stopped) {
 Result<void> RunConsole::end() {
   if (!console_) return {};
   if (console_->status().viewers > 0) {
-    fmt::print(stderr, "the console stays until its pages are closed; Ctrl-C ends it too\n");
+    say("the console stays until its pages are closed; Ctrl-C ends it too\n");
     console_->wait_until_left();
   }
   return keep_notes();

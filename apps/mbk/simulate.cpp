@@ -27,6 +27,7 @@ struct Arguments {
   std::optional<std::uint64_t> seed;
   int seeds = 1;
   unsigned threads = 0;
+  std::optional<Readers> readers;
   bool blind = false, overwrite = false, list = false, facts = false, quiet = false;
 };
 
@@ -151,7 +152,8 @@ int run(const Arguments& arguments, recording::Format format) {
         if (!performance) return tl::unexpected(performance.error().in(place_of(arguments, job)));
         lines[static_cast<std::size_t>(i)] = summary_line(job, *performance);
         if (arguments.blind) performance->recording = laboratory::without_truth(std::move(performance->recording));
-        return recording::write(performance->recording, job.file, format, arguments.overwrite);
+        return recording::write(performance->recording, job.file, format, arguments.overwrite,
+                                arguments.readers.value_or(job.scenario.readers));
       },
       [&](int i) { progress.count(++done, count, (*jobs)[static_cast<std::size_t>(i)].file.string()); });
   if (!made) return report_error(made.error());
@@ -205,6 +207,7 @@ Action add_simulate(CLI::App& app) {
       ->check(whole_number(1, 1024));
   command->add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
   command->add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
+  add_readers_option(*command, arguments->readers);
   command->add_flag("--list", arguments->list, "the ready scenarios");
   command->add_flag("--facts", arguments->facts,
                     "what the perturbation demands: peaks, speed, band; simulates nothing");

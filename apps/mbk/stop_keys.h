@@ -1,6 +1,5 @@
 #pragma once
 
-#include <csignal>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -9,8 +8,8 @@
 
 namespace mbk::app {
 
-/// While it lives, Ctrl-C and a request to end (SIGTERM) stop the robot instead of the program; and at a terminal so
-/// does the space bar, and e ends the trial early.
+/// While it lives, at a terminal: the space bar stops the robot, e ends the trial early, and a terminal that is closed
+/// stops the robot and ends the session.
 class StopKeys {
  public:
   explicit StopKeys(session::Signals& signals);
@@ -20,10 +19,8 @@ class StopKeys {
 
  private:
   struct Terminal;
-  void watch(session::Signals& signals, std::stop_token over) const;
+  static void watch(session::Signals& signals, const std::stop_token& over) noexcept;
 
-  struct sigaction interrupt_before_ {};
-  struct sigaction end_before_ {};
   std::unique_ptr<Terminal> terminal_;  // as it was; null where standard input is none
   std::optional<std::jthread> watching_;
 };

@@ -214,7 +214,10 @@ Action Console::ask(Question question) {
   decision_.reset();
   reset_code_.clear();
   changed_ = true;
-  decided_.wait(lock, [&] { return decision_.has_value(); });
+  constexpr auto kLook = std::chrono::milliseconds(100);
+  while (!decided_.wait_for(lock, kLook, [&] { return decision_.has_value(); })) {
+    if (signals_.end_session) decision_ = Action::abort;
+  }
   question_ = Question::none;
   reset_code_.clear();
   changed_ = true;
@@ -241,7 +244,9 @@ void Console::wait_until_left() {
   }
   constexpr auto kLook = std::chrono::milliseconds(200);
   constexpr int kGrace = 15;  // a page that is loaded again is away for a moment
-  for (int away = 0; away<kGrace; away = status().viewers> 0 ? 0 : away + 1) std::this_thread::sleep_for(kLook);
+  for (int away = 0; away < kGrace && !signals_.end_session; away = status().viewers > 0 ? 0 : away + 1) {
+    std::this_thread::sleep_for(kLook);
+  }
 }
 
 std::vector<std::string> Console::take_notes() {

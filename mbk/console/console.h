@@ -79,7 +79,8 @@ class Console {
   void show_report(std::string html, std::string why = "");
 
   /// Asks the page, and waits until it decides: start, repeat, next, abort or reset; or a note came, and the question
-  /// is to be asked again. A stop while it waits asks for a reset before anything else.
+  /// is to be asked again. A stop while it waits asks for a reset before anything else. Where the program is asked to
+  /// end (Signals::end_session) the answer is abort.
   [[nodiscard]] Action ask(Question question);
 
   void show_robot(const RobotStatus& status);
@@ -87,7 +88,7 @@ class Console {
   /// What the answer came to, where it could not be done.
   void say(std::string message);
 
-  /// The session is over: waits until nobody watches any more.
+  /// The session is over: waits until nobody watches any more, or Signals::end_session.
   void wait_until_left();
 
   /// Remarks that belong to the recording of the trial that is running or was last, and are not in it yet.

@@ -74,6 +74,11 @@ class Device {
   /// Motors off.
   virtual void stop() noexcept = 0;
 
+  /// Motors off by one last command of a program that dies: called by the handler of a fatal signal, in any thread and
+  /// at any moment after the constructor, so it must be async-signal-safe (signal-safety(7)): no allocation, no lock.
+  /// A device that cannot leaves it to its watchdog.
+  virtual void emergency_off() noexcept {}
+
  protected:
   Device() = default;
   Device(const Device&) = default;

@@ -19,6 +19,10 @@ constexpr double kAskAgain = 0.02;                                   // [s]
 constexpr int kMostAtOnce = 256;  // datagrams of one tick: a flood must not hold the loop up
 constexpr int kGoodbyes = 5;
 
+/// Of the last words: beyond any that a session reaches, exact as a double, and the highest where a robot keeps the low
+/// 31 or 32 bits alone and takes them for a signed number.
+constexpr std::uint64_t kLastSequence = (std::uint64_t{1} << 52U) + 0x7FFFFFFFU;
+
 std::int64_t after(double seconds) noexcept {
   return monotonic_ns() + std::llround(1e9 * seconds);
 }
@@ -54,6 +58,7 @@ Result<void> UdpDevice::start() {
   if (!robot) return tl::unexpected(robot.error());
   auto socket = UdpSocket::open({0, options_.local_port});
   if (!socket) return tl::unexpected(socket.error());
+  has_last_words_ = false;
   robot_ = *robot;
   socket_ = std::move(*socket);
   counts_ = {};
@@ -65,6 +70,11 @@ Result<void> UdpDevice::start() {
   last_.greeting = true;
   last_.lock_step = options_.lock_step;
   last_.sequence = 1;
+  CommandDatagram off = last_;
+  off.greeting = false;
+  off.sequence = kLastSequence;
+  last_words_ = encode(off);
+  has_last_words_ = true;
   for (const std::int64_t until = after(options_.answer_within); !heard_ && monotonic_ns() < until;) {
     if (!send_last()) break;
     if (socket_->wait(kAskAgain)) take_all();
@@ -181,6 +191,11 @@ void UdpDevice::stop() noexcept {
     nanosleep(&kPause, nullptr);
     send_last();
   }
+}
+
+void UdpDevice::emergency_off() noexcept {
+  if (!has_last_words_) return;
+  for (int i = 0; i < kGoodbyes; ++i) socket_->send(last_words_, robot_);
 }
 
 }  // namespace mbk::drivers

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -56,6 +58,10 @@ class UdpDevice : public device::Device {
   /// Says "motors off" several times, so that one lost datagram does no harm.
   void stop() noexcept override;
 
+  /// Sends "motors off", encoded in `start`, with a sequence beyond every other of the session: no command that is
+  /// still under way, or that another thread of the dying program still sends, is believed after it.
+  void emergency_off() noexcept override;
+
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
   /// The newest state as it came.
@@ -77,6 +83,8 @@ class UdpDevice : public device::Device {
   CommandDatagram last_;
   StateDatagram newest_;
   bool heard_ = false, broken_ = false;
+  std::array<std::byte, kCommandBytes> last_words_{};
+  std::atomic<bool> has_last_words_{false};
 };
 
 }  // namespace mbk::drivers

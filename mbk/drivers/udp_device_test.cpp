@@ -212,6 +212,33 @@ TEST(UdpDevice, StopsSeveralTimes) {
   }
 }
 
+TEST(UdpDevice, ItsLastWordsAreBelievedAndNothingAfterThem) {
+  Peer peer;
+  auto device = UdpDevice::create(peer.options(), {}).value();
+  device->emergency_off();  // before it is connected there is nobody to tell
+  ASSERT_TRUE(peer.welcome(*device));
+  ASSERT_TRUE(device->write({1, {1.0, 2.0}, true}));
+  const CommandDatagram driven = peer.hear();
+  EXPECT_TRUE(driven.enabled);
+  const long before = testing_support::allocations();
+  device->emergency_off();
+  EXPECT_EQ(testing_support::allocations(), before);
+  ASSERT_TRUE(device->write({2, {1.0, 2.0}, true}));  // the loop, in another thread of the dying program
+  std::uint64_t last = 0;
+  for (int i = 0; i < 5; ++i) {
+    const CommandDatagram off = peer.hear();
+    EXPECT_EQ(off.session, driven.session);
+    EXPECT_FALSE(off.enabled);
+    EXPECT_FALSE(off.greeting);
+    EXPECT_EQ(off.command, Eigen::Vector2d(0.0, 0.0));
+    EXPECT_GT(off.sequence, driven.sequence + 1'000'000'000'000U);
+    EXPECT_EQ(static_cast<std::uint64_t>(static_cast<double>(off.sequence)), off.sequence);
+    EXPECT_GT(static_cast<std::int32_t>(off.sequence), static_cast<std::int32_t>(driven.sequence));
+    last = off.sequence;
+  }
+  EXPECT_LT(peer.hear().sequence, last);
+}
+
 TEST(UdpDevice, AsksAgainInLockStepWhereACommandIsLost) {
   Peer peer;
   UdpOptions options = peer.options();

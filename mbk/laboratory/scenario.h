@@ -20,6 +20,7 @@
 #include "mbk/perturbation/optimal_power.h"
 #include "mbk/perturbation/random_binary.h"
 #include "mbk/perturbation/underdamped_pulse.h"
+#include "mbk/trial/readers.h"
 #include "mbk/trial/springs.h"
 
 namespace mbk::config {
@@ -115,7 +116,8 @@ struct Scenario {
   std::variant<PlanarTrial, OneAxisTrial> trial;
   PerturbationPlan perturbation;
   Hertz rate{1000.0};
-  std::uint64_t seed = 1;  ///< of phases, decisions and noise
+  std::uint64_t seed = 1;            ///< of phases, decisions and noise
+  Readers readers = Readers::owner;  ///< of the recording
 };
 
 /// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors. The

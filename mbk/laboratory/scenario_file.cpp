@@ -531,6 +531,8 @@ Scenario read_scenario(const Section& root) {
   scenario.condition = recording.text("condition", "");
   scenario.rate = Hertz(recording.number("rate_hz", scenario.rate.value, between(10, 100'000)));
   scenario.seed = recording.integer<std::uint64_t>("seed", scenario.seed, 0, std::numeric_limits<std::int64_t>::max());
+  scenario.readers = recording.choice<Readers>(
+      "readable_by", {{"owner", Readers::owner}, {"group", Readers::group}, {"all", Readers::all}}, scenario.readers);
   const Section robot = root.section("robot");
   const auto machine =
       robot.choice("kind", {{"planar", Machine::planar}, {"one_axis", Machine::one_axis}}, Machine::planar);

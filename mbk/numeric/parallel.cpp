@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -14,7 +15,8 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
   std::atomic<int> next = 0;
   std::mutex mutex;
   std::optional<std::pair<int, Error>> failure;
-  const auto take_turns = [&] {
+  std::exception_ptr thrown;
+  const auto take_all_turns = [&] {
     for (int i = next++; i < count; i = next++) {
       const Result<void> outcome = work(i);
       const std::lock_guard lock(mutex);
@@ -26,6 +28,16 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
       if (done) done(i);
     }
   };
+  // An exception that left a thread would end the program.
+  const auto take_turns = [&]() noexcept {
+    try {
+      take_all_turns();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      thrown = std::current_exception();
+      next = count;
+    }
+  };
   {
     const unsigned wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::jthread> workers;
@@ -34,6 +46,7 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
     }
     take_turns();
   }
+  if (thrown) std::rethrow_exception(thrown);
   if (failure) return tl::unexpected(failure->second);
   return {};
 }

@@ -1,16 +1,55 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "mbk/realtime/bounded_ring.h"
 #include "mbk/realtime/clock.h"
 #include "mbk/realtime/cycle_record.h"
+#include "mbk/realtime/signal_stack.h"
 #include "tests/support/allocations.h"
 
 namespace mbk::realtime {
 namespace {
+
+/// Without an end, in a thread whose stack is its own.
+int overflow(volatile int depth) {
+  volatile std::array<char, 4096> some{};  // NOLINT(misc-const-correctness)
+  some[static_cast<std::size_t>(depth % 4096)] = 1;
+  return depth < 0 ? 0 : overflow(depth + 1) + some[0];
+}
+
+TEST(SignalStackDeathTest, AHandlerRunsWhereTheStackOfAThreadHasOverflowed) {
+  const auto overflow_in_a_thread = [](bool with_a_stack) {
+    struct sigaction action {};
+    action.sa_handler = [](int) { std::_Exit(7); };
+    action.sa_flags = SA_ONSTACK;
+    sigaction(SIGSEGV, &action, nullptr);
+    std::thread([=] {
+      std::optional<SignalStack> stack;
+      if (with_a_stack) stack.emplace();
+      overflow(0);
+    }).join();
+  };
+  EXPECT_EXIT(overflow_in_a_thread(true), testing::ExitedWithCode(7), "");
+#if !defined(__SANITIZE_ADDRESS__)  // which brings a stack of its own
+  EXPECT_EXIT(overflow_in_a_thread(false), testing::KilledBySignal(SIGSEGV), "");
+#endif
+}
+
+TEST(SignalStack, ThatOfBeforeIsThereAfterIt) {
+  stack_t before{}, after{};
+  sigaltstack(nullptr, &before);
+  { const SignalStack stack; }
+  sigaltstack(nullptr, &after);
+  EXPECT_EQ(before.ss_sp, after.ss_sp);
+  EXPECT_EQ(before.ss_flags, after.ss_flags);
+}
 
 TEST(BoundedRing, KeepsOrderAndCountsWhatDoesNotFit) {
   BoundedRing<int> ring(4);

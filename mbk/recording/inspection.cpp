@@ -29,6 +29,19 @@ void find_non_finite(const std::string& name, const Vector& values, std::vector<
   found.push_back({name, values.size() - values.array().isFinite().cast<Index>().sum(), first});
 }
 
+void find_missing(const Recording& recording, std::vector<MissingSamples>& found) {
+  const auto is_missing = [&](Index sample) {
+    return std::ranges::all_of(recording.channels,
+                               [&](const Channel& channel) { return std::isnan(channel.values[sample]); });
+  };
+  for (Index i = 0; i < recording.samples() && !recording.channels.empty(); ++i) {
+    if (!is_missing(i)) continue;
+    const Index first = i;
+    while (i < recording.samples() && is_missing(i)) ++i;
+    found.push_back({first, i - first, recording.time[first]});
+  }
+}
+
 void inspect_time(const Vector& time, Inspection& facts) {
   facts.duration = time.size() > 0 ? time[time.size() - 1] - time[0] : 0.0;
   std::vector<double> intervals;
@@ -110,6 +123,7 @@ Inspection inspect(const Recording& recording) {
   Inspection facts;
   facts.samples = recording.samples();
   inspect_time(recording.time, facts);
+  find_missing(recording, facts.missing);
   find_non_finite("time", recording.time, facts.non_finite);
   for (const Channel& channel : recording.channels) {
     find_non_finite(channel.name, channel.values, facts.non_finite);

@@ -44,6 +44,19 @@ TEST(Inspect, ReportsGaps) {
   EXPECT_EQ(facts.gaps[0].length, 3);
 }
 
+TEST(Inspect, ReportsSamplesThatAreNaNInEveryChannel) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  Recording recording = with_channel("force_x", Vector{{1, kNaN, kNaN, 4, kNaN, 6, kNaN}});
+  recording.channels.push_back({"force_y", "N", "base", Vector{{kNaN, kNaN, kNaN, 4, 5, 6, kNaN}}});
+  const Inspection facts = inspect(recording);
+  ASSERT_EQ(facts.missing.size(), 2U);
+  EXPECT_EQ(facts.missing[0].first, 1);
+  EXPECT_EQ(facts.missing[0].count, 2);
+  EXPECT_NEAR(facts.missing[0].time, 0.001, 1e-12);
+  EXPECT_EQ(facts.missing[1].first, 6);
+  EXPECT_EQ(facts.missing[1].count, 1);
+}
+
 TEST(Inspect, ReportsDuplicatedAndBackwardTimes) {
   const Inspection facts = inspect(with_time({0, 1, 1, 2, 3, 0, 1, 1}));
   EXPECT_EQ(facts.duplicated_times, 2);

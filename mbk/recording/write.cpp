@@ -117,11 +117,12 @@ std::vector<std::string> lost_in(const Recording& recording, Format format) {
   return lost;
 }
 
-Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format, bool overwrite) {
+Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format, bool overwrite,
+                   Readers readers) {
   if (auto ok = check(recording); !ok) return tl::unexpected(ok.error().in(file.string()));
   const auto bytes = encode(recording, format);
   if (!bytes) return tl::unexpected(bytes.error().in(file.string()));
-  return write_file(file, overwrite, *bytes);
+  return write_file(file, overwrite, *bytes, readers);
 }
 
 }  // namespace mbk::recording

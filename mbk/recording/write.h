@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/core/result.h"
+#include "mbk/trial/readers.h"
 #include "mbk/trial/recording.h"
 
 namespace mbk::recording {
@@ -28,10 +29,11 @@ enum class Format {
 /// What such a file has no place for, in words; nothing where everything comes back.
 [[nodiscard]] std::vector<std::string> lost_in(const Recording& recording, Format format);
 
-/// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes.
+/// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes. What
+/// was measured on a person is for the file's owner alone, unless `readers` says otherwise.
 /// @fails  usage: the file is there and `overwrite` is false. data: the recording cannot be written in this format (the
 ///         message says what stands in the way); the folder cannot be written.
 [[nodiscard]] Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format,
-                                 bool overwrite);
+                                 bool overwrite, Readers readers = Readers::owner);
 
 }  // namespace mbk::recording

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -33,7 +34,8 @@ struct Temporary {
 
 }  // namespace
 
-Result<void> write_file(const fs::path& file, bool overwrite, const std::function<bool(const fs::path&)>& fill) {
+Result<void> write_file(const fs::path& file, bool overwrite, const std::function<bool(const fs::path&)>& fill,
+                        std::optional<Readers> readers) {
   const auto cannot = [&](int code) {
     return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
                     "check the folder, its permissions and the space on the disk", file.string());
@@ -50,9 +52,11 @@ Result<void> write_file(const fs::path& file, bool overwrite, const std::functio
   const Temporary temporary{folder / fmt::format(".{}.{}.part", file.filename().string(), ::getpid())};
   // Made by us, so that nothing that is there is followed or replaced.
   fs::remove(temporary.path, code);
-  const int made = ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int made = ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, readers ? 0600 : 0666);
   if (made < 0) return cannot(errno);
+  const int refused = readers && ::fchmod(made, permissions(*readers)) != 0 ? errno : 0;
   ::close(made);
+  if (refused != 0) return cannot(refused);
   if (!fill(temporary.path)) return cannot(EIO);
   if (const int error = flush(temporary.path); error != 0) return cannot(error);
   fs::rename(temporary.path, file, code);
@@ -61,13 +65,22 @@ Result<void> write_file(const fs::path& file, bool overwrite, const std::functio
   return {};
 }
 
-Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text) {
-  return write_file(file, overwrite, [&](const fs::path& temporary) {
+Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text, std::optional<Readers> readers) {
+  const auto fill = [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
     stream.write(text.data(), static_cast<std::streamsize>(text.size()));
     stream.close();
     return stream.good();
-  });
+  };
+  return write_file(file, overwrite, fill, readers);
+}
+
+Readers readers_of(const fs::path& file) {
+  std::error_code code;
+  const fs::perms allowed = fs::status(file, code).permissions();
+  if (code || allowed == fs::perms::unknown) return Readers::owner;
+  if ((allowed & fs::perms::others_read) != fs::perms::none) return Readers::all;
+  return (allowed & fs::perms::group_read) != fs::perms::none ? Readers::group : Readers::owner;
 }
 
 }  // namespace mbk::recording

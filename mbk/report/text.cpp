@@ -317,11 +317,25 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     problems.push_back(fmt::format("time runs backwards {}, first at sample {}", times(inspection.backward_times),
                                    inspection.first_backward + 1));
   }
+  constexpr std::size_t kShown = 5;
+  Index missing = 0;
+  for (std::size_t k = 0; k < inspection.missing.size(); ++k) {
+    const MissingSamples& gap = inspection.missing[k];
+    missing += gap.count;
+    if (k >= kShown) continue;
+    problems.push_back(fmt::format("{} missing (NaN in every channel) from sample {} on ({:.3f} s)",
+                                   gap.count == 1 ? "a sample is" : fmt::format("{} samples are", gap.count),
+                                   gap.first + 1, gap.time));
+  }
+  if (inspection.missing.size() > kShown) {
+    problems.push_back(
+        fmt::format("and {} more; {} samples are missing in all", inspection.missing.size() - kShown, missing));
+  }
   for (const NonFinite& bad : inspection.non_finite) {
+    if (bad.channel != "time" && bad.count == missing) continue;  // said already
     problems.push_back(
         fmt::format("{} is not a number {}, first at sample {}", bad.channel, times(bad.count), bad.first + 1));
   }
-  constexpr std::size_t kShown = 5;
   for (std::size_t k = 0; k < inspection.gaps.size() && k < kShown; ++k) {
     const Gap& gap = inspection.gaps[k];
     problems.push_back(

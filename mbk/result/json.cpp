@@ -245,6 +245,11 @@ Json info_json(const Recording& recording, const Inspection& inspection) {
   for (const NonFinite& bad : inspection.non_finite) {
     json["non_finite"].push_back({{"channel", bad.channel}, {"count", bad.count}, {"first_sample", bad.first + 1}});
   }
+  json["missing"] = Json::array();
+  for (const MissingSamples& missing : inspection.missing) {
+    json["missing"].push_back(
+        {{"first_sample", missing.first + 1}, {"count", missing.count}, {"time_s", number(missing.time)}});
+  }
   json["channels"] = Json::array();
   for (const ChannelFacts& facts : inspection.channels) {
     json["channels"].push_back({{"name", facts.name},

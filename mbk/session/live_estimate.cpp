@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <iterator>
 
 #include "mbk/preprocess/perturbation_only.h"
+#include "mbk/realtime/signal_stack.h"
 #include "mbk/recording/inspection.h"
 #include "mbk/trial/recording.h"
 
@@ -66,7 +68,7 @@ LiveEstimate::~LiveEstimate() {
 void LiveEstimate::begin(journal::Header header, measurement::Options options) {
   std::unique_lock lock(mutex_);
   finished_.wait(lock, [&] { return !busy_; });
-  journal_ = {std::move(header), {}, {}, 0};
+  journal_ = {std::move(header), {}, {}, {}};
   incoming_.clear();
   options_ = std::move(options);
   options_.passivity = false;
@@ -87,23 +89,39 @@ void LiveEstimate::finish() {
   finished_.wait(lock, [&] { return !running_; });
 }
 
-void LiveEstimate::make(std::unique_lock<std::mutex>& lock, bool final) {
+void LiveEstimate::look(std::span<const journal::Tick> came, bool final) noexcept {
+  double seen = 0.0;
+  const auto give_up = [&](const char* why) {
+    done_({final, seen, bad_data(fmt::format("not estimated: {}", why), "the recording can be measured later")});
+  };
+  try {
+    try {
+      journal_.ticks.insert(journal_.ticks.end(), came.begin(), came.end());
+      seen = perturbed(journal_);
+      if (seen < kShortest) {
+        if (final) done_({final, seen, bad_data(fmt::format("the perturbation went on for {:.1f} s only", seen))});
+      } else if (final || (!came.empty() && came.back().perturbing())) {
+        done_({final, seen, estimate(journal_, options_)});
+      }
+    } catch (const std::exception& error) {
+      give_up(error.what());
+    }
+  } catch (...) {  // it cannot be said either: the last estimate stays
+  }
+}
+
+void LiveEstimate::make(std::unique_lock<std::mutex>& lock, bool final) noexcept {
   std::vector<journal::Tick> came;
   came.swap(incoming_);
   busy_ = true;
   lock.unlock();
-  journal_.ticks.insert(journal_.ticks.end(), came.begin(), came.end());
-  const double seen = perturbed(journal_);
-  if (seen < kShortest) {
-    if (final) done_({final, seen, bad_data(fmt::format("the perturbation went on for {:.1f} s only", seen))});
-  } else if (final || (!came.empty() && came.back().perturbing())) {
-    done_({final, seen, estimate(journal_, options_)});
-  }
+  look(came, final);
   lock.lock();
   busy_ = false;
 }
 
-void LiveEstimate::run() {
+void LiveEstimate::run() noexcept {
+  const realtime::SignalStack stack;
   // a thread of Linux has a priority of its own; where it is refused, nothing is lost
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
   std::unique_lock lock(mutex_);

@@ -34,7 +34,7 @@ class LiveEstimate {
     Result<result::Measured> measured;
   };
 
-  /// @param done  called from the thread with each estimate
+  /// @param done  called from the thread with each estimate; where one cannot be made for want of memory, with that
   explicit LiveEstimate(std::function<void(const Estimate&)> done);
   LiveEstimate(const LiveEstimate&) = delete;
   LiveEstimate& operator=(const LiveEstimate&) = delete;
@@ -50,8 +50,9 @@ class LiveEstimate {
   void finish();
 
  private:
-  void run();
-  void make(std::unique_lock<std::mutex>& lock, bool final);
+  void run() noexcept;
+  void make(std::unique_lock<std::mutex>& lock, bool final) noexcept;
+  void look(std::span<const journal::Tick> came, bool final) noexcept;
 
   std::function<void(const Estimate&)> done_;
   std::mutex mutex_;

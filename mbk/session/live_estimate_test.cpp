@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <new>
 
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/session/plan.h"
@@ -69,6 +70,27 @@ TEST(LiveEstimate, MissedTicksAreBridgedAndSaid) {
       EXPECT_NEAR(other.model.M(i, j), one.model.M(i, j), 0.2 * one.standard_error.M(i, j));
     }
   }
+}
+
+TEST(LiveEstimate, AnExceptionIsShownAndEndsNothing) {
+  const journal::Journal journal = recorded();
+  std::vector<std::string> why;
+  LiveEstimate live([&](const LiveEstimate::Estimate& estimate) {
+    if (estimate.measured) throw std::bad_alloc();  // as the console's own text of it may
+    why.push_back(estimate.measured.error().line());
+  });
+  for (int trial = 0; trial < 2; ++trial) {
+    live.begin(journal.header, {});
+    live.add(journal.ticks);
+    live.finish();
+  }
+  ASSERT_GE(why.size(), 2U);
+  EXPECT_NE(why.back().find("bad_alloc"), std::string::npos) << why.back();
+
+  LiveEstimate hopeless([](const LiveEstimate::Estimate&) { throw 3; });
+  hopeless.begin(journal.header, {});
+  hopeless.add(journal.ticks);
+  hopeless.finish();
 }
 
 TEST(LiveEstimate, WaitsForThePerturbation) {

@@ -17,6 +17,7 @@ namespace mbk::session {
 struct Signals {
   std::atomic<bool> operator_stop{false};  ///< safety stop by key or console
   std::atomic<bool> end_trial{false};      ///< end the perturbation early, and go back
+  std::atomic<bool> end_session{false};    ///< the program is asked to end: no question is asked, no trial begun
   std::atomic<bool> recording{true};       ///< what is recorded reaches its file
 };
 

@@ -162,9 +162,9 @@ Result<Rehearsal> rehearse(const Trial& trial) {
   Rehearsal rehearsal;
   realtime::BoundedRing<journal::Tick> ring(4096);
   std::atomic<bool> over{false};
+  Peaks peaks(rehearsal, trial);
+  std::vector<journal::Tick> ticks(1024);  // here, as no exception may leave the thread
   std::thread looking([&] {
-    Peaks peaks(rehearsal, trial);
-    std::vector<journal::Tick> ticks(1024);
     for (bool last = false; !last;) {
       last = over;
       for (std::size_t came = 1; came > 0;) {

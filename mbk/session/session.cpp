@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <ctime>
 #include <utility>
 
 #include "mbk/core/printable.h"
 #include "mbk/core/version.h"
+#include "mbk/realtime/signal_stack.h"
 #include "mbk/recording/read.h"
 #include "mbk/recording/write.h"
+#include "mbk/recording/write_file.h"
 #include "mbk/session/plan.h"
 
 namespace mbk::session {
@@ -39,6 +43,7 @@ journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, cons
   }
   ending.motors = safety::sentence(gate.motors());
   ending.overruns = times.missed;
+  ending.ticks = times.ticks;
   return ending;
 }
 
@@ -52,14 +57,26 @@ Result<void> start(device::Device& robot) {
   return bad_usage(fmt::format("{}: the stop button is pressed", robot.facts().name), "release it, then begin again");
 }
 
-/// Whether the recording is there already and holds the same: the program went down before it removed the journal.
+/// To the bit, but that one NaN is as good as another.
+bool same(const Vector& one, const Vector& other) {
+  const auto equal = [](double a, double b) {
+    return std::isnan(a) ? std::isnan(b) : std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  };
+  return one.size() == other.size() && std::equal(one.begin(), one.end(), other.begin(), equal);
+}
+
+/// Whether a file holds the recording. A channel that is NaN throughout may be left out, as MAT files do.
 bool holds_the_same(const fs::path& target, const Recording& recording) {
   if (!fs::exists(target)) return false;
   const auto there = recording::read(target, {});
-  if (!there || there->samples() != recording.samples() || there->time != recording.time) return false;
+  if (!there || !same(there->time, recording.time) || there->events.size() != recording.events.size()) return false;
+  for (const char* key : {"ended", "ticks_lost", "gaps"}) {
+    const auto value = recording.metadata.find(key), twin = there->metadata.find(key);
+    if (value != recording.metadata.end() && (twin == there->metadata.end() || *twin != *value)) return false;
+  }
   return std::ranges::all_of(recording.channels, [&](const Channel& channel) {
     const Channel* const twin = there->find(channel.name);
-    return twin != nullptr && twin->values == channel.values;
+    return twin != nullptr ? same(twin->values, channel.values) : channel.values.array().isNaN().all();
   });
 }
 
@@ -80,6 +97,7 @@ Header header_of(const Trial& trial, const device::Facts& facts, const perturbat
   header.metadata["began"] = now_text();
   header.geometry = trial.planar().robot.robot.geometry;
   header.rate = trial.scenario.rate.value;
+  header.readers = trial.scenario.readers;
   header.reference_unit = schedule.quantity() == perturbation::Quantity::force ? "N" : "m";
   header.has_force = facts.has_force;
   header.has_acceleration = facts.has_acceleration;
@@ -144,6 +162,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   realtime::BoundedRing<Tick> ring(kRing);
   Recorder recorder(ring, std::move(*writer), *signals_, watch);
   std::thread loop([&] {
+    const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
       run_loop(robot, plan->sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
     } else if (pace_.virtual_clock) {
@@ -160,17 +179,20 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   outcome.trip = gate_->trip();
   outcome.motors = gate_->motors();
   outcome.ending = ending_of(*gate_, *signals_, outcome.times);
-  auto closed = recorder.finish(outcome.ending);
-  outcome.ending.dropped = ring.dropped();
+  const auto closed = recorder.finish(outcome.ending);
+  outcome.journal = recorder.journal();
   if (!closed) {
     Error error = closed.error();
     if (gate_->tripped()) error.message += "; safety stop: " + outcome.ending.detail;
     error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
     return tl::unexpected(error);
   }
-  if (auto recording = recover(outcome.journal, target, false, false); !recording) {
-    return tl::unexpected(recording.error());
-  }
+  outcome.ending = *closed;
+  const auto recovered = recover(outcome.journal, target, {.ending = outcome.ending});
+  if (!recovered) return tl::unexpected(recovered.error());
+  outcome.damage = recovered->damage;
+  outcome.incomplete = recovered->incomplete || recovered->ticks != outcome.times.ticks;
+  outcome.ending.how = recovered->recording.metadata.at("ended");
   return outcome;
 }
 
@@ -184,28 +206,41 @@ Result<void> annotate(const fs::path& file, const std::vector<std::string>& note
     std::ranges::replace(note, '\n', ' ');
     text += (text.empty() ? "" : " | ") + printable(std::move(note));
   }
-  return recording::write(*recording, file, *format, true);
+  return recording::write(*recording, file, *format, true, recording::readers_of(file));
 }
 
-Result<Recording> recover(const fs::path& file, const fs::path& target, bool overwrite, bool keep) {
-  auto recording = [&]() -> Result<Recording> {
-    const auto journal = journal::read(file);  // gone before the recording is written: half a gigabyte for an hour
+Result<Recovered> recover(const fs::path& file, const fs::path& target, const RecoverOptions& options) {
+  Recovered recovered;
+  auto readers = options.readers;
+  {
+    auto journal = journal::read(file);  // gone before the recording is written: half a gigabyte for an hour
     if (!journal) return tl::unexpected(journal.error());
+    if (options.ending) journal->end_with(*options.ending);
     auto made = journal::to_recording(*journal);
     if (!made) return tl::unexpected(made.error().in(file.string()));
-    return made;
-  }();
-  if (!recording) return tl::unexpected(recording.error());
+    if (!readers) readers = journal->header.readers;
+    recovered.ticks = journal->ticks.size();
+    recovered.incomplete = journal->incomplete();
+    recovered.damage = std::move(journal->damage);
+    recovered.recording = std::move(*made);
+  }
+  const Recording& recording = recovered.recording;
   const auto format = recording::format_of(target);
   if (!format) return tl::unexpected(format.error());
-  if (overwrite || !holds_the_same(target, *recording)) {
-    if (auto ok = recording::write(*recording, target, *format, overwrite); !ok) return tl::unexpected(ok.error());
+  if (options.overwrite || !holds_the_same(target, recording)) {
+    if (auto ok = recording::write(recording, target, *format, options.overwrite, *readers); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    if (!holds_the_same(target, recording)) {
+      std::error_code ignored;
+      fs::remove(target, ignored);
+      return bad_data("the recording did not read back as it was written, and was removed",
+                      fmt::format("look at the disk, then 'mbk recover {}'", file.string()), target.string());
+    }
   }
-  if (!keep) {
-    std::error_code ignored;
-    fs::remove(file, ignored);
-  }
-  return recording;
+  std::error_code failed;
+  recovered.removed = !options.keep && !recovered.damage.any() && fs::remove(file, failed);
+  return recovered;
 }
 
 }  // namespace mbk::session

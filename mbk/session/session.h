@@ -26,7 +26,9 @@ struct Pace {
 /// A trial that is over.
 struct TrialOutcome {
   std::filesystem::path recording;  ///< absent file where it could not be made: the journal then still is
-  std::filesystem::path journal;    ///< removed once the recording is there
+  std::filesystem::path journal;    ///< removed once the recording is there and holds every tick
+  bool incomplete = false;          ///< not every tick that the loop made came back from the recording
+  journal::Damage damage;           ///< of the journal; where there is any, it is kept
   journal::Ending ending;
   safety::Trip trip;         ///< Reason::none where nothing tripped
   safety::MotorsOff motors;  ///< whether the robot has confirmed that they are off
@@ -78,12 +80,28 @@ class Session {
 /// The journal beside a recording: NAME.h5 → NAME.h5.journal.
 [[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& recording);
 
-/// Makes the recording that a journal holds, and removes the journal once it is on the disk. A target that is there and
-/// holds the same is left as it is.
-/// @param keep  leaves the journal where it is
+/// How a journal becomes a recording.
+struct RecoverOptions {
+  bool overwrite = false;                 ///< a recording that is there
+  bool keep = false;                      ///< the journal, in any case
+  std::optional<Readers> readers;         ///< instead of the journal's
+  std::optional<journal::Ending> ending;  ///< where it is known from elsewhere, instead of the journal's
+};
+
+/// What a journal gave.
+struct Recovered {
+  Recording recording;
+  journal::Damage damage;
+  std::uint64_t ticks = 0;  ///< that the recording holds
+  bool incomplete = false;  ///< ticks were lost, or may have been
+  bool removed = false;     ///< the journal
+};
+
+/// Makes the recording that a journal holds, reads it back, and removes the journal where it was exactly as it was
+/// written and the recording holds it to the bit. A target that is there and holds the same is left as it is.
 /// @fails  usage: another target is there and `overwrite` is false. data: as journal::read; the recording cannot be
-/// written.
-[[nodiscard]] Result<Recording> recover(const std::filesystem::path& journal, const std::filesystem::path& target,
-                                        bool overwrite, bool keep);
+///         written, or does not read back as it was written, and is then removed.
+[[nodiscard]] Result<Recovered> recover(const std::filesystem::path& journal, const std::filesystem::path& target,
+                                        const RecoverOptions& options = {});
 
 }  // namespace mbk::session

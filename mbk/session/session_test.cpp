@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/recording/read.h"
@@ -56,6 +57,7 @@ class SessionFolder : public testing::Test {
   }
 
   static constexpr Pace kFast{true, 0.0};
+  static inline const RecoverOptions kKeep{.keep = true};
   fs::path folder_, target_;
 };
 
@@ -103,6 +105,30 @@ TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
   EXPECT_TRUE(session.perform(*second, t, folder_ / "second.h5"));
 }
 
+TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
+  const Trial t = trial();
+  for (const bool known : {true, false}) {
+    auto robot = SimulatedDevice::create(t.scenario).value();
+    Session session(kFast);
+    int calls = 0;
+    const fs::path target = folder_ / (known ? "known.h5" : "unknown.h5");
+    const auto outcome = session.perform(*robot, t, target, [&](std::span<const journal::Tick>) {
+      if (++calls < 3) return;
+      if (known) throw std::runtime_error("the screen is broken");
+      throw 3;
+    });
+    ASSERT_TRUE(outcome) << outcome.error().line();
+    EXPECT_EQ(calls, 3);
+    EXPECT_EQ(outcome->ending.how, "completed");
+    EXPECT_EQ(outcome->trip.reason, safety::Reason::none);
+    EXPECT_EQ(outcome->ending.detail.find("the screen is broken") != std::string::npos, known);
+    const auto recording = recording::read(target, {});
+    ASSERT_TRUE(recording) << recording.error().line();
+    EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
+    if (known) EXPECT_NE(recording->metadata.at("ended_detail").find("nothing was shown from tick"), std::string::npos);
+  }
+}
+
 TEST_F(SessionFolder, EndsEarlyWhenAsked) {
   const Trial t = trial();
   auto robot = SimulatedDevice::create(t.scenario).value();
@@ -146,12 +172,13 @@ TEST_F(SessionFolder, AnUnfinishedJournalIsRecovered) {
   {
     auto writer = journal::Writer::create(journal_of(target_), journal::Header{}, 10).value();
     std::vector<journal::Tick> ticks(500);
-    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = 1e-3 * static_cast<double>(i);
+    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = 1e-3 * static_cast<double>(ticks[i].number = i);
     ASSERT_TRUE(writer.append(ticks));
   }
-  const auto recovered = recover(journal_of(target_), target_, false, false);
+  const auto recovered = recover(journal_of(target_), target_);
   ASSERT_TRUE(recovered) << recovered.error().line();
-  EXPECT_EQ(recovered->samples(), 500);
+  EXPECT_EQ(recovered->recording.samples(), 500);
+  EXPECT_TRUE(recovered->removed);
   EXPECT_EQ(recording::read(target_, {})->metadata.at("ended"), "interrupted");
   EXPECT_FALSE(fs::exists(journal_of(target_)));
 }
@@ -161,16 +188,19 @@ TEST_F(SessionFolder, RecoversAsOftenAsOneLikesAndReplacesNothingElse) {
     fs::remove(journal_of(target_));
     auto writer = journal::Writer::create(journal_of(target_), journal::Header{}, 10).value();
     std::vector<journal::Tick> ticks(50);
-    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = first + 1e-3 * static_cast<double>(i);
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      ticks[i].number = i;
+      ticks[i].time = first + 1e-3 * static_cast<double>(i);
+    }
     ASSERT_TRUE(writer.append(ticks));
   };
   write_journal(0.0);
-  ASSERT_TRUE(recover(journal_of(target_), target_, false, true));
+  ASSERT_TRUE(recover(journal_of(target_), target_, kKeep));
   const auto made = fs::last_write_time(target_);
-  EXPECT_TRUE(recover(journal_of(target_), target_, false, true));
+  EXPECT_TRUE(recover(journal_of(target_), target_, kKeep));
   EXPECT_EQ(fs::last_write_time(target_), made);
   write_journal(0.5);
-  const auto refused = recover(journal_of(target_), target_, false, false);
+  const auto refused = recover(journal_of(target_), target_);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   EXPECT_EQ(fs::last_write_time(target_), made);

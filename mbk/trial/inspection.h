@@ -21,6 +21,13 @@ struct NonFinite {
   Index first = 0;  ///< sample
 };
 
+/// Samples that follow each other and are NaN in every channel: what a session lost.
+struct MissingSamples {
+  Index first = 0;  ///< sample
+  Index count = 0;
+  double time = 0.0;  ///< of the first [s]
+};
+
 struct ChannelFacts {
   std::string name;
   std::string unit;
@@ -49,6 +56,7 @@ struct Inspection {
   Index backward_times = 0;
   Index first_backward = -1;  ///< sample whose time is before the one before; −1: none
   std::vector<NonFinite> non_finite;
+  std::vector<MissingSamples> missing;
   std::vector<ChannelFacts> channels;
 };
 

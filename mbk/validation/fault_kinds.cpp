@@ -135,7 +135,11 @@ std::vector<FaultKind> sensors() {
       {"encoder 1 stands still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, 0)},
       {"encoder 2 stands still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, 1)},
       {"both encoders stand still", Onset::perturbing, {500, 2500}, stuck, frozen(&State::joint, -1)},
-      {"force stands still", Onset::anywhere, {251, 251}, {Reason::force_frozen}, frozen(&State::force, -1)},
+      {"force stands still",
+       Onset::anywhere,
+       {251, 251},
+       {Reason::force_frozen, Reason::torque_disagrees},
+       frozen(&State::force, -1)},
       {"acceleration stands still",
        Onset::anywhere,
        {251, 251},
@@ -184,7 +188,7 @@ std::vector<FaultKind> sensors() {
       {"force falls to zero",
        Onset::anywhere,
        {251, 251},
-       {Reason::force_frozen, Reason::force_jump},
+       {Reason::force_frozen, Reason::force_jump, Reason::torque_disagrees},
        spoiled([](State& state, int) { state.force.setZero(); })},
       {"acceleration jumps",
        Onset::anywhere,
@@ -277,6 +281,80 @@ std::vector<FaultKind> link_and_machine() {
   };
 }
 
+/// The robot reports this of itself.
+Make reported(std::function<void(State&, int k)> spoil) {
+  return [spoil](FaultRun& run, Random& random) {
+    run.keeps_time = true;
+    spoiled(spoil)(run, random);
+  };
+}
+
+/// What the robot reports of itself, and what its drives do behind that.
+std::vector<FaultKind> reports() {
+  using device::Motors;
+  return {
+      {"robot reports a fault", Onset::anywhere, {0, 0}, {Reason::robot_fault}, reported([](State& state, int) {
+         state.fault = 7;
+       })},
+      {"robot's watchdog has expired",
+       Onset::anywhere,
+       {0, 0},
+       {Reason::robot_watchdog},
+       reported([](State& state, int) { state.watchdog_expired = true; })},
+      {"robot's clock stands still",
+       Onset::anywhere,
+       {1, 1},
+       {Reason::robot_clock},
+       reported([held = 0.0](State& state, int k) mutable { held = state.time = k == 0 ? state.time : held; })},
+      {"robot's clock runs backward", Onset::anywhere, {1, 1}, {Reason::robot_clock}, reported([](State& state, int k) {
+         state.time -= 2.0 * kTick * k;
+       })},
+      {"robot's clock gives no number", Onset::anywhere, {0, 0}, {Reason::robot_clock}, reported([](State& state, int) {
+         state.time = kNotANumber;
+       })},
+      {"states get older by 0.1 ms each",
+       Onset::anywhere,
+       {230, 230},
+       {Reason::state_old},
+       reported([](State& state, int k) { state.time -= 0.1 * kTick * k; })},
+      {"acknowledgement stands still",
+       Onset::anywhere,
+       {21, 21},
+       {Reason::answer_late},
+       reported([held = std::uint64_t{0}](State& state, int k) mutable {
+         held = state.answered = k == 0 ? state.answered : held;
+       })},
+      {"acknowledges what was not sent",
+       Onset::anywhere,
+       {0, 0},
+       {Reason::answer_wrong},
+       reported([](State& state, int) { state.answered += 5; })},
+      {"says that its motors are off",
+       Onset::anywhere,
+       {102, 102},
+       {Reason::motors_off},
+       reported([](State& state, int) { state.motors = Motors::off; })},
+      {"says that its motors stay on", Onset::ending, {150, 150}, {Reason::motors_on}, reported([](State& state, int) {
+         state.motors = Motors::on;
+       })},
+      {"force sensor is gone", Onset::anywhere, {0, 0}, {Reason::sensor_missing}, reported([](State& state, int) {
+         state.has_force = false;
+       })},
+      {"drives hold the last torque, and say nothing",
+       Onset::perturbing,
+       {2500, 2500},
+       {Reason::torque_disagrees, Reason::tracking, Reason::limited_too_long, Reason::excursion, Reason::speed},
+       [](FaultRun& run, Random&) {
+         run.keeps_time = true;
+         run.fault.driving = [held = Vector2d(0.0, 0.0)](Command& command, int k) mutable {
+           held = command.torque = k == 0 ? command.torque : held;
+           command.enabled = true;
+           return true;
+         };
+       }},
+  };
+}
+
 /// The gains of the whole trial, as an experiment file sets them.
 void set_gains(FaultRun& run, const std::function<void(control::JointPositionControl::Gains&)>& change) {
   auto& trial = std::get<laboratory::PlanarTrial>(run.trial.scenario.trial);
@@ -299,6 +377,16 @@ std::vector<FaultKind> runaways() {
       {"motors pull the wrong way",
        Onset::moving,
        {1000, 7000},
+       runs_away,
+       [](FaultRun& run, Random&) {
+         run.fault.driving = [](Command& command, int) {
+           command.torque = -command.torque;
+           return true;
+         };
+       }},
+      {"motors pull the wrong way from the start",
+       Onset::beginning,
+       {2500, 2500},
        runs_away,
        [](FaultRun& run, Random&) {
          run.fault.driving = [](Command& command, int) {
@@ -432,7 +520,7 @@ std::vector<FaultKind> pushes() {
 const std::vector<FaultKind>& fault_kinds() {
   static const std::vector<FaultKind> kKinds = [] {
     std::vector<FaultKind> all;
-    for (const auto& some : {sensors(), link_and_machine(), runaways(), pushes()}) {
+    for (const auto& some : {sensors(), link_and_machine(), reports(), runaways(), pushes()}) {
       all.insert(all.end(), some.begin(), some.end());
     }
     return all;

@@ -32,6 +32,7 @@ struct FaultRun {
   DeviceFault fault;
   Outside outside = Outside::nothing;
   std::uint64_t stall = 0;  ///< ticks, of a stalled clock
+  bool keeps_time = false;  ///< the robot moves on by itself, whatever comes
 };
 
 /// When the fault may begin.
@@ -40,6 +41,7 @@ enum class Onset {
   anywhere,    ///< at any tick of the trial that leaves it time to be found
   perturbing,  ///< while the hand is perturbed
   moving,      ///< from the way to the test location to the end of the perturbation
+  ending,      ///< in the last tenth of a second before the trial is over
 };
 
 /// A kind of fault: what it is, and what is documented of it.

@@ -30,6 +30,10 @@ constexpr double kPace = 20.0;
 /// tick, and a count, are the difference [N].
 constexpr double kForceTolerance = 0.05;
 
+/// A hand that is driven the wrong way while it shall follow a position is stopped below this speed [m/s].
+constexpr double kRunawaySpeed = 0.4;
+constexpr std::string_view kWrongWay = "motors pull the wrong way";
+
 /// The robot is found so far from the test location [m].
 constexpr double kAway = 0.015;
 
@@ -40,6 +44,7 @@ struct Outcome {
   int ticks = -1;  ///< from the onset to motors that are off and stay so; −1: never
   Reason reason = Reason::none;
   double handle_force = 0.0;  ///< largest that was commanded, by the true angles [N]
+  double speed = 0.0;         ///< largest of the hand since the onset, by the true angles [m/s]
   bool recorded = false;      ///< the recording opens and holds every command to the bit
 };
 
@@ -57,6 +62,8 @@ std::int64_t draw_onset(const FaultKind& kind, int detection, numeric::Random& r
       return between(kPerturbationBegins, kPerturbationEnds - std::min(detection, 1500));
     case Onset::moving:
       return between(1000, kPerturbationEnds - 1000);
+    case Onset::ending:
+      return between(kTrialEnds - 200, kTrialEnds - 100);
   }
   return 0;
 }
@@ -98,8 +105,10 @@ Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64
   std::get<laboratory::PlanarTrial>(scenario.trial).home += kAway * Vector2d(random.uniform() - 0.5, 0.5).normalized();
   auto robot = laboratory::SimulatedDevice::create(scenario);
   if (!robot) return tl::unexpected(robot.error());
-  const bool keeps_time = run.outside == Outside::stalled_clock || run.outside == Outside::stalled_recorder;
-  realtime::VirtualClock clock(1.0 / run.trial.scenario.rate.value, run.outside == Outside::nothing ? 0.0 : kPace);
+  const bool keeps_time =
+      run.keeps_time || run.outside == Outside::stalled_clock || run.outside == Outside::stalled_recorder;
+  const bool paced = keeps_time || run.outside != Outside::nothing;
+  realtime::VirtualClock clock(1.0 / run.trial.scenario.rate.value, paced ? kPace : 0.0);
   if (run.outside == Outside::stalled_clock) {
     run.fault.reading = [&clock, stall = run.stall](device::State&, int k) {
       if (k == 0) clock.stall(stall);
@@ -130,6 +139,7 @@ Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64
   for (const FaultyDevice::Received& one : device.received()) {
     outcome.handle_force = std::max(outcome.handle_force, one.handle_force);
   }
+  outcome.speed = device.largest_speed();
   outcome.recorded = holds_every_command(target, device.received());
   std::error_code ignored;
   fs::remove(target, ignored);
@@ -221,7 +231,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   table.runs = options.runs;
   table.seed = options.seed;
   const double cap = safety::Limits{}.handle_force;
-  double handle_force = 0.0;
+  double handle_force = 0.0, runaway_speed = 0.0;
   int right = 0, off = 0, recorded = 0;
   for (std::size_t i = 0; i < faulty; ++i) {
     const auto& [kind, trial_kind, run] = jobs[i];
@@ -239,6 +249,9 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
     right += reason_is_right ? 1 : 0;
     recorded += outcome.recorded ? 1 : 0;
     handle_force = std::max(handle_force, outcome.handle_force);
+    if (trial_kind == TrialKind::position && kind->name.starts_with(kWrongWay)) {
+      runaway_speed = std::max(runaway_speed, outcome.speed);
+    }
     if (never || outcome.ticks > documented || !reason_is_right || !outcome.recorded ||
         outcome.handle_force > cap + kForceTolerance) {
       table.notes.push_back(fmt::format("{}, {} trial, run {}: off after {} ticks by {}, {:.3f} N, recording {}",
@@ -251,6 +264,8 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   table.rows.push_back(row_of("motors off in time", share * off, {100.0, 100.0}, "%"));
   table.rows.push_back(row_of("reason is a right one", share * right, {100.0, 100.0}, "%"));
   table.rows.push_back(row_of("every command in the recording", share * recorded, {100.0, 100.0}, "%"));
+  table.rows.push_back(row_of(fmt::format("hand speed reached, {}, position trials", kWrongWay), runaway_speed,
+                              {0.0, kRunawaySpeed}, "m/s"));
   int trips = 0;
   for (std::size_t i = faulty; i < jobs.size(); ++i) {
     if (outcomes[i].reason == Reason::none) continue;

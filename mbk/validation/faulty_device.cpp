@@ -1,6 +1,7 @@
 #include "mbk/validation/faulty_device.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace mbk::validation {
 
@@ -39,6 +40,12 @@ bool FaultyDevice::write(const device::Command& command) noexcept {
   driven.torque += jacobian.transpose() * pushed_;
   driven.enabled = true;
   robot_->write(driven);
+  Vector2d& before = hands_[static_cast<std::size_t>(tick_) % kSpeedTicks];
+  const Vector2d hand = robot::hand_position(geometry_, robot_->motor_angle());
+  if (k >= static_cast<int>(kSpeedTicks)) {
+    largest_speed_ = std::max(largest_speed_, (hand - before).norm() / (1e-3 * kSpeedTicks));
+  }
+  before = hand;
   ++tick_;
   return fine;
 }

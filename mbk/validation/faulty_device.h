@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -38,6 +39,9 @@ class FaultyDevice : public device::Device {
   [[nodiscard]] std::int64_t tick() const { return tick_.load(); }
   [[nodiscard]] bool stopped() const { return stopped_.load(); }
 
+  /// Of the hand since the onset, by the true angles, over 10 ms [m/s].
+  [[nodiscard]] double largest_speed() const { return largest_speed_; }
+
   /// One command as it came, and the force that it stands for at the handle with the joints where they truly are.
   struct Received {
     device::Command command;
@@ -55,6 +59,9 @@ class FaultyDevice : public device::Device {
   std::atomic<bool> stopped_{false};
   Vector2d pushed_ = {0.0, 0.0};  // at the tick before: what the sensor reads now
   std::vector<Received> received_;
+  static constexpr std::size_t kSpeedTicks = 10;
+  std::array<Vector2d, kSpeedTicks> hands_{};  // ring
+  double largest_speed_ = 0.0;
 };
 
 }  // namespace mbk::validation

@@ -56,7 +56,7 @@ Result<Held> perform(session::Trial trial, std::uint64_t seed, const std::filesy
   options.passivity = false;
 
   session::Session session({true, 0.0});
-  journal::Journal journal{session::header_of(trial, (*robot)->facts(), plan->schedule), {}, {}, 0};
+  journal::Journal journal{session::header_of(trial, (*robot)->facts(), plan->schedule), {}, {}, {}};
   Held held{};
   std::size_t taken = 0;
   std::optional<Error> failure;

@@ -1,0 +1,50 @@
+#include "apps/mbk/last_words.h"
+
+#include <unistd.h>
+
+#include <atomic>
+
+namespace mbk::app {
+namespace {
+
+std::atomic<device::Device*> robot_at_work{nullptr};
+std::atomic<const termios*> terminal_before{nullptr};
+std::atomic<const struct sigaction*> actions_before{nullptr};
+static_assert(std::atomic<device::Device*>::is_always_lock_free);
+
+constexpr std::array kFatalSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP};
+
+/// Only what POSIX allows in a handler (signal-safety(7)).
+extern "C" void on_fatal_signal(int signal) {
+  if (device::Device* const robot = robot_at_work.exchange(nullptr)) robot->emergency_off();
+  if (const termios* const before = terminal_before) tcsetattr(STDIN_FILENO, TCSANOW, before);
+  const struct sigaction* const actions = actions_before;
+  for (std::size_t i = 0; actions != nullptr && i < kFatalSignals.size(); ++i) {
+    if (kFatalSignals[i] == signal) sigaction(signal, &actions[i], nullptr);
+  }
+  raise(signal);  // taken once this handler is left
+}
+
+}  // namespace
+
+LastWords::LastWords(device::Device& robot) {
+  static_assert(kFatalSignals.size() == kFatal);
+  robot_at_work = &robot;
+  struct sigaction action {};
+  action.sa_handler = on_fatal_signal;
+  action.sa_flags = SA_ONSTACK;
+  for (std::size_t i = 0; i < kFatal; ++i) sigaction(kFatalSignals[i], &action, &before_[i]);
+  actions_before = before_.data();
+}
+
+LastWords::~LastWords() {
+  for (std::size_t i = 0; i < kFatal; ++i) sigaction(kFatalSignals[i], &before_[i], nullptr);
+  actions_before = nullptr;
+  robot_at_work = nullptr;
+}
+
+void LastWords::restore_terminal(const termios* before) {
+  terminal_before = before;
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <termios.h>
+
+#include <array>
+#include <csignal>
+#include <cstddef>
+
+#include "mbk/device/device.h"
+#include "mbk/realtime/signal_stack.h"
+
+namespace mbk::app {
+
+/// While it lives, a signal that means the end of the program (a wild pointer, a division by zero, abort, and with it
+/// an exception that nobody catches) first switches the robot's motors off, where the device can say so from there
+/// (Device::emergency_off), and gives the terminal its keys back. Then it acts as it does without: core dump and exit
+/// status stay. Neither SIGKILL nor a machine that stands still leaves time for it; the robot's watchdog does.
+class LastWords {
+ public:
+  /// @param robot  outlives this
+  explicit LastWords(device::Device& robot);
+  LastWords(const LastWords&) = delete;
+  LastWords& operator=(const LastWords&) = delete;
+  ~LastWords();
+
+  /// How standard input's terminal was; null: it is left as it is. Stays valid while it is set.
+  static void restore_terminal(const termios* before);
+
+ private:
+  static constexpr std::size_t kFatal = 7;
+
+  realtime::SignalStack stack_;  // of the thread that waits for the loop
+  std::array<struct sigaction, kFatal> before_{};
+};
+
+}  // namespace mbk::app

@@ -1,0 +1,59 @@
+// Loaded under a program (LD_PRELOAD), it lets one of its threads crash: in the MBK_CRASH_AFTERth call of the function
+// MBK_CRASH_IN, by MBK_CRASH: pointer, stack, abort or terminate.
+#include <dlfcn.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+
+namespace {
+
+// NOLINTNEXTLINE(misc-no-recursion): it is to have no end
+int overflow(int depth) {
+  volatile char some[4096];
+  some[depth % 4096] = static_cast<char>(depth);
+  return depth < 0 ? 0 : overflow(depth + 1) + some[depth % 4096];
+}
+
+void crash() {
+  const char* const how = std::getenv("MBK_CRASH");
+  if (how == nullptr) return;
+  if (std::strcmp(how, "pointer") == 0) {
+    int* volatile nowhere = nullptr;
+    *nowhere = 1;
+  }
+  if (std::strcmp(how, "stack") == 0) overflow(std::rand());
+  if (std::strcmp(how, "terminate") == 0) std::terminate();
+  std::abort();
+}
+
+/// The handler of a crash may call what crashed.
+void count(const char* function) {
+  static std::atomic<long> calls{0};
+  const char* const where = std::getenv("MBK_CRASH_IN");
+  const char* const after = std::getenv("MBK_CRASH_AFTER");
+  if (where == nullptr || after == nullptr || std::strcmp(where, function) != 0) return;
+  if (++calls == std::atol(after)) crash();
+}
+
+template <class Function>
+Function real(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+extern "C" ssize_t sendto(int socket, const void* bytes, size_t size, int flags, const sockaddr* to, socklen_t length) {
+  static const auto function = real<decltype(&sendto)>("sendto");
+  count("sendto");
+  return function(socket, bytes, size, flags, to, length);
+}
+
+extern "C" int fdatasync(int descriptor) {
+  static const auto function = real<decltype(&fdatasync)>("fdatasync");
+  count("fdatasync");
+  return function(descriptor);
+}

@@ -1,0 +1,369 @@
+#!/usr/bin/env python3
+"""What ends a session from outside: signals, a terminal that is closed, a program that dies. In each case the torque
+comes down to zero, and what was recorded is there."""
+
+import os
+import pathlib
+import pty
+import resource
+import select
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
+import zlib
+
+from command import BAD_DATA, FINE, Case, main, program
+
+SAFETY_STOP = 5
+EXPERIMENT = """
+[session]
+soft_start_s = 0.3
+shortest_move_s = 0.3
+settle_s = 0.1
+[control]
+kind = "position"
+[perturbation]
+kind = "multisine"
+peak_deg = 1
+duration_s = {seconds}
+moving_in_s = 0.5
+[participant]
+kind = "arm"
+number = 1
+{more}
+"""
+# Where the machine does other things besides, nothing but what is tested may stop the trial.
+DEVICE = """
+[safety]
+link_silence_ms = 2000
+lateness_ms = 0
+accelerometer_m_per_s2 = 0
+acceleration_m_per_s2 = 1000
+encoder_jump_deg = 20
+force_jump_N = 100
+speed_mm_per_s = 5000
+frozen_ms = 0
+[device]
+kind = "udp"
+port = {port}
+watchdog_ms = {watchdog}
+has_force = false
+has_acceleration = false
+"""
+
+
+class Robot:
+    """Two wheels behind UDP that keep every command with the time at which it came. They obey as docs/guide/devices.md
+    asks, and say nothing of a watchdog: what switches the motors off is a command."""
+
+    STATE, COMMAND = struct.Struct("<4sHHIIQQ7d"), struct.Struct("<4sHHIIQ2d")
+    HOME = (0.2, 0.9)
+
+    def __init__(self, case):
+        self.port = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.port.bind(("127.0.0.1", 0))
+        self.port.settimeout(0.001)
+        self.commands = []  # time, sequence, enabled, torques
+        self.over = False
+        self.thread = threading.Thread(target=self.serve)
+        self.thread.start()
+        case.addCleanup(self.end)
+
+    def end(self):
+        self.over = True
+        self.thread.join()
+        self.port.close()
+
+    def serve(self):
+        angle, speed, torque = list(self.HOME), [0.0, 0.0], (0.0, 0.0)
+        master, session, answered, enabled, begin, sequence = None, 0, 0, False, time.monotonic(), 0
+        while not self.over:
+            try:
+                data, sender = self.port.recvfrom(100)
+                if len(data) == 44 and struct.pack("<I", zlib.crc32(data[:40])) == data[40:]:
+                    _, _, flags, its, _, number, *its_torque = self.COMMAND.unpack(data[:40])
+                    if flags & 2 and not enabled and its != session:
+                        master, session, answered = sender, its, 0
+                    if its == session and number > answered:
+                        answered, torque, enabled = number, its_torque, bool(flags & 1)
+                        self.commands.append((time.monotonic(), number, enabled, its_torque))
+            except socket.timeout:
+                pass
+            now = int(1000 * (time.monotonic() - begin))
+            if master is None or now <= sequence:
+                continue
+            step, sequence = 1e-3 * min(now - sequence, 10), now
+            for k in range(2):
+                speed[k] += step * ((torque[k] if enabled else 0.0) - 0.5 * speed[k]) / 0.07
+                angle[k] += step * speed[k]
+            state = self.STATE.pack(b"MBKS", 1, 2 * enabled, session, 0, sequence, answered, 1e-3 * sequence, *angle,
+                                    0, 0, 0, 0)
+            self.port.sendto(state + struct.pack("<I", zlib.crc32(state)), master)
+
+
+class Session(Case):
+    def experiment(self, seconds=30, more=""):
+        return self.file("experiment.toml", EXPERIMENT.format(seconds=seconds, more=more))
+
+    def start(self, *options, seconds=30, more="", environment=None, **popen):
+        self.target = self.folder / "trial.h5"
+        self.process = subprocess.Popen(
+            [program("MBK"), "run", self.experiment(seconds, more), "--out", self.target, "--no-measure", *options],
+            cwd=self.folder, env={**os.environ, **(environment or {})},
+            **{"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **popen})
+        self.addCleanup(self.finish)
+
+    def finish(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+            if stream:
+                stream.close()
+        self.process.wait()
+
+    def journal_grows(self):
+        """Until ticks have been recorded."""
+        journal = pathlib.Path(f"{self.target}.journal")
+        until = time.monotonic() + 60
+        while not (journal.exists() and journal.stat().st_size > 80_000):
+            if time.monotonic() > until or self.process.poll() is not None:
+                self.fail(f"nothing was recorded: {self.process.poll()}, {self.process.communicate()}")
+            time.sleep(0.005)
+
+    def ended(self, code):
+        out, err = self.process.communicate(timeout=60)
+        self.assertEqual(self.process.returncode, code, (out, err))
+        return (out or b"").decode("utf-8")
+
+    def info(self):
+        return self.mbk("info", self.target, "--json").json["metadata"]
+
+    def torques(self):
+        table = self.target.with_suffix(".csv")
+        self.mbk("convert", self.target, table, "--overwrite")
+        lines = [line.split(",") for line in table.read_text().splitlines() if not line.startswith("#")]
+        at = [k for k, name in enumerate(lines[0]) if name.startswith("torque_")]
+        self.assertEqual(len(at), 2, lines[0])
+        return [[float(row[k]) for k in at] for row in lines[1:]]
+
+    def assert_ramped_down(self):
+        metadata = self.info()
+        self.assertEqual(metadata["ended"], "safety stop", metadata)
+        self.assertIn("operator", metadata["ended_detail"])
+        self.assertFalse(pathlib.Path(f"{self.target}.journal").exists())
+        torques = self.torques()
+        self.assertGreater(len(torques), 400)
+        self.assertEqual(torques[-1], [0.0, 0.0])
+        self.assertNotEqual(torques[-30], [0.0, 0.0])  # until then it was driven
+
+
+class InATrial(Session):
+    def test_each_signal_that_can_be_caught_is_a_stop_by_the_operator(self):
+        for name in ("INT", "TERM", "HUP", "QUIT", "TSTP", "USR1", "USR2", "ALRM", "PWR", "XCPU", "POLL"):
+            with self.subTest(name):
+                self.start()
+                self.journal_grows()
+                self.process.send_signal(getattr(signal, "SIG" + name))
+                self.ended(SAFETY_STOP)
+                self.assert_ramped_down()
+                self.target.unlink()
+
+    def test_signals_of_the_background_suspend_nothing(self):
+        self.start(seconds=2)
+        self.journal_grows()
+        for one in (signal.SIGTTIN, signal.SIGTTOU, signal.SIGPIPE, signal.SIGXFSZ, signal.SIGCONT):
+            self.process.send_signal(one)
+        self.ended(FINE)
+        self.assertEqual(self.info()["ended"], "completed")
+
+    def test_nohup_is_respected(self):
+        self.start(seconds=2, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.journal_grows()
+        self.process.send_signal(signal.SIGHUP)
+        self.ended(FINE)
+
+    def test_a_request_to_end_begins_no_further_trial(self):
+        self.start(more='[[trial]]\nname = "one"\n[[trial]]\nname = "two"\n')
+        self.target = self.folder / "trial_one.h5"
+        self.journal_grows()
+        self.process.send_signal(signal.SIGTERM)
+        self.ended(SAFETY_STOP)
+        self.assert_ramped_down()
+        self.assertEqual([name for name in self.names() if "two" in name], [])
+
+    def test_a_file_that_may_not_grow_is_a_recorder_that_fails(self):
+        """SIGXFSZ ends a program that does not expect it."""
+        self.start(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000)))
+        _, err = self.process.communicate(timeout=60)
+        self.assertEqual(self.process.returncode, BAD_DATA, err)
+        self.assertIn(b"recording could not be kept up", err)
+        self.mbk("recover", f"{self.target}.journal")
+        self.assertGreater(len(self.torques()), 400)
+
+
+class AtATerminal(Session):
+    def begin(self, *options):
+        """A session with a terminal of its own."""
+        self.target = self.folder / "trial.h5"
+        path = self.experiment()
+        child, self.terminal = pty.fork()
+        if child == 0:
+            try:
+                os.execv(program("MBK"), ["mbk", "run", str(path), "--out", str(self.target), "--no-console", *options])
+            finally:
+                os._exit(127)  # this is the child, which must not go on with the tests
+        self.child = child
+        journal, self.shown, until = pathlib.Path(f"{self.target}.journal"), b"", time.monotonic() + 60
+        while not (journal.exists() and journal.stat().st_size > 80_000):
+            self.assertLess(time.monotonic(), until, self.shown)
+            self.look()
+
+    def look(self):
+        if select.select([self.terminal], [], [], 0.02)[0]:
+            try:
+                self.shown += os.read(self.terminal, 65536)
+            except OSError:
+                return False
+        return True
+
+    def code(self):
+        until = time.monotonic() + 60
+        while time.monotonic() < until:
+            pid, status = os.waitpid(self.child, os.WNOHANG)
+            if pid:
+                return os.waitstatus_to_exitcode(status)
+            time.sleep(0.01)
+        os.kill(self.child, signal.SIGKILL)
+        os.waitpid(self.child, 0)
+        self.fail("it did not end")
+
+    def test_a_terminal_that_is_closed(self):
+        self.begin()
+        os.close(self.terminal)
+        self.assertEqual(self.code(), SAFETY_STOP)
+        self.assert_ramped_down()
+
+    def test_a_terminal_that_is_closed_without_a_signal(self):
+        """nohup in the foreground, or a terminal that belongs to another session: the end of input says it."""
+        before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        try:
+            self.begin()
+        finally:
+            signal.signal(signal.SIGHUP, before)
+        os.close(self.terminal)
+        self.assertEqual(self.code(), SAFETY_STOP)
+        self.assert_ramped_down()
+
+    def test_keys_that_suspend_or_quit_stop_the_robot_and_end_the_program(self):
+        for key in (b"\x1a", b"\x1c"):  # Ctrl-Z, Ctrl-backslash
+            with self.subTest(key):
+                self.begin()
+                os.write(self.terminal, key)
+                while self.look() and not os.path.exists(self.target):
+                    pass
+                self.assertEqual(self.code(), SAFETY_STOP)
+                os.close(self.terminal)
+                self.assert_ramped_down()
+                self.target.unlink()
+
+    def test_a_terminal_that_shows_nothing_holds_nobody_up(self):
+        """Nobody reads what the terminal gets, until its buffer is full: the trial goes on, and the stop is obeyed."""
+        self.begin()
+        os.write(self.terminal, b"\x13")  # Ctrl-S
+        time.sleep(1.5)
+        os.kill(self.child, signal.SIGTERM)
+        until = time.monotonic() + 30
+        while not self.target.exists() and time.monotonic() < until:
+            time.sleep(0.02)
+        os.write(self.terminal, b"\x11")
+        self.assertEqual(self.code(), SAFETY_STOP)
+        os.close(self.terminal)
+        self.assert_ramped_down()
+
+
+class OutsideOfATrial(Session):
+    def test_at_the_question_it_ends(self):
+        """A stopped trial, and the question whether to go on."""
+        terminal = AtATerminal("code")
+        terminal.folder = self.folder
+        terminal.begin()
+        os.write(terminal.terminal, b" ")
+        while b"[y/N]" not in terminal.shown:
+            terminal.look()
+        os.kill(terminal.child, signal.SIGTERM)
+        self.assertEqual(terminal.code(), SAFETY_STOP)
+        os.close(terminal.terminal)
+
+
+class FatalSignals(Session):
+    WATCHDOG = 10.0  # s: what comes earlier is a command
+
+    def driven(self, environment=None):
+        self.robot = Robot(self)
+        self.start(more=DEVICE.format(port=self.robot.port.getsockname()[1], watchdog=int(1e3 * self.WATCHDOG)),
+                   environment=environment, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)))
+
+    def assert_last_words(self, since):
+        time.sleep(0.2)  # nothing may come after it
+        enabled = [command for command in self.robot.commands if command[2]]
+        self.assertGreater(len(enabled), 300)
+        came, sequence, on, torque = self.robot.commands[-1]
+        self.assertFalse(on)
+        self.assertEqual(list(torque), [0.0, 0.0])
+        self.assertGreater(sequence, 2**52)
+        self.assertLess(came - since, self.WATCHDOG / 2)
+
+    def test_the_last_command_is_motors_off(self):
+        for name in ("SEGV", "BUS", "FPE", "ILL", "ABRT", "SYS", "TRAP"):
+            with self.subTest(name):
+                self.driven()
+                self.journal_grows()
+                killed = time.monotonic()
+                self.process.send_signal(getattr(signal, "SIG" + name))
+                self.process.communicate(timeout=60)
+                self.assertEqual(self.process.returncode, -getattr(signal, "SIG" + name))
+                self.assert_last_words(killed)
+                journal = pathlib.Path(f"{self.target}.journal")
+                self.mbk("recover", journal)
+                self.assertIn("interrupted", self.info()["ended"])
+                self.target.unlink()
+
+    def test_a_program_that_crashes_by_itself(self):
+        """crash.cpp makes the loop's thread, or the one that waits for the disk, do it."""
+        shim = os.environ.get("MBK_CRASH_SHIM")
+        if not shim:
+            self.skipTest("MBK_CRASH_SHIM is not set")
+        for where in ("sendto", "fdatasync"):
+            for how, code in (("pointer", signal.SIGSEGV), ("stack", signal.SIGSEGV), ("abort", signal.SIGABRT),
+                              ("terminate", signal.SIGABRT)):
+                with self.subTest(where=where, how=how):
+                    begin = time.monotonic()
+                    self.driven({"LD_PRELOAD": shim, "MBK_CRASH_IN": where, "MBK_CRASH": how,
+                                 "MBK_CRASH_AFTER": "800" if where == "sendto" else "20"})
+                    self.process.communicate(timeout=60)
+                    self.assertEqual(self.process.returncode, -code)
+                    self.assert_last_words(begin + 0.4)
+                    pathlib.Path(f"{self.target}.journal").unlink()
+
+    def test_the_next_program_is_let_in_again(self):
+        self.driven()
+        self.journal_grows()
+        self.process.send_signal(signal.SIGABRT)
+        self.process.communicate(timeout=60)
+        pathlib.Path(f"{self.target}.journal").unlink()
+        before = len(self.robot.commands)
+        self.process = subprocess.Popen([program("MBK"), "run", "experiment.toml", "--out", "again.h5", "--no-measure"],
+                                        cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE)
+        until = time.monotonic() + 30
+        while time.monotonic() < until and not any(command[2] for command in self.robot.commands[before:]):
+            time.sleep(0.02)
+        self.process.send_signal(signal.SIGINT)
+        self.ended(SAFETY_STOP)
+
+
+if __name__ == "__main__":
+    main()
