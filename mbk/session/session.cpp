@@ -253,7 +253,8 @@ Result<Recovered> recover(const fs::path& file, const fs::path& target, const Re
     }
   }
   std::error_code failed;
-  recovered.removed = !options.keep && !recovered.damage.any() && fs::remove(file, failed);
+  const bool pristine = !recovered.damage.any() && !recovered.incomplete;
+  recovered.removed = pristine && !options.keep && fs::remove(file, failed);
   return recovered;
 }
 
