@@ -6,6 +6,7 @@
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/readers_option.h"
 #include "mbk/recording/write.h"
 
 namespace mbk::app {

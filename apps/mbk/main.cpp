@@ -1,10 +1,15 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <new>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "apps/mbk/commands.h"
@@ -47,10 +52,42 @@ std::string one_line(const CLI::App* app, const CLI::Error& error) {
   return fmt::format("mbk: '{}' is no command; see 'mbk --help'\n", words.front());
 }
 
-}  // namespace
+/// On standard error where there is no memory to make a line in. What cannot be written is lost: the exit code tells.
+void say_plainly(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const ssize_t wrote = write(STDERR_FILENO, text.data(), text.size());
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(wrote));
+  }
+}
 
-int main(int argc, char** argv) {
-  mbk::app::prepare_process();
+constexpr std::string_view kNoMemory = "mbk: not enough memory; of a recording choose a part with --from and --to\n";
+
+/// Where an exception has nowhere to go: before main begins, and out of a destructor that needs memory, as that of a
+/// JSON tree does. No memory is no error of mbk; anything else is, and ends as it would. In a trial it goes on as
+/// SIGABRT, for which last_words.h waits.
+[[noreturn]] void end_without_memory() noexcept {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    say_plainly(kNoMemory);
+    struct sigaction last_words {};
+    if (sigaction(SIGABRT, nullptr, &last_words) == 0 && last_words.sa_handler == SIG_DFL) {
+      std::_Exit(mbk::app::kBadData);
+    }
+  } catch (...) {
+    __gnu_cxx::__verbose_terminate_handler();
+  }
+  std::abort();
+}
+
+/// Before the tables of CLI11 are filled, which is before main.
+[[gnu::constructor(101)]] void expect_no_memory() noexcept {
+  std::set_terminate(end_without_memory);
+}
+
+int run(int argc, char** argv) {
   mbk::app::prefer_large_pages();
   CLI::App app{
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
@@ -91,21 +128,30 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, wrong;
+    for (auto* stream : {&out, &wrong}) stream->exceptions(std::ios::badbit);  // where there is no memory
     const int code = app.exit(error, out, wrong);
     mbk::app::say_text(wrong.str());
     if (auto ok = mbk::app::Output().write(out.str()); !ok) return mbk::app::report_error(ok.error());
     return code == 0 ? mbk::app::kFine : mbk::app::kWrongUsage;
   }
-  try {
-    for (const auto& [name, action] : commands) {
-      if (app.got_subcommand(name)) return action();
-    }
-  } catch (const std::bad_alloc&) {
-    mbk::app::say("mbk: not enough memory for this recording; choose a part of it with --from and --to\n");
-    return mbk::app::kBadData;
-  } catch (const std::exception& error) {
-    mbk::app::say("mbk: {}; this is an error of mbk\n", error.what());
-    return mbk::app::kBadData;
+  for (const auto& [name, action] : commands) {
+    if (app.got_subcommand(name)) return action();
   }
-  return 2;
+  return mbk::app::kWrongUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  mbk::app::prepare_process();
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    say_plainly(kNoMemory);
+  } catch (const std::exception& error) {
+    say_plainly("mbk: ");
+    say_plainly(error.what());
+    say_plainly("; nothing more was done\n");
+  }
+  return mbk::app::kBadData;
 }

@@ -30,17 +30,6 @@ std::string name_with(const std::vector<std::string>& words) {
 
 }  // namespace
 
-void add_readers_option(CLI::App& command, std::optional<Readers>& readers) {
-  std::vector<std::string> words;
-  for (const auto& [word, value] : kReaders) words.emplace_back(word);
-  const auto take = [&readers](const std::string& word) {
-    readers = std::ranges::find(kReaders, word, &decltype(kReaders)::value_type::first)->second;
-  };
-  command.add_option_function<std::string>("--readable-by", take, "who may read the recording (owner)")
-      ->type_name(fmt::format("{}", fmt::join(words, "|")))
-      ->check(one_of(words));
-}
-
 std::string quoted(const std::string& given) {
   constexpr std::size_t kShown = 24;
   return given.size() > kShown ? fmt::format("'{}…'", given.substr(0, kShown)) : fmt::format("'{}'", given);

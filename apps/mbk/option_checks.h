@@ -1,11 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
-
-#include "mbk/trial/readers.h"
 
 namespace mbk::app {
 
@@ -25,9 +22,6 @@ namespace mbk::app {
 
 /// The words of every one_of() and suggests() that `option` has.
 [[nodiscard]] std::vector<std::string> suggestions(CLI::Option& option);
-
-/// Adds --readable-by owner|group|all, of a recording that a command writes.
-void add_readers_option(CLI::App& command, std::optional<Readers>& readers);
 
 /// What was given, as it stands in a message: 'abc', cut where it is long.
 [[nodiscard]] std::string quoted(const std::string& given);

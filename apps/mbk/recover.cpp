@@ -5,6 +5,7 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/readers_option.h"
 #include "mbk/report/text.h"
 #include "mbk/session/session.h"
 

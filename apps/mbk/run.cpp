@@ -14,6 +14,7 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/readers_option.h"
 #include "apps/mbk/run_console.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
@@ -190,7 +191,8 @@ std::string lost_messages_text(std::vector<std::string>& notes) {
 /// relaxed.h5 → relaxed_2.h5, the first that is not there yet.
 fs::path next_free(const fs::path& target) {
   fs::path free = target;
-  for (int k = 2; fs::exists(free); ++k) {
+  std::error_code ignored;  // a name that cannot be looked at is refused where it is made
+  for (int k = 2; fs::exists(free, ignored); ++k) {
     free = target.parent_path() / fmt::format("{}_{}{}", target.stem().string(), k, target.extension().string());
   }
   return free;
@@ -245,7 +247,8 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
   const bool alarming = sound_alarm(session);
   const auto failed = [&](const Error& error) {
     const int code = report_error(error);
-    return alarming ? kMotorsNotOff : code;
+    if (alarming) return kMotorsNotOff;
+    return outcome && outcome->trip.reason != safety::Reason::none ? kSafetyStop : code;
   };
   if (!outcome) return failed(outcome.error());
   console.show_robot(outcome->motors);
@@ -327,7 +330,7 @@ int run(const Arguments& arguments) {
   for (const Trial& trial : *trials) {
     if (auto plan = session::make_plan(trial); !plan) return report_error(plan.error().in(arguments.experiment));
     const fs::path target = target_of(arguments, trial, trials->size() > 1);
-    if (fs::exists(target)) {
+    if (std::error_code ignored; fs::exists(target, ignored)) {
       return report_error(
           {ErrorKind::usage, "is there already", "choose another --out, or move it away", target.string()});
     }

@@ -70,7 +70,7 @@ void RunConsole::show_robot(const safety::MotorsOff& motors) {
   using State = safety::MotorsOff::State;
   console::RobotStatus status;
   status.link = motors.state != State::cannot_say;
-  status.motors = motors.state == State::confirmed ? "off" : "unknown";
+  if (motors.state == State::confirmed) status.motors = device::Motors::off;
   if (motors.state == State::confirmed || motors.state == State::missing) {
     status.confirmed_off = motors.state == State::confirmed;
   }
@@ -86,7 +86,7 @@ std::function<void(const session::IdleState&)> RunConsole::watching(session::Ses
     status.link = seen.link;
     status.stop_button = seen.stop_button;
     status.fault = seen.fault;
-    status.motors = seen.motors == device::Motors::on ? "on" : seen.motors == device::Motors::off ? "off" : "unknown";
+    status.motors = seen.motors;
     if (seen.motors != device::Motors::unknown) status.confirmed_off = seen.confirmed_off;
     console->show_robot(status);
   };

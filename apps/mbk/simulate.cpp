@@ -9,6 +9,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
+#include "apps/mbk/readers_option.h"
 #include "apps/mbk/scenario_argument.h"
 #include "mbk/laboratory/scenario.h"
 #include "mbk/numeric/parallel.h"

@@ -30,8 +30,9 @@ struct Command {
 };
 
 /// {"command": "stop"}, {"command": "note", "text": "…"}, {"command": "reset", "code": "…"}: these keys and no others.
-/// @fails  usage: no JSON object; a key or command that is not known; a text that is missing, empty, too long or out of
-///         place.
+/// @fails  usage: no JSON object; a key that is there twice, so that two readers could take the message for two
+///         commands; a list or an object in it; a key or command that is not known; a text that is missing, empty, too
+///         long or out of place.
 [[nodiscard]] Result<Command> parse_command(std::string_view json);
 
 }  // namespace mbk::console

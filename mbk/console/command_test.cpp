@@ -31,5 +31,24 @@ TEST(Command, WhatIsNoCommandIsRefused) {
   EXPECT_FALSE(parse_command(std::string(100'000, '[')));
 }
 
+TEST(Command, AKeyThatIsThereTwiceIsRefusedInEachForm) {
+  for (const char* const message :
+       {R"({"command":"stop","command":"start"})", R"({"command":"start","command":"stop"})",
+        R"({"command":"stop","command":"stop"})", R"({"command":"start","com\u006dand":"stop"})",
+        R"({"command":"note","text":"a","text":"b"})", R"({"command":"reset","code":"1","command":"note"})"}) {
+    const auto command = parse_command(message);
+    ASSERT_FALSE(command) << message;
+    EXPECT_NE(command.error().message.find("twice"), std::string::npos) << command.error().line();
+  }
+}
+
+TEST(Command, NothingIsNested) {
+  for (const char* const message :
+       {R"({"command":{"command":"stop"}})", R"({"command":"stop","more":[]})", R"([{"command":"stop"}])",
+        R"({"a":{"command":"stop","command":"start"},"command":"start"})"}) {
+    EXPECT_FALSE(parse_command(message)) << message;
+  }
+}
+
 }  // namespace
 }  // namespace mbk::console

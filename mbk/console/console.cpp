@@ -24,8 +24,12 @@ using journal::Tick;
 using session::Trial;
 
 constexpr std::size_t kMostPending = 8192;  // samples of a frame, at most
-constexpr int kStateBeats = 12;             // a state at least so often
-constexpr int kDiskBeats = 120;
+constexpr std::uint64_t kStateBeats = 12;   // a state at least so often
+constexpr std::uint64_t kDiskBeats = 120;
+constexpr std::size_t kMostReports = 30;  // that can still be opened: of a session of months the last ones
+constexpr std::size_t kShownNotes = 20;   // in a state, and their bytes
+constexpr std::size_t kShownNoteBytes = 8 << 10;
+constexpr std::size_t kLongestText = 600;  // in a state, of each sentence [bytes]
 
 Json times_json(const realtime::CycleRecord& record) {
   Json bins = Json::array();
@@ -74,6 +78,27 @@ std::string sentence_of(const safety::Trip& trip) {
   return whole ? safety::sentence(trip) : std::string(safety::code(trip.reason));
 }
 
+const char* text(RobotStatus::Motors motors) {
+  switch (motors) {
+    case RobotStatus::Motors::unknown:
+      break;
+    case RobotStatus::Motors::off:
+      return "off";
+    case RobotStatus::Motors::on:
+      return "on";
+  }
+  return "unknown";
+}
+
+/// At most so much of it, cut between two characters of UTF-8.
+std::string beginning(std::string text) {
+  if (text.size() <= kLongestText) return text;
+  std::size_t end = kLongestText;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  text.resize(end);
+  return text + " …";
+}
+
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -93,6 +118,8 @@ Console::Console(const std::vector<Trial>& trials, session::Signals& signals)
     }
     trials_.push_back(std::move(listed));
   }
+  if (const auto html = operator_page()) operator_page_ = make_page(std::string(*html));
+  for (auto* ticks : {&pending_, &sending_}) ticks->reserve(kMostPending);
   live_ =
       std::make_unique<session::LiveEstimate>([this](const session::LiveEstimate::Estimate& one) { estimated(one); });
 }
@@ -140,6 +167,9 @@ void Console::begin(std::size_t index, const journal::Header& header, const meas
   times_ = {};
   times_apart_ = {};
   trip_ = {};
+  recording_notes_ = notes_.size();
+  recording_note_bytes_ = 0;
+  for (const std::string& note : notes_) recording_note_bytes_ += note.size();
   estimate_ = std::make_shared<std::string>(R"({"type":"estimate"})");
   Listed& listed = trials_[index];
   listed.progress = Progress::running;
@@ -150,7 +180,16 @@ void Console::begin(std::size_t index, const journal::Header& header, const meas
   said_.clear();
 }
 
-void Console::watch(std::span<const Tick> ticks) {
+void Console::watch(std::span<const Tick> ticks) noexcept {
+  try {
+    watch_throwing(ticks);
+  } catch (...) {  // no memory: the pages miss these, the recording does not
+    const std::scoped_lock lock(mutex_);
+    skipped_samples_ += ticks.size();
+  }
+}
+
+void Console::watch_throwing(std::span<const Tick> ticks) {
   bool tripped = false;
   {
     const std::scoped_lock lock(mutex_);
@@ -199,12 +238,21 @@ Console::Times Console::times(bool watched) {
 }
 
 void Console::show_report(std::string html, std::string why) {
+  Page page = html.empty() ? Page{} : make_page(std::move(html));
   const std::scoped_lock lock(mutex_);
-  if (!html.empty()) {
-    reports_.push_back(std::move(html));
-    trials_[current_].report = static_cast<int>(reports_.size());
+  if (page.html) {
+    reports_[++last_report_] = std::move(page);
+    trials_[current_].report = last_report_;
   }
   trials_[current_].report_missing = std::move(why);
+  while (reports_.size() > kMostReports) {
+    const int oldest = reports_.begin()->first;
+    reports_.erase(reports_.begin());
+    const auto of = std::ranges::find(trials_, oldest, &Listed::report);
+    if (of == trials_.end()) continue;  // the trial was repeated
+    of->report = 0;
+    of->report_missing = "no longer kept here; 'mbk measure --report' makes it again";
+  }
   changed_ = true;
 }
 
@@ -225,16 +273,20 @@ Action Console::ask(Question question) {
   return *decision_;
 }
 
-void Console::show_robot(const RobotStatus& status) {
-  const std::scoped_lock lock(mutex_);
-  robot_ = status;
-  changed_ = true;
-}
-
 void Console::say(std::string message) {
   const std::scoped_lock lock(mutex_);
   said_ = std::move(message);
   changed_ = true;
+}
+
+void Console::show_robot(const RobotStatus& robot) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (robot == robot_) return;
+    robot_ = robot;
+    changed_ = true;
+  }
+  server_->beat();
 }
 
 void Console::wait_until_left() {
@@ -254,21 +306,17 @@ std::vector<std::string> Console::take_notes() {
   return std::exchange(notes_, {});
 }
 
-std::optional<std::string> Console::page(std::string_view path) {
-  if (path == "/" || path == "/participant") {
-    if (auto html = operator_page()) return std::string(*html);
-    return std::nullopt;
-  }
+Page Console::page(std::string_view path) {
+  if (path == "/" || path == "/participant") return operator_page_;
   constexpr std::string_view kReport = "/report/";
-  if (!path.starts_with(kReport)) return std::nullopt;
+  if (!path.starts_with(kReport)) return {};
   path.remove_prefix(kReport.size());
-  std::size_t number = 0;
+  int number = 0;
   const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
+  if (error != std::errc() || end != path.data() + path.size()) return {};
   const std::scoped_lock lock(mutex_);
-  if (error != std::errc() || end != path.data() + path.size() || number < 1 || number > reports_.size()) {
-    return std::nullopt;
-  }
-  return reports_[number - 1];
+  const auto found = reports_.find(number);
+  return found == reports_.end() ? Page{} : found->second;
 }
 
 Result<void> Console::command(const Command& command) {
@@ -285,10 +333,7 @@ Result<void> Console::command(const Command& command) {
       signals_.end_trial = true;
       return {};
     case Action::note:
-      notes_.push_back(command.text);
-      all_notes_.push_back(command.text);
-      if (question_ != Question::none) decide(Action::note);
-      return {};
+      return note(command.text);
     default:
       break;
   }
@@ -305,6 +350,26 @@ Result<void> Console::reset(const std::string& code) {
   }
   if (reset_code_.empty() || code != reset_code_) return bad_usage("a reset takes two steps: ask, then confirm");
   decide(Action::reset);
+  return {};
+}
+
+Result<void> Console::note(const std::string& text) {
+  if (recording_notes_ == kMostNotes || recording_note_bytes_ + text.size() > kMostNoteBytes) {
+    return bad_usage(fmt::format("the recording takes no further note: it has {} of {}, {} of {} bytes",
+                                 recording_notes_, kMostNotes, recording_note_bytes_, kMostNoteBytes),
+                     "write it down elsewhere");
+  }
+  ++recording_notes_;
+  recording_note_bytes_ += text.size();
+  notes_.push_back(text);
+  ++note_count_;
+  shown_notes_.push_back(text);
+  shown_note_bytes_ += text.size();
+  while (shown_notes_.size() > kShownNotes || shown_note_bytes_ > kShownNoteBytes) {
+    shown_note_bytes_ -= shown_notes_.front().size();
+    shown_notes_.pop_front();
+  }
+  if (question_ != Question::none && !decision_) decide(Action::note);  // never instead of an answer
   return {};
 }
 
@@ -341,9 +406,9 @@ std::string Console::state_locked() const {
                       {"reference_unit", listed.force ? "N" : "m"},
                       {"progress", kProgress[static_cast<std::size_t>(listed.progress)]},
                       {"recording", listed.recording},
-                      {"ending", listed.ending},
+                      {"ending", beginning(listed.ending)},
                       {"report", listed.report},
-                      {"report_missing", listed.report_missing}});
+                      {"report_missing", beginning(listed.report_missing)}});
   }
   const bool held = signals_.operator_stop && trip_.reason == safety::Reason::none && !running_;
   const Server::Status status = server_ ? server_->status() : Server::Status{};
@@ -362,18 +427,26 @@ std::string Console::state_locked() const {
                {"over", over_},
                {"question", text(question_)},
                {"reset_code", reset_code_},
-               {"said", said_},
+               {"said", beginning(said_)},
                {"safety",
                 {{"tripped", trip_.reason != safety::Reason::none || held},
                  {"reason", held ? safety::code(safety::Reason::operator_stop) : safety::code(trip_.reason)},
                  {"sentence", held ? "stopped while nothing ran: nothing begins before a reset" : sentence_of(trip_)},
                  {"cut", last_.cut != 0},
                  {"enabled", last_.enabled != 0}}},
+               {"robot",
+                {{"motors", text(robot_.motors)},
+                 {"confirmed_off", robot_.confirmed_off ? Json(*robot_.confirmed_off) : Json()},
+                 {"stop_button", robot_.stop_button},
+                 {"link", robot_.link},
+                 {"fault", robot_.fault},
+                 {"sentence", beginning(robot_.sentence)}}},
                {"times", {{"compute", times_json(times_.compute)}, {"lateness", times_json(times_.lateness)}}},
                {"dropped_ticks", dropped_ticks_},
                {"skipped_samples", skipped_samples_},
                {"disk_free_bytes", disk_free_},
-               {"notes", all_notes_},
+               {"notes", shown_notes_},
+               {"note_count", note_count_},
                {"viewers", status.viewers},
                {"dropped_frames", status.dropped_frames},
                {"refused", status.refused},
@@ -382,15 +455,14 @@ std::string Console::state_locked() const {
 }
 
 void Console::beat() {
-  std::vector<Tick> ticks;
+  sending_.clear();
   Message state, estimate;
   std::uint32_t trial = 0;
   robot::Geometry geometry;
   {
     const std::scoped_lock lock(mutex_);
     if (!server_) return;
-    ticks.swap(pending_);
-    pending_.reserve(ticks.size());
+    sending_.swap(pending_);
     trial = static_cast<std::uint32_t>(current_);
     geometry = geometry_;
     estimate = std::exchange(estimate_, nullptr);
@@ -406,7 +478,7 @@ void Console::beat() {
   }
   if (state) server_->send(Topic::state, state);
   if (estimate) server_->send(Topic::estimate, estimate);
-  if (!ticks.empty()) server_->send_frame(std::make_shared<std::string>(frame(ticks, geometry, trial)));
+  if (!sending_.empty()) server_->send_frame(std::make_shared<std::string>(frame(sending_, geometry, trial)));
 }
 
 }  // namespace mbk::console

@@ -3,8 +3,10 @@
 #include <array>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -28,15 +30,21 @@ enum class Question {
   reset,  ///< after a stop
 };
 
-/// What the robot says of itself between trials, and after one.
+/// What is known of the robot itself, between trials too.
 struct RobotStatus {
-  std::string motors = "unknown";     ///< "on", "off"
-  std::optional<bool> confirmed_off;  ///< absent: it does not say
-  bool stop_button = false;           ///< pressed
-  bool link = false;
-  std::uint32_t fault = 0;  ///< its own code; 0: none
-  std::string sentence;     ///< for people
+  using Motors = device::Motors;
+  Motors motors = Motors::unknown;    ///< as the robot reports them
+  std::optional<bool> confirmed_off;  ///< after a stop, whether the robot has confirmed it; absent: nothing to confirm
+  bool stop_button = false;           ///< is pressed
+  bool link = true;                   ///< states of the robot come
+  std::uint32_t fault = 0;            ///< the robot's own code; 0: none
+  std::string sentence;               ///< more about it, for the operator
+
+  bool operator==(const RobotStatus&) const = default;
 };
+
+/// Notes of one recording, all together.
+inline constexpr std::size_t kMostNotes = 200, kMostNoteBytes = 32 << 10;
 
 /// The pages of a session: what happens is shown, and what is asked for there is done. Fed by the recorder, never by
 /// the loop: the loop sees nothing of it but Signals.
@@ -63,7 +71,7 @@ class Console {
              const std::filesystem::path& target, double duration);
 
   /// What the recorder is to call (session::Watch).
-  void watch(std::span<const journal::Tick> ticks);
+  void watch(std::span<const journal::Tick> ticks) noexcept;
 
   /// The trial is over. Returns once the last estimate is there.
   void finish(const session::TrialOutcome& outcome);
@@ -83,10 +91,11 @@ class Console {
   /// end (Signals::end_session) the answer is abort.
   [[nodiscard]] Action ask(Question question);
 
-  void show_robot(const RobotStatus& status);
-
   /// What the answer came to, where it could not be done.
   void say(std::string message);
+
+  /// Shows it from now on. What is confirmed not to be off is shown as an alarm. From any thread.
+  void show_robot(const RobotStatus& robot);
 
   /// The session is over: waits until nobody watches any more, or Signals::end_session.
   void wait_until_left();
@@ -111,12 +120,14 @@ class Console {
   };
 
   Console(const std::vector<session::Trial>& trials, session::Signals& signals);
-  std::optional<std::string> page(std::string_view path);
+  Page page(std::string_view path);
   Result<void> command(const Command& command);
   Result<void> reset(const std::string& code);
+  Result<void> note(const std::string& text);
   void decide(Action action);
   void beat();
   void estimated(const session::LiveEstimate::Estimate& estimate);
+  void watch_throwing(std::span<const journal::Tick> ticks);
   [[nodiscard]] std::string state_locked() const;
 
   session::Signals& signals_;
@@ -124,7 +135,14 @@ class Console {
   std::mutex mutex_;
   std::condition_variable decided_;
   std::vector<Listed> trials_;
-  std::vector<std::string> reports_, notes_, all_notes_;
+  Page operator_page_;
+  std::map<int, Page> reports_;  // the last ones, by number
+  int last_report_ = 0;
+  std::vector<std::string> notes_;  // not taken yet
+  std::deque<std::string> shown_notes_;
+  std::size_t shown_note_bytes_ = 0, recording_notes_ = 0, recording_note_bytes_ = 0;  // the last two: of one recording
+  std::uint64_t note_count_ = 0;
+  RobotStatus robot_;
   std::size_t current_ = 0;
   bool running_ = false, changed_ = true, over_ = false;
   Question question_ = Question::none;
@@ -133,15 +151,14 @@ class Console {
   robot::Geometry geometry_;
   double expected_duration_ = 0.0;
   std::filesystem::path target_;
-  std::vector<journal::Tick> pending_;
+  std::vector<journal::Tick> pending_, sending_;
   journal::Tick last_;
   std::uint64_t ticks_ = 0, dropped_ticks_ = 0, skipped_samples_ = 0, next_number_ = 0;
   Times times_;
   std::array<Times, 2> times_apart_;  // without pages, with pages
   safety::Trip trip_;
-  RobotStatus robot_;
   Message estimate_;
-  int beats_ = 0;
+  std::uint64_t beats_ = 0;
   std::uintmax_t disk_free_ = 0;
   std::unique_ptr<session::LiveEstimate> live_;
   std::unique_ptr<Server> server_;  // the last to be made, and the first to go

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "mbk/console/command.h"
 #include "mbk/console/outbox.h"
+#include "mbk/console/page.h"
 #include "mbk/core/result.h"
 
 namespace mbk::console {
@@ -18,16 +18,24 @@ namespace mbk::console {
 /// nowhere else. Whoever wants anything shows one of two tokens, which are made anew for each server: the operator's,
 /// or that of viewers who may only watch. The first page with the operator's token controls; when it goes, the next one
 /// that has the token does. A stop is taken from every page that has it.
-///   Refused, and said to `log`: a Host that is not this machine (a foreign name that was pointed here), an Origin that
-/// is not this server, a wrong token, a message that is no command. A viewer that takes nothing costs its Outbox and a
-/// buffer of the operating system; one that gives no sign of life is closed. Everything happens on one thread.
+///   Refused: a Host that is not this machine (a foreign name that was pointed here) or not named exactly once, an
+///   Origin
+/// that is not this server, a target that is no path, a wrong token, a message that is no command. What is refused is
+/// counted, and said to `log` as Refusals has it.
+///   Strangers, who have shown no token, cannot take what its holders need: a whole request has to come within 2 s;
+///   where
+/// there are too many of them, the oldest is closed for the newest; holders of each token have places of their own.
+/// Together they are at most half of the descriptors that the process may have, and each costs a bounded room. A viewer
+/// that takes nothing costs its Outbox and a buffer of the operating system; one that gives no sign of life is closed,
+/// as is one that floods; from a page of the operator's no stop is lost for what else it sends. Everything happens on
+/// one thread, which no exception ends.
 class Server {
  public:
   struct Handlers {
-    std::function<std::optional<std::string>(std::string_view path)> page;  ///< HTML; nothing: not found
-    std::function<Result<void>(const Command&)> command;                    ///< from a page that may give it
-    std::function<void()> beat;                                             ///< 120 times a second
-    std::function<void(const std::string&)> log;                            ///< one line about what was refused
+    std::function<Page(std::string_view path)> page;
+    std::function<Result<void>(const Command&)> command;  ///< from a page that may give it
+    std::function<void()> beat;                           ///< 120 times a second
+    std::function<void(const std::string&)> log;          ///< one line about what was refused
   };
 
   /// @param port  0: any that is free

@@ -64,6 +64,18 @@ Result<void> check_clock(const Clock& clock, double median, const WindowPlan& pl
   return {};
 }
 
+Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>& missing, const WindowLimits& limits) {
+  for (const MissingSamples& gap : missing) {
+    const double from = clock.seconds(gap.first), to = clock.seconds(gap.first + gap.count - 1);
+    if ((limits.from_s && to < *limits.from_s) || (limits.to_s && from >= *limits.to_s)) continue;
+    return bad_data(
+        fmt::format("{} missing from sample {} on ({:.6f} s to {:.6f} s; NaN in every channel)",
+                    gap.count == 1 ? "a sample is" : fmt::format("{} samples are", gap.count), gap.first + 1, from, to),
+        "choose a window without them with --from and --to; 'mbk info' names every gap");
+  }
+  return {};
+}
+
 Result<void> check_reference(const Clock& clock, const Signals& signals, const WindowLimits& limits) {
   for (Index axis = 0; axis < signals.reference.cols(); ++axis) {
     for (Index i = 0; i < signals.reference.rows(); ++i) {

@@ -7,6 +7,7 @@
 #include "mbk/preprocess/options.h"
 #include "mbk/preprocess/signals.h"
 #include "mbk/preprocess/windows.h"
+#include "mbk/trial/inspection.h"
 #include "mbk/trial/warning.h"
 
 namespace mbk::preprocess {
@@ -19,6 +20,10 @@ namespace mbk::preprocess {
 /// @param median interval [s]
 [[nodiscard]] Result<void> check_clock(const Clock& clock, double median, const WindowPlan& plan,
                                        std::vector<Warning>& warnings);
+
+/// No sample may be missing (NaN in every channel) throughout the limits: what a session lost is not bridged.
+[[nodiscard]] Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>& missing,
+                                         const WindowLimits& limits);
 
 /// The windows are read off the reference, so that it must be finite throughout the limits.
 [[nodiscard]] Result<void> check_reference(const Clock& clock, const Signals& signals, const WindowLimits& limits);

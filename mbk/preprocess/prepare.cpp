@@ -25,6 +25,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   }
   const Hertz rate(inspection.rate_hz);
   const Clock clock(recording.time, rate);
+  if (auto ok = check_missing(clock, inspection.missing, options.window); !ok) return tl::unexpected(ok.error());
 
   PreparedTrial trial;
   trial.sources = recording.sources;

@@ -366,6 +366,17 @@ TEST(Prepare, NaNOutsideTheWindowDoesNotMatter) {
   EXPECT_FALSE(prepared(recording, {.window = {.to_s = 3.001}}));
 }
 
+TEST(Prepare, SamplesThatASessionLostAreRefusedUnlessTheWindowLeavesThemOut) {
+  Recording recording = noise(5000);
+  for (Channel& channel : recording.channels) channel.values.segment(3000, 50).setConstant(kNaN);
+  const auto trial = prepared(recording);
+  ASSERT_FALSE(trial);
+  EXPECT_EQ(trial.error().message,
+            "50 samples are missing from sample 3001 on (3.000000 s to 3.049000 s; NaN in every channel)");
+  EXPECT_TRUE(prepared(recording, {.window = {.to_s = 3.0}}));
+  EXPECT_TRUE(prepared(recording, {.window = {.from_s = 3.05}}));
+}
+
 TEST(Prepare, NaNInAChannelThatIsNotUsedDoesNotMatter) {
   Recording recording = noise(5000);
   values_of(recording, "acceleration_x")[3000] = kNaN;

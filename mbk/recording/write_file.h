@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -10,16 +9,10 @@
 
 namespace mbk::recording {
 
-/// Makes a file that appears whole or not at all: `fill` writes it under a temporary name in the same folder, then it
-/// is flushed to the disk and renamed. What fails leaves nothing behind.
-/// @param fill writes the file of the given name (which is there, empty, and ours); false where it could not
+/// Makes a file that appears whole or not at all: it is written under a temporary name in the same folder, flushed to
+/// the disk and renamed. What fails leaves nothing behind; only where the folder cannot be flushed the file is there.
 /// @param readers  who may read it; where absent, what the umask leaves
 /// @fails  usage: the file is there and `overwrite` is false. data: the folder cannot be written, the disk is full.
-[[nodiscard]] Result<void> write_file(const std::filesystem::path& file, bool overwrite,
-                                      const std::function<bool(const std::filesystem::path& temporary)>& fill,
-                                      std::optional<Readers> readers = std::nullopt);
-
-/// The same for a text.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, bool overwrite, std::string_view text,
                                       std::optional<Readers> readers = std::nullopt);
 

@@ -85,7 +85,7 @@ std::vector<JointVector> PlanarMechanism::postures(int per_joint) const {
   const JointLimits& limits = options_.geometry.limits;
   std::vector<JointVector> grid;
   const auto at = [per_joint](double low, double high, int k) {
-    return per_joint == 1 ? 0.5 * (low + high) : low + (high - low) * k / (per_joint - 1.0);
+    return std::lerp(low, high, per_joint == 1 ? 0.5 : k / (per_joint - 1.0));
   };
   for (int i = 0; i < per_joint; ++i) {
     for (int j = 0; j < per_joint; ++j) {

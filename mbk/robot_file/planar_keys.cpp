@@ -1,5 +1,7 @@
 #include "mbk/robot_file/planar_keys.h"
 
+#include "mbk/robot/workspace.h"
+
 namespace mbk::robot_file {
 
 using config::above;
@@ -24,6 +26,11 @@ robot::PlanarRobot read_planar_robot(const config::Section& s) {
   range("theta1_deg", limits.theta1_low, limits.theta1_high);
   range("theta2_deg", limits.theta2_low, limits.theta2_high);
   limits.smallest_opening = s.number("smallest_opening_deg", limits.smallest_opening);
+  if (robot::joint_space_corners(limits).size() < 3) {
+    s.reject("smallest_opening_deg", "the limits of the joints leave no area to move in",
+             "check the sign and unit of theta1_deg, theta2_deg and smallest_opening_deg");
+    limits = {};
+  }
 
   const auto both = [&](const char* key, double robot::JointFriction::*part, config::Range allowed) {
     const Vector2d value = s.vector2(key, Vector2d(robot.friction[0].*part, robot.friction[1].*part), allowed);

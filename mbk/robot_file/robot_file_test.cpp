@@ -153,6 +153,9 @@ TEST(Planar, RefusesFrictionThatNoTermTakes) {
   EXPECT_THAT(refusal("[robot]\nkind = 'planar'\nsmoothing_rad_per_s = [0.5, 0.4]\n"),
               HasSubstr("the two joints differ"));
   EXPECT_THAT(refusal("[robot]\nkind = 'planar'\ntheta1_deg = [40, -40]\n"), HasSubstr("not below the second"));
+  for (const char* limits : {"smallest_opening_deg = 200", "theta2_deg = [170, 180]", "theta1_deg = [-100, -90]"}) {
+    EXPECT_THAT(refusal(std::string("[robot]\nkind = 'planar'\n") + limits), HasSubstr("leave no area to move in"));
+  }
 }
 
 TEST(OneAxis, TurnsOrSlides) {

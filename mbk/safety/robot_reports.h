@@ -2,14 +2,13 @@
 
 #include <cstdint>
 
-#include "mbk/robot/kinematics.h"
+#include "mbk/device/device.h"
 #include "mbk/safety/limits.h"
 #include "mbk/safety/trip.h"
 
 namespace mbk::safety {
 
-/// What a robot says of its motors.
-enum class Motors : std::uint8_t { unknown, off, on };
+using device::Motors;
 
 /// What the robot reports of itself with a new state.
 struct RobotReport {

@@ -26,24 +26,12 @@ std::array<double, 2> pair(const Eigen::Vector2d& v) noexcept {
   return {v[0], v[1]};
 }
 
-safety::Motors motors_of(device::Motors motors) noexcept {
-  switch (motors) {
-    case device::Motors::unknown:
-      break;
-    case device::Motors::off:
-      return safety::Motors::off;
-    case device::Motors::on:
-      return safety::Motors::on;
-  }
-  return safety::Motors::unknown;
-}
-
 safety::RobotReport report_of(const device::Facts& facts, const device::State& state) noexcept {
   safety::RobotReport report;
   report.time = state.time;
   report.acknowledges = facts.acknowledges;
   report.answered = state.answered;
-  report.motors = motors_of(state.motors);
+  report.motors = state.motors;
   report.force_sensor = state.has_force || !facts.has_force;
   report.accelerometer = state.has_acceleration || !facts.has_acceleration;
   report.watchdog_expired = state.watchdog_expired;

@@ -67,7 +67,8 @@ bool same(const Vector& one, const Vector& other) {
 
 /// Whether a file holds the recording. A channel that is NaN throughout may be left out, as MAT files do.
 bool holds_the_same(const fs::path& target, const Recording& recording) {
-  if (!fs::exists(target)) return false;
+  std::error_code ignored;
+  if (!fs::exists(target, ignored)) return false;
   const auto there = recording::read(target, {});
   if (!there || !same(there->time, recording.time) || there->events.size() != recording.events.size()) return false;
   for (const char* key : {"ended", "ticks_lost", "gaps"}) {
@@ -79,6 +80,19 @@ bool holds_the_same(const fs::path& target, const Recording& recording) {
     return twin != nullptr ? same(twin->values, channel.values) : channel.values.array().isNaN().all();
   });
 }
+
+/// Until the loop has a thread: whatever is in the way leaves the robot stopped, and no journal without ticks.
+struct NotBegun {
+  fs::path journal;
+  device::Device* robot = nullptr;  // once it was started
+  bool begun = false;
+  ~NotBegun() {
+    if (begun) return;
+    if (robot != nullptr) robot->stop();
+    std::error_code ignored;
+    fs::remove(journal, ignored);
+  }
+};
 
 }  // namespace
 
@@ -133,7 +147,8 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   if (gate_ && gate_->tripped()) {
     return bad_usage("the gate is tripped: " + safety::sentence(gate_->trip()), "see to the reason, then reset");
   }
-  if (fs::exists(target)) {
+  std::error_code ignored;
+  if (fs::exists(target, ignored)) {
     return fail(ErrorKind::usage, "is there already", "choose another name, or move it away", target.string());
   }
   if (pace_.virtual_clock && robot.facts().keeps_time && !trial.device.simulated()) {
@@ -150,17 +165,16 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   const auto expected = static_cast<std::uint64_t>(plan->sequence.duration(0.5) / sample_time);
   auto writer = journal::Writer::create(outcome.journal, header_of(trial, robot.facts(), plan->schedule), expected);
   if (!writer) return tl::unexpected(writer.error());
-  if (auto ok = start(robot); !ok) {
-    std::error_code ignored;
-    fs::remove(outcome.journal, ignored);
-    return tl::unexpected(ok.error());
-  }
+  NotBegun guard{outcome.journal};
+  if (auto ok = start(robot); !ok) return tl::unexpected(ok.error());
+  guard.robot = &robot;
 
   gate_ = std::move(plan->gate);
   signals_->end_trial = false;
   signals_->recording = true;
   realtime::BoundedRing<Tick> ring(kRing);
-  Recorder recorder(ring, std::move(*writer), *signals_, watch);
+  const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
+  Recorder recorder(ring, std::move(*writer), *signals_, watch, in_real_time);
   std::thread loop([&] {
     const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
@@ -174,6 +188,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
       run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
     }
   });
+  guard.begun = true;
   loop.join();
 
   outcome.trip = gate_->trip();
@@ -239,7 +254,8 @@ Result<Recovered> recover(const fs::path& file, const fs::path& target, const Re
     }
   }
   std::error_code failed;
-  recovered.removed = !options.keep && !recovered.damage.any() && fs::remove(file, failed);
+  const bool pristine = !recovered.damage.any() && !recovered.incomplete;
+  recovered.removed = pristine && !options.keep && fs::remove(file, failed);
   return recovered;
 }
 

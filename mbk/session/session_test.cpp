@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/recording/read.h"
+#include "mbk/recording/write.h"
 #include "mbk/session/plan.h"
 #include "tests/support/allocations.h"
 
@@ -205,6 +208,122 @@ TEST_F(SessionFolder, RecoversAsOftenAsOneLikesAndReplacesNothingElse) {
   EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   EXPECT_EQ(fs::last_write_time(target_), made);
   EXPECT_TRUE(fs::exists(journal_of(target_)));
+}
+
+/// A journal of 500 ticks in ten blocks; the fourth is damaged.
+void write_damaged_journal(const fs::path& file) {
+  {
+    auto writer = journal::Writer::create(file, journal::Header{}, 10).value();
+    std::vector<journal::Tick> ticks(500);
+    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = 1e-3 * static_cast<double>(ticks[i].number = i);
+    for (std::size_t i = 0; i < ticks.size(); i += 50) ASSERT_TRUE(writer.append(std::span(ticks).subspan(i, 50)));
+    ASSERT_TRUE(writer.end({"completed", "", 0, 0, 500}));
+  }
+  std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+  stream.seekp(static_cast<std::streamoff>(fs::file_size(file) / 3));
+  stream << "damage";
+}
+
+TEST_F(SessionFolder, AJournalThatLostTicksIsKeptAndItsRecordingSaysSo) {
+  write_damaged_journal(journal_of(target_));
+  const auto recovered = recover(journal_of(target_), target_);
+  ASSERT_TRUE(recovered) << recovered.error().line();
+  EXPECT_TRUE(recovered->incomplete);
+  EXPECT_FALSE(recovered->removed);
+  EXPECT_EQ(recovered->ticks, 450U);
+  EXPECT_TRUE(fs::exists(journal_of(target_)));
+  const auto recording = recording::read(target_, {});
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->samples(), 500);
+  EXPECT_EQ(recording->metadata.at("ended"), "completed, but 50 of 500 ticks were lost");
+  EXPECT_EQ(recording->metadata.at("ticks_lost"), "50");
+  EXPECT_EQ(recording->find("hand_x")->values.array().isNaN().count(), 50);
+  const auto made = fs::last_write_time(target_);  // NaN compares unequal to itself; the recording is still the same
+  ASSERT_TRUE(recover(journal_of(target_), target_));
+  EXPECT_EQ(fs::last_write_time(target_), made);
+}
+
+TEST_F(SessionFolder, ARecordingThatDiffersInOneRowOfNaNIsNotTheSame) {
+  write_damaged_journal(journal_of(target_));
+  ASSERT_TRUE(recover(journal_of(target_), target_));
+  Recording changed = recording::read(target_, {}).value();
+  for (Channel& channel : changed.channels) channel.values[7] = std::nan("");
+  ASSERT_TRUE(recording::write(changed, target_, recording::Format::hdf5, true));
+  const auto refused = recover(journal_of(target_), target_);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+}
+
+TEST_F(SessionFolder, WhatASessionWritesIsForItsOwnerUnlessAskedOtherwise) {
+  for (const Readers readers : {Readers::owner, Readers::all}) {
+    Trial t = trial();
+    t.scenario.readers = readers;
+    auto robot = SimulatedDevice::create(t.scenario).value();
+    fs::remove(target_);
+    Session session(kFast);
+    std::atomic<unsigned> seen{0};
+    const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick>) {
+      seen = static_cast<unsigned>(fs::status(journal_of(target_)).permissions());
+      session.signals().end_trial = true;
+    });
+    ASSERT_TRUE(outcome) << outcome.error().line();
+    EXPECT_EQ(seen & 0777U, permissions(readers));
+    EXPECT_EQ(static_cast<unsigned>(fs::status(target_).permissions()) & 0777U, permissions(readers));
+    ASSERT_TRUE(annotate(target_, {"a note"}));
+    EXPECT_EQ(static_cast<unsigned>(fs::status(target_).permissions()) & 0777U, permissions(readers));
+  }
+}
+
+/// In real time: the recorder looks after its file once a second.
+TEST_F(SessionFolder, AJournalThatIsRemovedOrReplacedStopsTheTrialAndLosesNothing) {
+  for (const bool replaced : {false, true}) {
+    const Trial t = trial();
+    auto robot = SimulatedDevice::create(t.scenario).value();
+    fs::remove(target_);
+    Session session({.virtual_clock = true, .speed = 1.0});
+    std::uint64_t watched = 0;
+    bool done = false;
+    const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+      watched += ticks.size();
+      if (done || ticks.back().time < 0.3) return;
+      done = fs::remove(journal_of(target_));
+      if (replaced) std::ofstream(journal_of(target_)) << "another file";
+    });
+    ASSERT_TRUE(outcome) << outcome.error().line();
+    EXPECT_EQ(outcome->trip.reason, safety::Reason::recording_failed);
+    EXPECT_NE(outcome->ending.detail.find("removed or replaced"), std::string::npos) << outcome->ending.detail;
+    EXPECT_FALSE(outcome->incomplete);
+    const auto recording = recording::read(target_, {});
+    ASSERT_TRUE(recording);
+    EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
+    EXPECT_EQ(watched, outcome->times.ticks);
+    EXPECT_FALSE(fs::exists(folder_ / "trial_saved.h5.journal"));
+    EXPECT_EQ(fs::exists(journal_of(target_)), replaced);
+    fs::remove(journal_of(target_));
+  }
+}
+
+/// The disk gives something else back than was written.
+TEST_F(SessionFolder, ATrialWhoseJournalIsDamagedWhileItRunsIsNotCompleted) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  Session session(kFast);
+  bool done = false;
+  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+    if (done || ticks.back().time < 3.0) return;
+    std::fstream stream(journal_of(target_), std::ios::binary | std::ios::in | std::ios::out);
+    stream.seekp(100'000);
+    stream << "damage";
+    done = stream.good();
+  });
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_TRUE(outcome->incomplete);
+  EXPECT_TRUE(outcome->ending.how.starts_with("completed, but ")) << outcome->ending.how;
+  EXPECT_TRUE(fs::exists(outcome->journal));
+  const auto recording = recording::read(target_, {});
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
+  EXPECT_EQ(recording->metadata.at("ended"), outcome->ending.how);
 }
 
 TEST(ExperimentFile, RefusesNames) {

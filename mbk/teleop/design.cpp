@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -15,10 +16,18 @@ namespace {
 using config::Document;
 using config::Section;
 
-/// The decimal that stands in the file, exactly. The document has refused what is not finite.
-Rational fraction(double value) {
-  return lti::exact(value).value();
+/// A value of the file as a fraction, for a quantity in SI units; 0 in place of one that is refused.
+Rational fraction(const Section& section, std::string_view key, double value, Sizes sizes = {}) {
+  auto exact = bounded(value, sizes);
+  if (exact) return std::move(*exact);
+  section.reject(key, exact.error().message, exact.error().remedy);
+  return 0;
 }
+
+/// [s]
+constexpr Sizes kDelays{1e-6, 1e6, "s"};
+/// Of two-ports, whose coefficients are products of up to twelve time constants.
+constexpr Sizes kCoefficients{1e-40, 1e40, "in SI units"};
 
 config::Range allowed(std::string_view key) {
   const bool never_negative = key.ends_with("_kg") || key.ends_with("_ms");
@@ -41,7 +50,8 @@ Teleoperator read_teleoperator(const Document& document) {
     const auto value = needed == Need::required
                            ? std::optional(section.required_number(parameter.key, allowed(parameter.key)))
                            : section.optional_number(parameter.key, allowed(parameter.key));
-    if (value) result.values.emplace(parameter.name, fraction(*value));
+    const Sizes sizes = parameter.section == "delay" ? kDelays : Sizes{};
+    if (value) result.values.emplace(parameter.name, fraction(section, parameter.key, *value, sizes));
   }
   return result;
 }
@@ -59,7 +69,8 @@ Polynomial read_polynomial(const Section& entry, std::string_view key, std::vect
     coefficients.clear();
   }
   std::vector<Rational> ascending;
-  for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c) ascending.push_back(fraction(*c));
+  for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c)
+    ascending.push_back(fraction(entry, key, *c, kCoefficients));
   return Polynomial(std::move(ascending));
 }
 
@@ -156,13 +167,23 @@ Result<Design> design_of(const Document& document, std::string_view file) {
   }
   const Section terminated = root.section("operator");
   design.operator_port = terminated.integer("port", 1, 1, 2) == 1 ? Port::one : Port::two;
-  if (const auto a = terminated.optional_number("shortage_N_s_per_m")) design.shortage = fraction(*a);
+  if (const auto a = terminated.optional_number("shortage_N_s_per_m")) {
+    design.shortage = fraction(terminated, "shortage_N_s_per_m", *a);
+  }
   if (design.is_architecture()) design.simulation = read_simulation(root.section("simulation"));
   if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
   return design;
 }
 
 }  // namespace
+
+Result<Rational> bounded(double value, Sizes sizes) {
+  const double size = std::abs(value);
+  if (value == 0.0 || (size >= sizes.smallest && size <= sizes.largest)) return lti::exact(value);
+  return bad_usage(fmt::format("{:g} is {} {:g} {}", value, size < sizes.smallest ? "closer to zero than" : "beyond",
+                               size < sizes.smallest ? sizes.smallest : sizes.largest, sizes.unit),
+                   size < sizes.smallest ? "write 0 where it is none" : "check its unit");
+}
 
 PortEquations Design::equations(std::string_view parameter) const {
   if (const auto* two_port = std::get_if<TwoPort>(&network)) return PortEquations::of(*two_port);

@@ -12,6 +12,17 @@
 
 namespace mbk::teleop {
 
+/// How small and how large a number may be other than 0. Exact answers are worked out with whole numbers whose digits
+/// multiply: a delay of 1e-30 s beside one of 5 ms takes a minute.
+struct Sizes {
+  double smallest = 1e-9, largest = 1e12;
+  const char* unit = "in SI units";
+};
+
+/// The decimal that reads back as `value`, exactly.
+/// @fails  usage: it is not 0 and not of that size; it is not finite.
+[[nodiscard]] Result<Rational> bounded(double value, Sizes sizes = {});
+
 /// An arm that holds a port in a simulation.
 struct SimulatedArm {
   enum class Kind {

@@ -64,14 +64,36 @@ TEST(ParseDesign, AsksForWhatAnArchitectureNeedsAndNothingElse) {
   EXPECT_THAT(line_of("[architecture]\nkind = \"wave\"\n" + robots), HasSubstr("wave"));
 }
 
+TEST(ParseDesign, RefusesNumbersWhoseExactAnswerTakesForEver) {
+  const auto with = [](const std::string& k, const std::string& delay) {
+    return "[architecture]\nkind = \"position-position\"\n[master]\nmass_kg = 1\ndamping_N_s_per_m = 1\n"
+           "controller_damping_N_s_per_m = 1\ncontroller_stiffness_N_per_m = 1\n[slave]\nmass_kg = 1\n"
+           "damping_N_s_per_m = 1\ncontroller_damping_N_s_per_m = 1\ncontroller_stiffness_N_per_m = " +
+           k + "\n[delay]\nto_slave_ms = " + delay + "\n";
+  };
+  EXPECT_EQ(line_of(with("1e12", "0.001")), "");
+  EXPECT_EQ(line_of(with("0", "0")), "");
+  EXPECT_THAT(line_of(with("1", "1e-320")), HasSubstr("delay.to_slave_ms"));
+  EXPECT_THAT(line_of(with("1", "1e-320")), HasSubstr("closer to zero than 1e-06 s; write 0 where it is none"));
+  EXPECT_THAT(line_of(with("1e300", "1")), HasSubstr("1e+300 is beyond 1e+12 in SI units"));
+  EXPECT_THAT(line_of(with("-1e-300", "1")), HasSubstr("slave.controller_stiffness_N_per_m"));
+  const std::string start = "[two_port]\nform = \"z\"\nz11 = {numerator = [1]}\nz22 = {numerator = [1]}\n";
+  EXPECT_THAT(line_of(start + "z12 = {numerator = [1e300]}\nz21 = {numerator = [0]}\n"),
+              HasSubstr("two_port.z12.numerator"));
+  EXPECT_THAT(line_of(start + "z12 = {numerator = [0]}\nz21 = {numerator = [0]}\n[operator]\nport = 1\n"
+                              "shortage_N_s_per_m = 1e-320\n"),
+              HasSubstr("operator.shortage_N_s_per_m"));
+}
+
 TEST(ParseSweep, TakesANameAndARange) {
   const auto sweep = parse_sweep("slave.k=-0.5:1e3");
   ASSERT_TRUE(sweep);
   EXPECT_EQ(sweep->parameter, "slave.k");
   EXPECT_EQ(sweep->low, Rational(-1, 2));
   EXPECT_EQ(sweep->high, 1000);
-  for (const char* wrong : {"", "slave.k", "slave.k=1", "=1:2", "slave.k=2:1", "slave.k=1:1", "slave.k=a:2",
-                            "slave.k=1:nan", "slave.k=1:2x", "slave.k=:", "slave.k=0:inf"}) {
+  for (const char* wrong :
+       {"", "slave.k", "slave.k=1", "=1:2", "slave.k=2:1", "slave.k=1:1", "slave.k=a:2", "slave.k=1:nan",
+        "slave.k=1:2x", "slave.k=:", "slave.k=0:inf", "slave.k=0:1e300", "slave.k=1e-320:1"}) {
     const auto refused = parse_sweep(wrong);
     ASSERT_FALSE(refused) << wrong;
     EXPECT_EQ(refused.error().kind, ErrorKind::usage);

@@ -238,7 +238,7 @@ Result<Rational> number(std::string_view word) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size()) return bad_usage("not a number");
-  return lti::exact(value);
+  return bounded(value);
 }
 
 }  // namespace
@@ -251,7 +251,10 @@ Result<Question::Sweep> parse_sweep(std::string_view text) {
   const auto equal = text.find('='), colon = text.find(':', equal == text.npos ? 0 : equal);
   if (equal == text.npos || equal == 0 || colon == text.npos) return wrong();
   const auto low = number(text.substr(equal + 1, colon - equal - 1)), high = number(text.substr(colon + 1));
-  if (!low || !high || !(*low < *high)) return wrong();
+  for (const auto* end : {&low, &high}) {
+    if (!*end) return tl::unexpected(end->error().in(fmt::format("--parameter {}", text)));
+  }
+  if (!(*low < *high)) return wrong();
   return Question::Sweep{std::string(text.substr(0, equal)), *low, *high};
 }
 
@@ -265,7 +268,10 @@ Result<Question::Excess> parse_excess(std::string_view text) {
   const auto first = text.find(':'), second = text.find(':', first == text.npos ? text.npos : first + 1);
   if (first == text.npos) return wrong();
   const auto low = number(text.substr(0, first)), high = number(text.substr(first + 1, second - first - 1));
-  if (!low || !high || !(*low < *high)) return wrong();
+  for (const auto* end : {&low, &high}) {
+    if (!*end) return tl::unexpected(end->error().in(fmt::format("--excess {}", text)));
+  }
+  if (!(*low < *high)) return wrong();
   Question::Excess excess{*low, *high};
   if (second == text.npos) return excess;
   const std::string_view word = text.substr(second + 1);
@@ -291,8 +297,8 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
   }
   Rational a = 0;
   if (finding.operator_shortage) {
-    const auto exact = lti::exact(finding.operator_shortage->a);
-    if (!exact) return tl::unexpected(exact.error());
+    const auto exact = bounded(finding.operator_shortage->a);
+    if (!exact) return tl::unexpected(exact.error().in("a of the operator"));
     a = *exact;
     auto with = judge_with(design, design.operator_port, a);
     if (!with) return tl::unexpected(with.error().in(design.file));

@@ -54,6 +54,17 @@ class Describe(Case):
         self.assertIn("mbk.robot_description/1", out.read_text())
         self.refused(WRONG_USAGE, "robot", "describe", ROBOTS / "emps.toml", "--out", out, says="--overwrite")
 
+    def test_limits_that_leave_no_place_to_stand(self):
+        for limits in ("smallest_opening_deg = 200", "smallest_opening_deg = 1e300", "theta1_deg = [-1e9, -1e8]"):
+            with self.subTest(limits):
+                self.refused(BAD_DATA, *self.describe(f"[robot]\nkind = 'planar'\n{limits}\n"),
+                             says=("smallest_opening_deg", "no area to move in"))
+
+    def test_limits_that_leave_a_sliver(self):
+        """Where the even grid of postures has one point, at the corner."""
+        text = self.fine(*self.describe("[robot]\nkind = 'planar'\nsmallest_opening_deg = 179.9999\n")).out
+        self.assertIn("coefficients", text)
+
     def test_what_is_no_robot(self):
         self.refused(WRONG_USAGE, "robot", "describe", says="FILE")
         self.refused(BAD_DATA, "robot", "describe", self.folder / "gone.toml", says="cannot be read")

@@ -2,7 +2,7 @@
 import { h } from "../../report/src/dom";
 import { EstimatePanel } from "./estimate";
 import { histogram } from "./histogram";
-import { type ListedTrial, type State, Stream, type You } from "./stream";
+import { type ListedTrial, type Robot, type State, Stream, type You } from "./stream";
 import { Traces } from "./traces";
 
 const period = 1000; // of a tick [µs]
@@ -15,6 +15,16 @@ function text(element: HTMLElement, words: string): void {
 
 const seconds = (value: number): string => `${Math.max(value, 0).toFixed(1)} s`;
 const clock = (value: number): string => `${Math.floor(value / 60)}:${String(Math.floor(value % 60)).padStart(2, "0")}`;
+
+/** What the robot says of itself, in one line. */
+function robotWords({ motors, confirmed_off, stop_button, link, fault, sentence }: Robot): string {
+  const reported = { off: "reports its motors off", on: "reports its motors on", unknown: "has not reported whether its motors are on" }[motors];
+  return [
+    link ? `The robot ${reported}${confirmed_off ? ", confirmed after the stop" : ""}` : "No states come from the robot: what it does is not known",
+    stop_button && "its stop button is pressed",
+    fault !== 0 && `its fault code is ${fault}`,
+  ].filter(Boolean).join("; ") + (sentence && confirmed_off !== false ? `. ${sentence}` : ".");
+}
 
 class OperatorPage {
   private state: State | undefined;
@@ -31,6 +41,8 @@ class OperatorPage {
   private readonly banner = h("div", { class: "banner", role: "status", "aria-live": "assertive" });
   private readonly bannerTitle = h("p", { class: "banner-title" });
   private readonly bannerWords = h("p", { class: "banner-words" });
+  private readonly robot = h("p", { class: "robot" });
+  private readonly alarm = h("div", { class: "alarm", role: "alert" }); // empty where there is none
   private readonly stop = h("button", { type: "button", class: "stop" }, h("span", { "aria-hidden": true }, "■ "), "STOP", h("small", {}, "space bar"));
   private readonly phase = h("p", { class: "phase" });
   private readonly progress = h("progress", { max: 1, value: 0, "aria-label": "Progress of the trial" });
@@ -64,7 +76,7 @@ class OperatorPage {
   });
 
   constructor(root: HTMLElement) {
-    this.banner.append(h("div", {}, this.bannerTitle, this.bannerWords));
+    this.banner.append(h("div", {}, this.bannerTitle, this.bannerWords, this.robot));
     const notes = h("form", { class: "note-form" },
       h("label", { for: "note" }, "Note for the recording ", h("small", {}, "(here the space bar writes; Esc leaves)")), this.note, this.addNote);
     notes.addEventListener("submit", (event) => {
@@ -75,7 +87,7 @@ class OperatorPage {
     });
     root.replaceWith(
       h("div", { class: "operator" },
-        h("header", {}, this.banner, this.stop),
+        h("header", {}, this.alarm, this.banner, this.stop),
         h("main", {},
           h("section", { class: "now", "aria-labelledby": "now-title" },
             h("h1", { id: "now-title" }, "Trials"), this.phase, this.progress, this.time, this.actions, this.said, this.trials, notes, this.notes),
@@ -136,7 +148,7 @@ class OperatorPage {
     this.stop.disabled = !this.connected || !this.you.may_stop || !state || state.over;
     if (!state) return;
     const trial = state.trials[state.current] as ListedTrial;
-    document.title = `${state.safety.tripped ? "STOPPED – " : ""}${trial.name} – mbk console`;
+    document.title = `${state.robot.confirmed_off === false ? "MOTORS NOT CONFIRMED OFF – " : state.safety.tripped ? "STOPPED – " : ""}${trial.name} – mbk console`;
     text(this.phase, state.over ? "the session is over" : state.running ? state.phase : this.waitingFor(state));
     this.progress.value = state.running && state.duration_s > 0 ? Math.min(state.time_s / state.duration_s, 1) : 0;
     text(this.time, state.running
@@ -172,6 +184,15 @@ class OperatorPage {
     if (!this.banner.classList.contains(kind)) this.banner.className = `banner ${kind}`;
     text(this.bannerTitle, title);
     text(this.bannerWords, words);
+    text(this.robot, state && this.connected ? robotWords(state.robot) : "");
+    if (state) this.drawAlarm(state.robot);
+  }
+
+  /** Stays when the connection is lost: nothing has taken it back. */
+  private drawAlarm({ confirmed_off, sentence }: Robot): void {
+    const words = confirmed_off === false ? ["MOTORS NOT CONFIRMED OFF — cut the motors' power with the hardware stop button", sentence].filter(Boolean) : [];
+    const shown = [...this.alarm.children].map((line) => line.textContent);
+    if (shown.join("\n") !== words.join("\n")) this.alarm.replaceChildren(...words.map((line) => h("p", {}, line)));
   }
 
   private situation(state: State | undefined): [string, string, string] {
@@ -186,15 +207,27 @@ class OperatorPage {
     }
     if (this.pressed) return ["tripped", "■ Stopping …", ""];
     if (state.over) return ["rest", "○ The session is over", "The reports can still be opened. Closing this page ends mbk."];
-    if (!state.running) return ["rest", "○ The motors are off", state.question === "" ? "" : "Nothing moves before you say so."];
-    if (state.phase === "done") return ["rest", "○ The motors are off", "The recording is written."];
+    if (!state.running) return this.atRest(state);
+    if (state.phase === "done") return [...this.motorsAtRest(state.robot), "The recording is written."];
     if (state.safety.cut) return ["care", "▲ Running, torque limited", "The controller asks for more than the gate lets pass."];
     return ["running", "▶ Running", "Within all limits."];
   }
 
+  private atRest(state: State): [string, string, string] {
+    if (state.robot.link && state.robot.stop_button) return ["care", "■ Stop button pressed", "Nothing moves before it is released."];
+    const [kind, title] = this.motorsAtRest(state.robot);
+    return [kind, title, state.question === "" ? "" : "Nothing moves before you say so."];
+  }
+
+  /** Off is what the robot reports, not what it was told. */
+  private motorsAtRest({ motors, link }: Robot): [string, string] {
+    if (link && motors === "on") return ["care", "▲ The motors are on"];
+    return ["rest", link && motors === "off" ? "○ The motors are off" : "○ No torque is commanded"];
+  }
+
   /** What holds buttons and links is made anew only where it changes. */
   private drawRarely(state: State): void {
-    const shown = JSON.stringify([state.trials, state.current, state.running, state.question, state.reset_code, state.over, state.notes, this.you.controls, this.connected]);
+    const shown = JSON.stringify([state.trials, state.current, state.running, state.question, state.reset_code, state.over, state.notes, state.note_count, state.robot.link && state.robot.stop_button, this.you.controls, this.connected]);
     if (shown === this.shown) return;
     this.shown = shown;
     const trial = state.trials[state.current] as ListedTrial;
@@ -204,7 +237,10 @@ class OperatorPage {
     this.actions.replaceChildren(...this.buttons(state));
     this.actions.querySelector<HTMLElement>(`[data-command="${focused}"]`)?.focus();
     this.addNote.disabled = this.note.disabled = !this.connected || !this.you.controls;
-    this.notes.replaceChildren(...state.notes.map((note) => h("li", {}, note)));
+    const earlier = state.note_count - state.notes.length;
+    this.notes.replaceChildren(
+      ...(earlier > 0 ? [h("li", { class: "earlier" }, `${earlier} earlier ${earlier === 1 ? "note" : "notes"}, not shown`)] : []),
+      ...state.notes.map((note) => h("li", {}, note)));
     const link = (address: string, name: string) => h("a", { href: address, target: "_blank", rel: "noopener" }, name);
     this.links.replaceChildren(
       ...(this.you.may_stop
@@ -241,6 +277,12 @@ class OperatorPage {
         return [button("next", last ? "Finish" : `Begin the next: ${name(state.current + 1)}`, {}, "main"), button("repeat", "Repeat this trial"),
           ...(last ? [] : [button("abort", "End the session")])];
       case "reset":
+        if (state.robot.link && state.robot.stop_button) {
+          const waits = button("reset", "Reset …");
+          waits.disabled = true;
+          waits.setAttribute("aria-describedby", "reset-waits");
+          return [waits, h("p", { id: "reset-waits", class: "waits" }, "Reset waits: the robot's stop button is pressed. Release it first."), button("abort", "End the session")];
+        }
         return state.reset_code
           ? [button("reset", "The reason is gone and the person is well: reset", { code: state.reset_code }, "main"), button("abort", "End the session")]
           : [button("reset", "Reset …"), button("abort", "End the session")];

@@ -21,6 +21,16 @@ export interface ListedTrial {
   report_missing: string;
 }
 
+/** What is known of the robot itself, between trials too. */
+export interface Robot {
+  motors: "off" | "on" | "unknown";
+  confirmed_off: boolean | null; // after a stop; null: nothing to confirm
+  stop_button: boolean;
+  link: boolean;
+  fault: number;
+  sentence: string;
+}
+
 export interface State {
   protocol: string;
   software: string;
@@ -38,11 +48,13 @@ export interface State {
   reset_code: string;
   said: string;
   safety: { tripped: boolean; reason: string; sentence: string; cut: boolean; enabled: boolean };
+  robot: Robot;
   times: { compute: Times; lateness: Times };
   dropped_ticks: number;
   skipped_samples: number;
   disk_free_bytes: number;
-  notes: string[];
+  notes: string[]; // the last ones
+  note_count: number; // of all
   viewers: number;
   dropped_frames: number;
   refused: number;

@@ -1,12 +1,14 @@
-// Elements in one call. Text is always text: nothing of a recording is ever read as HTML.
+// Elements in one call. Text is always text: nothing of a recording is ever read as HTML. Styles go through the object
+// model, which a Content-Security-Policy allows where it refuses them as attributes.
 
 type Attributes = Record<string, string | number | boolean | undefined>;
 type Child = Node | string | undefined | false;
 
-function filled<E extends Element>(element: E, attributes: Attributes, children: Child[]): E {
+function filled<E extends HTMLElement | SVGElement>(element: E, attributes: Attributes, children: Child[]): E {
   for (const [key, value] of Object.entries(attributes)) {
     if (value === undefined || value === false) continue;
-    element.setAttribute(key, value === true ? "" : String(value));
+    if (key === "style") element.style.cssText = String(value);
+    else element.setAttribute(key, value === true ? "" : String(value));
   }
   for (const child of children) if (child !== undefined && child !== false) element.append(child);
   return element;
