@@ -22,11 +22,11 @@ struct Passage {
 struct RobotFault {
   enum class Begins {
     at_greeting,  ///< before its motors were ever on
-    at_moment,    ///< some time after its motors first went on
+    at_moment,    ///< some time after its motors first went on, while they are
     at_stop       ///< with the first command to switch them off after that moment
   };
   Begins begins = Begins::at_moment;
-  double least_torque = 0.0;  ///< begins only where |τ| that is commanded is at least this [N·m]
+  double least_torque = 0.0;  ///< begins only where a joint is commanded at least this [N·m]
 
   std::function<Vector2d(const Vector2d& told, int k)> drive;          ///< torque that acts, of what is commanded
   std::function<void(device::State& state, int k)> sense;              ///< what its sensors give

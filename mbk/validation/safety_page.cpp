@@ -89,6 +89,8 @@ std::string_view text(SafeState state) {
       return "**not confirmed**, said loudly";
     case SafeState::either:
       return "it depends";
+    case SafeState::unresolved:
+      return "**confirmed, with a small torque left**";
   }
   return "";
 }

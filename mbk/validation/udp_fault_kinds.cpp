@@ -19,8 +19,9 @@ using Reasons = std::vector<std::string_view>;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTick = 1e-3;          // [s]
-constexpr double kLatchedTorque = 0.3;  // drives that latch on less can hardly be told from drives that are off [N·m]
+constexpr double kTick = 1e-3;           // [s]
+constexpr double kLatchedTorque = 0.6;   // more than Limits::torque_error, which the motion can show [N·m]
+constexpr double kMeasuredTorque = 0.3;  // what drives that measure can show all the more [N·m]
 
 // What a robot that does not obey its drives' commands leads to, whatever it says of them.
 const Reasons kMoves = {"torque-disagrees",
@@ -70,14 +71,22 @@ Make at_stop() {
 
 // ---- drives
 
-/// The torque of the first tick, for ever: it begins where there is one.
-Make latched() {
-  return [](RobotFault& fault, Random&) {
-    fault.least_torque = kLatchedTorque;
+/// The torque of the first tick, for ever: it begins where there is so much of it.
+Make latched(double least = kLatchedTorque) {
+  return [=](RobotFault& fault, Random&) {
+    fault.least_torque = least;
     fault.drive = [held = Vector2d(0.0, 0.0)](const Vector2d& told, int k) mutable {
       if (k == 0) held = told;
       return held;
     };
+  };
+}
+
+/// As `latched`, with a torque by lot that is too small for the motion to show it.
+Make latched_small() {
+  return [](RobotFault& fault, Random& random) {
+    const Vector2d held = random.uniform(0.15, 0.3) * direction(random);
+    fault.drive = [held](const Vector2d&, int) { return held; };
   };
 }
 
@@ -252,7 +261,7 @@ std::vector<UdpFaultKind> drives() {
       {"latched-says-on",
        "the drives keep the torque of one moment; the robot answers as if it obeyed, motors on",
        Expected::trip,
-       {1500, 1500},
+       {600, 1500},
        kMoves,
        SafeState::not_confirmed,
        cut,
@@ -270,7 +279,7 @@ std::vector<UdpFaultKind> drives() {
       {"latched-obedient",
        "the drives keep the torque of one moment; the robot says that it does as it is told",
        Expected::trip,
-       {1500, 1500},
+       {600, 1500},
        kMoves,
        SafeState::not_confirmed,
        cut,
@@ -279,16 +288,16 @@ std::vector<UdpFaultKind> drives() {
       {"latched-measured",
        "the drives keep the torque of one moment, and measure it",
        Expected::trip,
-       {300, 300},
+       {600, 1000},
        kMoves,
        SafeState::not_confirmed,
        cut,
        2,
-       latched()},
+       latched(kMeasuredTorque)},
       {"latched-measured-falsely",
        "the drives keep the torque of one moment, and report what they were told",
        Expected::trip,
-       {1500, 1500},
+       {600, 1500},
        kMoves,
        SafeState::not_confirmed,
        cut,
@@ -302,10 +311,29 @@ std::vector<UdpFaultKind> drives() {
          };
          fault.say = [told](StateDatagram& state, int) { state.measured = *told; };
        }},
+      {"latched-small",
+       "the drives keep a torque of 0.15 to 0.3 N·m; the robot says that it does as it is told",
+       Expected::not_detected,
+       {0, 0},
+       kMoves,
+       SafeState::unresolved,
+       "less than torque_error_Nm, which encoders and force sensor do not show; a stop button that cuts the motors' "
+       "power",
+       1,
+       latched_small()},
+      {"latched-small-measured",
+       "the drives keep a torque of 0.15 to 0.3 N·m, and measure it",
+       Expected::not_detected,
+       {0, 0},
+       kMoves,
+       SafeState::not_confirmed,
+       "less than torque_error_Nm while it is driven; after the stop nothing may be left",
+       2,
+       latched_small()},
       {"drives-dead",
        "the drives have no torque; the robot says that its motors are on",
        Expected::trip,
-       {1500, 1500},
+       {600, 1500},
        kMoves,
        SafeState::confirmed,
        "",
@@ -314,7 +342,7 @@ std::vector<UdpFaultKind> drives() {
       {"drives-dead-measured",
        "the drives have no torque, and measure it",
        Expected::trip,
-       {300, 300},
+       {600, 1500},
        kMoves,
        SafeState::confirmed,
        "",
@@ -323,7 +351,7 @@ std::vector<UdpFaultKind> drives() {
       {"one-motor-dead",
        "one motor has no torque",
        Expected::trip,
-       {2500, 2500},
+       {1500, 2500},
        kMoves,
        SafeState::confirmed,
        "",
@@ -332,7 +360,7 @@ std::vector<UdpFaultKind> drives() {
       {"sign-flipped",
        "both motors pull the wrong way",
        Expected::trip,
-       {1000, 1500},
+       {500, 1000},
        kMoves,
        SafeState::confirmed,
        "motors that cannot injure at their largest current",
@@ -341,7 +369,7 @@ std::vector<UdpFaultKind> drives() {
       {"one-sign-flipped",
        "one motor pulls the wrong way",
        Expected::trip,
-       {1000, 1500},
+       {500, 1500},
        kMoves,
        SafeState::confirmed,
        "motors that cannot injure at their largest current",
@@ -359,7 +387,7 @@ std::vector<UdpFaultKind> drives() {
       {"torque-doubled-measured",
        "both motors pull twice as strongly, and measure it",
        Expected::trip,
-       {500, 500},
+       {1500, 1500},
        kMoves,
        SafeState::confirmed,
        "",
@@ -377,7 +405,7 @@ std::vector<UdpFaultKind> drives() {
       {"torque-weak-measured",
        "both motors pull with 0.3 of the torque, and measure it",
        Expected::trip,
-       {500, 500},
+       {1500, 1500},
        kMoves,
        SafeState::confirmed,
        "",
@@ -386,7 +414,7 @@ std::vector<UdpFaultKind> drives() {
       {"torque-offset",
        "a torque of 2 to 4 N·m besides, whatever is commanded, while the motors are on",
        Expected::trip,
-       {1500, 1500},
+       {300, 300},
        kMoves,
        SafeState::confirmed,
        "",
@@ -596,7 +624,7 @@ std::vector<UdpFaultKind> words() {
       {"measured-contradicts",
        "the measured torque is 2 N·m more than what acts",
        Expected::trip,
-       {300, 300},
+       {70, 70},
        {"torque-disagrees"},
        SafeState::either,
        "",
@@ -692,7 +720,7 @@ std::vector<UdpFaultKind> clocks() {
       {"clock-fast",
        "the robot's clock runs twice as fast",
        Expected::trip,
-       {300, 300},
+       {60, 60},
        clock_reason,
        SafeState::either,
        "",
@@ -701,7 +729,7 @@ std::vector<UdpFaultKind> clocks() {
       {"clock-slow",
        "the robot's clock runs half as fast",
        Expected::trip,
-       {300, 300},
+       {70, 70},
        clock_reason,
        SafeState::either,
        "",
@@ -754,11 +782,12 @@ std::vector<UdpFaultKind> sensors() {
        off_by(joint, 0.1, 0.5, false)},
       {"encoder-drifts",
        "one encoder drifts by 0.05 to 0.2 rad/s",
-       Expected::trip,
-       {2500, 2500},
+       Expected::not_detected,
+       {0, 0},
        kMoves,
        SafeState::confirmed,
-       "",
+       "the limits of speed and place; an encoder at the motor and one at the joint: a slow slip moves the robot's "
+       "frame unseen",
        1,
        off_by(joint, 0.05, 0.2, true)},
       {"encoder-sign",
@@ -800,7 +829,7 @@ std::vector<UdpFaultKind> sensors() {
       {"force-drifts",
        "the force drifts by 20 to 100 N/s",
        Expected::trip,
-       {2500, 2500},
+       {500, 500},
        with({"measured-force"}, kMoves),
        SafeState::either,
        "",

@@ -25,7 +25,8 @@ enum class Expected {
 enum class SafeState {
   confirmed,      ///< the robot says so, and it is true
   not_confirmed,  ///< nobody knows, and the program says so
-  either          ///< it depends on the moment; never a wrong confirmation
+  either,         ///< it depends on the moment; never a wrong confirmation
+  unresolved      ///< confirmed although a torque may be left, which is smaller than what motion shows
 };
 
 /// A kind of fault of a robot behind UDP: what it is, and what is documented of it.

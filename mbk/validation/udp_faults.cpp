@@ -67,6 +67,7 @@ struct Truth {
     std::int64_t tick, ticks;
   };
   std::vector<Stall> stalls;
+  bool gone = false;  ///< its program was, so that nobody heard what it was told
   bool ended = false;
 };
 
@@ -117,6 +118,7 @@ Truth read_truth(const fs::path& log) {
     truth.force = event.value("force_N", 0.0);
     const std::string name = event.value("event", "");
     if (name == "stall") truth.stalls.push_back({truth.ticks, event.value("stalled", std::int64_t{0})});
+    truth.gone = truth.gone || name == "gone";
     truth.ended = truth.ended || name == "end";
   }
   return truth;
@@ -238,7 +240,7 @@ class Runner {
  private:
   static void judge_time(Outcome& outcome) {
     const Truth& truth = outcome.truth;
-    std::int64_t stop = truth.told_off;
+    std::int64_t stop = truth.gone ? truth.torque_off : truth.told_off;
     if (truth.torque_off >= 0 && (stop < 0 || truth.torque_off > stop)) stop = truth.torque_off;
     if (outcome.began && stop >= 0) outcome.ticks = std::max<std::int64_t>(0, stop - truth.fault_began);
     const std::int64_t end = stop >= 0 ? stop : truth.ticks;
@@ -269,7 +271,7 @@ Verdict verdict_of(const Job& job, const Outcome& outcome) {
   const bool tripped = !said.trip.empty();
   const bool right = any_of(kind.reasons, said.trip);
   const bool of_stall = tripped && outcome.stalled && any_of(kOfStalls, said.trip);
-  if (!outcome.began) return of_stall ? Verdict::stalled : Verdict::never_began;
+  if (!outcome.began) return of_stall ? Verdict::stalled : tripped ? Verdict::wrong_reason : Verdict::never_began;
   switch (kind.expected) {
     case Expected::trip:
       if (!tripped && !said.unconfirmed) return Verdict::not_recognised;
@@ -344,6 +346,8 @@ class Summary {
           share_row("recognised within the documented ticks, for a right reason", in_time_, judged_));
       table_->rows.push_back(share_row("motors confirmed off, or loudly not", safe_, faults_));
       table_->rows.push_back(row_of("silently wrong about the motors", faults_ - safe_, {{0.0, 0.0}}, "runs"));
+      table_->rows.push_back(
+          row_of("confirmed with a torque below torque_error_Nm left, as documented", unresolved_, {}, "runs"));
       for (const auto& [what, verdict] :
            {std::pair{"recognised late", Verdict::late}, std::pair{"stopped for another reason", Verdict::wrong_reason},
             std::pair{"not recognised", Verdict::not_recognised}}) {
@@ -381,14 +385,16 @@ class Summary {
       ++judged_;
       in_time_ += verdict == Verdict::in_time ? 1 : 0;
     }
-    safe_ += safe == Safe::silently_wrong ? 0 : 1;
+    const bool unresolved = kind.safe_state == SafeState::unresolved && outcome.said.confirmed;
+    unresolved_ += unresolved && safe == Safe::silently_wrong ? 1 : 0;
+    safe_ += safe == Safe::silently_wrong && !unresolved ? 0 : 1;
     if (job.kind->name == "sign-flipped" && job.trial == TrialKind::position) {
       flipped_ = std::max(flipped_, outcome.truth.speed);
     }
     add_row(job, outcome, apart);
     const bool expected_word =
         kind.safe_state == SafeState::either || (kind.safe_state == SafeState::confirmed) == (safe == Safe::confirmed);
-    if (verdict != Verdict::in_time || safe == Safe::silently_wrong || !expected_word) {
+    if (verdict != Verdict::in_time || (safe == Safe::silently_wrong && !unresolved) || !expected_word) {
       table_->notes.push_back(fmt::format(
           "{}, {} trial, run {}: {}; after {} ticks (documented {}), {}, exit code {}, motors {}{}, {:.2f} m/s, {:.1f} "
           "N",
@@ -441,7 +447,8 @@ class Summary {
 
   ValidationTable* table_;
   std::array<int, 6> verdicts_{};
-  int faults_ = 0, judged_ = 0, in_time_ = 0, safe_ = 0, free_ = 0, trips_ = 0, stalls_ = 0, silent_ = 0;
+  int unresolved_ = 0, faults_ = 0, judged_ = 0, in_time_ = 0, safe_ = 0, free_ = 0, trips_ = 0, stalls_ = 0,
+      silent_ = 0;
   double seconds_ = 0.0, flipped_ = -1.0;
 };
 
