@@ -30,7 +30,7 @@ import threading
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-PATIENCE = 20.0  # for what is to happen at all [s]
+PATIENCE = 60.0  # for what is to happen at all [s]
 MOST = 300  # connections that a flood holds open at once
 LONGEST = 600.0  # of a flood, however long its stops take [s]
 
@@ -426,10 +426,10 @@ def measure(mbk, flood, stops, seed=1):
         try:
             operator = Operator(run.port, run.token)
             operator.wait("the question", lambda state: state["question"] == "begin")
+            begin, cpu, logged = time.monotonic(), run.cpu(), len(run.logged)
             if flood:
                 attacker = flooding(flood, {"port": run.port, "viewing": run.viewing}, over)
                 time.sleep(1.0)
-            begin, cpu, logged = time.monotonic(), run.cpu(), len(run.logged)
             lot = random.Random(seed)
             for k in range(stops):
                 operator.tell("start" if k == 0 else "repeat")

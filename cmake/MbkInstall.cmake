@@ -94,7 +94,9 @@ endfunction()
 
 # Call it when every target is there.
 function(mbk_install)
-  install(TARGETS mbk RUNTIME COMPONENT program)
+  # `mbk validate faults --link udp` looks for the other program beside itself.
+  install(TARGETS mbk mbk_misbehaving_robot RUNTIME COMPONENT program)
+  install(FILES apps/misbehaving_robot/mbk_misbehaving_robot.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
   mbk_install_program_texts()
 
   # The folders keep their places beside each other, so that the links between the documents hold.

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 namespace mbk::app {
@@ -140,7 +141,11 @@ BackgroundMessages::BackgroundMessages() {
     const std::scoped_lock lock(messages().mutex);
     messages().background = true;
   }
-  std::thread(write_waiting).detach();  // it may hang in its last message for ever
+  try {
+    std::thread(write_waiting).detach();  // it may hang in its last message for ever
+  } catch (const std::system_error&) {    // no thread to be had: whoever says something waits
+    messages().background = false;
+  }
 }
 
 BackgroundMessages::~BackgroundMessages() {

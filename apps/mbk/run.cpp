@@ -247,7 +247,8 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
   const bool alarming = sound_alarm(session);
   const auto failed = [&](const Error& error) {
     const int code = report_error(error);
-    return alarming ? kMotorsNotOff : code;
+    if (alarming) return kMotorsNotOff;
+    return outcome && outcome->trip.reason != safety::Reason::none ? kSafetyStop : code;
   };
   if (!outcome) return failed(outcome.error());
   console.show_robot(outcome->motors);

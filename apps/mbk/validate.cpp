@@ -16,6 +16,8 @@
 #include "mbk/report/text.h"
 #include "mbk/result/json.h"
 #include "mbk/validation/study.h"
+#include "mbk/validation/udp_fault_kinds.h"
+#include "mbk/validation/udp_faults.h"
 
 namespace mbk::app {
 namespace {
@@ -28,8 +30,16 @@ struct Arguments {
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::optional<std::filesystem::path> charts;
-  bool json = false, quiet = false, overwrite = false;
+  std::string link = "function";
+  std::vector<std::string> faults;
+  bool json = false, quiet = false, overwrite = false, page = false;
 };
+
+std::vector<std::string> fault_names() {
+  std::vector<std::string> names;
+  for (const validation::UdpFaultKind& kind : validation::udp_fault_kinds()) names.emplace_back(kind.name);
+  return names;
+}
 
 const validation::Study* find_study(const std::string& name) {
   for (const validation::Study& study : validation::studies()) {
@@ -68,15 +78,32 @@ Result<void> write_charts(const ValidationTable& table, const std::filesystem::p
   return {};
 }
 
+Result<ValidationTable> perform(const validation::Study& study, const validation::StudyOptions& options,
+                                const Arguments& arguments) {
+  if (arguments.link == "function" && arguments.faults.empty()) return study.perform(options);
+  if (study.name != "faults" || arguments.link != "udp") {
+    return bad_usage("--link and --fault belong to 'mbk validate faults --link udp'", "leave them out");
+  }
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return bad_data(error.message(), "it names this program", "/proc/self/exe");
+  return validation::udp_faults_study({options, program, arguments.faults});
+}
+
 int run(const Arguments& arguments) {
   const validation::Study& study = *find_study(arguments.study);
+  if (arguments.page) {
+    if (study.name != "faults") return report_error({ErrorKind::usage, "--page belongs to 'faults'", "", ""});
+    const auto written = Output().write(validation::safety_page());
+    return written ? kFine : report_error(written.error());
+  }
   Progress progress(arguments.quiet, arguments.study + ": ");
   validation::StudyOptions options;
   options.runs = arguments.runs.value_or(study.runs);
   options.seed = arguments.seed;
   options.threads = arguments.threads;
   options.progress = [&](int done, int of) { progress.count(done, of); };
-  const auto table = study.perform(options);
+  const auto table = perform(study, options, arguments);
   if (!table) return report_error(table.error());
   const std::string text = arguments.json ? result::to_json(*table) : report::validation_text(*table);
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
@@ -95,7 +122,9 @@ Action add_validate(CLI::App& app) {
                   "\nExamples:\n"
                   "  mbk validate coverage --runs 2000 --seed 7 --json\n"
                   "  mbk validate participant --charts charts\n"
-                  "      charts/participant-1.svg: energy against the amplitude of the pulses\n\n"
+                  "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
+                  "  mbk validate faults --link udp --runs 2\n"
+                  "      robots that misbehave, as processes behind UDP, in real time; four trials side by side\n\n"
                   "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage.");
   const std::string names = fmt::format("{}", fmt::join(study_names(), ", "));
   command->add_option("STUDY", arguments->study, names)
@@ -112,6 +141,16 @@ Action add_validate(CLI::App& app) {
   command->add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
       ->type_name("N")
       ->check(whole_number(1, 1024));
+  command
+      ->add_option("--link", arguments->link,
+                   "of 'faults': function, or udp for a robot in a process of its own (function)")
+      ->type_name("LINK")
+      ->check(one_of({"function", "udp"}));
+  command->add_option("--fault", arguments->faults, "of 'faults --link udp': only this one; may be repeated")
+      ->type_name("NAME")
+      ->check(suggests(fault_names()));
+  command->add_flag("--page", arguments->page,
+                    "of 'faults': writes docs/guide/safety.md, from the tables of both links");
   command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/1");
   CLI::Option* const charts = command
                                   ->add_option("--charts", arguments->charts,

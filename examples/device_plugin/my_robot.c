@@ -13,6 +13,7 @@ static const double kTick = 1e-3;    /* [s] */
 typedef struct robot {
   mbk_device_state state;
   double speed[2]; /* [rad/s] */
+  mbk_device_report report;
 } robot;
 
 static int open_robot(void** device, const char* settings, double watchdog_s, char* message, size_t message_size) {
@@ -51,6 +52,15 @@ static int write_robot(void* device, const mbk_device_command* command) {
   }
   ++self->state.sequence;
   self->state.time_s += kTick;
+  self->report.answered = command->tick + 1;
+  self->report.motors_on = command->enabled;
+  return 0;
+}
+
+static int report_robot(void* device, mbk_device_report* report) {
+  /* Ask the amplifiers, not the last command: mbk believes that the motors are off only where it is said here. */
+  const robot* self = device;
+  *report = self->report;
   return 0;
 }
 
@@ -71,6 +81,7 @@ const mbk_device_plugin* mbk_device_plugin_get(void) {
       .read = read_robot,
       .write = write_robot,
       .close = close_robot,
+      .report = report_robot,
   };
   return &plugin;
 }

@@ -6,10 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
-#include <fstream>
-#include <iterator>
 #include <string>
 
+#include "mbk/laboratory/find_scenario.h"
 #include "mbk/laboratory/simulated_device.h"
 
 namespace {
@@ -29,25 +28,8 @@ int report(const Error& error) {
   return 1;
 }
 
-Result<laboratory::Scenario> scenario_of(const std::string& name, const std::string& trial) {
-  std::string text;
-  if (const auto* ready = laboratory::find_ready_scenario(name)) {
-    text = ready->text;
-  } else {
-    std::ifstream in(name);
-    if (!in) return bad_data("no such file, and no ready scenario of that name", "see 'mbk simulate --list'", name);
-    text.assign(std::istreambuf_iterator<char>(in), {});
-  }
-  const auto scenarios = laboratory::read_scenarios(text, name);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  for (const laboratory::Scenario& one : *scenarios) {
-    if (trial.empty() || one.trial_name == trial) return one;
-  }
-  return bad_usage("there is no trial '" + trial + "'", "see the [[trial]] names in the file");
-}
-
 int run(const std::string& name, const std::string& trial, const std::string& address, std::uint16_t port) {
-  const auto scenario = scenario_of(name, trial);
+  const auto scenario = laboratory::find_scenario(name, trial);
   if (!scenario) return report(scenario.error());
   const auto robot = laboratory::SimulatedDevice::create(*scenario);
   if (!robot) return report(robot.error());

@@ -18,8 +18,8 @@ extern "C" {
 /* NOLINTBEGIN(modernize-use-using,cppcoreguidelines-avoid-c-arrays,readability-identifier-naming,modernize-avoid-c-arrays)
  */
 
-/* Grows with every change that an older library would not survive. */
-#define MBK_DEVICE_PLUGIN_VERSION 1u
+/* Libraries of an older version stay accepted. 2: `report`. */
+#define MBK_DEVICE_PLUGIN_VERSION 2u
 
 /* One sample. */
 typedef struct mbk_device_state {
@@ -33,10 +33,23 @@ typedef struct mbk_device_state {
 
 /* What the robot shall do until the next tick. */
 typedef struct mbk_device_command {
-  uint64_t tick;
+  uint64_t tick;     /* of this command: 0 the first since open, one more with each */
   double command[2]; /* current in A, or torque in N·m */
   int32_t enabled;   /* 0: motors off, whatever the command */
 } mbk_device_command;
+
+/* What the robot reports of itself with its newest sample, as it is and not as it was told to be: mbk holds it against
+ * what it commanded, and calls the motors off only where it is said here. */
+typedef struct mbk_device_report {
+  uint64_t answered;        /* commands up to the one that the drives obey now: its tick + 1; 0: none */
+  double drive_torque[2];   /* that the drives measure, in the unit of the command */
+  uint32_t fault;           /* the robot's own fault code; 0: none */
+  int32_t motors_on;        /* not 0: the drives are on */
+  int32_t has_force;        /* not 0: the force sensor is there now */
+  int32_t has_acceleration; /* not 0: the accelerometer is there now */
+  int32_t watchdog_expired; /* not 0: no command came in time, and the motors stay off */
+  int32_t drives_measure;   /* not 0: drive_torque is meant */
+} mbk_device_report;
 
 typedef struct mbk_device_plugin {
   uint32_t version; /* MBK_DEVICE_PLUGIN_VERSION */
@@ -59,6 +72,10 @@ typedef struct mbk_device_plugin {
 
   /* Motors off, everything given back. Called once for each open that returned 0. */
   void (*close)(void* device);
+
+  /* From version 2 on, and called behind each read. Returns 0, or another number: the link is broken. Without it (NULL,
+   * or version 1) mbk cannot know whether the motors are off, and says so at the end of each trial. */
+  int (*report)(void* device, mbk_device_report* report);
 } mbk_device_plugin;
 
 /* The only name that the library has to export; what it gives must stay where it is. */

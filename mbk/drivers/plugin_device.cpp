@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
 #include <ctime>
 
 #include "mbk/core/option_limits.h"
@@ -27,15 +28,20 @@ std::string missing(const mbk_device_plugin& plugin) {
   return names;
 }
 
+/// Of the struct in a version of the interface [bytes].
+std::size_t size_of(std::uint32_t version) {
+  return version < 2 ? offsetof(mbk_device_plugin, report) : sizeof(mbk_device_plugin);
+}
+
 Result<void> check(const mbk_device_plugin* plugin, const Fittings& fittings) {
   if (plugin == nullptr) return bad_data(fmt::format("{} gives nothing", kEntry), "return the address of your struct");
-  if (plugin->version != MBK_DEVICE_PLUGIN_VERSION) {
+  if (plugin->version < 1 || plugin->version > MBK_DEVICE_PLUGIN_VERSION) {
     return bad_data(fmt::format("it was made for version {} of the interface, and this is version {}", plugin->version,
                                 MBK_DEVICE_PLUGIN_VERSION),
                     "compile it again with this mbk's mbk/drivers/device_plugin.h");
   }
-  if (plugin->size != sizeof(mbk_device_plugin)) {
-    return bad_data(fmt::format("its struct has {} bytes and not {}", plugin->size, sizeof(mbk_device_plugin)),
+  if (const std::size_t size = size_of(plugin->version); plugin->size != size) {
+    return bad_data(fmt::format("its struct has {} bytes and not {}", plugin->size, size),
                     "set size = sizeof(mbk_device_plugin), and compile it for this machine");
   }
   if (const std::string names = missing(*plugin); !names.empty()) {
@@ -64,6 +70,7 @@ PluginDevice::PluginDevice(PluginOptions options, const Fittings& fittings, Libr
   facts_.has_acceleration = fittings.has_acceleration;
   facts_.keeps_time = plugin.keeps_time != 0;
   facts_.force_latency = fittings.force_latency;
+  facts_.acknowledges = plugin.version >= 2 && plugin.report != nullptr;
 }
 
 Result<std::unique_ptr<PluginDevice>> PluginDevice::create(const PluginOptions& options, const Fittings& fittings) {
@@ -102,6 +109,7 @@ Result<void> PluginDevice::start() {
   close();
   std::array<char, 512> message{};
   newest_ = {};
+  written_ = 0;
   if (const int code =
           plugin_->open(&device_, options_.settings.c_str(), options_.watchdog, message.data(), message.size());
       code != 0) {
@@ -133,13 +141,27 @@ bool PluginDevice::read(device::State& state) noexcept {
   raw.acceleration = {newest_.acceleration[0], newest_.acceleration[1]};
   raw.stop = newest_.stop != 0;
   state = fittings_.wiring.state(raw);
+  return !facts_.acknowledges || read_report(state);
+}
+
+bool PluginDevice::read_report(device::State& state) noexcept {
+  mbk_device_report report{};
+  if (plugin_->report(device_, &report) != 0) return false;
+  state.answered = report.answered;
+  state.motors = report.motors_on != 0 ? device::Motors::on : device::Motors::off;
+  state.has_force = report.has_force != 0;
+  state.has_acceleration = report.has_acceleration != 0;
+  state.watchdog_expired = report.watchdog_expired != 0;
+  state.drives_measure = report.drives_measure != 0;
+  state.drive_torque = fittings_.wiring.torque({report.drive_torque[0], report.drive_torque[1]});
+  state.fault = report.fault;
   return true;
 }
 
 bool PluginDevice::write(const device::Command& command) noexcept {
   if (!open_) return false;
   const device::Vector2d own = fittings_.wiring.command(command.torque);
-  const mbk_device_command given{command.tick, {own[0], own[1]}, command.enabled ? 1 : 0};
+  const mbk_device_command given{written_++, {own[0], own[1]}, command.enabled ? 1 : 0};
   return plugin_->write(device_, &given) == 0;
 }
 

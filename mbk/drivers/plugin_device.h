@@ -46,6 +46,7 @@ class PluginDevice : public device::Device {
 
   PluginDevice(PluginOptions options, const Fittings& fittings, Library library, const mbk_device_plugin& plugin);
   void close() noexcept;
+  bool read_report(device::State& state) noexcept;
 
   PluginOptions options_;
   Fittings fittings_;
@@ -54,6 +55,7 @@ class PluginDevice : public device::Device {
   device::Facts facts_;
   void* device_ = nullptr;
   bool open_ = false;
+  std::uint64_t written_ = 0;  // commands since open
   mbk_device_state newest_{};
 };
 

@@ -113,11 +113,34 @@ TEST(PluginDevice, DoesNotAllocateWhileItRuns) {
 TEST(PluginDevice, NamesWhatIsMissing) {
   EXPECT_NE(refusal("/nowhere/robot.so").find("cannot be loaded"), std::string::npos);
   EXPECT_NE(refusal(MBK_PLUGIN_WITHOUT_ENTRY).find("does not export mbk_device_plugin_get"), std::string::npos);
-  EXPECT_NE(refusal(MBK_PLUGIN_OTHER_VERSION).find("version 2 of the interface, and this is version 1"),
+  EXPECT_NE(refusal(MBK_PLUGIN_OTHER_VERSION).find("version 3 of the interface, and this is version 2"),
             std::string::npos);
   EXPECT_NE(refusal(MBK_PLUGIN_OTHER_SIZE).find("has 8 bytes"), std::string::npos);
   EXPECT_NE(refusal(MBK_PLUGIN_WITHOUT_FUNCTIONS).find("it lacks read, close"), std::string::npos);
   EXPECT_NE(refusal(MBK_MY_ROBOT).find("has_force"), std::string::npos);
+}
+
+TEST(PluginDevice, ReportsWhatItsDriverSaysOfTheMotors) {
+  auto device = my_robot();
+  EXPECT_TRUE(device->facts().acknowledges);
+  ASSERT_TRUE(device->start());
+  device::State state;
+  ASSERT_TRUE(device->write({77, {0.1, 0.0}, true}));  // counted from its start, whatever the tick
+  ASSERT_TRUE(device->read(state));
+  EXPECT_EQ(state.answered, 1U);
+  EXPECT_EQ(state.motors, device::Motors::on);
+  device->stop();
+  ASSERT_TRUE(device->read(state));
+  EXPECT_EQ(state.answered, 2U);
+  EXPECT_EQ(state.motors, device::Motors::off);
+}
+
+TEST(PluginDevice, OfVersionOneIsTakenAndConfirmsNothing) {
+  PluginOptions options;
+  options.library = MBK_PLUGIN_VERSION_ONE;
+  const auto device = PluginDevice::create(options, {});
+  ASSERT_TRUE(device) << device.error().line();
+  EXPECT_FALSE((*device)->facts().acknowledges);
 }
 
 TEST(PluginDevice, WantsASample) {

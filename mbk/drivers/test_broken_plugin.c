@@ -1,4 +1,4 @@
-/* Libraries that are no drivers, each for one reason. */
+/* Libraries that are no drivers, each for one reason; and one that is an old one. */
 #include "mbk/drivers/device_plugin.h"
 
 #ifdef WITHOUT_ENTRY
@@ -28,9 +28,12 @@ static void close_nothing(void* device) {
 
 const mbk_device_plugin* mbk_device_plugin_get(void) {
   static mbk_device_plugin plugin = {MBK_DEVICE_PLUGIN_VERSION, sizeof(mbk_device_plugin), "nothing", 1, 1, 1,
-                                     open_nothing, read_nothing, write_nothing, close_nothing};
+                                     open_nothing, read_nothing, write_nothing, close_nothing, 0};
 #if defined(OTHER_VERSION)
   plugin.version = MBK_DEVICE_PLUGIN_VERSION + 1;
+#elif defined(VERSION_ONE)
+  plugin.version = 1;
+  plugin.size = offsetof(mbk_device_plugin, report);
 #elif defined(OTHER_SIZE)
   plugin.size = 8;
 #elif defined(WITHOUT_FUNCTIONS)

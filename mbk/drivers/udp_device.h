@@ -28,10 +28,10 @@ struct UdpOptions {
 
 /// A robot that is reached by datagrams (datagram.h). `start` greets it with a number of its own, so that what belongs
 /// to an earlier session counts for neither side. `read` takes the newest state that has come; what comes from someone
-/// else, is broken, or is older than what came before is not believed, but counted. What the robot reports of itself (the
-/// command that it obeys, motors, sensors, watchdog, fault) is passed on; the gate judges it. The link is broken where
-/// the network is not there. In lock-step `read` waits for the answer to the last command, and asks again where it gets
-/// lost.
+/// else, is broken, or is older than what came before is not believed, but counted. What the robot reports of itself
+/// (the command that it obeys, motors, sensors, watchdog, fault) is passed on; the gate judges it. The link is broken
+/// where the network is not there. In lock-step `read` waits for the answer to the last command, and asks again where
+/// it gets lost.
 class UdpDevice : public device::Device {
  public:
   /// What came and what did not, since `start`.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <thread>
@@ -353,6 +354,7 @@ class Adding : public device::Device {
   }
   bool write(const device::Command& command) noexcept override {
     ++steps_;
+    if (steps_ == held_up_at_) std::this_thread::sleep_for(kHeldUp);
     if (command.enabled) sum_ += command.torque;
     enabled_ = command.enabled;
     return true;
@@ -360,8 +362,13 @@ class Adding : public device::Device {
   void stop() noexcept override {}
   [[nodiscard]] bool enabled() const { return enabled_; }
 
+  /// The thread that serves it once gets no processor for so long.
+  static constexpr std::chrono::milliseconds kHeldUp{300};
+  void hold_up_at(std::uint64_t step) { held_up_at_ = step; }
+
  private:
   device::Facts facts_;
+  std::atomic<std::uint64_t> held_up_at_{0};
   std::uint64_t steps_ = 0;
   Eigen::Vector2d sum_ = {0.0, 0.0};
   std::atomic<bool> enabled_{false};
@@ -392,6 +399,7 @@ class Serving {
   }
   void press(bool pressed) { stop_button_ = pressed; }
   [[nodiscard]] const Adding& adding() const { return adding_; }
+  void hold_up_at(std::uint64_t step) { adding_.hold_up_at(step); }
 
  private:
   Adding adding_;
@@ -473,6 +481,62 @@ TEST(UdpRobot, SwitchesItsMotorsOffWithItsStopButton) {
   ASSERT_TRUE(soon(*device, [](const StateDatagram& d) { return d.enabled && !d.raw.stop; }));
   serving.press(true);
   EXPECT_TRUE(soon(*device, [](const StateDatagram& d) { return !d.enabled && d.raw.stop; }));
+}
+
+TEST(UdpRobot, MovesOnWhileItsProgramIsHeldUp) {
+  Serving serving;
+  serving.hold_up_at(50);
+  auto device = serving.device(false);
+  ASSERT_TRUE(device->start());
+  device->write({0, {1.0, 0.0}, true});
+  // 300 ticks less what it sleeps late: those that nobody heard of
+  EXPECT_TRUE(
+      soon(*device, [&](const StateDatagram& d) { return d.raw.sequence > 300 && device->counts().lost >= 250; }));
+  EXPECT_GT(device->newest().raw.encoder[0], 250.0);  // under the last command
+}
+
+TEST(UdpRobot, SwitchesItsMotorsOffWhileItsProgramIsHeldUp) {
+  Serving serving;
+  serving.hold_up_at(50);
+  auto device = serving.device(false, 0.1);
+  ASSERT_TRUE(device->start());
+  const auto go_on = [&, tick = std::uint64_t{0}](const StateDatagram& d) mutable {
+    device->write({tick++, {1.0, 0.0}, true});
+    return d.watchdog_expired;
+  };
+  EXPECT_TRUE(soon(*device, go_on));
+  EXPECT_LT(device->newest().raw.encoder[0], 50.0 + 150.0);  // the watchdog's time and what it was driven before
+}
+
+/// Loses every other state, and says of each that the robot has a fault.
+class Spoiling : public UdpRobotLink {
+ public:
+  void send(UdpSocket& socket, const StateDatagram& state, const UdpAddress& to) noexcept override {
+    StateDatagram spoiled = state;
+    spoiled.version = 2;
+    spoiled.fault = 9;
+    if (++sent_ % 2 == 1) UdpRobotLink::send(socket, spoiled, to);
+  }
+
+ private:
+  int sent_ = 0;
+};
+
+TEST(UdpRobot, SendsThroughTheLinkThatItIsGiven) {
+  Adding adding;
+  Spoiling link;
+  UdpRobot robot = UdpRobot::create(adding, {kLoopback, 0}, 1e-3, &link).value();
+  std::atomic<bool> over{false};
+  const std::atomic<bool> button{false};
+  std::thread serving([&] { robot.serve(over, button); });
+  UdpOptions options;
+  options.port = robot.local().port;
+  options.answer_within = kLong;
+  auto device = UdpDevice::create(options, {}).value();
+  EXPECT_TRUE(device->start());
+  EXPECT_TRUE(soon(*device, [&](const StateDatagram& d) { return d.fault == 9 && device->counts().lost >= 20; }));
+  over = true;
+  serving.join();
 }
 
 TEST(UdpRobot, LeavesItsMotorsOff) {

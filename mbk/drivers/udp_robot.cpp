@@ -1,5 +1,8 @@
 #include "mbk/drivers/udp_robot.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "mbk/core/option_limits.h"
 #include "mbk/realtime/clock.h"
 
@@ -9,23 +12,34 @@ namespace {
 using realtime::monotonic_ns;
 
 constexpr double kNap = 0.05;                     // [s]
+constexpr double kLongestStall = 2.0;             // that is made up for [s]
 constexpr std::int64_t kForget = 10'000'000'000;  // [ns]
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr int kMostAtOnce = 256;  // datagrams of one tick
 
 }  // namespace
 
-UdpRobot::UdpRobot(device::Device& robot, UdpSocket socket, double sample_time)
-    : robot_(&robot), socket_(std::move(socket)), sample_time_(sample_time) {
+int UdpRobotLink::receive(UdpSocket& socket, std::span<std::byte> into, UdpAddress& from) noexcept {
+  return socket.receive(into, from);
+}
+
+void UdpRobotLink::send(UdpSocket& socket, const StateDatagram& state, const UdpAddress& to) noexcept {
+  socket.send(encode(state), to);
+}
+
+UdpRobot::UdpRobot(device::Device& robot, UdpSocket socket, double sample_time, UdpRobotLink& link)
+    : robot_(&robot), link_(&link), socket_(std::move(socket)), sample_time_(sample_time) {
   state_.has_force = robot.facts().has_force;
   state_.has_acceleration = robot.facts().has_acceleration;
 }
 
-Result<UdpRobot> UdpRobot::create(device::Device& robot, const UdpAddress& local, double sample_time) {
+Result<UdpRobot> UdpRobot::create(device::Device& robot, const UdpAddress& local, double sample_time,
+                                  UdpRobotLink* link) {
   if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
   auto socket = UdpSocket::open(local);
   if (!socket) return tl::unexpected(socket.error());
-  return UdpRobot(robot, std::move(*socket), sample_time);
+  static UdpRobotLink straight;
+  return UdpRobot(robot, std::move(*socket), sample_time, link != nullptr ? *link : straight);
 }
 
 void UdpRobot::serve(const std::atomic<bool>& over, const std::atomic<bool>& stop_button) noexcept {
@@ -40,10 +54,12 @@ void UdpRobot::serve(const std::atomic<bool>& over, const std::atomic<bool>& sto
     }
     if (!ticking) clock.start();
     ticking = true;
+    const std::uint64_t missed_before = clock.missed();
     clock.wait();
+    make_up(clock.missed() - missed_before);
     take_all();
     if (!awake_ || obeyed_.lock_step) continue;
-    watch_time();
+    watch_time(monotonic_ns());
     advance();
     send();
   }
@@ -55,7 +71,7 @@ void UdpRobot::take_all() noexcept {
   std::array<std::byte, 2 * kCommandBytes> bytes{};
   UdpAddress from;
   for (int i = 0; i < kMostAtOnce; ++i) {
-    const int size = socket_.receive(bytes, from);
+    const int size = link_->receive(socket_, bytes, from);
     if (size < 0) return;
     CommandDatagram came;
     if (decode(std::span(bytes).first(static_cast<std::size_t>(size)), came) != Refusal::none ||
@@ -106,8 +122,18 @@ void UdpRobot::take(const CommandDatagram& came, const UdpAddress& from) noexcep
   if (obeyed_.lock_step) send();
 }
 
-void UdpRobot::watch_time() noexcept {
-  const std::int64_t silent = monotonic_ns() - heard_;
+/// What came while the program was held up is not known yet: nobody obeyed it.
+void UdpRobot::make_up(std::uint64_t ticks) noexcept {
+  const auto most = static_cast<std::uint64_t>(kLongestStall / sample_time_);
+  const std::int64_t period = std::llround(1e9 * sample_time_), now = monotonic_ns();
+  for (auto left = static_cast<std::int64_t>(std::min(ticks, most)); left > 0; --left) {
+    watch_time(now - left * period);
+    advance();
+  }
+}
+
+void UdpRobot::watch_time(std::int64_t now) noexcept {
+  const std::int64_t silent = now - heard_;
   if (obeyed_.enabled && silent > obeyed_.watchdog * kNanosecondsPerMillisecond) state_.watchdog_expired = true;
   if (silent > kForget) awake_ = false;
 }
@@ -125,7 +151,7 @@ void UdpRobot::look() noexcept {
 }
 
 void UdpRobot::send() noexcept {
-  socket_.send(encode(state_), master_);
+  link_->send(socket_, state_, master_);
 }
 
 }  // namespace mbk::drivers

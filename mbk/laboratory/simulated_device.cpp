@@ -46,7 +46,8 @@ bool SimulatedDevice::read(device::State& state) noexcept {
 bool SimulatedDevice::write(const device::Command& command) noexcept {
   const Vector2d torque = command.enabled ? command.torque : Vector2d::Zero();
   enabled_ = command.enabled;
-  reading_ = sensors_.read(loop_.hold(torque, sensors_.next_interval()));
+  truth_ = loop_.hold(torque, sensors_.next_interval());
+  reading_ = sensors_.read(truth_);
   loop_.advance();
   ++sequence_;
   return true;

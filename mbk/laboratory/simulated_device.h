@@ -27,6 +27,9 @@ class SimulatedDevice : public device::Device {
   /// Where the joints' motors are in truth, whatever the encoders say [rad].
   [[nodiscard]] Vector2d motor_angle() const { return loop_.motor_angle(); }
 
+  /// Everything in truth at the beginning of the last tick.
+  [[nodiscard]] const TrueState& truth() const { return truth_; }
+
  private:
   SimulatedDevice(const Scenario& scenario, std::unique_ptr<participant::Load> load, ClosedLoop loop,
                   SensorSuite sensors);
@@ -36,6 +39,7 @@ class SimulatedDevice : public device::Device {
   ClosedLoop loop_;
   SensorSuite sensors_;
   SensorSuite::Reading reading_{};
+  TrueState truth_;
   std::uint64_t sequence_ = 0;
   bool enabled_ = false;
 };

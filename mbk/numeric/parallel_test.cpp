@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <new>
 #include <vector>
 
 namespace mbk::numeric {
@@ -35,6 +36,18 @@ TEST(ParallelFor, GivesTheErrorAndBeginsNothingAfterIt) {
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().message, "three");
   EXPECT_EQ(calls, 4);
+}
+
+TEST(ParallelFor, AnExceptionReachesTheCallerFromAnyThread) {
+  for (const unsigned threads : {1u, 4u}) {
+    const auto throwing = [&] {
+      return parallel_for(1000, threads, [](int i) -> Result<void> {
+        if (i >= 3) throw std::bad_alloc();
+        return {};
+      });
+    };
+    EXPECT_THROW((void)throwing(), std::bad_alloc);
+  }
 }
 
 TEST(ParallelFor, DoesNothingWhereThereIsNothing) {

@@ -17,11 +17,11 @@
 namespace mbk::realtime {
 namespace {
 
-/// Without an end, in a thread whose stack is its own.
-int overflow(volatile int depth) {
-  volatile std::array<char, 4096> some{};  // NOLINT(misc-const-correctness)
-  some[static_cast<std::size_t>(depth % 4096)] = 1;
-  return depth < 0 ? 0 : overflow(depth + 1) + some[0];
+/// Without an end. NOLINTNEXTLINE(misc-no-recursion)
+int overflow(const volatile char* before, int depth) {
+  std::array<volatile char, 4096> some;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  some[0] = *before;
+  return depth < 0 ? 0 : overflow(some.data(), depth + 1) + some[0];
 }
 
 TEST(SignalStackDeathTest, AHandlerRunsWhereTheStackOfAThreadHasOverflowed) {
@@ -33,7 +33,8 @@ TEST(SignalStackDeathTest, AHandlerRunsWhereTheStackOfAThreadHasOverflowed) {
     std::thread([=] {
       std::optional<SignalStack> stack;
       if (with_a_stack) stack.emplace();
-      overflow(0);
+      const char first = 0;
+      overflow(&first, 0);
     }).join();
   };
   EXPECT_EXIT(overflow_in_a_thread(true), testing::ExitedWithCode(7), "");

@@ -32,7 +32,7 @@ number = 1
 journal::Journal recorded() {
   const Trial trial = read_experiment(kExperiment, "experiment.toml").value().front();
   const auto robot = laboratory::SimulatedDevice::create(trial.scenario).value();
-  journal::Journal journal{header_of(trial, robot->facts(), make_plan(trial)->schedule), {}, {}, 0};
+  journal::Journal journal{header_of(trial, robot->facts(), make_plan(trial)->schedule), {}, {}, {}};
   const auto target = std::filesystem::temp_directory_path() / fmt::format("mbk_live_estimate_{}.h5", getpid());
   std::filesystem::remove(target);
   Session session({true, 0.0});

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "mbk/realtime/signal_stack.h"
+#include "mbk/realtime/thread_setup.h"
 
 namespace mbk::session {
 namespace {
@@ -16,14 +17,20 @@ using namespace std::chrono_literals;
 using journal::Tick;
 
 constexpr auto kBlockTime = 50ms;
+constexpr int kPriority = 70;                     // below the loop's
 constexpr std::size_t kBlock = 256;               // ticks, where there are many
 constexpr std::size_t kMostPending = 1 << 20;     // ticks kept for a disk that does not take them
 constexpr std::uintmax_t kLeastSpace = 16 << 20;  // [bytes] beside what is reserved
 
 }  // namespace
 
-Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch)
-    : ticks_(ticks), writer_(std::move(writer)), signals_(signals), watch_(std::move(watch)) {
+Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch,
+                   bool in_real_time)
+    : ticks_(ticks),
+      writer_(std::move(writer)),
+      signals_(signals),
+      watch_(std::move(watch)),
+      in_real_time_(in_real_time) {
   try {
     recording_ = std::thread([this] { record(); });
     syncing_ = std::thread([this] { keep_syncing(); });
@@ -128,6 +135,7 @@ void Recorder::look_after_file() {
 
 void Recorder::record() noexcept {
   const realtime::SignalStack stack;
+  if (in_real_time_) static_cast<void>(realtime::prepare_thread(kPriority));
   using Clock = std::chrono::steady_clock;
   auto next_block = Clock::now() + kBlockTime, next_look = Clock::now();
   while (!over_) {

@@ -26,7 +26,10 @@ using Watch = std::function<void(std::span<const journal::Tick>)>;
 /// another name, with all that it holds. A watch that throws is not called again; the recording goes on.
 class Recorder {
  public:
-  Recorder(realtime::BoundedRing<journal::Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch);
+  /// @param in_real_time  its threads go before all that is not in real time, where that is allowed: a machine that is
+  ///        busy must not keep what happened from the disk
+  Recorder(realtime::BoundedRing<journal::Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch,
+           bool in_real_time = false);
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   ~Recorder();
@@ -53,6 +56,7 @@ class Recorder {
   journal::Writer writer_;
   Signals& signals_;
   Watch watch_;
+  bool in_real_time_;
   std::vector<journal::Tick> pending_;
   std::uint64_t given_up_ = 0;  // ticks that found no room to wait for the disk
   std::optional<Error> failure_, misplaced_;

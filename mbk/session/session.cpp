@@ -173,7 +173,8 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   signals_->end_trial = false;
   signals_->recording = true;
   realtime::BoundedRing<Tick> ring(kRing);
-  Recorder recorder(ring, std::move(*writer), *signals_, watch);
+  const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
+  Recorder recorder(ring, std::move(*writer), *signals_, watch, in_real_time);
   std::thread loop([&] {
     const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {

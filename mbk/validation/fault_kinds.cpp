@@ -1,5 +1,7 @@
 #include "mbk/validation/fault_kinds.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -526,8 +528,8 @@ const std::vector<FaultKind>& fault_kinds() {
   return kKinds;
 }
 
-std::string_view fault_experiment(TrialKind kind) {
-  return kind == TrialKind::position ? R"(
+std::string fault_experiment(TrialKind kind, double perturbed, double moving_in) {
+  constexpr std::string_view kPosition = R"(
 [recording]
 condition = "relaxed, position perturbation"
 [robot]
@@ -538,7 +540,7 @@ kind = "position"
 [perturbation]
 kind = "multisine"
 peak_deg = 2
-duration_s = 6
+duration_s = {:g}
 moving_in_s = 1
 [participant]
 kind = "arm"
@@ -546,8 +548,8 @@ number = 1
 [participant.remnant]
 floor_N = 0.1
 cutoff_hz = 1.5
-)"
-                                     : R"(
+)";
+  constexpr std::string_view kForce = R"(
 [recording]
 condition = "rigid grasp, force perturbation"
 [robot]
@@ -558,7 +560,8 @@ kind = "force"
 [perturbation]
 kind = "multisine"
 peak_N = 6
-duration_s = 6
+duration_s = {:g}
+moving_in_s = {:g}
 [participant]
 kind = "arm"
 number = 1
@@ -575,6 +578,7 @@ floor_N = 0.15
 per_force = 0.08
 cutoff_hz = 1.5
 )";
+  return fmt::format(fmt::runtime(kind == TrialKind::position ? kPosition : kForce), perturbed, moving_in);
 }
 
 }  // namespace mbk::validation

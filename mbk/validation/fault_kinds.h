@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -57,7 +58,8 @@ struct FaultKind {
 
 /// The experiment that the faults come into, of 11 s: soft start, move and rest of 1 s each, 6 s of perturbation, way
 /// back and soft stop.
-[[nodiscard]] std::string_view fault_experiment(TrialKind kind);
+/// @param perturbed  so long instead [s]   @param moving_in  at its beginning, in a trial of forces [s]
+[[nodiscard]] std::string fault_experiment(TrialKind kind, double perturbed = 6.0, double moving_in = 5.0);
 inline constexpr int kPerturbationBegins = 3000, kPerturbationEnds = 9000, kTrialEnds = 11000;  // ticks
 
 }  // namespace mbk::validation

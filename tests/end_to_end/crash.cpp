@@ -12,20 +12,20 @@
 namespace {
 
 // NOLINTNEXTLINE(misc-no-recursion): it is to have no end
-int overflow(int depth) {
+int overflow(const volatile char* before, int depth) {
   volatile char some[4096];
-  some[depth % 4096] = static_cast<char>(depth);
-  return depth < 0 ? 0 : overflow(depth + 1) + some[depth % 4096];
+  some[0] = *before;
+  return depth < 0 ? 0 : overflow(some, depth + 1) + some[0];
 }
 
 void crash() {
   const char* const how = std::getenv("MBK_CRASH");
   if (how == nullptr) return;
   if (std::strcmp(how, "pointer") == 0) {
-    int* volatile nowhere = nullptr;
+    volatile int* volatile nowhere = nullptr;
     *nowhere = 1;
   }
-  if (std::strcmp(how, "stack") == 0) overflow(std::rand());
+  if (std::strcmp(how, "stack") == 0) overflow(how, 0);
   if (std::strcmp(how, "terminate") == 0) std::terminate();
   std::abort();
 }

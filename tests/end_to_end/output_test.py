@@ -148,6 +148,7 @@ class Console(Case):
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         first = process.stderr.readline()
         if "built without" in first or process.poll() is not None:

@@ -114,15 +114,16 @@ class Session(Case):
             [program("MBK"), "run", self.experiment(seconds, more), "--out", self.target, "--no-measure", *options],
             cwd=self.folder, env={**os.environ, **(environment or {})},
             **{"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **popen})
-        self.addCleanup(self.finish)
+        self.addCleanup(self.finish, self.process)
 
-    def finish(self):
-        if self.process.poll() is None:
-            self.process.kill()
-        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+    @staticmethod
+    def finish(process):
+        if process.poll() is None:
+            process.kill()
+        for stream in (process.stdin, process.stdout, process.stderr):
             if stream:
                 stream.close()
-        self.process.wait()
+        process.wait()
 
     def journal_grows(self):
         """Until ticks have been recorded."""
@@ -216,34 +217,50 @@ class AtATerminal(Session):
             finally:
                 os._exit(127)  # this is the child, which must not go on with the tests
         self.child = child
+        self.addCleanup(self.kill)
         journal, self.shown, until = pathlib.Path(f"{self.target}.journal"), b"", time.monotonic() + 60
         while not (journal.exists() and journal.stat().st_size > 80_000):
             self.assertLess(time.monotonic(), until, self.shown)
             self.look()
 
     def look(self):
-        if select.select([self.terminal], [], [], 0.02)[0]:
+        """What the terminal shows meanwhile."""
+        if self.terminal is None:
+            time.sleep(0.02)
+        elif select.select([self.terminal], [], [], 0.02)[0]:
             try:
                 self.shown += os.read(self.terminal, 65536)
-            except OSError:
-                return False
-        return True
+            except OSError:  # the terminal of a program that has ended
+                self.close()
 
-    def code(self):
+    def close(self):
+        if self.terminal is not None:
+            os.close(self.terminal)
+        self.terminal = None
+
+    def kill(self):
+        if self.child is not None:
+            os.kill(self.child, signal.SIGKILL)
+            os.waitpid(self.child, 0)
+        self.child = None
+        self.close()
+
+    def assert_ends(self, code):
         until = time.monotonic() + 60
         while time.monotonic() < until:
+            self.look()
             pid, status = os.waitpid(self.child, os.WNOHANG)
             if pid:
-                return os.waitstatus_to_exitcode(status)
-            time.sleep(0.01)
-        os.kill(self.child, signal.SIGKILL)
-        os.waitpid(self.child, 0)
-        self.fail("it did not end")
+                self.child = None
+                self.close()
+                self.assertEqual(os.waitstatus_to_exitcode(status), code, self.shown)
+                return
+        self.fail(f"it did not end: {self.shown}")
 
     def test_a_terminal_that_is_closed(self):
         self.begin()
-        os.close(self.terminal)
-        self.assertEqual(self.code(), SAFETY_STOP)
+        self.close()
+        self.assert_ends(SAFETY_STOP)
         self.assert_ramped_down()
 
     def test_a_terminal_that_is_closed_without_a_signal(self):
@@ -253,8 +270,8 @@ class AtATerminal(Session):
             self.begin()
         finally:
             signal.signal(signal.SIGHUP, before)
-        os.close(self.terminal)
-        self.assertEqual(self.code(), SAFETY_STOP)
+        self.close()
+        self.assert_ends(SAFETY_STOP)
         self.assert_ramped_down()
 
     def test_keys_that_suspend_or_quit_stop_the_robot_and_end_the_program(self):
@@ -262,10 +279,7 @@ class AtATerminal(Session):
             with self.subTest(key):
                 self.begin()
                 os.write(self.terminal, key)
-                while self.look() and not os.path.exists(self.target):
-                    pass
-                self.assertEqual(self.code(), SAFETY_STOP)
-                os.close(self.terminal)
+                self.assert_ends(SAFETY_STOP)
                 self.assert_ramped_down()
                 self.target.unlink()
 
@@ -279,23 +293,21 @@ class AtATerminal(Session):
         while not self.target.exists() and time.monotonic() < until:
             time.sleep(0.02)
         os.write(self.terminal, b"\x11")
-        self.assertEqual(self.code(), SAFETY_STOP)
-        os.close(self.terminal)
+        self.assert_ends(SAFETY_STOP)
         self.assert_ramped_down()
 
 
-class OutsideOfATrial(Session):
-    def test_at_the_question_it_ends(self):
+    def test_a_request_to_end_answers_the_question(self):
         """A stopped trial, and the question whether to go on."""
-        terminal = AtATerminal("code")
-        terminal.folder = self.folder
-        terminal.begin()
-        os.write(terminal.terminal, b" ")
-        while b"[y/N]" not in terminal.shown:
-            terminal.look()
-        os.kill(terminal.child, signal.SIGTERM)
-        self.assertEqual(terminal.code(), SAFETY_STOP)
-        os.close(terminal.terminal)
+        self.begin()
+        os.write(self.terminal, b" ")
+        until = time.monotonic() + 60
+        while b"[y/N]" not in self.shown:
+            self.assertLess(time.monotonic(), until, self.shown)
+            self.look()
+        os.kill(self.child, signal.SIGTERM)
+        self.assert_ends(SAFETY_STOP)
+        self.assert_ramped_down()
 
 
 class FatalSignals(Session):
@@ -341,12 +353,12 @@ class FatalSignals(Session):
                               ("terminate", signal.SIGABRT)):
                 with self.subTest(where=where, how=how):
                     begin = time.monotonic()
+                    (self.folder / "trial.h5.journal").unlink(missing_ok=True)
                     self.driven({"LD_PRELOAD": shim, "MBK_CRASH_IN": where, "MBK_CRASH": how,
                                  "MBK_CRASH_AFTER": "800" if where == "sendto" else "20"})
                     self.process.communicate(timeout=60)
                     self.assertEqual(self.process.returncode, -code)
-                    self.assert_last_words(begin + 0.4)
-                    pathlib.Path(f"{self.target}.journal").unlink()
+                    self.assert_last_words(begin)
 
     def test_the_next_program_is_let_in_again(self):
         self.driven()

@@ -32,8 +32,11 @@ const axeSource = readFileSync((library("axe-core"), packages.resolve("axe-core/
 
 export const folder = mkdtempSync(join(tmpdir(), "mbk-web-"));
 const children = new Set();
-process.on("exit", () => {
+export const endPrograms = () => {
   for (const child of children) child.kill("SIGKILL");
+};
+process.on("exit", () => {
+  endPrograms();
   rmSync(folder, { recursive: true, force: true });
 });
 export const pictures = join(process.cwd(), "screenshots");
@@ -94,9 +97,9 @@ const browser = await chromium.launch({
 });
 export const closeBrowser = () => browser.close();
 
-/** mbk that goes on beside the test: what it has said, a promise of its exit code, and a way to wait for a word of it. */
-export function start(...args) {
-  const child = spawn(program("MBK"), args, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+/** A program that goes on beside the test: what it has said, a promise of its exit code, ways to wait for a word of it and to tell it a line. */
+function started(path, args) {
+  const child = spawn(path, args, { cwd: folder, stdio: ["pipe", "pipe", "pipe"] });
   const running = { said: "", child, code: new Promise((resolve) => child.on("close", resolve)) };
   for (const stream of [child.stdout, child.stderr]) stream.setEncoding("utf8").on("data", (text) => { running.said += text; });
   children.add(child);
@@ -107,10 +110,21 @@ export function start(...args) {
       if (child.exitCode !== null) break;
       await new Promise((resolve) => setTimeout(resolve, 50));
     }
-    throw new Error(`mbk did not say ${pattern}: ${running.said}`);
+    throw new Error(`${path} did not say ${pattern}: ${running.said}`);
   };
+  running.tell = (line) => child.stdin.write(`${line}\n`);
   return running;
 }
+
+/** mbk. */
+export function start(...args) {
+  const running = started(program("MBK"), args);
+  running.child.stdin.end();
+  return running;
+}
+
+/** The console without a session, which shows of the robot what it is told (console_double.cpp). */
+export const startDouble = () => started(program("CONSOLE_DOUBLE"), []);
 
 /** A page on a report, or at an address; a `script` runs before its own. What it says on the console, which errors it meets and what it asks a network for is kept. */
 export async function open(file, { script, ...options } = {}) {

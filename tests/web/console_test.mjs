@@ -3,9 +3,12 @@ import assert from "node:assert/strict";
 import { existsSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, folder, mbk, open, pictures, start, violations } from "./browser.mjs";
+import { closeBrowser, endPrograms, folder, mbk, open, pictures, scrollThrough, start, startDouble, violations } from "./browser.mjs";
 
-after(closeBrowser);
+after(() => {
+  endPrograms(); // of tests that failed
+  return closeBrowser();
+});
 
 const experiment = join(folder, "short.toml");
 writeFileSync(experiment, `
@@ -56,9 +59,10 @@ async function run(name, ...args) {
 async function visit(address, options = {}) {
   const visited = await open(address, { viewport: { width: 1920, height: 1080 }, ...options });
   const { page } = visited;
-  const banner = (words) => page.waitForFunction((text) => document.querySelector(".banner-title")?.textContent?.includes(text), words, { timeout: 60_000 });
+  const banner = (...words) => page.waitForFunction((texts) => texts.some((text) => document.querySelector(".banner-title")?.textContent?.includes(text)), words, { timeout: 60_000 });
+  const rests = () => banner("motors are off", "No torque is commanded"); // what the robot reports, or else what is known
   const foreign = () => visited.outside().filter((url) => !url.startsWith(new URL(address).origin));
-  return Object.assign(visited, { banner, foreign, click: (name) => page.getByRole("button", { name }).click({ timeout: 60_000 }) });
+  return Object.assign(visited, { banner, rests, foreign, click: (name) => page.getByRole("button", { name }).click({ timeout: 60_000 }) });
 }
 
 const mostTicks = 250; // from the trip to its message, on a machine that has a hundred other things to do; 5 where it has not
@@ -71,8 +75,8 @@ const ended = async ({ close }, running) => {
 test("a whole run is clicked through, from the first trial to the reports", async () => {
   const running = await run("whole", "--wait", "--speed", "4");
   const operator = await visit(running.operator);
-  const { page, click, banner } = operator;
-  await banner("motors are off");
+  const { page, click, banner, rests } = operator;
+  await rests();
   assert.deepEqual(await violations(page), []);
   await take(page, "console-ready");
 
@@ -104,6 +108,17 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await report.waitForSelector("main section");
   assert.match(await report.textContent("main"), /stiffness/i);
   await take(page, "console-over");
+  const served = await open(report.url()); // under the policy of its own scripts and styles
+  await scrollThrough(served.page);
+  assert.match(await served.page.locator(".matrix").first().evaluate((matrix) => getComputedStyle(matrix).gridTemplateColumns), /px .*px/);
+  const chart = served.page.locator("[_echarts_instance_]").first();
+  await chart.scrollIntoViewIfNeeded();
+  await chart.hover();
+  await served.page.getByText(/^time [\d.]+ s/).first().waitFor(); // the tooltip
+  assert.deepEqual(served.said, []);
+  assert.deepEqual(served.outside(), []);
+  await take(served.page, "console-report");
+  await served.close();
   assert.deepEqual(await violations(page), []);
   assert.deepEqual(operator.said, []);
   assert.deepEqual(operator.foreign(), []);
@@ -216,8 +231,8 @@ test("the space bar writes while a note is written, and stops again after Esc", 
 test("a lost connection is said, and the page finds back to nothing that is not there", async () => {
   const running = await run("lost", "--wait", "--trial", "relaxed");
   const operator = await visit(running.operator);
-  const { page, banner } = operator;
-  await banner("motors are off");
+  const { page, banner, rests } = operator;
+  await rests();
   running.child.kill("SIGKILL");
   await banner("Connection lost");
   assert.match(await page.textContent(".banner-words"), /cannot stop the robot/);
@@ -230,12 +245,12 @@ test("a lost connection is said, and the page finds back to nothing that is not 
 test("a connection that was cut comes back by itself", async () => {
   const running = await run("back", "--wait", "--trial", "relaxed");
   const operator = await visit(running.operator);
-  const { page, banner } = operator;
-  await banner("motors are off");
+  const { page, banner, rests } = operator;
+  await rests();
   running.child.kill("SIGSTOP");
   await banner("Connection lost");
   running.child.kill("SIGCONT");
-  await banner("motors are off");
+  await rests();
   await page.getByRole("button", { name: "No trial" }).click();
   assert.equal(await ended(operator, running), 0);
   assert.ok(!existsSync(join(folder, "back.h5")));
@@ -312,4 +327,104 @@ test("without --wait it goes on by itself, and stays while a page is open", asyn
   const code = await Promise.race([running.code, new Promise((resolve) => setTimeout(() => resolve("late"), 60_000))]);
   assert.equal(code, 0);
   assert.ok(existsSync(join(folder, "alone.h5")));
+});
+
+/** The console with a robot that reports what the test says: its page, and a word for it. */
+async function robotReports() {
+  const double = startDouble();
+  const [, address] = await double.until(/console: +(http\S+)/);
+  const operator = await visit(address);
+  const off = { motors: "off", confirmed_off: null, stop_button: false, link: true, fault: 0, sentence: "" };
+  const say = (robot) => double.tell(`robot ${JSON.stringify({ ...off, ...robot })}`);
+  return Object.assign(double, { operator, say, has: (selector, words) => operator.page.waitForFunction(([where, text]) => document.querySelector(where)?.textContent?.includes(text), [selector, words], { timeout: 60_000 }) });
+}
+
+test("motors that are not confirmed off are an alarm that cannot be missed, until they are", async () => {
+  const { operator, say, has, tell, code } = await robotReports();
+  const { page, rests, banner } = operator;
+  const alarm = page.locator(".alarm");
+  await has(".robot", "has not reported whether its motors are on");
+  assert.equal(await alarm.textContent(), "");
+  say({ motors: "on" });
+  await banner("The motors are on");
+  say({ motors: "off" });
+  await has(".robot", "reports its motors off");
+  await rests();
+  say({ motors: "on", confirmed_off: false, fault: 17, sentence: "200 ms after the stop the robot still reports 3.1 N·m" });
+  await has(".alarm", "MOTORS NOT CONFIRMED OFF — cut the motors' power with the hardware stop button");
+  await has(".alarm", "200 ms after the stop the robot still reports 3.1 N·m");
+  await has(".robot", "its fault code is 17");
+  assert.match(await page.getByRole("alert").textContent(), /MOTORS NOT CONFIRMED OFF/); // not hidden from reading aids
+  assert.match(await page.title(), /^MOTORS NOT CONFIRMED OFF/);
+  const [box, width] = [await alarm.boundingBox(), await page.evaluate(() => document.documentElement.clientWidth)];
+  assert.ok(box.width > 0.95 * width && box.height > 100 && box.y >= 0 && box.y < 40, JSON.stringify([box, width]));
+  assert.deepEqual(await violations(page), []);
+  await take(page, "console-alarm");
+  await page.setViewportSize({ width: 700, height: 900 });
+  await page.mouse.wheel(0, 3000);
+  await page.waitForTimeout(200);
+  assert.ok(await alarm.isVisible() && (await alarm.boundingBox()).y >= 0, "it does not scroll away");
+  await take(page, "console-alarm-narrow");
+  await page.setViewportSize({ width: 1920, height: 1080 });
+  say({ confirmed_off: true });
+  await has(".robot", "reports its motors off, confirmed after the stop");
+  assert.equal(await alarm.textContent(), "");
+  assert.deepEqual(operator.said, []);
+  tell("quit");
+  assert.equal(await ended(operator, { code }), 0);
+});
+
+test("the alarm stays when the connection is lost", async () => {
+  const { operator, say, has, child } = await robotReports();
+  say({ motors: "on", confirmed_off: false });
+  await has(".alarm", "MOTORS NOT CONFIRMED OFF");
+  child.kill("SIGKILL");
+  await operator.banner("Connection lost");
+  await has(".alarm", "MOTORS NOT CONFIRMED OFF");
+  await operator.close();
+});
+
+test("a stop button that is pressed is shown while nothing runs, and the reset says that it waits for it", async () => {
+  const { operator, say, has, tell, until, code } = await robotReports();
+  const { page, banner, rests, click } = operator;
+  say({ stop_button: true });
+  await banner("Stop button pressed");
+  await has(".robot", "its stop button is pressed");
+  tell("ask reset");
+  await has(".waits", "Reset waits: the robot's stop button is pressed");
+  const reset = page.getByRole("button", { name: "Reset …" });
+  assert.ok(await reset.isDisabled());
+  assert.deepEqual(await violations(page), []);
+  await take(page, "console-button-pressed");
+  say({ stop_button: true, link: false });
+  await has(".robot", "No states come from the robot");
+  say({ stop_button: false });
+  await rests();
+  await click("Reset …");
+  await click("The reason is gone");
+  await until(/decided reset/);
+  tell("quit");
+  assert.equal(await ended(operator, { code }), 0);
+});
+
+test("a script or a style that came into the page later is not run", async () => {
+  const { operator, tell, code } = await robotReports();
+  const { page, said } = operator;
+  const after = await page.evaluate(async () => {
+    const script = document.createElement("script");
+    script.textContent = "globalThis.injected = true";
+    const style = document.createElement("style");
+    style.textContent = ".stop { display: none; }";
+    const room = document.createElement("div");
+    room.innerHTML = '<p style="position: fixed">x</p><img src="data:," onerror="globalThis.injected = true">';
+    document.body.append(script, style, room);
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    return [globalThis.injected, getComputedStyle(document.querySelector(".stop")).display, getComputedStyle(room.firstChild).position];
+  });
+  assert.notEqual(after[0], true);
+  assert.notEqual(after[1], "none");
+  assert.notEqual(after[2], "fixed");
+  assert.ok(said.every((line) => /Content Security Policy/.test(line)) && said.length >= 4, said.join("\n"));
+  tell("quit");
+  assert.equal(await ended(operator, { code }), 0);
 });

@@ -1,0 +1,132 @@
+// mbk_misbehaving_robot SCENARIO --fault NAME: a simulated robot behind UDP that misbehaves, and says what it truly
+// did.
+#include "mbk/validation/misbehaving_robot.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include "mbk/laboratory/find_scenario.h"
+#include "mbk/laboratory/simulated_device.h"
+#include "mbk/realtime/clock.h"
+#include "mbk/validation/udp_fault_kinds.h"
+
+namespace {
+
+using namespace mbk;
+using validation::RobotTruth;
+
+constexpr char kHelp[] =
+    "A simulated robot behind UDP that misbehaves from a moment on, to try 'mbk run' and your own programs against.\n"
+    "It runs at its own clock of 1 kHz. Each line on standard output is a JSON object of what truly happens: ticks of\n"
+    "its clock since the first greeting, monotonic time, and what its motors do whatever the robot says. The last one\n"
+    "is 'end', which SIGTERM and Ctrl-C bring about.\n"
+    "Example: mbk_misbehaving_robot relaxed_sinusoidal --fault latched-frozen-answer --at 2 --port 25000";
+
+validation::MisbehavingRobot* serving = nullptr;
+
+void end(int) {
+  if (serving != nullptr) serving->end();
+}
+
+void say(std::string_view event, const RobotTruth& t) {
+  fmt::print(R"({{"event":"{}","ns":{},"tick":{},"motors_on":{},"fault_began":{},"told_off":{},"torque_off":{},)"
+             R"("last_command":{},"speed_m_per_s":{:.6g},"force_N":{:.6g},"missed":{},"stalled":{}}})"
+             "\n",
+             event, realtime::monotonic_ns(), t.ticks, t.motors_on, t.fault_began, t.told_off, t.torque_off,
+             t.last_command, t.speed, t.force, t.missed, t.stalled);
+  std::fflush(stdout);
+}
+
+int report(const Error& error) {
+  fmt::print(stderr, "mbk_misbehaving_robot: {}\n", error.line());
+  return 1;
+}
+
+void list() {
+  for (const validation::UdpFaultKind& kind : validation::udp_fault_kinds()) {
+    fmt::print("{:<26} {}\n", kind.name, kind.what);
+  }
+}
+
+struct Arguments {
+  std::string scenario, trial, fault, address = "127.0.0.1";
+  std::uint16_t port = 25000;
+  std::uint16_t version = 0;
+  double at = 1.0;
+  std::uint64_t seed = 1;
+  unsigned longest = 120;
+  bool list = false;
+};
+
+int run(const Arguments& arguments) {
+  auto scenario = laboratory::find_scenario(arguments.scenario, arguments.trial);
+  if (!scenario) return report(scenario.error());
+  scenario->seed = arguments.seed;
+  validation::RobotFault fault;
+  validation::MisbehavingRobot::Options options;
+  if (!arguments.fault.empty()) {
+    const validation::UdpFaultKind* kind = validation::find_udp_fault(arguments.fault);
+    if (kind == nullptr) {
+      return report({ErrorKind::usage, "there is no fault '" + arguments.fault + "'", "--list names them", ""});
+    }
+    numeric::Random random(arguments.seed);
+    kind->make(fault, random);
+    options.version = kind->version;
+  }
+  const auto robot = laboratory::SimulatedDevice::create(*scenario);
+  if (!robot) return report(robot.error());
+  const auto local = drivers::UdpAddress::find(arguments.address, arguments.port);
+  if (!local) return report(local.error());
+  options.local = *local;
+  options.sample_time = 1.0 / scenario->rate.value;
+  if (arguments.version != 0) options.version = arguments.version;
+  options.moment = arguments.at;
+  options.seed = arguments.seed;
+  auto served = validation::MisbehavingRobot::create(**robot, std::move(fault), options, say);
+  if (!served) return report(served.error());
+  serving = served->get();
+  std::signal(SIGINT, end);
+  std::signal(SIGTERM, end);
+  std::signal(SIGALRM, end);
+  alarm(arguments.longest);
+  fmt::print(R"({{"event":"listening","address":"{}","port":{}}})"
+             "\n",
+             arguments.address, serving->local().port);
+  std::fflush(stdout);
+  serving->serve();
+  say("end", serving->truth());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kHelp, "mbk_misbehaving_robot");
+  Arguments arguments;
+  CLI::Option* const scenario = app.add_option("SCENARIO", arguments.scenario, "a .toml file, or a ready one's name");
+  app.add_option("--trial", arguments.trial, "this [[trial]] of the file; the first without it");
+  app.add_option("--fault", arguments.fault, "what goes wrong; nothing without it");
+  app.add_option("--at", arguments.at, "seconds from when its motors first go on to the fault (1)");
+  app.add_option("--seed", arguments.seed, "of the fault's sizes, of the noise and of the person (1)");
+  app.add_option("--address", arguments.address, "of the network where it listens (127.0.0.1)");
+  app.add_option("--port", arguments.port, "where it listens; 0 for any that is free (25000)");
+  app.add_option("--version", arguments.version, "of its states: 1, 2 (what the fault needs)");
+  app.add_option("--for", arguments.longest, "it ends by itself after so many seconds (120)");
+  CLI::Option* const table = app.add_flag("--list", arguments.list, "what can go wrong");
+  scenario->excludes(table);
+  CLI11_PARSE(app, argc, argv);
+  if (arguments.list) {
+    list();
+    return 0;
+  }
+  if (scenario->empty()) {
+    fmt::print(stderr, "mbk_misbehaving_robot: SCENARIO is missing; --help says more\n");
+    return 2;
+  }
+  return run(arguments);
+}

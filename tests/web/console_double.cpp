@@ -1,0 +1,80 @@
+// The console without a session: it shows of the robot what its standard input says, so that a test sees in the page
+// what no simulated robot does. A line each:
+//   robot {"motors": "on", "confirmed_off": false, "stop_button": false, "link": true, "fault": 0, "sentence": ""}
+//   ask reset      the page is asked, and what it decided is printed; "begin" and "after" too
+//   quit
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "mbk/console/console.h"
+#include "mbk/session/experiment.h"
+
+namespace {
+
+using mbk::console::Action;
+using mbk::console::Console;
+using mbk::console::Question;
+using mbk::console::RobotStatus;
+
+constexpr const char* kExperiment = R"(
+[control]
+kind = "position"
+[perturbation]
+kind = "multisine"
+duration_s = 4
+moving_in_s = 1
+[participant]
+kind = "arm"
+number = 1
+)";
+
+RobotStatus robot_of(const nlohmann::json& said) {
+  RobotStatus robot;
+  const std::string motors = said.at("motors");
+  robot.motors = motors == "on"    ? RobotStatus::Motors::on
+                 : motors == "off" ? RobotStatus::Motors::off
+                                   : RobotStatus::Motors::unknown;
+  if (!said.at("confirmed_off").is_null()) robot.confirmed_off = said.at("confirmed_off").get<bool>();
+  robot.stop_button = said.at("stop_button");
+  robot.link = said.at("link");
+  robot.fault = said.at("fault");
+  robot.sentence = said.at("sentence");
+  return robot;
+}
+
+/// Until the page decided other than to write a note.
+void ask(Console& console, Question question) {
+  Action decided = Action::note;
+  while (decided == Action::note) decided = console.ask(question);
+  fmt::print("decided {}\n", mbk::console::text(decided));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main() {
+  const auto trials = mbk::session::read_experiment(kExperiment, "experiment.toml");
+  if (!trials) return 1;
+  mbk::session::Signals signals;
+  auto console = Console::open(0, *trials, signals, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  if (!console) return 1;
+  fmt::print("console: {}\n", (*console)->address());
+  std::fflush(stdout);
+  std::thread asking;
+  for (std::string line; std::getline(std::cin, line) && line != "quit";) {
+    const std::string what = line.substr(0, line.find(' ')), rest = line.substr(line.find(' ') + 1);
+    if (what == "robot") {
+      (*console)->show_robot(robot_of(nlohmann::json::parse(rest)));
+    } else if (what == "ask" && !asking.joinable()) {
+      const Question question = rest == "reset" ? Question::reset : rest == "after" ? Question::after : Question::begin;
+      asking = std::thread([&console, question] { ask(**console, question); });
+    }
+  }
+  if (asking.joinable()) asking.join();
+  return 0;
+}
