@@ -19,7 +19,7 @@ import threading
 import zlib
 
 GROUPS = ("write", "sync", "open", "name", "read", "status", "socket", "sleep", "clock", "memory", "thread")
-FINE, SAFETY_STOP = 0, 5
+FINE, SAFETY_STOP, NOT_CONFIRMED = 0, 5, 7
 LONGEST = 60  # [s] of one command: what takes longer hangs
 COUNTS = struct.Struct("=12Q")
 
@@ -335,6 +335,8 @@ class Session(Task):
 
     def was_told(self, ran, fault):
         if ran.code == SAFETY_STOP and "safety stop" in ran.out:
+            return ""
+        if ran.code == NOT_CONFIRMED and "NOT CONFIRMED OFF" in ran.err:
             return ""
         return super().was_told(ran, fault)
 
