@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "mbk/safety/gate.h"
 #include "mbk/safety/limits.h"
 #include "mbk/validation/fault_kinds.h"
@@ -25,19 +28,21 @@ mbk can only *command* zero torque. After a stop the torque falls to zero in {ra
 | its drives measure no torque, where they measure (version 2 of the states) | they measure themselves |
 | encoders and force sensor show no motion that only a torque of the motors explains | it takes 41 states, and sensors that are trusted |
 
-With all of that the stop is **confirmed**, "as reported by the robot". Where one is missing for so long, mbk says **MOTORS NOT CONFIRMED OFF** in the terminal, in the console and in the recording (`motors_off`), refuses `reset`, and ends with exit code 7. Then cut the motors' power by hand. mbk never says "confirmed" without the robot's word, but a robot whose acknowledgement, flag and sensors all lie together can deceive it.
+With all of that the stop is **confirmed**, "as reported by the robot". Where one is missing for so long, mbk says **MOTORS NOT CONFIRMED OFF** in the terminal, in the console and in the recording (`motors_off`), refuses `reset`, and ends with exit code 7. Then cut the motors' power by hand. mbk never says "confirmed" without the robot's word, but a robot whose acknowledgement, flag and sensors all lie together can deceive it, and a torque that is left and smaller than `torque_error_Nm` ({error:g} N·m of a joint) does not show in the motion.
 
 ## What stays the robot's duty
 - **A stop button that cuts the motors' power without software**, in reach of the person and of the operator. It alone ends a torque that the drives do not give up.
 - **A watchdog in the drives** that switches them off where commands stay away (`watchdog_ms`), whatever became of mbk, the link and the robot's own program. mbk cannot see whether there is one: pull the cable before every study.
 - **Drives that fall back to zero torque** where their controller, encoder or supply fails.
 - **Motors and stops that cannot injure** at their largest torque for as long as a fault may take to be found: the tables say how long.
-- **An honest stamp**: the time of the sample, the number of the command that the drives obey, the flag of the power stage and not of a variable. Version 2 of the states with measured currents turns faults that are found by their motion, or not at all, into ones that are found within {drives} ms ([devices.md](devices.md)).
+- **An honest stamp**: the time of the sample, the number of the command that the drives obey, the flag of the power stage and not of a variable. Version 2 of the states with measured currents turns faults that are found by their motion, or not at all, into ones that are found within {drives} ms of the moment at which the torque is {error:g} N·m (`torque_error_Nm`) beside its command ([devices.md](devices.md)).
 )";
 
 constexpr std::string_view kUdp = R"(
 ## A robot behind UDP
 The program `mbk_misbehaving_robot` is a simulated robot that misbehaves in these ways (`--list`). Ticks are of 1 ms of the robot's own clock, from the fault until its motors are off or, where they do not obey, until it was told so; the ramp of {ramp} ticks and {link} for the link are in them. A dash: nothing trips. *Confirmed* is what mbk says of the motors afterwards; "it depends" on the moment or on sensors that are no longer trusted, and then mbk says loudly that they are not confirmed.
+
+*Motion* is what a hand or a joint does that was not commanded, whichever of these is first: {motion}.
 
 )";
 
@@ -95,13 +100,27 @@ std::string_view text(SafeState state) {
   return "";
 }
 
+/// All reasons of motion together are one word.
+std::string reasons_of(const UdpFaultKind& kind) {
+  const auto moves = motion_reasons();
+  const auto is_of_motion = [&](std::string_view one) { return std::ranges::find(moves, one) != moves.end(); };
+  if (std::ranges::count_if(kind.reasons, is_of_motion) < std::ssize(moves)) {
+    return codes(kind.reasons, [](std::string_view one) { return one; });
+  }
+  std::string text_;
+  for (const std::string_view one : kind.reasons) {
+    if (!is_of_motion(one)) text_ += fmt::format("{}, ", one);
+  }
+  return text_ + "*motion*";
+}
+
 std::string udp_table() {
   std::string text_ =
       "| Fault | What happens | What detects it | Position, force: off within | The motors are | Robot's duty, or what "
       "limits the harm |\n|---|---|---|---|---|---|\n";
   for (const UdpFaultKind& kind : udp_fault_kinds()) {
     std::string found(detects(kind));
-    const std::string reasons = codes(kind.reasons, [](std::string_view one) { return one; });
+    const std::string reasons = reasons_of(kind);
     if (!reasons.empty()) found += (found.empty() ? "" : "; may be: ") + reasons;
     constexpr int kMore = safety::kRampTicks + kLinkTicks;
     const std::string soon = kind.expected == Expected::trip
@@ -129,9 +148,10 @@ std::string safety_page() {
   constexpr int kDrivesFound = 60;  // [ms]: the gate waits 50 ms, and a few states
   const auto ramp = fmt::arg("ramp", safety::kRampTicks);
   return fmt::format(fmt::runtime(kBegin), ramp, fmt::arg("off", 1e3 * safety::Limits{}.motors_off),
-                     fmt::arg("drives", kDrivesFound)) +
-         fmt::format(fmt::runtime(kUdp), ramp, fmt::arg("link", kLinkTicks)) + udp_table() +
-         fmt::format(fmt::runtime(kFunction), ramp) + function_table() + std::string(kEnd);
+                     fmt::arg("drives", kDrivesFound), fmt::arg("error", safety::Limits{}.torque_error)) +
+         fmt::format(fmt::runtime(kUdp), ramp, fmt::arg("link", kLinkTicks),
+                     fmt::arg("motion", codes(motion_reasons(), [](std::string_view one) { return one; }))) +
+         udp_table() + fmt::format(fmt::runtime(kFunction), ramp) + function_table() + std::string(kEnd);
 }
 
 }  // namespace mbk::validation

@@ -342,7 +342,7 @@ std::vector<UdpFaultKind> drives() {
       {"drives-dead-measured",
        "the drives have no torque, and measure it",
        Expected::trip,
-       {600, 1500},
+       {1500, 1500},
        kMoves,
        SafeState::confirmed,
        "",
@@ -1191,6 +1191,10 @@ std::span<const UdpFaultKind> udp_fault_kinds() {
     return all;
   }();
   return kKinds;
+}
+
+std::span<const std::string_view> motion_reasons() {
+  return kMoves;
 }
 
 const UdpFaultKind* find_udp_fault(std::string_view name) {

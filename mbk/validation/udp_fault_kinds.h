@@ -45,6 +45,9 @@ struct UdpFaultKind {
 /// All of them.
 [[nodiscard]] std::span<const UdpFaultKind> udp_fault_kinds();
 
+/// Codes of what a robot that moves otherwise than it is commanded leads to.
+[[nodiscard]] std::span<const std::string_view> motion_reasons();
+
 /// @returns  null where there is none of that name
 [[nodiscard]] const UdpFaultKind* find_udp_fault(std::string_view name);
 
