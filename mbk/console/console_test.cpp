@@ -556,6 +556,18 @@ TEST_F(ConsoleOfASession, ANoteNeverTakesThePlaceOfAnAnswer) {
   }
 }
 
+TEST_F(ConsoleOfASession, NotesOfARecordingAreBoundedAndTheRefusalIsSaid) {
+  auto page = open(token_);
+  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  const std::string text(1800, 'a');
+  const std::size_t fit = kMostNoteBytes / text.size();
+  for (std::size_t i = 0; i <= fit; ++i) page->tell(Json{{"command", "note"}, {"text", text}}.dump());
+  ASSERT_TRUE(page->read_until([](Page& one) { return !one.refused.is_null(); }));
+  EXPECT_NE(page->refused.at("why").get<std::string>().find("takes no further note"), std::string::npos);
+  EXPECT_EQ(console_->take_notes().size(), fit);
+  EXPECT_LT(console_->state().size(), 16'000U);
+}
+
 TEST_F(ConsoleOfASession, NotesReachTheRecording) {
   auto page = open(token_);
   page->tell(R"({"command":"note","text":"the participant talked"})");
