@@ -434,53 +434,6 @@ TEST_F(ConsoleOfASession, SamplesThatAreTooManyForAFrameAreLeftOutAndCounted) {
   EXPECT_EQ(state.at("dropped_ticks"), 5);
 }
 
-TEST_F(ConsoleOfASession, NotesAreBoundedAndSaidToBe) {
-  auto page = open(token_);
-  ASSERT_TRUE(page->read_until([](Page& one) { return !one.state.is_null() && one.you["controls"] == true; }));
-  const auto note = [&](const std::string& text) {
-    page->refused = {};
-    page->tell(Json{{"command", "note"}, {"text", text}}.dump());
-  };
-  // with accents, of two bytes each, so that bytes and not characters are counted
-  std::string text;
-  while (text.size() < 1800) text += "ä";
-  std::size_t accepted = 0;
-  for (; accepted < kMostNotes + 1; ++accepted) {
-    const auto count = page->state.at("note_count").get<std::uint64_t>();
-    note(text);
-    ASSERT_TRUE(page->read_until(
-        [&](Page& one) { return !one.refused.is_null() || one.state.at("note_count").get<std::uint64_t>() > count; }));
-    if (!page->refused.is_null()) {
-      if (page->refused.at("why").get<std::string>().find("a second") == std::string::npos) break;
-      --accepted;  // too fast; once more
-      std::this_thread::sleep_for(100ms);
-    }
-  }
-  EXPECT_EQ(accepted, kMostNoteBytes / text.size());
-  EXPECT_NE(page->refused.at("why").get<std::string>().find("takes no further note"), std::string::npos);
-  EXPECT_LT(console_->state().size(), 16'000U);
-  EXPECT_EQ(page->state.at("note_count"), accepted);
-  EXPECT_LT(page->state.at("notes").size(), accepted);
-
-  // all that were accepted are in the recording, and the next one has room of its own
-  const auto outcome = perform(session_, folder_ / "trial.h5");
-  const auto notes = console_->take_notes();
-  ASSERT_EQ(notes.size(), accepted);
-  const auto ok = session::annotate(outcome.recording, notes);
-  ASSERT_TRUE(ok) << ok.error().line();
-  const std::string& all = recording::read(outcome.recording, {}).value().metadata.at("notes");
-  EXPECT_EQ(all.size(), accepted * text.size() + (accepted - 1) * 3);
-  page = open(token_);  // the one before read nothing meanwhile
-  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
-  note("refused, as that recording is full");
-  EXPECT_TRUE(page->read_until([](Page& one) { return !one.refused.is_null(); }));
-  perform(session_, folder_ / "second.h5");
-  page = open(token_);
-  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
-  note("of the second");
-  EXPECT_TRUE(soon([&] { return console_->take_notes() == std::vector<std::string>{"of the second"}; }));
-}
-
 TEST_F(ConsoleOfASession, LongSentencesAreCutInTheState) {
   std::string words;
   while (words.size() < 1'000'000) words += "Zu großer Weg. ";

@@ -2,11 +2,14 @@
 // what no simulated robot does. A line each:
 //   robot {"motors": "on", "confirmed_off": false, "stop_button": false, "link": true, "fault": 0, "sentence": ""}
 //   ask reset      the page is asked, and what it decided is printed; "begin" and "after" too
+//   report FILE    the report of its trial
 //   quit
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -70,6 +73,9 @@ int main() {
     const std::string what = line.substr(0, line.find(' ')), rest = line.substr(line.find(' ') + 1);
     if (what == "robot") {
       (*console)->show_robot(robot_of(nlohmann::json::parse(rest)));
+    } else if (what == "report") {
+      std::ifstream file(rest, std::ios::binary);
+      (*console)->show_report(std::string(std::istreambuf_iterator<char>(file), {}));
     } else if (what == "ask" && !asking.joinable()) {
       const Question question = rest == "reset" ? Question::reset : rest == "after" ? Question::after : Question::begin;
       asking = std::thread([&console, question] { ask(**console, question); });
