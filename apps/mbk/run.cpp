@@ -200,12 +200,13 @@ fs::path next_free(const fs::path& target) {
 
 /// The loudest thing that this program says.
 std::string alarm(const safety::MotorsOff& motors) {
-  const std::string line(report::kLineColumns, '!');
+  constexpr std::size_t kColumns = 78;  // any terminal's
+  const std::string line(kColumns, '!');
   return fmt::format(
       "\a\n{0}\n!!  MOTORS NOT CONFIRMED OFF\n!!  Press the hardware stop button: cut the motors' power. Let nobody "
       "touch the "
       "robot.\n{0}\n{1}\n\n",
-      line, report::wrapped("The motors are " + safety::sentence(motors) + ".", report::kLineColumns));
+      line, report::wrapped("The motors are " + safety::sentence(motors) + ".", kColumns));
 }
 
 /// Whatever else went wrong.   @returns  whether there was reason to
