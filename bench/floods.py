@@ -30,7 +30,7 @@ import threading
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-PATIENCE = 20.0  # for what is to happen at all [s]
+PATIENCE = 60.0  # for what is to happen at all [s]
 MOST = 300  # connections that a flood holds open at once
 LONGEST = 600.0  # of a flood, however long its stops take [s]
 

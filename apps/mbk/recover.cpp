@@ -67,11 +67,12 @@ Action add_recover(CLI::App& app) {
       "  mbk recover p07_relaxed.h5.journal\n"
       "      writes p07_relaxed.h5 and then removes the journal\n"
       "  mbk recover p07_relaxed.h5.journal --out p07.mat --keep\n\n"
-      "Every block of the journal has a checksum, and its ticks are numbered. Every whole block comes back, wherever\n"
-      "it stands; a tick that is missing becomes a row of NaN and is said, here and in the recording ('ended',\n"
-      "'ticks_lost', 'gaps'). A journal that is not exactly as it was written is never removed. 'mbk info' of the\n"
-      "recording says how it ended.\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost (the recording is there).");
+      "Every block of the journal has a checksum, and its ticks are numbered. Every whole block comes back,\n"
+      "wherever it stands. A tick that is missing becomes a row of NaN and is said, here and in the recording\n"
+      "('ended', 'ticks_lost', 'gaps'; see 'mbk info'). A journal that is not exactly as it was written is\n"
+      "never removed.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost (what is left is then\n"
+      "in the recording).");
   command->add_option("JOURNAL", arguments->journal, "NAME.h5.journal, beside where the recording should be")
       ->required();
   command->add_option("--out", arguments->out, "the recording to write (NAME.h5)")

@@ -79,7 +79,9 @@ void RunConsole::show_robot(const safety::MotorsOff& motors) {
 }
 
 std::function<void(const session::IdleState&)> RunConsole::watching(session::Session& session) {
-  return [&session, console = console_.get()](const session::IdleState& seen) {
+  const safety::Gate* const gate = session.gate();
+  const bool missing = gate != nullptr && gate->motors().state == safety::MotorsOff::State::missing;
+  return [&session, console = console_.get(), missing](const session::IdleState& seen) {
     session.see_idle(seen);
     if (console == nullptr) return;
     console::RobotStatus status;
@@ -87,7 +89,11 @@ std::function<void(const session::IdleState&)> RunConsole::watching(session::Ses
     status.stop_button = seen.stop_button;
     status.fault = seen.fault;
     status.motors = seen.motors;
-    if (seen.motors != device::Motors::unknown) status.confirmed_off = seen.confirmed_off;
+    if (seen.confirmed_off) {
+      status.confirmed_off = true;
+    } else if (missing || seen.motors == device::Motors::on) {
+      status.confirmed_off = false;
+    }
     console->show_robot(status);
   };
 }

@@ -10,6 +10,7 @@
 
 #include "mbk/laboratory/find_scenario.h"
 #include "mbk/laboratory/simulated_device.h"
+#include "mbk/realtime/thread_setup.h"
 
 namespace {
 
@@ -39,6 +40,7 @@ int run(const std::string& name, const std::string& trial, const std::string& ad
   if (!served) return report(served.error());
   fmt::print("listening at UDP {}\n", served->local().text());
   std::fflush(stdout);
+  (void)realtime::prepare_thread();  // as a robot's own program has to; where that is refused it is held up more often
   served->serve(over, stop_button);
   return 0;
 }

@@ -183,7 +183,9 @@ TEST_F(ConsoleOfASession, ShowsItsPagesToWhoeverHasAToken) {
       const auto response = get(path + ("?token=" + token));
       EXPECT_EQ(response.result(), http::status::ok);
       EXPECT_NE(response.body().find("mbk console"), std::string::npos);
-      EXPECT_NE(response["Content-Security-Policy"].find("default-src 'none'"), std::string::npos);
+      const std::string policy(response["Content-Security-Policy"]);
+      EXPECT_NE(policy.find("default-src 'none'; script-src 'sha256-"), std::string::npos) << policy;
+      EXPECT_EQ(policy.find("unsafe"), std::string::npos) << policy;
       EXPECT_EQ(response[http::field::cache_control], "no-store");
     }
   }
@@ -430,6 +432,128 @@ TEST_F(ConsoleOfASession, SamplesThatAreTooManyForAFrameAreLeftOutAndCounted) {
   const Json state = Json::parse(console_->state());
   EXPECT_GE(state.at("skipped_samples"), 1'000'000 - 8192);
   EXPECT_EQ(state.at("dropped_ticks"), 5);
+}
+
+TEST_F(ConsoleOfASession, NotesAreBoundedAndSaidToBe) {
+  auto page = open(token_);
+  ASSERT_TRUE(page->read_until([](Page& one) { return !one.state.is_null() && one.you["controls"] == true; }));
+  const auto note = [&](const std::string& text) {
+    page->refused = {};
+    page->tell(Json{{"command", "note"}, {"text", text}}.dump());
+  };
+  // with accents, of two bytes each, so that bytes and not characters are counted
+  std::string text;
+  while (text.size() < 1800) text += "ä";
+  std::size_t accepted = 0;
+  for (; accepted < kMostNotes + 1; ++accepted) {
+    const auto count = page->state.at("note_count").get<std::uint64_t>();
+    note(text);
+    ASSERT_TRUE(page->read_until(
+        [&](Page& one) { return !one.refused.is_null() || one.state.at("note_count").get<std::uint64_t>() > count; }));
+    if (!page->refused.is_null()) {
+      if (page->refused.at("why").get<std::string>().find("a second") == std::string::npos) break;
+      --accepted;  // too fast; once more
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+  EXPECT_EQ(accepted, kMostNoteBytes / text.size());
+  EXPECT_NE(page->refused.at("why").get<std::string>().find("takes no further note"), std::string::npos);
+  EXPECT_LT(console_->state().size(), 16'000U);
+  EXPECT_EQ(page->state.at("note_count"), accepted);
+  EXPECT_LT(page->state.at("notes").size(), accepted);
+
+  // all that were accepted are in the recording, and the next one has room of its own
+  const auto outcome = perform(session_, folder_ / "trial.h5");
+  const auto notes = console_->take_notes();
+  ASSERT_EQ(notes.size(), accepted);
+  const auto ok = session::annotate(outcome.recording, notes);
+  ASSERT_TRUE(ok) << ok.error().line();
+  const std::string& all = recording::read(outcome.recording, {}).value().metadata.at("notes");
+  EXPECT_EQ(all.size(), accepted * text.size() + (accepted - 1) * 3);
+  page = open(token_);  // the one before read nothing meanwhile
+  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  note("refused, as that recording is full");
+  EXPECT_TRUE(page->read_until([](Page& one) { return !one.refused.is_null(); }));
+  perform(session_, folder_ / "second.h5");
+  page = open(token_);
+  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  note("of the second");
+  EXPECT_TRUE(soon([&] { return console_->take_notes() == std::vector<std::string>{"of the second"}; }));
+}
+
+TEST_F(ConsoleOfASession, LongSentencesAreCutInTheState) {
+  std::string words;
+  while (words.size() < 1'000'000) words += "Zu großer Weg. ";
+  console_->say(words);
+  console_->show_report("", words);
+  RobotStatus robot;
+  robot.sentence = words;
+  console_->show_robot(robot);
+  const std::string state = console_->state();
+  EXPECT_LT(state.size(), 8'000U);
+  EXPECT_EQ(state.find("\xEF\xBF\xBD"), std::string::npos);  // no character was cut in two
+  EXPECT_NE(Json::parse(state).at("said").get<std::string>().find("Zu großer Weg. "), std::string::npos);
+}
+
+TEST_F(ConsoleOfASession, TheLastReportsAreKept) {
+  for (int k = 1; k <= 40; ++k) console_->show_report("<p>report " + std::to_string(k));
+  EXPECT_EQ(get("/report/1?token=" + token_).result(), http::status::not_found);
+  EXPECT_EQ(get("/report/40?token=" + token_).body(), "<p>report 40");
+  EXPECT_EQ(Json::parse(console_->state()).at("trials").at(0).at("report"), 40);
+}
+
+TEST_F(ConsoleOfASession, TheRobotsStateIsShownAtOnceFromAnyThread) {
+  auto page = open(viewing_token_);
+  ASSERT_TRUE(page->read_until([](Page& one) { return !one.state.is_null(); }));
+  const Json nothing = {{"motors", "unknown"},  {"confirmed_off", nullptr},
+                        {"stop_button", false}, {"link", true},
+                        {"fault", 0},           {"sentence", ""}};
+  EXPECT_EQ(page->state.at("robot"), nothing);
+  std::vector<std::thread> others;
+  for (int k = 0; k < 4; ++k) {
+    others.emplace_back([&, k] {
+      for (int i = 0; i < 200; ++i) {
+        RobotStatus robot;
+        robot.fault = 200 * k + i;
+        console_->show_robot(robot);
+      }
+    });
+  }
+  for (std::thread& other : others) other.join();
+  RobotStatus robot;
+  robot.motors = RobotStatus::Motors::on;
+  robot.confirmed_off = false;
+  robot.stop_button = true;
+  robot.link = false;
+  robot.fault = 17;
+  robot.sentence = "the drives still report 3 N·m";
+  console_->show_robot(robot);
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.state.at("robot").at("fault") == 17; }));
+  const Json all = {{"motors", "on"},      {"confirmed_off", false},
+                    {"stop_button", true}, {"link", false},
+                    {"fault", 17},         {"sentence", "the drives still report 3 N·m"}};
+  EXPECT_EQ(page->state.at("robot"), all);
+  robot.confirmed_off = true;
+  console_->show_robot(robot);
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.state.at("robot").at("confirmed_off") == true; }));
+}
+
+TEST_F(ConsoleOfASession, ANoteNeverTakesThePlaceOfAnAnswer) {
+  auto page = open(token_);
+  const auto asks = [](const char* question) {
+    return [=](Page& one) { return !one.state.is_null() && one.state["question"] == question; };
+  };
+  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  for (int k = 0; k < 20; ++k) {
+    Action decided = Action::stop;
+    std::thread asking([&] { decided = console_->ask(Question::begin); });
+    EXPECT_TRUE(page->read_until(asks("begin")));
+    page->tell(R"({"command":"start"})");
+    page->tell(R"({"command":"note","text":"begun"})");
+    asking.join();
+    ASSERT_EQ(decided, Action::start) << k;
+    ASSERT_TRUE(page->read_until(asks("")));
+  }
 }
 
 TEST_F(ConsoleOfASession, NotesReachTheRecording) {

@@ -22,6 +22,7 @@
 
 #include "mbk/console/refusals.h"
 #include "mbk/core/printable.h"
+#include "mbk/realtime/signal_stack.h"
 
 namespace mbk::console {
 namespace {
@@ -207,6 +208,7 @@ class Server::Implementation {
     next_beat_ = std::chrono::steady_clock::now();
     wait_for_beat();
     thread_ = std::thread([this] {
+      const realtime::SignalStack stack;
       // what a handler throws leaves run(), which goes on with the others when it is called again
       while (!guarded([this] { context_.run(); })) {
       }

@@ -158,6 +158,23 @@ TEST(Sequencer, BrakesAtOnceHoweverLongTheWayBackTakes) {
   EXPECT_LT(away, 0.15 * rate.norm());  // 0.2 s to rest
 }
 
+TEST(Sequencer, RefusesPhasesThatNeverEnd) {
+  // As ticks they would be no whole number any more, and a soft start over at once.
+  const Schedule schedule = pulses(Quantity::position, 0.01);
+  const auto trial = TrialControl::create(PositionMode{}, schedule, geometry(), kHome, kTick).value();
+  for (double SequenceOptions::*time : {&SequenceOptions::soft_start, &SequenceOptions::shortest_move,
+                                        &SequenceOptions::settle, &SequenceOptions::handover}) {
+    SequenceOptions options;
+    options.*time = 1e300;
+    EXPECT_FALSE(Sequencer::create(trial, options, geometry(), kTick));
+    options.*time = 3600.0;
+    EXPECT_TRUE(Sequencer::create(trial, options, geometry(), kTick));
+  }
+  SequenceOptions slow;
+  slow.move_speed = 1e-300;
+  EXPECT_FALSE(Sequencer::create(trial, slow, geometry(), kTick));
+}
+
 TEST(Sequencer, DoesNotAllocate) {
   Sequencer sequence = sequencer(PositionMode{}, pulses(Quantity::position, 0.01));
   const Vector2d start = robot::joint_angles(geometry(), kStart).value();

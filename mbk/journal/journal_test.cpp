@@ -35,7 +35,7 @@ class JournalFile : public testing::Test {
     ASSERT_TRUE(writer) << writer.error().line();
     for (int b = 0; b < blocks; ++b) ASSERT_TRUE(writer->append(ticks(50 * b, 50 * b + 50)));
     if (end) {
-      ASSERT_TRUE(writer->end({"completed", "", 3, 2, 0}));
+      ASSERT_TRUE(writer->end({"completed", "", 3, 2, static_cast<std::uint64_t>(50 * blocks)}));
     }
   }
 

@@ -130,6 +130,15 @@ Result<void> Preparer::cut(const Recording& recording, Piece piece, bool even, d
   const double reach = options_.fit.find_delay ? options_.fit.most_delay : options_.fit.delay;
   Index past = begin;
   while (past > piece.begin && recording.time[past] > recording.time[begin] - reach) --past;
+  for (const std::string& name : {options_.input, options_.output, options_.reference}) {
+    if (name.empty()) continue;
+    const Channel& channel = *channel_of(recording, name).value();
+    const Index bad = first_non_finite(channel.values.segment(past, end - past));
+    if (bad < 0) continue;
+    return bad_data(fmt::format("channel '{}' is not a finite number at sample {} ({:.6f} s)", channel.name,
+                                past + bad + 1, recording.time[past + bad] - start),
+                    "choose a window without it with --from and --to; 'mbk info' names missing samples");
+  }
   SignalPair pair;
   const auto taken = [&](const std::string& name) {
     return Vector(channel_of(recording, name).value()->values.segment(past, end - past));

@@ -156,6 +156,8 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   }
   const Hertz rate(inspection.rate_hz);
   const Clock clock(recording.time, rate);
+  if (auto ok = check_missing(clock, inspection.missing, options.signals.window); !ok)
+    return tl::unexpected(ok.error());
   const auto signals = select_joint_signals(recording, *model.mechanism, false);
   if (!signals) return tl::unexpected(signals.error());
 

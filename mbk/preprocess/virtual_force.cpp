@@ -90,6 +90,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   const auto plan = improved_windows(Protocol::free, {}, clock, limits);
   if (!plan) return tl::unexpected(plan.error());
   std::vector<Warning> warnings;
+  if (auto ok = check_missing(clock, inspection.missing, limits); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_clock(clock, inspection.interval_median, *plan, warnings); !ok) {
     return tl::unexpected(ok.error());
   }

@@ -31,16 +31,17 @@ Violation ReportCheck::check_clock(const RobotReport& report, double now, bool k
   const double step = report.time - last_, step_now = now - last_now_;
   if (begun_ && !(step > 0.0)) return {Reason::robot_clock, step, 0.0};
   const double behind = now - report.time;
-  if (!begun_) {
+  const bool settled = settled_;
+  if (!settled) {  // the first state may have waited for the loop to begin: the two clocks are compared from the second
     fastest_ = behind;
     window_ = report.time;
     window_now_ = now;
+    settled_ = begun_;
   }
   last_ = report.time;
   last_now_ = now;
-  const bool first = !begun_;
   begun_ = true;
-  if (!keeps_time || first) return {};
+  if (!keeps_time || !settled) return {};
   const double ahead = (report.time - window_) - (now - window_now_);
   if (const double most = kClockStep + kFasterBy * (now - window_now_); ahead > most) {
     return {Reason::robot_clock, ahead, most};

@@ -105,6 +105,16 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+/// The robot was held up before the trial began: its last state waited, and the next one is much younger.
+TEST(ReportCheck, AFirstStateThatWaitedIsNoClockThatJumps) {
+  ReportCheck check(Limits{}, kTick);
+  for (int i = 0; i < 2000; ++i) {
+    RobotReport report = honest(i);
+    if (i == 0) report.time -= 0.1;
+    ASSERT_FALSE(check.check(report, kTick * i, true, static_cast<std::uint64_t>(i))) << i;
+  }
+}
+
 TEST(ReportCheck, AMomentWithoutMotorsIsNoContradiction) {
   EXPECT_EQ(watch([](RobotReport& r, int k) { r.motors = k % 100 < 80 ? Motors::off : Motors::on; }).ticks, -1);
 }

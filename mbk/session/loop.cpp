@@ -48,7 +48,7 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
   const device::Facts& facts = robot.facts();
   device::State state;
   std::uint64_t last_sequence = 0;
-  double compute = 0.0, first_time = 0.0, left = 0.0;
+  double compute = 0.0, first_time = 0.0, left = 0.0, interval = 0.0;
   bool link = true;
   clock.start();
   for (std::uint64_t number = 0; !gate.settled(); ++number) {
@@ -74,7 +74,8 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     seen.operator_stop = signals.operator_stop.load(std::memory_order_relaxed);
     seen.recording = signals.recording.load(std::memory_order_relaxed) &&
                      (facts.keeps_time ? ticks.room() > ticks.capacity() / 4 : wait_for_room(ticks));
-    const double overdue = std::max(0.0, now - left - clock.period());  // what a stall inside a tick costs is in it
+    // a stall inside a tick is in it, before the command left or behind it
+    const double overdue = std::max(0.0, std::max(now - left, interval) - clock.period());
     seen.late = facts.keeps_time ? overdue : 0.0;
     seen.keeps_time = facts.keeps_time;
     seen.report = report_of(facts, state);
@@ -90,7 +91,10 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     link = robot.write({number, decision.torque, decision.enabled}) && link;
     last_sequence = state.sequence;
     const double leaves = clock.now();
-    if (number > 0) times.interval.add(static_cast<std::int64_t>(1e9 * (leaves - left)));
+    if (number > 0) {
+      interval = leaves - left;
+      times.interval.add(static_cast<std::int64_t>(1e9 * interval));
+    }
     left = leaves;
 
     journal::Tick tick;

@@ -1,13 +1,18 @@
 #include "mbk/session/session.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
+#include <thread>
 
 #include "mbk/laboratory/simulated_device.h"
 #include "mbk/recording/read.h"
@@ -128,7 +133,9 @@ TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
     const auto recording = recording::read(target, {});
     ASSERT_TRUE(recording) << recording.error().line();
     EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
-    if (known) EXPECT_NE(recording->metadata.at("ended_detail").find("nothing was shown from tick"), std::string::npos);
+    if (known) {
+      EXPECT_NE(recording->metadata.at("ended_detail").find("nothing was shown from tick"), std::string::npos);
+    }
   }
 }
 
@@ -168,6 +175,123 @@ TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
     ASSERT_TRUE(session.perform(*robot, t, target_));
   }
   EXPECT_NE(refusal(t).find("is there already"), std::string::npos);
+}
+
+/// A robot on the real clock that a test can disturb.
+class DisturbedDevice : public device::Device {
+ public:
+  explicit DisturbedDevice(device::Device& inner) : inner_(&inner), facts_(inner.facts()) { facts_.keeps_time = true; }
+  [[nodiscard]] const device::Facts& facts() const override { return facts_; }
+  [[nodiscard]] Result<void> start() override { return inner_->start(); }
+  bool read(device::State& state) noexcept override {
+    const bool fine = inner_->read(state);
+    state.stop = button;
+    if (stuck_on) state.motors = device::Motors::on;
+    return fine;
+  }
+  bool write(const device::Command& command) noexcept override {
+    if (command.tick == stall_at) std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    commands_off += command.enabled ? 0 : 1;
+    return inner_->write(command);
+  }
+  void stop() noexcept override { inner_->stop(); }
+
+  std::atomic<bool> button{false}, stuck_on{false};
+  std::atomic<int> commands_off{0};
+  std::uint64_t stall_at = std::numeric_limits<std::uint64_t>::max();
+
+ private:
+  device::Device* inner_;
+  device::Facts facts_;
+};
+
+/// The machine may be late by itself; what is looked at is a stall of 300 ms behind the clock's look at the time.
+TEST_F(SessionFolder, AStallInsideATickIsLate) {
+  Trial t = trial();
+  t.limits.lateness = 0.25;
+  t.limits.link_silence = 1.0;
+  t.limits.state_age = 0.0;
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  DisturbedDevice device(*robot);
+  device.stall_at = 200;
+  Session session;
+  const auto outcome = session.perform(device, t, target_);
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->trip.reason, safety::Reason::late) << safety::sentence(outcome->trip);
+  EXPECT_GE(outcome->trip.value, 0.29);
+  EXPECT_GE(outcome->times.interval.worst(), 290'000'000);
+}
+
+TEST_F(SessionFolder, ATrialWhoseMotorsStayOnIsNotCompleted) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  DisturbedDevice device(*robot);
+  device.stuck_on = true;
+  realtime::VirtualClock clock(1e-3, 40.0);
+  Session session({true, 0.0, &clock});
+  const auto outcome = session.perform(device, t, target_);
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->trip.reason, safety::Reason::motors_on);
+  EXPECT_EQ(outcome->motors.state, safety::MotorsOff::State::missing);
+  EXPECT_NE(outcome->ending.how, "completed");
+  const auto recording = recording::read(target_, {});
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->metadata.at("trip"), "motors-on");
+  EXPECT_NE(recording->metadata.at("motors_off").find("NOT CONFIRMED OFF"), std::string::npos);
+
+  EXPECT_FALSE(session.reset()) << "while the motors may be on";
+  const auto until_reset = [&] {
+    for (int i = 0; i < 200; ++i) {
+      if (session.reset()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+  };
+  const IdleWatch idle(device, [&](const IdleState& seen) { session.see_idle(seen); });
+  device.stuck_on = false;
+  EXPECT_TRUE(until_reset());
+  EXPECT_GT(device.commands_off, 500);  // "off" is said all the while
+}
+
+TEST_F(SessionFolder, AStopButtonThatIsReleasedBetweenTrialsLetsResetThrough) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  DisturbedDevice device(*robot);
+  realtime::VirtualClock clock(1e-3, 40.0);
+  Session session({true, 0.0, &clock});
+  const auto outcome = session.perform(device, t, target_, [&](std::span<const journal::Tick> ticks) {
+    if (ticks.back().time > 1.0) device.button = true;
+  });
+  ASSERT_TRUE(outcome) << outcome.error().line();
+  EXPECT_EQ(outcome->trip.reason, safety::Reason::stop_button);
+  std::atomic<int> pressed{0}, released{0};
+  const IdleWatch idle(device, [&](const IdleState& seen) {
+    session.see_idle(seen);
+    ++(seen.stop_button ? pressed : released);
+  });
+  const auto wait_for = [](const std::atomic<int>& count) {
+    for (int i = 0; i < 200 && count == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return count > 0;
+  };
+  ASSERT_TRUE(wait_for(pressed));
+  const auto refused = session.reset();
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().line().find("stop button"), std::string::npos);
+  device.button = false;
+  ASSERT_TRUE(wait_for(released));
+  EXPECT_TRUE(session.reset());
+}
+
+TEST_F(SessionFolder, NothingBeginsWhileTheStopButtonIsPressed) {
+  const Trial t = trial();
+  auto robot = SimulatedDevice::create(t.scenario).value();
+  DisturbedDevice device(*robot);
+  device.button = true;
+  Session session;
+  const auto refused = session.perform(device, t, target_);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().line().find("stop button is pressed"), std::string::npos) << refused.error().line();
+  EXPECT_FALSE(fs::exists(journal_of(target_)));
 }
 
 TEST_F(SessionFolder, AnUnfinishedJournalIsRecovered) {
@@ -355,7 +479,7 @@ class CountingDevice : public device::Device {
   [[nodiscard]] const device::Facts& facts() const override { return inner_->facts(); }
   [[nodiscard]] Result<void> start() override { return inner_->start(); }
   bool read(device::State& state) noexcept override {
-    if (first_ < 0) first_ = testing_support::allocations();
+    if (++reads_ == 2) first_ = testing_support::allocations();  // the first one is before the loop, in another thread
     return inner_->read(state);
   }
   bool write(const device::Command& command) noexcept override {
@@ -373,7 +497,8 @@ class CountingDevice : public device::Device {
   Plant plant_;
   std::unique_ptr<int> object_;
   Eigen::MatrixXd matrix_;
-  long first_ = -1, last_ = 0;
+  int reads_ = 0;
+  long first_ = 0, last_ = 0;
 };
 
 TEST_F(SessionFolder, TheLoopDoesNotAllocateWhileItIsRecordedAndAPlantedAllocationIsSeen) {
@@ -414,16 +539,19 @@ double resident() {
   return here * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
+/// Two minutes; MBK_SESSION_SECONDS=3600 makes it an hour, as with the thread sanitizer.
 TEST_F(SessionFolder, MemoryStaysFlatAndNothingIsDropped) {
+  const char* const asked = std::getenv("MBK_SESSION_SECONDS");
+  const int seconds = asked != nullptr ? std::max(120, std::atoi(asked)) : 120;
   std::string text = kExperiment;
-  text.replace(text.find("duration_s = 6"), 14, "duration_s = 120");
+  text.replace(text.find("duration_s = 6"), 14, fmt::format("duration_s = {}", seconds));
   const Trial t = trial(text);
   auto robot = SimulatedDevice::create(t.scenario).value();
   Session session(kFast);
-  double early = 0.0, late = 0.0;  // bench_session does it for an hour
+  double early = 0.0, late = 0.0;
   const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
     if (early == 0.0 && ticks.back().time > 20.0) early = resident();
-    if (ticks.back().time > 115.0) late = resident();
+    if (ticks.back().time > seconds - 5.0) late = resident();
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->ending.dropped, 0U);

@@ -89,7 +89,7 @@ def faults_of(task, groups):
 
 def shuffled(lists, lot):
     """One of each list in turn, from anywhere in it, until all are used up."""
-    lists = [lot.sample(one, len(one)) for one in lists]
+    lists = lot.sample([lot.sample(one, len(one)) for one in lists], len(lists))
     while any(lists):
         for one in lists:
             if one:

@@ -19,7 +19,7 @@ import threading
 import zlib
 
 GROUPS = ("write", "sync", "open", "name", "read", "status", "socket", "sleep", "clock", "memory", "thread")
-FINE, SAFETY_STOP = 0, 5
+FINE, SAFETY_STOP, NOT_CONFIRMED = 0, 5, 7
 LONGEST = 60  # [s] of one command: what takes longer hangs
 COUNTS = struct.Struct("=12Q")
 
@@ -230,10 +230,14 @@ class Task:
     def was_told(self, ran, fault):
         if ran.code == FINE and self.shown(ran.out) != self.shown(self.reference.out):
             return "exit 0, and what is printed is not whole"
-        # Where nothing can be written any more, the exit code has to say it alone.
-        if ran.code != FINE and not ran.message and not (fault.group == "write" and fault.sticky):
+        if ran.code != FINE and not ran.message and not self.speechless(fault):
             return f"exit {ran.code} without a line that says why"
         return ""
+
+    @staticmethod
+    def speechless(fault):
+        """Nothing can be written any more: the exit code has to say it alone."""
+        return fault.group == "write" and fault.sticky
 
     def shown(self, out):
         """What two runs without a fault print alike."""
@@ -322,7 +326,7 @@ class Session(Task):
     def take_reference(self, folder):
         self.truth = self.reference.robot
         self.kept = len(rows(folder / "x.h5", folder)["time_s"])
-        problem = self.judge_rows(self.reference, folder)
+        problem = self.judge_rows(self.reference, folder, Fault())
         if problem:
             raise AssertionError(f"session without a fault: {problem}")
 
@@ -332,10 +336,12 @@ class Session(Task):
     def was_told(self, ran, fault):
         if ran.code == SAFETY_STOP and "safety stop" in ran.out:
             return ""
+        if ran.code == NOT_CONFIRMED and "NOT CONFIRMED OFF" in ran.err:
+            return ""
         return super().was_told(ran, fault)
 
     def judge_files(self, ran, folder, fault):
-        return self.judge_robot(ran, fault) or self.judge_rows(ran, folder)
+        return self.judge_robot(ran, fault) or self.judge_rows(ran, folder, fault)
 
     def judge_robot(self, ran, fault):
         """The motors end without torque: off, and before that on a ramp."""
@@ -353,7 +359,7 @@ class Session(Task):
             return f"the torque ends at {size[driven[-1]]:.3g} of {before:.3g} N·m, without a ramp"
         return ""
 
-    def judge_rows(self, ran, folder):
+    def judge_rows(self, ran, folder, fault):
         """Every tick that the robot saw is in the recording or in the journal, as the robot saw it."""
         target, journal = folder / "x.h5", folder / "x.h5.journal"
         commands = ran.robot.commands
@@ -370,7 +376,7 @@ class Session(Task):
             if recovered.code != FINE:
                 if not recovered.message:
                     return f"the journal cannot be recovered: {recovered}"
-                return "" if self.said_loss(ran) or not ticks else f"the journal has no ticks: {recovered.message}"
+                return "" if self.said_loss(ran, fault) or not ticks else f"the journal has no ticks: {recovered.message}"
         found = rows(made, folder)
         if found is None:
             return f"{made.name} does not open"
@@ -383,11 +389,13 @@ class Session(Task):
                 return f"row {k} is not what the robot saw"
         if ran.code == FINE and (commands[:ticks] != self.truth.commands[:ticks] or kept != self.kept):
             return f"exit 0, and {kept} ticks are there, of {self.kept} in a whole run"
-        if kept < ticks and not self.said_loss(ran):
+        if kept < ticks and not self.said_loss(ran, fault):
             return f"{ticks - kept} of {ticks} ticks are missing, and nobody says so"
         return ""
 
-    def said_loss(self, ran):
+    def said_loss(self, ran, fault):
+        if self.speechless(fault) and ran.code != FINE:
+            return True
         return re.search(r"not written|dropped|lost|missing|cannot be made|no space", ran.err + ran.out) is not None
 
 

@@ -110,9 +110,11 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await take(page, "console-over");
   const served = await open(report.url()); // under the policy of its own scripts and styles
   await scrollThrough(served.page);
-  await served.page.locator("svg path").first().waitFor();
-  await served.page.locator("figure svg").first().hover();
-  await served.page.waitForTimeout(300);
+  assert.match(await served.page.locator(".matrix").first().evaluate((matrix) => getComputedStyle(matrix).gridTemplateColumns), /px .*px/);
+  const chart = served.page.locator("[_echarts_instance_]").first();
+  await chart.scrollIntoViewIfNeeded();
+  await chart.hover();
+  await served.page.getByText(/^time [\d.]+ s/).first().waitFor(); // the tooltip
   assert.deepEqual(served.said, []);
   assert.deepEqual(served.outside(), []);
   await take(served.page, "console-report");
