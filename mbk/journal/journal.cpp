@@ -234,10 +234,9 @@ bool Writer::reaches_disk() const noexcept {
 Writer::Place Writer::place() const {
   struct stat open_file {
   }, named{};
-  if (fstat(descriptor_, &open_file) != 0) return Place::gone;
-  if (stat(file_.c_str(), &named) != 0 || named.st_ino != open_file.st_ino || named.st_dev != open_file.st_dev) {
-    return Place::gone;
-  }
+  if (fstat(descriptor_, &open_file) != 0) return Place::here;  // nobody can say
+  if (stat(file_.c_str(), &named) != 0) return errno == ENOENT || errno == ENOTDIR ? Place::gone : Place::here;
+  if (named.st_ino != open_file.st_ino || named.st_dev != open_file.st_dev) return Place::gone;
   return open_file.st_size < end_ ? Place::cut : Place::here;
 }
 

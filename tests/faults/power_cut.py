@@ -28,6 +28,7 @@ from programs import FINE, Fault
 
 RECORD = struct.Struct("=c3xIQQQ")
 SECTOR = 512
+MIN_CUTS = 5  # of each command, where the machine is slow
 KEEP_SIZE = 1  # of fallocate
 
 
@@ -292,16 +293,16 @@ def main():
     tried, wrong, synced = collections.Counter(), [], collections.Counter()
     kinds = [kind for kind in (programs.Session, programs.Recover, programs.Convert)
              if kind.name in (arguments.command or ("session", "recover", "convert"))]
-    for index, kind in enumerate(kinds):
-        share = arguments.seconds * (index + 1) / len(kinds)
+    for kind in kinds:
         with tempfile.TemporaryDirectory(prefix="mbk-power-") as folder:
             folder = pathlib.Path(folder)
             traced = Traced(kind(folder), folder)
             before, root, events = traced.trace(folder)
             if arguments.forget_syncs:
                 events = [event for event in events if event[0] not in "BE"]
+            until = time.monotonic() + arguments.seconds / len(kinds)
             synced[kind.name] = sum(event[0] == "E" for event in events)
-            while (tried[kind.name] < arguments.cuts if arguments.cuts else time.monotonic() - begin < share):
+            while tried[kind.name] < (arguments.cuts or MIN_CUTS) or (not arguments.cuts and time.monotonic() < until):
                 moment = lot.randint(0, len(events))
                 disk = Disk(before, root)
                 for event in events[:moment]:
