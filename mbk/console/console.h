@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "mbk/console/server.h"
+#include "mbk/device/device.h"
 #include "mbk/measurement/measure.h"
 #include "mbk/realtime/cycle_record.h"
 #include "mbk/session/live_estimate.h"

@@ -312,9 +312,9 @@ MotorsOff::Why Gate::missing_for_off(const Observation& seen) noexcept {
   if (report.answered < off_command_ || report.answered >= ticks_) return Why::not_answered;
   if (report.motors != Motors::off) return Why::flag;
   motors_.torque = report.drives_measure ? report.drive_torque.cwiseAbs().maxCoeff() : 0.0;
-  const bool checked = limits_.torque_error > 0.0;
-  if (checked && report.drives_measure && !(motors_.torque <= limits_.torque_error)) return Why::drives;
-  motors_.by_motion = checked && seen.has_force && !distrusts_sensors(trip_.reason);
+  if (report.drives_measure && !(motors_.torque <= limits_.off_torque)) return Why::drives;
+  motors_.by_motion = limits_.torque_error > 0.0 && seen.has_force && !distrusts_sensors(trip_.reason);
+  motors_.limit = limits_.torque_error;
   if (!motors_.by_motion) return Why::nothing;
   if (!seen.joint.allFinite() || !seen.force.allFinite()) return Why::motion;
   const double time = report.time > stamp_ ? report.time : stamp_ + sample_time_;

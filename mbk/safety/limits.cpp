@@ -19,7 +19,8 @@ Result<void> check(const Limits& limits) {
                             {"safety: torque at a resting encoder", limits.frozen_torque, "N·m"},
                             {"safety: silence of the link", limits.link_silence, "s"},
                             {"safety: reply of the motors", limits.motors_reply, "s"},
-                            {"safety: time for the motors to go off", limits.motors_off, "s"}});
+                            {"safety: time for the motors to go off", limits.motors_off, "s"},
+                            {"safety: torque of motors that are off", limits.off_torque, "N·m"}});
       !ok) {
     return ok;
   }

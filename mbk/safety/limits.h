@@ -35,6 +35,7 @@ struct Limits {
   double motors_off = 0.5;     ///< after the stop, until the robot must have said that its motors are off [s] > 0
   double torque_error = 0.5;   ///< of the motors' torque, as drives or motion show it, against the command [N·m];
                                ///< 0: not checked
+  double off_torque = 0.1;     ///< that drives may still measure of motors that are off [N·m] > 0
 };
 
 /// @fails  usage: a limit is out of its range, with its name and unit; the rectangle is empty.

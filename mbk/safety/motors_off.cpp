@@ -50,8 +50,9 @@ std::string sentence(const MotorsOff& motors) {
     case MotorsOff::State::waiting:
       return "off was commanded, not confirmed yet";
     case MotorsOff::State::confirmed:
-      return fmt::format("confirmed off by the robot {:.3f} s after the stop{}", motors.after,
-                         motors.by_motion ? ", and its motion shows no torque" : "; its motion was not checked");
+      return fmt::format("confirmed off by the robot {:.3f} s after the stop; {}", motors.after,
+                         motors.by_motion ? fmt::format("its motion shows no torque above {:g} N·m", motors.limit)
+                                          : std::string("its motion was not checked"));
     case MotorsOff::State::missing:
       return fmt::format("NOT CONFIRMED OFF {:.1f} s after the stop: {}; cut their power with the hardware stop button",
                          motors.after, reason(motors));

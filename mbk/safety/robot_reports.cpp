@@ -8,7 +8,7 @@ namespace {
 
 /// How much faster the robot's clock may run than this one: a share of the time that it is looked at, and a step.
 constexpr double kFasterBy = 0.02, kClockStep = 0.02;  // [1], [s]
-constexpr double kRateWindow = 1.0;                    // [s]
+constexpr double kRateWindow = 1.0, kSettle = 0.1;     // [s]
 
 }  // namespace
 
@@ -31,24 +31,29 @@ Violation ReportCheck::check_clock(const RobotReport& report, double now, bool k
   const double step = report.time - last_, step_now = now - last_now_;
   if (begun_ && !(step > 0.0)) return {Reason::robot_clock, step, 0.0};
   const double behind = now - report.time;
-  const bool settled = settled_;
-  if (!settled) {  // the first state may have waited for the loop to begin: the two clocks are compared from the second
+  if (!begun_) {
+    began_ = now;
     fastest_ = behind;
+  }
+  // the two clocks are compared from the state on that came fastest in the first kSettle: those of before the trial may
+  // have waited for the loop to begin
+  const bool settling = now - began_ < kSettle;
+  if (!begun_ || (settling && behind <= window_now_ - window_) || now - window_now_ > kRateWindow) {
     window_ = report.time;
     window_now_ = now;
-    settled_ = begun_;
   }
   last_ = report.time;
   last_now_ = now;
+  const bool first = !begun_;
   begun_ = true;
-  if (!keeps_time || !settled) return {};
-  const double ahead = (report.time - window_) - (now - window_now_);
-  if (const double most = kClockStep + kFasterBy * (now - window_now_); ahead > most) {
-    return {Reason::robot_clock, ahead, most};
-  }
-  if (now - window_now_ > kRateWindow) {
-    window_ = report.time;
-    window_now_ = now;
+  if (!keeps_time || first) return {};
+  if (!settling) {
+    const double jump = step - step_now, most_jump = kClockStep + limits_.link_silence;
+    if (jump > most_jump) return {Reason::robot_clock, jump, most_jump};
+    const double ahead = (report.time - window_) - (now - window_now_);
+    if (const double most = kClockStep + kFasterBy * (now - window_now_); ahead > most) {
+      return {Reason::robot_clock, ahead, most};
+    }
   }
   fastest_ = std::min(fastest_ + kClockDrift * step_now, behind);
   age_ = behind - fastest_;

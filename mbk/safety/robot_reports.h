@@ -58,7 +58,8 @@ class ReportCheck {
 
   Limits limits_;
   double sample_time_;
-  bool begun_ = false, settled_ = false, measured_ = false;
+  bool begun_ = false, measured_ = false;
+  double began_ = 0.0;                      // here [s]
   double last_ = 0.0, last_now_ = 0.0;      // stamps of the state before, there and here [s]
   double fastest_ = 0.0, age_ = 0.0;        // here − there [s]
   double window_ = 0.0, window_now_ = 0.0;  // where the comparison of the two clocks' rates began [s]

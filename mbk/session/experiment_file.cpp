@@ -47,6 +47,7 @@ safety::Limits read_limits(const Section& s) {
   l.motors_reply = s.number("motors_reply_ms", l.motors_reply, above(0));
   l.motors_off = s.number("motors_off_ms", l.motors_off, above(0));
   l.torque_error = s.number("torque_error_Nm", l.torque_error, at_least(0));
+  l.off_torque = s.number("off_torque_Nm", l.off_torque, above(0));
   return l;
 }
 

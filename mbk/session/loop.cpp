@@ -55,13 +55,13 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     const double late = clock.wait();
     const std::int64_t begin = monotonic_ns();
     const bool reads = robot.read(state);
+    const double now = clock.now();  // when the state was here
     link = link && reads;
     if (signals.end_trial.load(std::memory_order_relaxed)) sequence.end_early();
     const bool over = gate.tripped() || gate.off();
     const control::Sequencer::Step step = over ? control::Sequencer::Step{} : sequence.step(state.joint);
     if (step.phase == control::Phase::done && !gate.tripped()) gate.release();
 
-    const double now = clock.now();
     if (number == 0) {
       first_time = now;
       left = now - clock.period();
