@@ -23,6 +23,7 @@ struct MotorsOff {
   bool by_motion = false;  ///< confirmed by the motion too: encoders and force sensor show no torque of the motors
   Why why = Why::nothing;
   double torque = 0.0;  ///< that drives or motion show [N·m]
+  double limit = 0.0;   ///< what the motion may show of motors that are off [N·m]
 };
 
 /// "confirmed", "not confirmed", "not reported": for files and machines.
