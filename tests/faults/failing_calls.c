@@ -156,6 +156,15 @@ static void note(char kind, int descriptor, uint32_t flags, uint64_t offset, con
   write_all(data, length);
 }
 
+static void note_two(const char* first, const char* second) {
+  char names[8192];
+  const size_t from = strlen(first) + 1, to = strlen(second);
+  if (from + to > sizeof names) _exit(99);
+  memcpy(names, first, from);
+  memcpy(names + from, second, to);
+  note('R', -1, 0, 0, names, from + to);
+}
+
 /// Makes the call and writes down what it did. One at a time, so that the order is the true one; but not the syncs,
 /// which others write beside.
 static long traced(long number, const greg_t* r) {
@@ -208,15 +217,13 @@ static long traced(long number, const greg_t* r) {
       case SYS_fdatasync:
         note('E', (int)a, 0, 0, "", 0);
         break;
-      case SYS_rename: {
-        char names[8192];
-        const size_t from = strlen((const char*)a) + 1, to = strlen((const char*)b);
-        if (from + to > sizeof names) _exit(99);
-        memcpy(names, (const char*)a, from);
-        memcpy(names + from, (const char*)b, to);
-        note('R', -1, 0, 0, names, from + to);
+      case SYS_rename:
+        note_two((const char*)a, (const char*)b);
         break;
-      }
+      case SYS_renameat:
+      case SYS_renameat2:
+        note_two((const char*)b, (const char*)d);
+        break;
       case SYS_unlink:
         note('U', -1, 0, 0, (const char*)a, strlen((const char*)a));
         break;
