@@ -334,7 +334,7 @@ std::vector<FaultKind> reports() {
        {102, 102},
        {Reason::motors_off},
        reported([](State& state, int) { state.motors = Motors::off; })},
-      {"says that its motors stay on", Onset::ending, {150, 150}, {Reason::motors_on}, reported([](State& state, int) {
+      {"says that its motors stay on", Onset::ending, {250, 250}, {Reason::motors_on}, reported([](State& state, int) {
          state.motors = Motors::on;
        })},
       {"force sensor is gone", Onset::anywhere, {0, 0}, {Reason::sensor_missing}, reported([](State& state, int) {
@@ -342,7 +342,7 @@ std::vector<FaultKind> reports() {
        })},
       {"drives hold the last torque, and say nothing",
        Onset::perturbing,
-       {2500, 2500},
+       {2500, 3500},
        {Reason::torque_disagrees, Reason::tracking, Reason::limited_too_long, Reason::excursion, Reason::speed},
        [](FaultRun& run, Random&) {
          run.keeps_time = true;
@@ -476,8 +476,8 @@ std::vector<FaultKind> pushes() {
        {Reason::workspace},
        [](FaultRun& run, Random& random) {
          safety::Limits& limits = only(run);
-         limits.workspace_low = run.trial.planar().home - Vector2d(0.05, 0.05);
-         limits.workspace_high = run.trial.planar().home + Vector2d(0.05, 0.05);
+         limits.workspace_low = run.trial.planar().home - Vector2d(0.03, 0.03);
+         limits.workspace_high = run.trial.planar().home + Vector2d(0.03, 0.03);
          push_hard(run, random);
        }},
       {"joint close to its limit",
@@ -499,7 +499,7 @@ std::vector<FaultKind> pushes() {
       {"hand pushes more than it may",
        Onset::anywhere,
        {500, 500},
-       {Reason::measured_force},
+       {Reason::measured_force, Reason::joint_margin},
        [](FaultRun& run, Random& random) {
          only(run).measured_force = 40.0;
          push(run, random.uniform(150.0, 200.0) * direction(random), 0.05);

@@ -260,10 +260,10 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
                                         outcome.recorded ? "whole" : "not whole"));
     }
   }
-  const double share = 100.0 / static_cast<double>(faulty);
-  table.rows.push_back(row_of("motors off in time", share * off, {100.0, 100.0}, "%"));
-  table.rows.push_back(row_of("reason is a right one", share * right, {100.0, 100.0}, "%"));
-  table.rows.push_back(row_of("every command in the recording", share * recorded, {100.0, 100.0}, "%"));
+  const auto share = [&](int count) { return 100.0 * count / static_cast<double>(faulty); };
+  table.rows.push_back(row_of("motors off in time", share(off), {100.0, 100.0}, "%"));
+  table.rows.push_back(row_of("reason is a right one", share(right), {100.0, 100.0}, "%"));
+  table.rows.push_back(row_of("every command in the recording", share(recorded), {100.0, 100.0}, "%"));
   table.rows.push_back(row_of(fmt::format("hand speed reached, {}, position trials", kWrongWay), runaway_speed,
                               {0.0, kRunawaySpeed}, "m/s"));
   int trips = 0;
