@@ -16,8 +16,7 @@ constexpr std::array kFatalSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, 
 
 /// Only what POSIX allows in a handler (signal-safety(7)).
 extern "C" void on_fatal_signal(int signal) {
-  if (device::Device* const robot = robot_at_work.exchange(nullptr)) robot->emergency_off();
-  if (const termios* const before = terminal_before) tcsetattr(STDIN_FILENO, TCSANOW, before);
+  LastWords::say();
   const struct sigaction* const actions = actions_before;
   for (std::size_t i = 0; actions != nullptr && i < kFatalSignals.size(); ++i) {
     if (kFatalSignals[i] == signal) sigaction(signal, &actions[i], nullptr);
@@ -41,6 +40,11 @@ LastWords::~LastWords() {
   for (std::size_t i = 0; i < kFatal; ++i) sigaction(kFatalSignals[i], &before_[i], nullptr);
   actions_before = nullptr;
   robot_at_work = nullptr;
+}
+
+void LastWords::say() noexcept {
+  if (device::Device* const robot = robot_at_work.exchange(nullptr)) robot->emergency_off();
+  if (const termios* const before = terminal_before) tcsetattr(STDIN_FILENO, TCSANOW, before);
 }
 
 void LastWords::restore_terminal(const termios* before) {

@@ -23,6 +23,9 @@ class LastWords {
   LastWords& operator=(const LastWords&) = delete;
   ~LastWords();
 
+  /// What a fatal signal does first, for an end that is none. Nothing where nobody waits for one.
+  static void say() noexcept;
+
   /// How standard input's terminal was; null: it is left as it is. Stays valid while it is set.
   static void restore_terminal(const termios* before);
 

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <memory>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/last_words.h"
 #include "apps/mbk/memory.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
@@ -65,17 +65,14 @@ void say_plainly(std::string_view text) noexcept {
 constexpr std::string_view kNoMemory = "mbk: not enough memory; of a recording choose a part with --from and --to\n";
 
 /// Where an exception has nowhere to go: before main begins, and out of a destructor that needs memory, as that of a
-/// JSON tree does. No memory is no error of mbk; anything else is, and ends as it would. In a trial it goes on as
-/// SIGABRT, for which last_words.h waits.
+/// JSON tree does. No memory is no error of mbk; anything else is, and ends as it would.
 [[noreturn]] void end_without_memory() noexcept {
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());
   } catch (const std::bad_alloc&) {
+    mbk::app::LastWords::say();
     say_plainly(kNoMemory);
-    struct sigaction last_words {};
-    if (sigaction(SIGABRT, nullptr, &last_words) == 0 && last_words.sa_handler == SIG_DFL) {
-      std::_Exit(mbk::app::kBadData);
-    }
+    std::_Exit(mbk::app::kBadData);
   } catch (...) {
     __gnu_cxx::__verbose_terminate_handler();
   }
