@@ -125,12 +125,12 @@ fs::path journal_of(const fs::path& recording) {
 }
 
 void Session::see_idle(const IdleState& state) {
-  const std::scoped_lock lock(gate_mutex_);
+  const std::scoped_lock lock(*gate_mutex_);
   if (gate_) gate_->see_idle(state.stop_button, state.confirmed_off);
 }
 
 Result<void> Session::reset() {
-  const std::scoped_lock lock(gate_mutex_);
+  const std::scoped_lock lock(*gate_mutex_);
   if (gate_) {
     if (auto ok = gate_->reset(); !ok) return ok;
   }

@@ -64,7 +64,7 @@ class Session {
 
  private:
   Pace pace_;
-  std::mutex gate_mutex_;  // between trials: reset and see_idle
+  std::unique_ptr<std::mutex> gate_mutex_ = std::make_unique<std::mutex>();  // between trials: reset and see_idle
   std::optional<safety::Gate> gate_;
   std::unique_ptr<Signals> signals_ = std::make_unique<Signals>();
 };
