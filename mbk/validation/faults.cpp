@@ -260,7 +260,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
                                         outcome.recorded ? "whole" : "not whole"));
     }
   }
-  const auto share = [&](int count) { return 100.0 * count / static_cast<double>(faulty); };
+  const auto share = [&](int met) { return 100.0 * met / static_cast<double>(faulty); };
   table.rows.push_back(row_of("motors off in time", share(off), {100.0, 100.0}, "%"));
   table.rows.push_back(row_of("reason is a right one", share(right), {100.0, 100.0}, "%"));
   table.rows.push_back(row_of("every command in the recording", share(recorded), {100.0, 100.0}, "%"));
