@@ -58,7 +58,9 @@ Gate::Gate(const Limits& limits, const robot::PlanarRobot& robot, const Vector2d
       home_(home),
       sample_time_(sample_time),
       reports_(limits, sample_time),
-      history_(static_cast<std::size_t>(std::max(1.0, std::round(kHistory / sample_time)))) {}
+      history_(static_cast<std::size_t>(std::max(1.0, std::round(kHistory / sample_time)))) {
+  told_.fill(Vector2d::Zero());  // before the first command nothing is told
+}
 
 Result<Gate> Gate::create(const Limits& limits, const robot::PlanarRobot& robot, const Vector2d& home,
                           double sample_time) {
@@ -180,6 +182,7 @@ void Gate::check(const Observation& seen, const Vector2d& asked) noexcept {
     if (const Violation found = reports_.check(seen.report, seen.time, seen.keeps_time, ticks_ - 1)) {
       return trip(found.reason, seen, found.value, found.limit);
     }
+    step_ = seen_before_ ? seen.report.time - stamp_ : 0.0;
     if (!check_readings(seen)) return;
   }
   if (!asked.allFinite()) return trip(Reason::controller_not_finite, seen);
@@ -194,11 +197,11 @@ bool Gate::check_readings(const Observation& seen) noexcept {
   }
   if (seen_before_) {
     // where states between were lost, a joint may have turned as far as the hand's speed allows
-    const double step = seen.report.time - stamp_, lost = std::max(0.0, step - 1.5 * sample_time_);
+    const double lost = std::max(0.0, step_ - 1.5 * sample_time_);
     const double fastest = 2.0 * limits_.speed / std::min(robot_.geometry.d1, robot_.geometry.d2);
     const double turned = (seen.joint - joint_).cwiseAbs().maxCoeff();
     if (beyond(Reason::encoder_jump, seen, turned, limits_.encoder_jump + fastest * lost)) return false;
-    const double most = limits_.force_jump * std::max(1.0, std::round(step / sample_time_));
+    const double most = limits_.force_jump * std::max(1.0, std::round(step_ / sample_time_));
     if (seen.has_force && beyond(Reason::force_jump, seen, (seen.force - force_).norm(), most)) return false;
   }
   return !(seen.has_force && beyond(Reason::measured_force, seen, seen.force.norm(), limits_.measured_force));
@@ -245,7 +248,6 @@ bool Gate::add_motion(const Observation& seen, double time) noexcept {
 }
 
 bool Gate::check_motion(const Observation& seen) noexcept {
-  const double step = seen.report.time - stamp_;
   add_motion(seen, seen.report.time);
   const Vector2d& hand = motion_.before(0).hand;
   const double margin = robot::margin(robot_.geometry.limits, seen.joint);
@@ -265,14 +267,14 @@ bool Gate::check_motion(const Observation& seen) noexcept {
   if (!motion_.full()) return true;
   const MotionWindow::Means means = motion_.means();
   if (beyond(Reason::acceleration, seen, means.hand_acceleration.norm(), limits_.acceleration)) return false;
-  return check_accelerometer(seen, means, step) && check_torque(seen, means, step);
+  return check_accelerometer(seen, means) && check_torque(seen, means);
 }
 
-bool Gate::check_accelerometer(const Observation& seen, const MotionWindow::Means& means, double step) noexcept {
+bool Gate::check_accelerometer(const Observation& seen, const MotionWindow::Means& means) noexcept {
   if (!seen.has_acceleration || limits_.accelerometer == 0.0) return true;
   const Vector2d difference = means.hand_acceleration - means.acceleration;
   if (beyond(Reason::accelerometer_disagrees, seen, difference.norm(), limits_.accelerometer)) return false;
-  const double weight = std::min(1.0, step / kMeanTime);
+  const double weight = std::min(1.0, step_ / kMeanTime);
   disagreement_ += weight * (difference.squaredNorm() - disagreement_);
   liveliness_ += weight * (means.acceleration.squaredNorm() - liveliness_);
   return !beyond(Reason::accelerometer_disagrees, seen, std::sqrt(disagreement_),
@@ -284,9 +286,9 @@ Vector2d Gate::torque_shown(const MotionWindow::Means& means) const noexcept {
   return robot_.motor_torque(joint, means.joint_rate, means.joint_acceleration, means.force);
 }
 
-bool Gate::check_torque(const Observation& seen, const MotionWindow::Means& means, double step) noexcept {
+bool Gate::check_torque(const Observation& seen, const MotionWindow::Means& means) noexcept {
   if (!seen.has_force || limits_.torque_error == 0.0) return true;
-  unexplained_ += std::min(1.0, step / kTorqueTime) * (torque_shown(means) - means.torque - unexplained_);
+  unexplained_ += std::min(1.0, step_ / kTorqueTime) * (torque_shown(means) - means.torque - unexplained_);
   return !beyond(Reason::torque_disagrees, seen, unexplained_.cwiseAbs().maxCoeff(), limits_.torque_error);
 }
 
@@ -299,8 +301,7 @@ bool Gate::check_drives(const Observation& seen) noexcept {
     high = high.cwiseMax(told(report.answered - k));
   }
   const double beside = (low - report.drive_torque).cwiseMax(report.drive_torque - high).maxCoeff();
-  const double step = seen_before_ ? std::max(0.0, report.time - stamp_) : 0.0;
-  drives_wrong_ = beside > limits_.torque_error ? drives_wrong_ + step : 0.0;
+  drives_wrong_ = beside > limits_.torque_error ? drives_wrong_ + step_ : 0.0;
   if (drives_wrong_ <= kDrivesTime) return true;
   return trip(Reason::torque_disagrees, seen, beside, limits_.torque_error), false;
 }

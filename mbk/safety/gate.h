@@ -114,8 +114,8 @@ class Gate {
   bool check_readings(const Observation& seen) noexcept;
   bool check_stillness(const Observation& seen, const Vector2d& asked) noexcept;
   bool check_motion(const Observation& seen) noexcept;
-  bool check_accelerometer(const Observation& seen, const MotionWindow::Means& means, double step) noexcept;
-  bool check_torque(const Observation& seen, const MotionWindow::Means& means, double step) noexcept;
+  bool check_accelerometer(const Observation& seen, const MotionWindow::Means& means) noexcept;
+  bool check_torque(const Observation& seen, const MotionWindow::Means& means) noexcept;
   bool check_drives(const Observation& seen) noexcept;
   void confirm_off(const Observation& seen) noexcept;
   [[nodiscard]] MotorsOff::Why missing_for_off(const Observation& seen) noexcept;
@@ -145,7 +145,7 @@ class Gate {
 
   bool seen_before_ = false;
   Vector2d joint_ = {0.0, 0.0}, force_ = {0.0, 0.0};  // last plausible ones
-  double stamp_ = 0.0;                                // of them, on the robot's clock [s]
+  double stamp_ = 0.0, step_ = 0.0;                   // of them, on the robot's clock, and since those before [s]
   Stillness force_still_, acceleration_still_;
   std::array<int, 2> encoder_still_ = {0, 0};
   Vector2d torque_low_ = {0.0, 0.0}, torque_high_ = {0.0, 0.0};  // while the encoders stand still

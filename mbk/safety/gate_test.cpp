@@ -425,6 +425,17 @@ TEST_F(Driven, ARobotThatSaysNothingOfItsMotorsIsNotCalledOff) {
   EXPECT_EQ(gate_.motors().state, MotorsOff::State::cannot_say);
 }
 
+/// From the first state on, whatever its stamp: before the first command nothing was told, and nothing is measured.
+TEST_F(Driven, DrivesThatMeasureWhatTheyAreToldNeverTrip) {
+  spoil = [this](Observation& o) {
+    o.report.time += 1e4;
+    o.report.drives_measure = true;
+    o.report.drive_torque = decision_.torque;
+  };
+  drive(1500);
+  EXPECT_FALSE(gate_.tripped()) << sentence(gate_.trip());
+}
+
 TEST_F(Driven, DrivesThatMeasureAnotherTorqueTrip) {
   drive(300);
   spoil = [this](Observation& o) {
