@@ -369,12 +369,15 @@ TEST(Prepare, NaNOutsideTheWindowDoesNotMatter) {
 TEST(Prepare, SamplesThatASessionLostAreRefusedUnlessTheWindowLeavesThemOut) {
   Recording recording = noise(5000);
   for (Channel& channel : recording.channels) channel.values.segment(3000, 50).setConstant(kNaN);
-  const auto trial = prepared(recording);
+  Inspection facts = facts_of(recording);
+  facts.missing = {{3000, 50}};
+  const auto within = [&](const WindowLimits& window) { return prepare(recording, facts, {.window = window}); };
+  const auto trial = within({});
   ASSERT_FALSE(trial);
   EXPECT_EQ(trial.error().message,
             "50 samples are missing from sample 3001 on (3.000000 s to 3.049000 s; NaN in every channel)");
-  EXPECT_TRUE(prepared(recording, {.window = {.to_s = 3.0}}));
-  EXPECT_TRUE(prepared(recording, {.window = {.from_s = 3.05}}));
+  EXPECT_TRUE(within({.to_s = 3.0}));
+  EXPECT_TRUE(within({.from_s = 3.05}));
 }
 
 TEST(Prepare, NaNInAChannelThatIsNotUsedDoesNotMatter) {
