@@ -8,6 +8,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -377,7 +378,11 @@ TEST_F(ConsoleOfASession, AStopFromThePageTripsTheGateAndIsSaidWithItsReason) {
             std::string::npos);
   trial.join();
   EXPECT_EQ(outcome.trip.reason, safety::Reason::operator_stop);
-  EXPECT_EQ(outcome.times.ticks, outcome.trip.tick + safety::kRampTicks - 1);
+  EXPECT_EQ(outcome.motors.state, safety::MotorsOff::State::confirmed);
+  // the ramp, and what the robot takes to confirm that its motors are off
+  const auto confirming = static_cast<std::uint64_t>(std::lround(1e3 * outcome.motors.after));
+  EXPECT_EQ(outcome.times.ticks, outcome.trip.tick + safety::kRampTicks - 1 + confirming);
+  EXPECT_LT(confirming, 60U);
 }
 
 TEST_F(ConsoleOfASession, ATripIsSaidBeforeTheNextBeat) {
