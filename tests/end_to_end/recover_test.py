@@ -118,7 +118,7 @@ class Recover(Case):
         del pieces[30]
         self.mbk("recover", self.journal(b"".join(pieces)), code=BAD_DATA)
         recording = self.folder / "trial.h5"
-        for command in (("measure",), ("identify",), ("passivity",), ("tf",), ("robot", "force"), ("robot", "identify")):
+        for command in (("measure",), ("identify",), ("passivity",), ("tf", "--poles", 2, "--zeros", 1, "--input", "force_x", "--output", "hand_x"), ("robot", "force"), ("robot", "identify")):
             with self.subTest(command=command):
                 ran = self.mbk(*command, recording, code=BAD_DATA)
                 self.assertRegex(ran.err, r"samples? (are missing from sample 1401 on|1401)", ran)

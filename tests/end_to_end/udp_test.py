@@ -9,7 +9,7 @@ import sys
 
 from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main, program, run
 
-SAFETY_STOP = 5
+SAFETY_STOP, MOTORS_NOT_OFF = 5, 7
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
 EXPERIMENT = """
 [recording]
@@ -32,6 +32,10 @@ number = 1
 # jumps. Nobody sits at this robot.
 [safety]
 link_silence_ms = 500
+answer_lag_ms = 0
+state_age_ms = 0
+torque_error_Nm = 0
+motors_reply_ms = 5000
 lateness_ms = 0
 accelerometer_m_per_s2 = 0
 acceleration_m_per_s2 = 1000
@@ -118,9 +122,11 @@ class Udp(Case):
                 return process
         raise AssertionError(process.communicate())
 
-    def assert_stopped(self, process, recording, words):
-        out, _ = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, SAFETY_STOP, out)
+    def assert_stopped(self, process, recording, words, code=SAFETY_STOP, motors="confirmed off by the robot"):
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, code, out)
+        self.assertIn("motors: " + motors, out)
+        self.assertEqual(code == MOTORS_NOT_OFF, "MOTORS NOT CONFIRMED OFF" in err, err)
         self.assertIn(words, out)
         info = self.fine("info", recording).out
         self.assertIn("safety stop", info)
@@ -132,7 +138,7 @@ class Udp(Case):
         recording = self.folder / "lost.h5"
         process = self.started(self.experiment("udp.toml", peer.port, seconds=60), recording)
         peer.end()
-        self.assert_stopped(process, recording, "the robot was silent")
+        self.assert_stopped(process, recording, "the robot was silent", MOTORS_NOT_OFF, "NOT CONFIRMED OFF")
 
     def test_the_stop_button(self):
         peer = self.peer(seconds=60)

@@ -419,7 +419,7 @@ test("a script or a style that came into the page later is not run", async () =>
 });
 
 test("a report that the console serves is drawn under the policy of its own scripts and styles", async () => {
-  const { file } = measure("served", makeLog("served.mat"));
+  const { file } = measure("served", makeLog("served.mat", "--protocol", "sinusoidal"));
   const { operator, tell, has, code } = await robotReports();
   tell(`report ${file}`);
   await has(".trials", "Open the report");
