@@ -15,7 +15,7 @@ import threading
 import time
 import zlib
 
-from command import BAD_DATA, FINE, Case, main, program
+from command import BAD_DATA, FINE, Case, main, program, run
 
 SAFETY_STOP = 5
 EXPERIMENT = """
@@ -206,7 +206,8 @@ class InATrial(Session):
         _, err = self.process.communicate(timeout=60)
         self.assertEqual(self.process.returncode, BAD_DATA, err)
         self.assertIn(b"recording could not be kept up", err)
-        self.mbk("recover", f"{self.target}.journal")
+        recovered = run("recover", f"{self.target}.journal")
+        self.assertEqual(recovered.code, BAD_DATA if "were lost" in recovered.out else FINE, recovered)
         self.assertGreater(len(self.torques()), 400)
 
 
