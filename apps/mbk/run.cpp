@@ -204,8 +204,7 @@ std::string alarm(const safety::MotorsOff& motors) {
   const std::string line(kColumns, '!');
   return fmt::format(
       "\a\n{0}\n!!  MOTORS NOT CONFIRMED OFF\n!!  Press the hardware stop button: cut the motors' power. Let nobody "
-      "touch the "
-      "robot.\n{0}\n{1}\n\n",
+      "touch the robot.\n{0}\n{1}\n\n",
       line, report::wrapped("The motors are " + safety::sentence(motors) + ".", kColumns));
 }
 

@@ -56,8 +56,8 @@ Violation ReportCheck::check_clock(const RobotReport& report, double now, bool k
     }
   }
   fastest_ = std::min(fastest_ + kClockDrift * step_now, behind);
-  age_ = behind - fastest_;
-  if (limits_.state_age > 0.0 && age_ > limits_.state_age) return {Reason::state_old, age_, limits_.state_age};
+  const double age = behind - fastest_;
+  if (limits_.state_age > 0.0 && age > limits_.state_age) return {Reason::state_old, age, limits_.state_age};
   return {};
 }
 

@@ -48,9 +48,6 @@ class ReportCheck {
   /// @param sent  commands that have left, all of them with motors on
   [[nodiscard]] Violation check(const RobotReport& report, double now, bool keeps_time, std::uint64_t sent) noexcept;
 
-  /// Of the newest state [s]; 0 before the first.
-  [[nodiscard]] double age() const noexcept { return age_; }
-
  private:
   static constexpr double kClockDrift = 5e-4;  ///< of one clock against the other
   [[nodiscard]] Violation check_clock(const RobotReport& report, double now, bool keeps_time) noexcept;
@@ -61,7 +58,7 @@ class ReportCheck {
   bool begun_ = false, measured_ = false;
   double began_ = 0.0;                      // here [s]
   double last_ = 0.0, last_now_ = 0.0;      // stamps of the state before, there and here [s]
-  double fastest_ = 0.0, age_ = 0.0;        // here − there [s]
+  double fastest_ = 0.0;                    // here − there [s]
   double window_ = 0.0, window_now_ = 0.0;  // where the comparison of the two clocks' rates began [s]
   std::uint64_t answered_ = 0;
   double motors_wrong_since_ = 0.0;

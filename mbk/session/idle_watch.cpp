@@ -1,7 +1,6 @@
 #include "mbk/session/idle_watch.h"
 
 #include <chrono>
-#include <exception>
 #include <optional>
 
 namespace mbk::session {
@@ -51,7 +50,7 @@ void IdleWatch::watch() noexcept {
     told = seen;
     try {
       seen_(seen);
-    } catch (const std::exception&) {  // who listens may fail; the robot is still told "off"
+    } catch (...) {  // who listens may fail; the robot is still told "off"
     }
   }
 }
