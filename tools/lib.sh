@@ -40,7 +40,13 @@ step() {
 
 # build PRESET: configures and builds it
 build() {
-  step "configuring $1" cmake --preset "$1"
+  local launcher=()
+  if command -v ccache >/dev/null; then
+    # Precompiled headers are read by their content, not by their time.
+    export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
+    launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  step "configuring $1" cmake --preset "$1" "${launcher[@]}"
   step "building $1" cmake --build --preset "$1" --parallel "$(nproc)"
 }
 

@@ -1,0 +1,37 @@
+# The outside headers that most files include, read once for each way of compiling instead of once for each file:
+# cmake/precompiled/library.h, and with GoogleTest tests.h. Every file still includes what it uses, which clang-tidy,
+# that compiles without them, confirms. docs/guide/build.md shows what it saves.
+option(MBK_PRECOMPILE "Precompile the outside headers that most files include" ON)
+
+set(MBK_PRECOMPILED_FOLDER ${CMAKE_CURRENT_LIST_DIR}/precompiled)
+
+# One holder for each way of compiling, for the flags have to be the same: libraries are position-independent, programs
+# are compiled as programs are.
+if(MBK_PRECOMPILE)
+  add_library(mbk_precompiled_library STATIC ${MBK_PRECOMPILED_FOLDER}/library.cpp)
+  target_precompile_headers(mbk_precompiled_library PRIVATE ${MBK_PRECOMPILED_FOLDER}/library.h)
+
+  add_executable(mbk_precompiled_program ${MBK_PRECOMPILED_FOLDER}/program.cpp)
+  target_compile_options(mbk_precompiled_program PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(mbk_precompiled_program PRIVATE ${MBK_PRECOMPILED_FOLDER}/library.h)
+  set(holders mbk_precompiled_library mbk_precompiled_program)
+
+  if(MBK_BUILD_TESTS)
+    add_executable(mbk_precompiled_tests ${MBK_PRECOMPILED_FOLDER}/program.cpp)
+    target_compile_options(mbk_precompiled_tests PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_link_libraries(mbk_precompiled_tests PRIVATE GTest::gmock)
+    target_precompile_headers(mbk_precompiled_tests PRIVATE ${MBK_PRECOMPILED_FOLDER}/tests.h)
+    list(APPEND holders mbk_precompiled_tests)
+  endif()
+  foreach(holder IN LISTS holders)
+    target_link_libraries(${holder} PRIVATE mbk_settings Eigen3::Eigen fmt::fmt tl::expected)
+    set_target_properties(${holder} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/precompiled)
+  endforeach()
+endif()
+
+# mbk_precompile(TARGET library|program|tests): TARGET is compiled with those headers.
+function(mbk_precompile target kind)
+  if(MBK_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM mbk_precompiled_${kind})
+  endif()
+endfunction()
