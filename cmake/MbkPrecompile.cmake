@@ -29,9 +29,11 @@ if(MBK_PRECOMPILE)
   endforeach()
 endif()
 
-# mbk_precompile(TARGET library|program|tests): TARGET is compiled with those headers.
+# mbk_precompile(TARGET library|program|tests): TARGET is compiled with those headers. What they need it is given, for
+# a module need not link it by itself; nobody who links TARGET is.
 function(mbk_precompile target kind)
   if(MBK_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM mbk_precompiled_${kind})
+    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
   endif()
 endfunction()
