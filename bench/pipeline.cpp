@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/mbk/memory.h"
-#include "mbk/dsp/butterworth.h"
-#include "mbk/dsp/filter_chain.h"
-#include "mbk/numeric/least_squares.h"
-#include "mbk/recording/read.h"
+#include "mbk/base/dsp/butterworth.h"
+#include "mbk/base/dsp/filter_chain.h"
+#include "mbk/base/numeric/least_squares.h"
+#include "mbk/files/recording/read.h"
 
 namespace {
 

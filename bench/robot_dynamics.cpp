@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "mbk/robot/observed_force.h"
-#include "mbk/robot/planar_mechanism.h"
+#include "mbk/model/robot/observed_force.h"
+#include "mbk/model/robot/planar_mechanism.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 /// The 1 kHz session: an hour of it on the virtual clock with its recording and its memory, and a stretch in real time
 /// beside an empty loop, which shows how late this machine wakes any thread.
 ///   bench_session [--minutes 60] [--seconds 20, at least 5] [--out FOLDER]
-#include "mbk/session/session.h"
+#include "mbk/experiment/session/session.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "mbk/laboratory/simulated_device.h"
+#include "mbk/simulate/laboratory/simulated_device.h"
 
 namespace {
 

@@ -6,20 +6,20 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "mbk/analyse/ellipses.h"
-#include "mbk/identify/consistent_fit.h"
-#include "mbk/identify/impedance_fit.h"
-#include "mbk/identify/regression.h"
-#include "mbk/laboratory/prescribed_motion.h"
-#include "mbk/measurement/measure.h"
-#include "mbk/numeric/block_bootstrap.h"
-#include "mbk/preprocess/prepare.h"
-#include "mbk/recording/inspection.h"
-#include "mbk/recording/read.h"
-#include "mbk/recording/sha256.h"
-#include "mbk/recording/write.h"
-#include "mbk/report/text.h"
-#include "mbk/result/json.h"
+#include "mbk/base/numeric/block_bootstrap.h"
+#include "mbk/files/recording/inspect.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/files/recording/sha256.h"
+#include "mbk/files/recording/write.h"
+#include "mbk/measure/analyse/ellipses.h"
+#include "mbk/measure/identify/consistent_model.h"
+#include "mbk/measure/identify/impedance_fit.h"
+#include "mbk/measure/identify/regression.h"
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/measure/preprocess/prepare.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
+#include "mbk/simulate/laboratory/prescribed_motion.h"
 
 namespace {
 
@@ -128,7 +128,7 @@ void ellipses_text_and_json(benchmark::State& state) {
   for (auto _ : state) {
     const Findings findings = value_of(analyse::analyse_ellipses(found));
     benchmark::DoNotOptimize(report::result_text(found, findings));
-    benchmark::DoNotOptimize(result::to_json(result::Measured{found, findings}));
+    benchmark::DoNotOptimize(result::to_json(Measurement{found, findings}));
   }
 }
 BENCHMARK(ellipses_text_and_json)->Unit(benchmark::kMillisecond);

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <vector>
 
-#include "mbk/identify/srivc.h"
+#include "mbk/measure/identify/srivc.h"
 
 namespace {
 

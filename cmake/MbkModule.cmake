@@ -9,7 +9,7 @@ function(mbk_is_header_only library result)
   endif()
 endfunction()
 
-# One module = one small library in mbk/<name>: name.h, name.cpp and name_test.cpp side by side.
+# One module = one small library in mbk/<wing>/<name>: name.h, name.cpp and name_test.cpp side by side.
 #
 #   mbk_module(identify DEPENDS core numeric trial [LIBRARIES PkgConfig::MATIO])
 #

@@ -1,6 +1,6 @@
 #include "fuzz/fuzz.h"
-#include "mbk/recording/c3d.h"
-#include "mbk/recording/test_c3d.h"
+#include "mbk/files/recording/c3d.h"
+#include "mbk/files/recording/test_c3d.h"
 
 namespace mbk::fuzz {
 

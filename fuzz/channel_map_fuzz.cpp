@@ -1,7 +1,7 @@
 #include "fuzz/fuzz.h"
-#include "mbk/recording/assemble.h"
-#include "mbk/recording/channel_map.h"
-#include "mbk/recording/channel_table.h"
+#include "mbk/files/recording/assemble.h"
+#include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/channel_table.h"
 
 namespace mbk::fuzz {
 namespace {

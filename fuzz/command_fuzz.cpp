@@ -1,5 +1,5 @@
 #include "fuzz/fuzz.h"
-#include "mbk/console/command.h"
+#include "mbk/experiment/console/command.h"
 
 namespace mbk::fuzz {
 

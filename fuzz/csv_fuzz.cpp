@@ -1,6 +1,6 @@
 #include "fuzz/fuzz.h"
-#include "mbk/recording/csv.h"
-#include "mbk/recording/encode.h"
+#include "mbk/files/recording/csv.h"
+#include "mbk/files/recording/encode.h"
 
 namespace mbk::fuzz {
 

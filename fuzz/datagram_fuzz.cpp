@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "fuzz/fuzz.h"
-#include "mbk/drivers/datagram.h"
+#include "mbk/experiment/drivers/datagram.h"
 
 namespace mbk::fuzz {
 namespace {

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mbk/core/printable.h"
-#include "mbk/recording/annotations.h"
-#include "mbk/recording/assemble.h"
-#include "mbk/recording/file_bytes.h"
-#include "mbk/recording/inspection.h"
+#include "mbk/base/core/printable.h"
+#include "mbk/files/recording/annotations.h"
+#include "mbk/files/recording/assemble.h"
+#include "mbk/files/recording/file_bytes.h"
+#include "mbk/files/recording/inspect.h"
 
 namespace mbk::fuzz {
 namespace {

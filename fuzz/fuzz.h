@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "mbk/core/result.h"
-#include "mbk/recording/contents.h"
-#include "mbk/trial/recording.h"
+#include "mbk/base/core/result.h"
+#include "mbk/files/recording/contents.h"
+#include "mbk/model/trial/recording.h"
 
 namespace mbk::fuzz {
 

@@ -10,9 +10,9 @@
 #include <iterator>
 
 #include "fuzz/fuzz.h"
-#include "mbk/core/printable.h"
-#include "mbk/journal/blocks.h"
-#include "mbk/journal/journal.h"
+#include "mbk/base/core/printable.h"
+#include "mbk/files/journal/blocks.h"
+#include "mbk/files/journal/journal.h"
 
 namespace mbk::fuzz {
 namespace {

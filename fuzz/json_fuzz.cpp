@@ -1,10 +1,10 @@
 #include "fuzz/fuzz.h"
-#include "mbk/result/json.h"
+#include "mbk/present/result/json.h"
 
 namespace mbk::fuzz {
 namespace {
 
-result::Measured measured(int axes) {
+Measurement measured(int axes) {
   Identification id;
   id.axes = axes;
   const Matrix one = Matrix::Identity(axes, axes);
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const Identification& one : *read) {
     fuzz::require(one.axes == 1 || one.axes == 2, "a result has one or two axes");
     fuzz::require(one.model.M.rows() == one.axes && one.model.K.cols() == one.axes, "matrices fit the axes");
-    const auto again = result::identifications_from_json(result::to_json(result::Measured{one, std::nullopt}));
+    const auto again = result::identifications_from_json(result::to_json(Measurement{one, std::nullopt}));
     fuzz::require(again.has_value(),
                   again ? "" : "what was read can be written and read again: " + again.error().line());
   }

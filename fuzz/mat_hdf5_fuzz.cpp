@@ -1,8 +1,8 @@
 // Any HDF5 file, of MATLAB or not, becomes a recording or is refused in one line.
 
 #include "fuzz/fuzz.h"
-#include "mbk/recording/encode.h"
-#include "mbk/recording/hdf5_recording.h"
+#include "mbk/files/recording/encode.h"
+#include "mbk/files/recording/hdf5_recording.h"
 
 namespace mbk::fuzz {
 

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "fuzz/fuzz.h"
-#include "mbk/config/document.h"
-#include "mbk/laboratory/scenario.h"
+#include "mbk/base/config/document.h"
+#include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::fuzz {
 namespace {

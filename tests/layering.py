@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Modules use only what they declare, and only lower layers.   usage: layering.py [ROOT]
 
-Reads the layers from mbk/CMakeLists.txt (mbk_layer), what each module declares from mbk/*/CMakeLists.txt
+Reads wings and layers from mbk/CMakeLists.txt (mbk_wing), what each module declares from its CMakeLists.txt
 (mbk_module ... DEPENDS) and every #include in the tree. Each line that it prints says where, what and how to mend it;
 exit 1 where there is one.
 """
@@ -12,6 +12,7 @@ import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 KEYWORDS = {"DEPENDS", "SOURCES", "PRIVATE_HEADERS", "LIBRARIES", "PUBLIC_LIBRARIES", "TEST_LIBRARIES"}
+MOST_WINGS = 10
 FOLDERS = ("mbk", "apps", "bindings", "tests", "bench", "fuzz", "examples")
 
 
@@ -28,7 +29,8 @@ class Tree:
     def __init__(self, root):
         self.root = pathlib.Path(root).resolve()
         self.problems = []
-        self.layer = {}  # module → number of its layer
+        self.layer = {}  # module → number of its layer, counted through all wings
+        self.folder = {}  # module → where it stands
         self.declared = {}  # module → {module that it declares: line}
         self.used = {}  # module → modules whose headers it includes
 
@@ -36,8 +38,8 @@ class Tree:
         self.problems.append(f"{path.relative_to(self.root)}:{line}: {problem}")
 
     def check(self):
-        self.read_layers()
-        for folder in sorted(path for path in (self.root / "mbk").iterdir() if path.is_dir() and any(path.iterdir())):
+        self.read_wings()
+        for folder in self.module_folders():
             self.read_module(folder)
         for module in self.declared:
             self.check_declarations(module)
@@ -51,25 +53,54 @@ class Tree:
                     self.report(self.lists(module), line,
                                 f"'{module}' declares '{other}' but includes none of its headers; "
                                 f"take '{other}' out of DEPENDS")
+        self.check_names()
         return self.problems
 
-    def lists(self, module):
-        return self.root / "mbk" / module / "CMakeLists.txt"
+    def module_folders(self):
+        """Every folder of a wing that has something in it, and each wing that is a module itself."""
+        for wing in sorted(path for path in (self.root / "mbk").iterdir() if path.is_dir()):
+            if self.folder.get(wing.name) == wing:
+                yield wing
+            else:
+                yield from sorted(path for path in wing.iterdir() if path.is_dir() and any(path.iterdir()))
 
-    def read_layers(self):
+    def check_names(self):
+        """A header's name says which it is."""
+        first = {}
+        for path in sorted((self.root / "mbk").rglob("*.h")):
+            if path.name in first:
+                self.report(path, 1, f"{first[path.name].relative_to(self.root)} has the same name; "
+                                     "let each name say what is different")
+            first.setdefault(path.name, path)
+
+    def lists(self, module):
+        return self.folder[module] / "CMakeLists.txt"
+
+    def read_wings(self):
         path = self.root / "mbk" / "CMakeLists.txt"
-        for (_, number), *modules in calls(path, "mbk_layer"):
-            for line, module in modules:
+        number, wings = 0, 0
+        for (line, wing), *words in calls(path, "mbk_wing"):
+            number, wings = number + 1, wings + 1
+            if wings > MOST_WINGS:
+                self.report(path, line, f"'{wing}' is wing {wings} of at most {MOST_WINGS}; "
+                                        "let it be a module of another")
+            layers = [(line, word, self.root / "mbk" / wing / word) for line, word in words]
+            for line, module, folder in layers or [(line, wing, self.root / "mbk" / wing)]:
+                if module == "LAYER":
+                    number += 1
+                    continue
                 if module in self.layer:
                     self.report(path, line, f"'{module}' stands in two layers; keep one")
-                self.layer[module] = int(number)
+                else:
+                    self.layer[module], self.folder[module] = number, folder
 
     def read_module(self, folder):
         module, path = folder.name, folder / "CMakeLists.txt"
         self.declared[module], self.used[module] = {}, set()
-        if module not in self.layer:
+        if self.folder.setdefault(module, folder) != folder or module not in self.layer:
             self.report(self.root / "mbk" / "CMakeLists.txt", 1,
-                        f"'{module}' stands in no layer; add it to the mbk_layer above everything that it uses")
+                        f"'{folder.relative_to(self.root)}' stands in no layer; add it to its mbk_wing, above "
+                        "everything that it uses")
         found = list(calls(path, "mbk_module")) if path.exists() else []
         if len(found) != 1 or found[0][0][1] != module:
             self.report(path, 1, f"should hold one mbk_module({module} ...); write it")
@@ -97,12 +128,15 @@ class Tree:
                 self.report(self.lists(module), line, self.upward(module, other))
 
     def check_includes(self, path):
-        inside = path.relative_to(self.root).parts
-        module = inside[1] if inside[0] == "mbk" and len(inside) > 2 else None
+        module = self.module_of(path)
         for line, text in enumerate(path.read_text(errors="replace").splitlines(), start=1):
             match = INCLUDE.match(text)
             if match:
                 self.check_include(path, line, module, *match.groups())
+
+    def module_of(self, path):
+        """The module whose folder holds a file; None outside mbk/."""
+        return next((name for name, folder in self.folder.items() if path.parent == folder), None)
 
     def check_include(self, path, line, module, quote, name):
         if not name.startswith("mbk/"):
@@ -112,15 +146,15 @@ class Tree:
         if not (self.root / name).is_file():
             self.report(path, line, f"there is no {name}; correct the path")
             return
-        other = name.split("/")[1]
-        if module is None or other == module:
+        other = self.module_of(self.root / name)
+        if module is None or other is None or other == module:
             return
         self.used[module].add(other)
         if self.runs_upward(module, other):
             self.report(path, line, self.upward(module, other))
         elif other not in self.declared[module]:
             self.report(path, line, f"'{module}' does not declare '{other}'; "
-                                    f"add '{other}' to DEPENDS in mbk/{module}/CMakeLists.txt")
+                                    f"add '{other}' to DEPENDS in {self.lists(module).relative_to(self.root)}")
 
 
 def main():

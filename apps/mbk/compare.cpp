@@ -6,11 +6,11 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
-#include "mbk/analyse/width.h"
-#include "mbk/measurement/measure.h"
-#include "mbk/report/width_text.h"
-#include "mbk/result/json.h"
-#include "mbk/result/width_json.h"
+#include "mbk/measure/analyse/analyse_width.h"
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/present/report/width_text.h"
+#include "mbk/present/result/json.h"
+#include "mbk/present/result/width_json.h"
 
 namespace mbk::app {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/readers_option.h"
-#include "mbk/recording/write.h"
+#include "mbk/files/recording/write.h"
 
 namespace mbk::app {
 namespace {

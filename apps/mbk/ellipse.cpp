@@ -4,9 +4,9 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/output.h"
-#include "mbk/analyse/ellipses.h"
-#include "mbk/report/text.h"
-#include "mbk/result/json.h"
+#include "mbk/measure/analyse/ellipses.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
 
 namespace mbk::app {
 namespace {

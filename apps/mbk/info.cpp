@@ -2,11 +2,11 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
-#include "mbk/journal/journal.h"
-#include "mbk/recording/inspection.h"
-#include "mbk/recording/read.h"
-#include "mbk/report/text.h"
-#include "mbk/result/json.h"
+#include "mbk/files/journal/journal.h"
+#include "mbk/files/recording/inspect.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
 
 namespace mbk::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <csignal>
 #include <cstddef>
 
-#include "mbk/device/device.h"
-#include "mbk/realtime/signal_stack.h"
+#include "mbk/base/realtime/signal_stack.h"
+#include "mbk/experiment/device/device.h"
 
 namespace mbk::app {
 

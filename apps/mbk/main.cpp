@@ -17,8 +17,8 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/process.h"
-#include "mbk/core/version.h"
-#include "mbk/report/text.h"
+#include "mbk/base/core/version.h"
+#include "mbk/present/report/text.h"
 
 namespace {
 

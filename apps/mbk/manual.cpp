@@ -9,8 +9,8 @@
 #include "apps/mbk/manual_page.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
-#include "mbk/core/version.h"
-#include "mbk/recording/write_file.h"
+#include "mbk/base/core/version.h"
+#include "mbk/files/recording/write_file.h"
 
 namespace mbk::app {
 namespace {

@@ -5,18 +5,18 @@
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/progress.h"
 #include "apps/mbk/report_file.h"
-#include "mbk/analyse/summary.h"
-#include "mbk/numeric/parallel.h"
-#include "mbk/report/joint_domain_text.h"
-#include "mbk/report/passivity_text.h"
-#include "mbk/report/text.h"
-#include "mbk/result/json.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/measure/analyse/summarise.h"
+#include "mbk/present/report/joint_domain_text.h"
+#include "mbk/present/report/passivity_text.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
 
 namespace mbk::app {
 namespace {
 
 using measurement::Examined;
-using result::Measured;
+using mbk::Measurement;
 
 /// A result, with the diagnostics where a report will show them: those of one recording.
 Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,

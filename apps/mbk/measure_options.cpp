@@ -10,10 +10,10 @@
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
-#include "mbk/journal/journal.h"
-#include "mbk/preprocess/perturbation_only.h"
-#include "mbk/recording/channel_map.h"
-#include "mbk/report/html.h"
+#include "mbk/files/journal/journal.h"
+#include "mbk/files/recording/channel_map.h"
+#include "mbk/measure/preprocess/perturbation_only.h"
+#include "mbk/present/report/html.h"
 
 namespace mbk::app {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "apps/mbk/output.h"
 #include "apps/mbk/sensor_options.h"
-#include "mbk/core/result.h"
-#include "mbk/measurement/measure.h"
-#include "mbk/recording/read.h"
+#include "mbk/base/core/result.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/measure/measurement/measure.h"
 
 namespace mbk::app {
 

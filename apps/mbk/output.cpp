@@ -11,7 +11,7 @@
 
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
-#include "mbk/recording/write_file.h"
+#include "mbk/files/recording/write_file.h"
 
 namespace mbk::app {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mbk/core/result.h"
+#include "mbk/base/core/result.h"
 
 namespace mbk::app {
 

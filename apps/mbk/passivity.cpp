@@ -1,5 +1,3 @@
-#include "mbk/analyse/passivity.h"
-
 #include <fmt/format.h>
 
 #include <charconv>
@@ -11,11 +9,12 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
-#include "mbk/measurement/measure.h"
-#include "mbk/report/chart.h"
-#include "mbk/report/passivity_text.h"
-#include "mbk/report/text.h"
-#include "mbk/result/json.h"
+#include "mbk/measure/analyse/judge_passivity.h"
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/present/report/draw_chart.h"
+#include "mbk/present/report/passivity_text.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
 
 namespace mbk::app {
 namespace {

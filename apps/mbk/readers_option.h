@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "mbk/trial/readers.h"
+#include "mbk/model/trial/readers.h"
 
 namespace mbk::app {
 

@@ -6,8 +6,8 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/readers_option.h"
-#include "mbk/report/text.h"
-#include "mbk/session/session.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/present/report/text.h"
 
 namespace mbk::app {
 namespace {

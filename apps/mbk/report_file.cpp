@@ -1,10 +1,10 @@
 #include "apps/mbk/report_file.h"
 
 #include "apps/mbk/commands.h"
-#include "mbk/analyse/posture.h"
-#include "mbk/recording/write_file.h"
-#include "mbk/report/html.h"
-#include "mbk/result/report_json.h"
+#include "mbk/files/recording/write_file.h"
+#include "mbk/measure/analyse/posture.h"
+#include "mbk/present/report/html.h"
+#include "mbk/present/result/report_json.h"
 
 namespace mbk::app {
 namespace {
@@ -31,13 +31,13 @@ std::string command_line(int argc, char** argv) {
 }
 
 std::string report_json(const std::string& typed, const std::string& note, const std::vector<Recording>& recordings,
-                        const std::vector<result::Measured>& measured,
+                        const std::vector<Measurement>& measured,
                         const std::vector<std::optional<Diagnostics>>& diagnostics,
                         const std::optional<Summary>& summary) {
   result::Report report{{}, summary, typed, note};
   auto recording = recordings.begin();
   for (std::size_t k = 0; k < measured.size(); ++k) {
-    const result::Measured& one = measured[k];
+    const Measurement& one = measured[k];
     result::ReportedResult reported{one, {}, diagnostics[k]};
     for (const Preparation& how : one.identification.preparations) {
       reported.recordings.push_back(facts_of(*recording++, how));

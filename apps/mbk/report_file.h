@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "apps/mbk/measure_options.h"
-#include "mbk/core/result.h"
-#include "mbk/result/json.h"
-#include "mbk/trial/diagnostics.h"
-#include "mbk/trial/recording.h"
-#include "mbk/trial/summary.h"
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/diagnostics.h"
+#include "mbk/model/trial/recording.h"
+#include "mbk/model/trial/summary.h"
+#include "mbk/present/result/json.h"
 
 namespace mbk::app {
 
@@ -20,7 +20,7 @@ namespace mbk::app {
 /// @param note        of whoever made it
 [[nodiscard]] std::string report_json(const std::string& typed, const std::string& note,
                                       const std::vector<Recording>& recordings,
-                                      const std::vector<result::Measured>& measured,
+                                      const std::vector<Measurement>& measured,
                                       const std::vector<std::optional<Diagnostics>>& diagnostics,
                                       const std::optional<Summary>& summary);
 

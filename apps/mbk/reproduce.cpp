@@ -1,4 +1,4 @@
-#include "mbk/reproduction/reproduce.h"
+#include "mbk/thesis/reproduce.h"
 
 #include <fmt/format.h>
 
@@ -13,11 +13,11 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
-#include "mbk/recording/write_file.h"
-#include "mbk/report/chart.h"
-#include "mbk/report/text.h"
-#include "mbk/reproduction/page.h"
-#include "mbk/result/reproduction_json.h"
+#include "mbk/files/recording/write_file.h"
+#include "mbk/present/report/draw_chart.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/reproduction_json.h"
+#include "mbk/thesis/thesis_page.h"
 
 namespace mbk::app {
 namespace {
@@ -37,7 +37,7 @@ struct Arguments {
 /// One exhibit on each line.
 std::string list_text() {
   std::string text;
-  for (const auto& [id, title] : reproduction::exhibit_names()) text += fmt::format("{:<16} {}\n", id, title);
+  for (const auto& [id, title] : thesis::exhibit_names()) text += fmt::format("{:<16} {}\n", id, title);
   return text;
 }
 
@@ -83,7 +83,7 @@ Result<void> write_all(const Reproduction& made, const Arguments& arguments, con
   }
   const auto json = recording::write_file(arguments.folder / "reproduction.json", arguments.overwrite, document);
   if (!json) return json;
-  const auto page = reproduction::page(made, document);
+  const auto page = thesis::page(made, document);
   if (!page) return tl::unexpected(page.error());
   return recording::write_file(arguments.folder / "index.html", arguments.overwrite, *page);
 }
@@ -104,16 +104,16 @@ int run(const Arguments& arguments) {
   }
   const fs::path page = arguments.folder / "index.html";
   if (auto ok = check_new_file(page, "--out", arguments.overwrite, {}); !ok) return report_error(ok.error());
-  auto source = reproduction::read_source(reproduction::source_text());
+  auto source = thesis::read_source(thesis::source_text());
   if (!source) return report_error(source.error());
   if (arguments.without_printed) source->printed.clear();
   Progress progress(arguments.quiet, "reproduce: ");
-  reproduction::ReproduceOptions options;
+  thesis::ReproduceOptions options;
   options.only = arguments.only;
   options.seed = arguments.seed;
   options.threads = arguments.threads;
   options.progress = [&](int done, int of, std::string_view id) { progress.count(done, of, id); };
-  const auto made = reproduction::reproduce(*source, options);
+  const auto made = thesis::reproduce(*source, options);
   if (!made) return report_error(made.error());
   const std::string document = result::to_json(*made);
   if (auto ok = write_all(*made, arguments, document); !ok) return report_error(ok.error());

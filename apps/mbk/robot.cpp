@@ -10,10 +10,10 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/robot_commands.h"
-#include "mbk/report/chart.h"
-#include "mbk/report/text.h"
-#include "mbk/result/json.h"
-#include "mbk/robot/workspace.h"
+#include "mbk/model/robot/workspace.h"
+#include "mbk/present/report/draw_chart.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
 
 namespace mbk::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/mbk/output.h"
 #include "apps/mbk/robot_commands.h"
 #include "apps/mbk/scenario_argument.h"
-#include "mbk/session/live_check.h"
+#include "mbk/experiment/session/live_check.h"
 
 namespace mbk::app {
 namespace {

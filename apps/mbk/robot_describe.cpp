@@ -3,10 +3,10 @@
 
 #include "apps/mbk/output.h"
 #include "apps/mbk/robot_commands.h"
-#include "mbk/identify/robot_fit.h"
-#include "mbk/report/robot_description_text.h"
-#include "mbk/result/robot_description_json.h"
-#include "mbk/robot_file/robot_file.h"
+#include "mbk/measure/identify/robot_fit.h"
+#include "mbk/model/robot_file/robot_file.h"
+#include "mbk/present/report/robot_description_text.h"
+#include "mbk/present/result/robot_description_json.h"
 
 namespace mbk::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include "apps/mbk/output.h"
-#include "mbk/result/robot_json.h"
-#include "mbk/robot_file/robot_file.h"
+#include "mbk/model/robot_file/robot_file.h"
+#include "mbk/present/result/robot_json.h"
 
 namespace mbk::app {
 namespace {

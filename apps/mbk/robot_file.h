@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "mbk/core/result.h"
-#include "mbk/robot/robot_description.h"
+#include "mbk/base/core/result.h"
+#include "mbk/model/robot/robot_description.h"
 
 namespace mbk::app {
 

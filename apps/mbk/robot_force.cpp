@@ -5,10 +5,10 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_commands.h"
 #include "apps/mbk/robot_file.h"
-#include "mbk/measurement/compute_force.h"
-#include "mbk/recording/write.h"
-#include "mbk/report/robot_text.h"
-#include "mbk/result/robot_json.h"
+#include "mbk/files/recording/write.h"
+#include "mbk/measure/measurement/compute_force.h"
+#include "mbk/present/report/robot_text.h"
+#include "mbk/present/result/robot_json.h"
 
 namespace mbk::app {
 namespace {

@@ -12,10 +12,10 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_commands.h"
 #include "apps/mbk/robot_file.h"
-#include "mbk/measurement/identify_robot.h"
-#include "mbk/report/robot_text.h"
-#include "mbk/result/robot_json.h"
-#include "mbk/robot/drive_term_names.h"
+#include "mbk/measure/measurement/identify_robot.h"
+#include "mbk/model/robot/drive_term_names.h"
+#include "mbk/present/report/robot_text.h"
+#include "mbk/present/result/robot_json.h"
 
 namespace mbk::app {
 namespace {

@@ -19,13 +19,13 @@
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
 #include "apps/mbk/stop_signals.h"
-#include "mbk/preprocess/perturbation_only.h"
-#include "mbk/recording/read.h"
-#include "mbk/report/text.h"
-#include "mbk/session/live_estimate.h"
-#include "mbk/session/personal_data.h"
-#include "mbk/session/plan.h"
-#include "mbk/session/session.h"
+#include "mbk/experiment/session/live_estimate.h"
+#include "mbk/experiment/session/personal_data.h"
+#include "mbk/experiment/session/plan.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/measure/preprocess/perturbation_only.h"
+#include "mbk/present/report/text.h"
 
 namespace mbk::app {
 namespace {

@@ -8,11 +8,11 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/report_file.h"
-#include "mbk/console/page.h"
-#include "mbk/control/trial_control.h"
-#include "mbk/report/html.h"
-#include "mbk/session/personal_data.h"
-#include "mbk/session/plan.h"
+#include "mbk/experiment/console/page.h"
+#include "mbk/experiment/control/trial_control.h"
+#include "mbk/experiment/session/personal_data.h"
+#include "mbk/experiment/session/plan.h"
+#include "mbk/present/report/html.h"
 
 namespace mbk::app {
 
@@ -143,7 +143,7 @@ std::string RunConsole::finish(const session::TrialOutcome& outcome) {
   return text;
 }
 
-Result<result::Measured> RunConsole::measured(const Recording& recording, const measurement::Options& options) {
+Result<Measurement> RunConsole::measured(const Recording& recording, const measurement::Options& options) {
   if (!console_) return measurement::measure({&recording, 1}, options);
   auto examined = measurement::examine({&recording, 1}, options);
   if (!examined) {

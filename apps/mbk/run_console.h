@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "mbk/console/console.h"
-#include "mbk/measurement/measure.h"
-#include "mbk/session/session.h"
+#include "mbk/experiment/console/console.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/measure/measurement/measure.h"
 
 namespace mbk::app {
 
@@ -52,7 +52,7 @@ class RunConsole {
   [[nodiscard]] std::string finish(const session::TrialOutcome& outcome);
 
   /// Measures, and where there is a page that could open it makes the report too.   @fails  as measurement::measure
-  [[nodiscard]] Result<result::Measured> measured(const Recording& recording, const measurement::Options& options);
+  [[nodiscard]] Result<Measurement> measured(const Recording& recording, const measurement::Options& options);
 
   /// Remarks go into the recording of the last trial.   @fails  as session::annotate
   [[nodiscard]] Result<void> keep_notes();

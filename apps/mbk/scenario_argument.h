@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mbk/core/result.h"
-#include "mbk/laboratory/scenario.h"
+#include "mbk/base/core/result.h"
+#include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::app {
 

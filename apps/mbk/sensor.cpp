@@ -7,9 +7,9 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/sensor_options.h"
-#include "mbk/calibration/force_sensor.h"
-#include "mbk/report/sensor_text.h"
-#include "mbk/result/sensor_json.h"
+#include "mbk/measure/calibration/force_sensor.h"
+#include "mbk/present/report/sensor_text.h"
+#include "mbk/present/result/sensor_json.h"
 
 namespace mbk::app {
 namespace {

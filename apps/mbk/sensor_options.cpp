@@ -10,7 +10,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
-#include "mbk/result/sensor_json.h"
+#include "mbk/present/result/sensor_json.h"
 
 namespace mbk::app {
 namespace {

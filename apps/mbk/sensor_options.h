@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "mbk/calibration/sensor_force.h"
+#include "mbk/measure/calibration/sensor_force.h"
 
 namespace mbk::app {
 

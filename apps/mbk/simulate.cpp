@@ -11,10 +11,10 @@
 #include "apps/mbk/progress.h"
 #include "apps/mbk/readers_option.h"
 #include "apps/mbk/scenario_argument.h"
-#include "mbk/laboratory/scenario.h"
-#include "mbk/numeric/parallel.h"
-#include "mbk/recording/write.h"
-#include "mbk/report/schedule_text.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/files/recording/write.h"
+#include "mbk/present/report/schedule_text.h"
+#include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "mbk/core/result.h"
-#include "mbk/trial/springs.h"
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/springs.h"
 
 namespace mbk::app {
 

@@ -1,5 +1,3 @@
-#include "mbk/calibration/springs.h"
-
 #include <fmt/format.h>
 
 #include <memory>
@@ -11,10 +9,11 @@
 #include "apps/mbk/output.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/spring_options.h"
-#include "mbk/calibration/spring_constant.h"
-#include "mbk/calibration/spring_design.h"
-#include "mbk/report/springs_text.h"
-#include "mbk/result/springs_json.h"
+#include "mbk/measure/calibration/spring_array.h"
+#include "mbk/measure/calibration/spring_constant.h"
+#include "mbk/measure/calibration/spring_design.h"
+#include "mbk/present/report/springs_text.h"
+#include "mbk/present/result/springs_json.h"
 
 namespace mbk::app {
 namespace {

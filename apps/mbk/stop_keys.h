@@ -4,7 +4,7 @@
 #include <optional>
 #include <thread>
 
-#include "mbk/session/loop.h"
+#include "mbk/experiment/session/loop.h"
 
 namespace mbk::app {
 

@@ -10,10 +10,10 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
-#include "mbk/laboratory/teleoperation.h"
-#include "mbk/report/chart.h"
-#include "mbk/report/teleoperation_text.h"
-#include "mbk/result/teleoperation_json.h"
+#include "mbk/present/report/draw_chart.h"
+#include "mbk/present/report/teleoperation_text.h"
+#include "mbk/present/result/teleoperation_json.h"
+#include "mbk/simulate/laboratory/simulate_teleoperation.h"
 #include "mbk/teleop/judge.h"
 
 namespace mbk::app {

@@ -13,14 +13,14 @@
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/report_file.h"
-#include "mbk/analyse/frequency_response.h"
-#include "mbk/measurement/transfer_function.h"
-#include "mbk/preprocess/resample.h"
-#include "mbk/recording/channel_map.h"
-#include "mbk/recording/channel_table.h"
-#include "mbk/report/chart.h"
-#include "mbk/report/transfer_function_text.h"
-#include "mbk/result/transfer_function_json.h"
+#include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/channel_table.h"
+#include "mbk/measure/analyse/describe_transfer_function.h"
+#include "mbk/measure/measurement/identify_transfer_function.h"
+#include "mbk/measure/preprocess/resample.h"
+#include "mbk/present/report/draw_chart.h"
+#include "mbk/present/report/transfer_function_text.h"
+#include "mbk/present/result/transfer_function_json.h"
 
 namespace mbk::app {
 namespace {

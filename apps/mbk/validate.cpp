@@ -11,13 +11,13 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
-#include "mbk/recording/write_file.h"
-#include "mbk/report/chart.h"
-#include "mbk/report/text.h"
-#include "mbk/result/json.h"
-#include "mbk/validation/study.h"
-#include "mbk/validation/udp_fault_kinds.h"
-#include "mbk/validation/udp_faults.h"
+#include "mbk/files/recording/write_file.h"
+#include "mbk/present/report/draw_chart.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
+#include "mbk/study/validation/study.h"
+#include "mbk/study/validation/udp_fault_kinds.h"
+#include "mbk/study/validation/udp_faults.h"
 
 namespace mbk::app {
 namespace {

@@ -1,6 +1,6 @@
 // mbk_misbehaving_robot SCENARIO --fault NAME: a simulated robot behind UDP that misbehaves, and says what it truly
 // did.
-#include "mbk/validation/misbehaving_robot.h"
+#include "mbk/study/validation/misbehaving_robot.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,10 +10,10 @@
 #include <cstdio>
 #include <string>
 
-#include "mbk/laboratory/find_scenario.h"
-#include "mbk/laboratory/simulated_device.h"
-#include "mbk/realtime/clock.h"
-#include "mbk/validation/udp_fault_kinds.h"
+#include "mbk/base/realtime/clock.h"
+#include "mbk/simulate/laboratory/find_scenario.h"
+#include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/study/validation/udp_fault_kinds.h"
 
 namespace {
 

@@ -1,2 +1,4 @@
 // Holds the precompiled headers of programs (cmake/MbkPrecompile.cmake); it does nothing.
-int main() { return 0; }
+int main() {
+  return 0;
+}

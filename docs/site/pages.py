@@ -34,7 +34,7 @@ LINK = re.compile(r"(?P<code>(?<!\[)`+[^`]+`+(?!\]))|(?P<image>!?)\[(?P<label>(?
 
 def public_headers():
     """Every header that is installed: not those of tests, not those that a module keeps to itself."""
-    for lists in sorted(ROOT.glob("mbk/*/CMakeLists.txt")):
+    for lists in sorted(ROOT.glob("mbk/*/**/CMakeLists.txt")):
         text = re.sub(r"#[^\n]*", "", lists.read_text())
         private = set()
         for words in re.findall(r"PRIVATE_HEADERS((?:\s+\w+\.h)+)", text):

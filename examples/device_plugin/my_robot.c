@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "mbk/drivers/device_plugin.h"
+#include "mbk/experiment/drivers/device_plugin.h"
 
 static const double kInertia = 0.07; /* of each wheel [kg·m²] */
 static const double kFriction = 0.1; /* [N·m·s/rad] */

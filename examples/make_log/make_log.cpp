@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "mbk/laboratory/prescribed_motion.h"
-#include "mbk/recording/write.h"
+#include "mbk/files/recording/write.h"
+#include "mbk/simulate/laboratory/prescribed_motion.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // mbk_udp_robot SCENARIO: a simulated robot with a participant at its handle, reached by UDP as a real one would be.
-#include "mbk/drivers/udp_robot.h"
+#include "mbk/experiment/drivers/udp_robot.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <csignal>
 #include <string>
 
-#include "mbk/laboratory/find_scenario.h"
-#include "mbk/laboratory/simulated_device.h"
-#include "mbk/realtime/thread_setup.h"
+#include "mbk/base/realtime/thread_setup.h"
+#include "mbk/simulate/laboratory/find_scenario.h"
+#include "mbk/simulate/laboratory/simulated_device.h"
 
 namespace {
 

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <numbers>
 
-#include "mbk/dsp/butterworth.h"
-#include "mbk/dsp/savitzky_golay.h"
-#include "mbk/dsp/zero_phase.h"
-#include "mbk/numeric/random.h"
+#include "mbk/base/dsp/butterworth.h"
+#include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/base/dsp/zero_phase.h"
+#include "mbk/base/numeric/random.h"
 
 namespace {
 

@@ -2,10 +2,10 @@
 //   usage: judge_a_model
 #include <cstdio>
 
-#include "mbk/impedance/ellipse.h"
-#include "mbk/impedance/passivity_index.h"
-#include "mbk/lti/passivity_index.h"
-#include "mbk/lti/positive_real.h"
+#include "mbk/base/lti/positive_real.h"
+#include "mbk/base/lti/rational_passivity_index.h"
+#include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/impedance/passivity_index.h"
 
 namespace {
 

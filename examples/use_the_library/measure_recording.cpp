@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "mbk/measurement/measure.h"
-#include "mbk/recording/read.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/measure/measurement/measure.h"
 
 namespace {
 

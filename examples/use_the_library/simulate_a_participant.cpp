@@ -4,8 +4,8 @@
 #include <variant>
 #include <vector>
 
-#include "mbk/laboratory/scenario.h"
-#include "mbk/measurement/measure.h"
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/simulate/laboratory/scenario.h"
 
 namespace {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "mbk/core/result.h"
-#include "mbk/lti/real_roots.h"
+#include "mbk/base/core/result.h"
+#include "mbk/base/lti/real_roots.h"
+#include "mbk/model/trial/teleoperation.h"
 #include "mbk/teleop/two_port.h"
-#include "mbk/trial/teleoperation.h"
 
 namespace mbk::teleop {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "mbk/lti/on_axis.h"
+#include "mbk/base/lti/on_axis.h"
 
 namespace mbk::teleop {
 namespace {

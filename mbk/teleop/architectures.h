@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mbk/core/linear_algebra.h"
-#include "mbk/core/units.h"
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/units.h"
 #include "mbk/teleop/two_port.h"
 
 namespace mbk::teleop {

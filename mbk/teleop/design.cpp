@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mbk/config/document.h"
+#include "mbk/base/config/document.h"
 
 namespace mbk::teleop {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <variant>
 
-#include "mbk/core/result.h"
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/teleoperation.h"
 #include "mbk/teleop/architectures.h"
-#include "mbk/trial/teleoperation.h"
 
 namespace mbk::teleop {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "mbk/lti/half_planes.h"
-#include "mbk/lti/on_axis.h"
+#include "mbk/base/lti/half_planes.h"
+#include "mbk/base/lti/on_axis.h"
 #include "mbk/teleop/admissible.h"
 #include "mbk/teleop/llewellyn.h"
 #include "mbk/teleop/sampled.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "mbk/core/result.h"
+#include "mbk/base/core/result.h"
 #include "mbk/teleop/design.h"
 
 namespace mbk::teleop {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "mbk/lti/half_planes.h"
-#include "mbk/lti/on_axis.h"
-#include "mbk/lti/real_roots.h"
+#include "mbk/base/lti/half_planes.h"
+#include "mbk/base/lti/on_axis.h"
+#include "mbk/base/lti/real_roots.h"
 
 namespace mbk::teleop {
 namespace {

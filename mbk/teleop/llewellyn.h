@@ -1,8 +1,8 @@
 #pragma once
 
-#include "mbk/lti/positive_real.h"
+#include "mbk/base/lti/positive_real.h"
+#include "mbk/model/trial/teleoperation.h"
 #include "mbk/teleop/two_port.h"
-#include "mbk/trial/teleoperation.h"
 
 namespace mbk::teleop {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mbk/numeric/random.h"
+#include "mbk/base/numeric/random.h"
 #include "mbk/teleop/test_networks.h"
 
 namespace mbk::teleop {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mbk/lti/polynomial.h"
+#include "mbk/base/lti/polynomial.h"
 
 namespace mbk::teleop {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mbk/numeric/random.h"
+#include "mbk/base/numeric/random.h"
 
 namespace mbk::teleop {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "mbk/core/result.h"
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/teleoperation.h"
 #include "mbk/teleop/architectures.h"
-#include "mbk/trial/teleoperation.h"
 
 namespace mbk::teleop {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "mbk/numeric/random.h"
+#include "mbk/base/numeric/random.h"
 #include "mbk/teleop/architectures.h"
 
 namespace mbk::teleop {

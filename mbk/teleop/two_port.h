@@ -4,9 +4,9 @@
 #include <complex>
 #include <string_view>
 
-#include "mbk/core/linear_algebra.h"
-#include "mbk/core/result.h"
-#include "mbk/lti/rational.h"
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/result.h"
+#include "mbk/base/lti/rational.h"
 #include "mbk/teleop/parametric.h"
 
 namespace mbk::teleop {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "mbk/numeric/random.h"
+#include "mbk/base/numeric/random.h"
 #include "mbk/teleop/test_networks.h"
 
 namespace mbk::teleop {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <span>
 
+#include "mbk/model/trial/teleoperation.h"
 #include "mbk/teleop/architectures.h"
-#include "mbk/trial/teleoperation.h"
 
 namespace mbk::teleop {
 

@@ -13,8 +13,8 @@
 #include <span>
 #include <string>
 
-#include "mbk/numeric/cone_program.h"
-#include "mbk/numeric/test_cones.h"
+#include "mbk/base/numeric/cone_program.h"
+#include "mbk/base/numeric/test_cones.h"
 
 namespace mbk::numeric {
 namespace {

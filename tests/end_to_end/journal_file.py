@@ -1,4 +1,4 @@
-"""Journals of sessions as they are described (mbk/journal/blocks.h), written and walked without mbk."""
+"""Journals of sessions as they are described (mbk/files/journal/blocks.h), written and walked without mbk."""
 
 import json
 import math

@@ -12,7 +12,7 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 NOTICES = (SOURCE / "THIRD_PARTY_NOTICES.md").read_text()
 TABLE = "\n".join(line for line in NOTICES.splitlines() if line.startswith("| ["))
-SHIPPED = re.compile(r"^(apps/mbk|mbk/\w+)/CMakeFiles/(?!\w*_test\.dir)\w+\.dir/")
+SHIPPED = re.compile(r"^(apps/mbk|mbk/[\w/]+)/CMakeFiles/(?!\w*_test\.dir)\w+\.dir/")
 
 
 def ran(*command):

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "mbk/numeric/random.h"
-#include "mbk/participant/two_link_arm.h"
+#include "mbk/base/numeric/random.h"
+#include "mbk/simulate/participant/two_link_arm.h"
 #include "tests/physics/engine.h"
 
 namespace mbk::participant {

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "mbk/robot/dynamics.h"
+#include "mbk/model/robot/dynamics.h"
 #include "tests/physics/engine.h"
 
 namespace mbk::robot {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "mbk/robot/serial_chain.h"
-#include "mbk/robot/test_chains.h"
+#include "mbk/model/robot/serial_chain.h"
+#include "mbk/model/robot/test_chains.h"
 #include "tests/physics/engine.h"
 
 namespace mbk::robot {

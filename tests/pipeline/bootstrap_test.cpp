@@ -1,5 +1,5 @@
 // The bootstrap's intervals of a simulated recording, beside the delta method and plain quantiles.
-#include "mbk/analyse/bootstrap.h"
+#include "mbk/measure/analyse/bootstrap.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "mbk/identify/impedance_fit.h"
-#include "mbk/impedance/ellipse.h"
-#include "mbk/preprocess/prepare.h"
-#include "mbk/recording/inspection.h"
+#include "mbk/files/recording/inspect.h"
+#include "mbk/measure/identify/impedance_fit.h"
+#include "mbk/measure/preprocess/prepare.h"
+#include "mbk/model/impedance/ellipse.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {

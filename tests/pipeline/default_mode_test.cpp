@@ -3,8 +3,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "mbk/recording/channel_map.h"
-#include "mbk/recording/read.h"
+#include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/read.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {

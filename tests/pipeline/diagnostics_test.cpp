@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "mbk/numeric/statistics.h"
-#include "mbk/recording/read.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/read.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {

@@ -1,5 +1,3 @@
-#include "mbk/analyse/energy.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "mbk/laboratory/scenario.h"
-#include "mbk/preprocess/prepare.h"
-#include "mbk/recording/inspection.h"
-#include "mbk/recording/read.h"
+#include "mbk/files/recording/inspect.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/measure/analyse/absorbed_energy.h"
+#include "mbk/measure/preprocess/prepare.h"
+#include "mbk/simulate/laboratory/scenario.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {

@@ -4,13 +4,13 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "mbk/identify/impedance_fit.h"
-#include "mbk/impedance/ellipse.h"
-#include "mbk/impedance/model.h"
-#include "mbk/laboratory/scenario.h"
-#include "mbk/numeric/random.h"
-#include "mbk/preprocess/prepare.h"
-#include "mbk/recording/inspection.h"
+#include "mbk/base/numeric/random.h"
+#include "mbk/files/recording/inspect.h"
+#include "mbk/measure/identify/impedance_fit.h"
+#include "mbk/measure/preprocess/prepare.h"
+#include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/impedance/model.h"
+#include "mbk/simulate/laboratory/scenario.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {

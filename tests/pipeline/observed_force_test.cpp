@@ -1,4 +1,4 @@
-#include "mbk/robot/observed_force.h"
+#include "mbk/model/robot/observed_force.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "mbk/analyse/force_comparison.h"
-#include "mbk/laboratory/experiment.h"
-#include "mbk/laboratory/scenario.h"
-#include "mbk/robot/planar_mechanism.h"
+#include "mbk/measure/analyse/compare_forces.h"
+#include "mbk/model/robot/planar_mechanism.h"
+#include "mbk/simulate/laboratory/planar_experiment.h"
+#include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::pipeline {
 namespace {

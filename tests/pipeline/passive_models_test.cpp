@@ -4,11 +4,11 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "mbk/analyse/passivity.h"
-#include "mbk/impedance/passivity_index.h"
-#include "mbk/lti/passivity_index.h"
-#include "mbk/lti/positive_real.h"
-#include "mbk/numeric/random.h"
+#include "mbk/base/lti/positive_real.h"
+#include "mbk/base/lti/rational_passivity_index.h"
+#include "mbk/base/numeric/random.h"
+#include "mbk/measure/analyse/judge_passivity.h"
+#include "mbk/model/impedance/passivity_index.h"
 
 namespace mbk::pipeline {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "mbk/laboratory/prescribed_motion.h"
-#include "mbk/measurement/measure.h"
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/simulate/laboratory/prescribed_motion.h"
 
 namespace mbk::pipeline {
 

@@ -1,7 +1,7 @@
 // Reference mode against the published procedure in 113-bit arithmetic, which shares no filter with mbk.
 #include <gtest/gtest.h>
 
-#include "mbk/recording/read.h"
+#include "mbk/files/recording/read.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/reference/quad_procedure.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "mbk/core/result.h"
+#include "mbk/base/core/result.h"
 
 /// The published identification procedure (Dyck 2013, appendix C) in 113-bit arithmetic: the slow twin that `mbk`'s
 /// reference mode is held against.

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "mbk/laboratory/prescribed_motion.h"
+#include "mbk/simulate/laboratory/prescribed_motion.h"
 #include "tests/reference/quad_filters.h"
 #include "tests/reference/read_log.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "mbk/core/result.h"
+#include "mbk/base/core/result.h"
 #include "tests/reference/quad_procedure.h"
 
 namespace mbk::reference {

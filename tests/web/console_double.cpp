@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
-#include "mbk/console/console.h"
-#include "mbk/session/experiment.h"
+#include "mbk/experiment/console/console.h"
+#include "mbk/experiment/session/experiment.h"
 
 namespace {
 

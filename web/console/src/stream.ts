@@ -75,7 +75,7 @@ export interface You {
   dropped_frames: number;
 }
 
-/** Columns of a frame, as mbk/console/frame.h says. */
+/** Columns of a frame, as mbk/experiment/console/frame.h says. */
 export const column = { time: 0, hand: 1, force: 3, reference: 5, acceleration: 7, torque: 9, compute: 11, late: 12 };
 
 export interface Frame {

@@ -1,0 +1,205 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "mbk/base/config/range.h"
+#include "mbk/base/core/result.h"
+
+namespace mbk::config {
+
+struct Node;
+class Reading;
+class Section;
+struct Trial;
+
+/// A TOML file. Its sections hand out checked values and remember what was asked for; a value that is wrong is replaced
+/// by its fallback, and finish() gives the first problem, so that code that reads a file says each key once, in a row:
+///
+///   Section s = document.root().section("perturbation");
+///   options.amplitude = s.number("amplitude_mm", options.amplitude, above(0));   // m
+///   options.directions = s.integer("directions", options.directions, 1, 64);
+///   if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
+///
+/// Numbers come in SI units: a key carries its unit (unit_of_key). Ranges and messages speak the unit of the key.
+/// Copies share what they remember.
+class Document {
+ public:
+  /// @param file  how messages call it
+  /// @fails  data: what parse_toml refuses, with file, line, column.
+  [[nodiscard]] static Result<Document> parse(std::string_view text, std::string_view file);
+  /// @fails  data: the same; the file cannot be read.
+  [[nodiscard]] static Result<Document> read(const std::filesystem::path& file);
+
+  [[nodiscard]] Section root() const;
+
+  /// The experiments that a file describes: one for each [[trial]], whose keys are laid over those of the file, table
+  /// by table; an array is replaced as a whole. Without [[trial]] it is this document, with an empty name. Each trial
+  /// answers with its own finish() for its own lines; the keys that trials share count as known where any of them
+  /// asked, which only finish() of this document can tell. That covers its trials too.
+  /// @fails  data: [[trial]] is no array of tables, or has more than kMostTrials; a name is missing, used twice or is
+  ///         more than letters, digits, _ and - (it becomes part of file names).
+  [[nodiscard]] Result<std::vector<Trial>> trials() const;
+
+  /// @fails  data, with file, line and key: the first value asked for that is of the wrong type, outside its range or
+  ///         refused by the reader, or is missing and has no fallback; else the first key that nobody asked for, with
+  ///         the nearest one that is known.
+  [[nodiscard]] Result<void> finish() const;
+
+ private:
+  explicit Document(std::shared_ptr<Reading> reading) : reading_(std::move(reading)) {}
+  std::shared_ptr<Reading> reading_;
+};
+
+inline constexpr std::size_t kMostTrials = 1000;
+
+struct Trial {
+  std::string name;
+  Document document;
+};
+
+/// A table of a document; one that is not in the file gives fallbacks. Fallbacks are in SI units, like what is
+/// returned, and need not lie in the range.
+class Section {
+ public:
+  /// Words and what they stand for.
+  template <class Value>
+  using Choices = std::initializer_list<std::pair<std::string_view, std::type_identity_t<Value>>>;
+
+  /// Whether the table stands in the file.
+  [[nodiscard]] bool given() const;
+  /// Whether the key stands in the file; the key counts as known from then on.
+  [[nodiscard]] bool has(std::string_view key) const;
+
+  /// A finite number in SI units; integers are numbers.
+  [[nodiscard]] double number(std::string_view key, double fallback, Range allowed = any()) const;
+  [[nodiscard]] double required_number(std::string_view key, Range allowed = any()) const;
+  [[nodiscard]] std::optional<double> optional_number(std::string_view key, Range allowed = any()) const;
+
+  /// A whole number from low to high, never converted.
+  template <std::integral Int>
+  [[nodiscard]] Int integer(std::string_view key, Int fallback, std::type_identity_t<Int> low,
+                            std::type_identity_t<Int> high) const {
+    const auto value = find_integer(key, limit(low), limit(high), Need::optional);
+    return value ? static_cast<Int>(*value) : fallback;
+  }
+  template <std::integral Int>
+  [[nodiscard]] Int required_integer(std::string_view key, Int low, std::type_identity_t<Int> high) const {
+    const auto value = find_integer(key, limit(low), limit(high), Need::required);
+    return value ? static_cast<Int>(*value) : low;
+  }
+
+  [[nodiscard]] bool flag(std::string_view key, bool fallback) const;
+
+  [[nodiscard]] std::string text(std::string_view key, std::string_view fallback) const;
+  [[nodiscard]] std::string required_text(std::string_view key) const;
+  [[nodiscard]] std::optional<std::string> optional_text(std::string_view key) const;
+
+  /// One of a few words: s.choice("kind", {{"multisine", Kind::multisine}, {"pulses", Kind::pulses}}, Kind::pulses)
+  template <class Value>
+  [[nodiscard]] Value choice(std::string_view key, Choices<Value> options, Value fallback) const {
+    return chosen(key, options, Need::optional).value_or(fallback);
+  }
+  /// s.required_choice<Kind>("kind", {...}); the first one where it is missing
+  template <class Value>
+  [[nodiscard]] Value required_choice(std::string_view key, Choices<Value> options) const {
+    return chosen(key, options, Need::required).value_or(options.begin()->second);
+  }
+
+  /// Some of a few words, each at most once: s.choices("axes", {{"x", Axis::x}, {"y", Axis::y}}, {Axis::x})
+  template <class Value>
+  [[nodiscard]] std::vector<Value> choices(std::string_view key, Choices<Value> options,
+                                           std::vector<Value> fallback) const {
+    std::vector<std::string_view> words;
+    for (const auto& option : options) words.push_back(option.first);
+    const auto indices = find_words(key, words);
+    if (!indices) return fallback;
+    std::vector<Value> values;
+    for (const std::ptrdiff_t index : *indices) values.push_back((options.begin() + index)->second);
+    return values;
+  }
+
+  /// [1.0, 2.0, ...] in SI units; `allowed` holds for each, `count` is how many there must be (kAnyCount: any).
+  static constexpr std::size_t kAnyCount = std::numeric_limits<std::size_t>::max();
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::vector<double> fallback, Range allowed = any(),
+                                            std::size_t count = kAnyCount) const;
+  [[nodiscard]] Eigen::Vector2d vector2(std::string_view key, const Eigen::Vector2d& fallback,
+                                        Range allowed = any()) const;
+  [[nodiscard]] Eigen::Vector2d required_vector2(std::string_view key, Range allowed = any()) const;
+  /// [[a, b], [c, d]], rows first.
+  [[nodiscard]] Eigen::Matrix2d matrix2(std::string_view key, const Eigen::Matrix2d& fallback,
+                                        Range allowed = any()) const;
+  [[nodiscard]] Eigen::Matrix2d required_matrix2(std::string_view key, Range allowed = any()) const;
+
+  [[nodiscard]] Section section(std::string_view key) const;
+  /// The table of that name is another reader's: its keys are not judged here.
+  void leave_to_others(std::string_view key) const;
+  /// The tables of [[key]], in the order of the file.
+  [[nodiscard]] std::vector<Section> sections(std::string_view key) const;
+
+  /// A problem that the reader finds by itself: "above the Nyquist frequency 500 Hz"
+  void reject(std::string_view key, std::string message, std::string remedy = "") const;
+  /// The same as a value, with file, line and key, for a reader that goes no further.
+  [[nodiscard]] Error error(std::string_view key, std::string message, std::string remedy = "") const;
+
+ private:
+  friend class Document;
+  enum class Need { optional, required };
+
+  Section(std::shared_ptr<Reading> reading, std::string path, const Node* over, const Node* base)
+      : reading_(std::move(reading)), path_(std::move(path)), over_(over), base_(base) {}
+
+  template <std::integral Int>
+  static std::int64_t limit(Int value) {
+    constexpr auto kLargest = std::numeric_limits<std::int64_t>::max();
+    return std::cmp_greater(value, kLargest) ? kLargest : static_cast<std::int64_t>(value);
+  }
+  template <class Value>
+  std::optional<Value> chosen(std::string_view key, std::initializer_list<std::pair<std::string_view, Value>> options,
+                              Need need) const {
+    std::vector<std::string_view> words;
+    for (const auto& option : options) words.push_back(option.first);
+    const auto index = find_word(key, words, need);
+    return index ? std::optional<Value>((options.begin() + *index)->second) : std::nullopt;
+  }
+
+  [[nodiscard]] const Node* find(std::string_view key, Need need) const;
+  [[nodiscard]] std::optional<double> find_number(std::string_view key, Range allowed, Need need) const;
+  [[nodiscard]] std::optional<std::int64_t> find_integer(std::string_view key, std::int64_t low, std::int64_t high,
+                                                         Need need) const;
+  [[nodiscard]] std::optional<std::string> find_text(std::string_view key, Need need) const;
+  [[nodiscard]] std::optional<std::ptrdiff_t> find_word(std::string_view key, std::span<const std::string_view> words,
+                                                        Need need) const;
+  [[nodiscard]] std::optional<std::vector<std::ptrdiff_t>> find_words(std::string_view key,
+                                                                      std::span<const std::string_view> words) const;
+  [[nodiscard]] std::optional<std::vector<double>> find_numbers(std::string_view key, Range allowed, std::size_t count,
+                                                                Need need) const;
+  [[nodiscard]] std::optional<Eigen::Vector2d> find_vector2(std::string_view key, Range allowed, Need need) const;
+  [[nodiscard]] std::optional<Eigen::Matrix2d> find_matrix2(std::string_view key, Range allowed, Need need) const;
+  [[nodiscard]] std::optional<double> checked(std::string_view key, const Node& node, Range allowed,
+                                              std::string_view place) const;
+  [[nodiscard]] std::optional<std::vector<double>> checked_list(std::string_view key, const Node& node, Range allowed,
+                                                                std::size_t count, std::string_view place) const;
+  void wrong_type(std::string_view key, const Node& node, std::string_view wanted, std::string_view place = "") const;
+  [[nodiscard]] Error error_at(std::string_view key, int line, std::string message, std::string remedy) const;
+  [[nodiscard]] std::string full_name(std::string_view key) const;
+
+  std::shared_ptr<Reading> reading_;
+  std::string path_;  // "robot.link[2]"; "" for the root
+  const Node* over_;  // the table of a trial, or nullptr
+  const Node* base_;  // the table of the file, or nullptr
+};
+
+}  // namespace mbk::config

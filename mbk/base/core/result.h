@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
+
+#include "mbk/base/core/printable.h"
+
+namespace mbk {
+
+/// Why a call could not give what was asked. The command line turns the kind into its exit code.
+enum class ErrorKind {
+  usage,       ///< an option or argument is wrong: exit code 2
+  data,        ///< the input is bad, missing or unreadable: exit code 3
+  not_usable,  ///< computed, but the answer must not be used: exit code 4
+};
+
+/// A failure as a value: what is wrong, where, and what to do about it. Bad data never throws, prints or aborts.
+struct Error {
+  ErrorKind kind = ErrorKind::data;
+  std::string message;  ///< quantity, value and limit: "cutoff 600 Hz is not below Nyquist 500 Hz"
+  std::string remedy;   ///< what to do next; may be empty
+  std::string where;    ///< file, and place in it: "log.mat, variable 'logs'"; may be empty
+
+  /// The same error with an outer place put before the inner one.
+  [[nodiscard]] Error in(std::string_view place) const {
+    Error outer = *this;
+    outer.where = printable(where.empty() ? std::string(place) : std::string(place) + ", " + where);
+    return outer;
+  }
+
+  /// One line: "where: message; remedy".
+  [[nodiscard]] std::string line() const {
+    std::string text = where.empty() ? message : where + ": " + message;
+    if (!remedy.empty()) text += "; " + remedy;
+    return text;
+  }
+};
+
+/// Either a value or an Error.
+template <class Value>
+using Result = tl::expected<Value, Error>;
+
+/// An Error ready to be returned from a function that returns `Result<…>`. Whatever it quotes becomes printable, so
+/// that an error is one line.
+[[nodiscard]] inline tl::unexpected<Error> fail(ErrorKind kind, std::string message, std::string remedy = "",
+                                                std::string where = "") {
+  return tl::unexpected<Error>(
+      Error{kind, printable(std::move(message)), printable(std::move(remedy)), printable(std::move(where))});
+}
+
+[[nodiscard]] inline tl::unexpected<Error> bad_data(std::string message, std::string remedy = "",
+                                                    std::string where = "") {
+  return fail(ErrorKind::data, std::move(message), std::move(remedy), std::move(where));
+}
+
+[[nodiscard]] inline tl::unexpected<Error> bad_usage(std::string message, std::string remedy = "") {
+  return fail(ErrorKind::usage, std::move(message), std::move(remedy));
+}
+
+}  // namespace mbk

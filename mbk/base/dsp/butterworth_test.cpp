@@ -1,0 +1,61 @@
+#include "mbk/base/dsp/butterworth.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mbk::dsp {
+namespace {
+
+constexpr double kEps = 2.3e-16;
+const Hertz kRate(1000.0);
+
+TEST(Butterworth, HasHalfPowerAtItsCutoffAndUnitGainAtZero) {
+  for (int order = 1; order <= 12; ++order) {
+    for (const double cutoff : {0.5, 4.5, 5.0, 25.0, 100.0, 499.0}) {
+      SCOPED_TRACE(testing::Message() << "order " << order << ", cutoff " << cutoff << " Hz");
+      const auto filter = butterworth_lowpass(order, Hertz(cutoff), kRate);
+      ASSERT_TRUE(filter);
+      // Near 0 and near Nyquist 1 ± a1 + a2 ≈ (2π f/fs)² is a difference of numbers near 1: the gain loses its
+      // rounding.
+      const double tolerance =
+          100.0 * kEps * std::pow(kRate.value / (6.28 * std::min(cutoff, 500.0 - cutoff)), 2) + 1e-12;
+      EXPECT_NEAR(gain(*filter, Hertz(0.0), kRate), 1.0, tolerance);
+      EXPECT_NEAR(gain(*filter, Hertz(cutoff), kRate), std::sqrt(0.5), tolerance);
+    }
+  }
+}
+
+TEST(Butterworth, FollowsItsClosedForm) {
+  // |H|² = 1/(1 + (tan(πf/fs)/tan(πfc/fs))^2n)
+  const auto filter = butterworth_lowpass(5, Hertz(5.0), kRate);
+  ASSERT_TRUE(filter);
+  for (double f = 0.25; f < 60.0; f *= 1.3) {
+    const double ratio = std::tan(M_PI * f / 1000.0) / std::tan(M_PI * 5.0 / 1000.0);
+    const double expected = 1.0 / std::sqrt(1.0 + std::pow(ratio, 10.0));
+    EXPECT_NEAR(gain(*filter, Hertz(f), kRate), expected, 1e-11) << f << " Hz";
+  }
+}
+
+TEST(Butterworth, ForwardAndBackwardAtFiveHertzHasThePublishedGains) {
+  const auto filter = butterworth_lowpass(5, Hertz(5.0), kRate);
+  ASSERT_TRUE(filter);
+  const auto twice = [&](double f) { return std::pow(gain(*filter, Hertz(f), kRate), 2); };
+  EXPECT_NEAR(twice(3.0), 0.994, 5e-4);
+  EXPECT_NEAR(twice(4.0), 0.903, 5e-4);
+  EXPECT_NEAR(twice(5.0), 0.500, 5e-4);
+}
+
+TEST(Butterworth, RefusesWhatCannotBe) {
+  EXPECT_FALSE(butterworth_lowpass(0, Hertz(5.0), kRate));
+  EXPECT_FALSE(butterworth_lowpass(21, Hertz(5.0), kRate));
+  EXPECT_FALSE(butterworth_lowpass(5, Hertz(0.0), kRate));
+  EXPECT_FALSE(butterworth_lowpass(5, Hertz(std::nan("")), kRate));
+  const auto high = butterworth_lowpass(5, Hertz(600.0), kRate);
+  ASSERT_FALSE(high);
+  EXPECT_EQ(high.error().message, "cutoff 600 Hz is not between 0 and Nyquist 500 Hz");
+}
+
+}  // namespace
+}  // namespace mbk::dsp

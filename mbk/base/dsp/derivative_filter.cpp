@@ -1,0 +1,82 @@
+#include "mbk/base/dsp/derivative_filter.h"
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace mbk::dsp {
+
+HeldStep held_step(const Vector& denominator, double step) {
+  const Index n = denominator.size();
+  Matrix F = Matrix::Zero(n + 2, n + 2);
+  F.diagonal(1).head(n - 1).setOnes();
+  F.row(n - 1).head(n) = -denominator.transpose();
+  F(n - 1, n) = 1.0;
+  F(n, n + 1) = 1.0;
+  const Matrix E = (step * F).exp();
+  const Vector from_next = E.col(n + 1).head(n) / step;
+  return {E.topLeftCorner(n, n), E.col(n).head(n) - from_next, from_next};
+}
+
+DerivativeFilter::DerivativeFilter(const Vector& denominator)
+    : a_(denominator), x_(Vector::Zero(denominator.size())), n_(denominator.size()) {}
+
+void DerivativeFilter::set_state(const Vector& state, double input) {
+  x_ = state;
+  last_input_ = input;
+}
+
+void DerivativeFilter::set_step(double step) {
+  if (step == step_) return;
+  step_ = step;
+  held_ = held_step(a_, step);
+}
+
+template <int N>
+void DerivativeFilter::run_fixed(const double* input, Index count, double* states, Index stride) {
+  using State = Eigen::Matrix<double, N, 1>;
+  const Eigen::Matrix<double, N, N> transition = held_.transition;
+  const State from_last = held_.from_last, from_next = held_.from_next;
+  State x = x_;
+  double last = last_input_;
+  for (Index i = 0; i < count; ++i) {
+    State next = from_last * last + from_next * input[i];
+    next.noalias() += transition * x;
+    x = next;
+    last = input[i];
+    Eigen::Map<State>(states + i * stride, n_) = x;
+  }
+  x_ = x;
+  last_input_ = last;
+}
+
+void DerivativeFilter::run(double step, const double* input, Index count,
+                           Eigen::Ref<Matrix, 0, Eigen::OuterStride<>> states) {
+  set_step(step);
+  double* const to = states.data();
+  const Index stride = states.outerStride();
+  switch (n_) {
+    case 1:
+      return run_fixed<1>(input, count, to, stride);
+    case 2:
+      return run_fixed<2>(input, count, to, stride);
+    case 3:
+      return run_fixed<3>(input, count, to, stride);
+    case 4:
+      return run_fixed<4>(input, count, to, stride);
+    case 5:
+      return run_fixed<5>(input, count, to, stride);
+    case 6:
+      return run_fixed<6>(input, count, to, stride);
+    case 7:
+      return run_fixed<7>(input, count, to, stride);
+    case 8:
+      return run_fixed<8>(input, count, to, stride);
+    default:
+      for (Index i = 0; i < count; ++i) {
+        x_ = (held_.transition * x_ + held_.from_last * last_input_ + held_.from_next * input[i]).eval();
+        last_input_ = input[i];
+        states.col(i) = x_;
+      }
+  }
+}
+
+}  // namespace mbk::dsp

@@ -1,0 +1,285 @@
+#include "mbk/base/dsp/filter_chain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "mbk/base/dsp/lanes.h"
+
+namespace mbk::dsp {
+namespace {
+
+using FourColumns = std::array<const double*, kLanes>;
+
+/// Columns that go side by side, and what is wanted of them.
+struct Batch {
+  std::vector<Index> columns;    ///< at most kLanes
+  std::vector<int> derivatives;  ///< at most kMostDerivatives
+  struct Output {
+    std::size_t from;  ///< 4·(place in derivatives) + place in columns
+    Index to;          ///< column of the answer
+  };
+  std::vector<Output> outputs;
+
+  /// Takes in what is wanted, where there is room for it.
+  bool add(const Wanted& wanted, Index to) {
+    const auto lane = place(columns, wanted.column), order = place(derivatives, wanted.derivative);
+    if (lane == kLanes || order == kMostDerivatives) return false;
+    if (lane == columns.size()) columns.push_back(wanted.column);
+    if (order == derivatives.size()) derivatives.push_back(wanted.derivative);
+    outputs.push_back({kLanes * order + lane, to});
+    return true;
+  }
+
+ private:
+  template <class Value>
+  static std::size_t place(const std::vector<Value>& list, Value value) {
+    return static_cast<std::size_t>(std::ranges::find(list, value) - list.begin());
+  }
+};
+
+std::vector<Batch> batches_of(std::span<const Wanted> wanted) {
+  std::vector<Batch> batches;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const auto to = static_cast<Index>(k);
+    if (std::ranges::any_of(batches, [&](Batch& batch) { return batch.add(wanted[k], to); })) continue;
+    batches.emplace_back().add(wanted[k], to);
+  }
+  return batches;
+}
+
+/// The columns of a batch; a lane without a column repeats the first one.
+FourColumns lanes_of(const Batch& batch, std::span<const Column> columns) {
+  FourColumns lanes{};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Index column = batch.columns[lane < batch.columns.size() ? lane : 0];
+    lanes[lane] = columns[static_cast<std::size_t>(column)].data();
+  }
+  return lanes;
+}
+
+FourValues values_at(const FourColumns& lanes, Index i) {
+  return {lanes[0][i], lanes[1][i], lanes[2][i], lanes[3][i]};
+}
+
+/// The value as far beyond an end as `inside` lies within it.
+double continued(Extension how, double end, double inside) {
+  switch (how) {
+    case Extension::odd:
+      return 2.0 * end - inside;
+    case Extension::even:
+      return inside;
+    case Extension::constant:
+      return end;
+  }
+  return end;
+}
+
+/// Rows with room for the padding before and after them.
+struct Padded {
+  Interleaved rows;
+  Index padding;
+  Padded(Index count, Index padding_samples) : rows(count + 2 * padding_samples), padding(padding_samples) {}
+  [[nodiscard]] Index count() const { return rows.rows() - 2 * padding; }
+  [[nodiscard]] double* data() { return rows.row(padding); }
+
+  /// Continues the rows beyond their ends about the values there.
+  void extend(Extension how, const FourValues& first, const FourValues& last) {
+    for (Index i = 1; i <= padding; ++i) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        data()[4 * -i + static_cast<Index>(lane)] = continued(how, first[lane], rows.row(padding + i)[lane]);
+        rows.row(padding + count() - 1 + i)[lane] =
+            continued(how, last[lane], rows.row(padding + count() - 1 - i)[lane]);
+      }
+    }
+  }
+};
+
+FourValues row_of(const Interleaved& rows, Index i) {
+  FourValues values{};
+  std::copy_n(rows.row(i), kLanes, values.begin());
+  return values;
+}
+
+Result<Index> length_of(std::span<const Column> columns) {
+  const Index length = columns.empty() ? 0 : columns.front().size();
+  for (const Column& column : columns) {
+    if (column.size() != length) {
+      return bad_data(fmt::format("signals of {} and {} samples cannot be filtered alike", length, column.size()));
+    }
+  }
+  return length;
+}
+
+/// Samples that the smoothing filter leaves of `length`.
+Result<Index> smoothed_length(const FilterChain& chain, Index length) {
+  const Index left = length - chain.smoothing.window + 1;
+  if (left < 1) {
+    return bad_data(
+        fmt::format("{} samples are fewer than the Savitzky–Golay window of {}", length, chain.smoothing.window),
+        "take a longer recording or a smaller --sg-window");
+  }
+  if (!chain.lowpass.empty() && left <= chain.padding.samples) {
+    return bad_data(fmt::format("{} samples are too few for zero-phase filtering with a padding of {}", left,
+                                chain.padding.samples),
+                    "take a longer window");
+  }
+  return left;
+}
+
+/// Where the outputs of a batch go, in fours: columns of the answer, and constants to add to them.
+struct Group {
+  std::array<std::size_t, kLanes> from{};
+  std::array<double*, kLanes> to{};
+  FourValues plus{};
+};
+
+std::vector<Group> groups_of(const Batch& batch, const FourValues& reference, Matrix& answer) {
+  std::vector<Group> groups;
+  for (std::size_t k = 0; k < batch.outputs.size(); ++k) {
+    const auto& [from, to] = batch.outputs[k];
+    if (k % kLanes == 0) groups.emplace_back().from.fill(from);
+    Group& group = groups.back();
+    group.from[k % kLanes] = from;
+    group.to[k % kLanes] = answer.col(to).data();
+    if (batch.derivatives[from / kLanes] == 0) group.plus[k % kLanes] = reference[from % kLanes];
+  }
+  return groups;
+}
+
+/// Each wanted signal by itself: where there are no running sums.
+Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column> columns,
+                               std::span<const Wanted> wanted, Hertz rate) {
+  Matrix smoothed;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const Column& column = columns[static_cast<std::size_t>(wanted[k].column)];
+    const auto one = savitzky_golay(chain.smoothing, wanted[k].derivative, column, rate);
+    if (!one) return tl::unexpected(one.error());
+    smoothed.conservativeResize(one->rows(), static_cast<Index>(wanted.size()));
+    smoothed.col(static_cast<Index>(k)) = *one;
+  }
+  if (chain.lowpass.empty()) return smoothed;
+  return filter_zero_phase(chain.lowpass, smoothed, chain.padding);
+}
+
+/// Every row.
+Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> columns, std::span<const Wanted> wanted,
+                          Hertz rate) {
+  if (!has_running_sums(chain.smoothing)) return smooth_directly(chain, columns, wanted, rate);
+  const Index length = columns.front().size(), count = length - chain.smoothing.window + 1;
+
+  Matrix answer(count, static_cast<Index>(wanted.size()));
+  const Index padding = chain.lowpass.empty() ? 0 : chain.padding.samples;
+  for (const Batch& batch : batches_of(wanted)) {
+    const auto sums = running_sums(chain.smoothing, batch.derivatives, rate.value);
+    if (!sums) return tl::unexpected(sums.error());
+    const FourColumns lanes = lanes_of(batch, columns);
+    const FourValues reference = values_at(lanes, 0);  // sums of differences keep the digits that sums of values lose
+    Interleaved rows(length);
+    interleave(lanes, rows.rows(), reference, rows.row(0));
+
+    const std::vector<Group> groups = groups_of(batch, reference, answer);
+    std::vector<Padded> smoothed;
+    std::vector<Destination> destinations;
+    for (const Group& group : groups) {
+      smoothed.emplace_back(count, padding);
+      destinations.push_back({smoothed.back().data(), group.from});
+    }
+    smooth(*sums, rows.row(0), count, destinations);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      Padded& one = smoothed[g];
+      if (!chain.lowpass.empty()) {
+        one.extend(chain.padding.extension, row_of(one.rows, padding), row_of(one.rows, padding + count - 1));
+        filter_both_ways(chain.lowpass, one.rows.row(0), one.rows.rows(), row_of(one.rows, 0));
+      }
+      separate(one.data(), count, groups[g].plus, groups[g].to);
+    }
+  }
+  return answer;
+}
+
+/// Low-pass first, then the smoothing where it is wanted: right wherever the low-pass has forgotten the ends.
+/// @param answer its rows [first, end) are written, row i from sample i·every on
+Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Column> columns,
+                                 std::span<const Wanted> wanted, Index every, Hertz rate, Index first, Index end,
+                                 Matrix& answer) {
+  const Index length = columns.front().size();
+  for (const Batch& batch : batches_of(wanted)) {
+    std::vector<double> weights;
+    for (const int derivative : batch.derivatives) {
+      auto one = savitzky_golay_weights(chain.smoothing, derivative);
+      if (!one) return tl::unexpected(one.error());
+      *one *= std::pow(rate.value, derivative);
+      weights.insert(weights.end(), one->begin(), one->end());
+    }
+    const FourColumns lanes = lanes_of(batch, columns);
+    const FourValues reference = values_at(lanes, 0);
+    Interleaved rows(length);
+    interleave(lanes, length, reference, rows.row(0));
+    filter_both_ways(chain.lowpass, rows.row(0), length, {});
+    const std::size_t derivatives = batch.derivatives.size();
+    std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(end - first));
+    correlate_every(weights, derivatives, rows.row(first * every), every, end - first, values.data());
+    for (const auto& [from, to] : batch.outputs) {
+      const double plus = batch.derivatives[from / kLanes] == 0 ? reference[from % kLanes] : 0.0;
+      const double* value = values.data() + from;
+      for (Index i = first; i < end; ++i, value += kLanes * derivatives) answer(i, to) = *value + plus;
+    }
+  }
+  return {};
+}
+
+std::vector<Column> part_of(std::span<const Column> columns, Index first, Index count) {
+  std::vector<Column> part;
+  for (const Column& column : columns) part.emplace_back(column.data() + first, count);
+  return part;
+}
+
+}  // namespace
+
+Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
+                                   std::span<const Wanted> wanted, Hertz sample_rate, Index every) {
+  if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
+  const auto length = length_of(columns);
+  if (!length) return tl::unexpected(length.error());
+  const auto left = smoothed_length(chain, *length);
+  if (!left) return tl::unexpected(left.error());
+
+  const Index count = (*left - 1) / every + 1;
+  const Index memory = memory_of(chain.lowpass, kForgotten);
+  // An end is `memory` rows long, and another `memory` behind it to forget where the piece was cut off.
+  const Index piece = 2 * memory + chain.smoothing.window + chain.padding.samples;
+  if (every == 1 || *length < 2 * piece) {
+    auto all = filter_all(chain, columns, wanted, sample_rate);
+    if (!all || every == 1) return all;
+    return Matrix((*all)(Eigen::seqN(0, count, every), Eigen::all));
+  }
+  const Index first = (memory + every - 1) / every, end = (*left - memory + every - 1) / every;  // rows of the inside
+  Matrix answer(count, static_cast<Index>(wanted.size()));
+  if (auto ok = lowpass_then_smooth(chain, columns, wanted, every, sample_rate, first, end, answer); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  if (memory == 0) return answer;
+  const auto at_start = filter_all(chain, part_of(columns, 0, piece), wanted, sample_rate);
+  if (!at_start) return at_start;
+  answer.topRows(first) = (*at_start)(Eigen::seqN(0, first, every), Eigen::all);
+  const Index begin = *length - piece;
+  const auto at_end = filter_all(chain, part_of(columns, begin, piece), wanted, sample_rate);
+  if (!at_end) return at_end;
+  answer.bottomRows(count - end) = (*at_end)(Eigen::seqN(end * every - begin, count - end, every), Eigen::all);
+  return answer;
+}
+
+Index memory_of(const SectionCascade& filter, double fraction) {
+  double slowest = 0.0;
+  for (const SecondOrderSection& s : filter) {
+    const double discriminant = s.a1 * s.a1 / 4.0 - s.a2;
+    slowest = std::max(slowest, discriminant < 0.0 ? std::sqrt(s.a2) : std::abs(s.a1) / 2.0 + std::sqrt(discriminant));
+  }
+  return slowest > 0.0 ? static_cast<Index>(std::ceil(std::log(fraction) / std::log(slowest))) : 0;
+}
+
+}  // namespace mbk::dsp

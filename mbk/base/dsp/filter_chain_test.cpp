@@ -1,0 +1,167 @@
+#include "mbk/base/dsp/filter_chain.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "mbk/base/dsp/test_twins.h"
+
+namespace mbk::dsp {
+namespace {
+
+const Hertz kRate(1000.0);
+
+FilterChain chain(SavitzkyGolay smoothing, double cutoff_hz) {
+  return {smoothing, butterworth_lowpass(5, Hertz(cutoff_hz), kRate).value(), {}};
+}
+
+/// Motions of a few millimetres about a place, and forces, with the noise of sensors.
+std::vector<Vector> signals(Index samples, std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Vector> all;
+  for (std::size_t k = 0; k < count; ++k) {
+    Vector& signal = all.emplace_back(samples);
+    const double place = k % 2 == 0 ? 0.3 : -7.0, noise = k % 2 == 0 ? 1e-6 : 0.02, size = k % 2 == 0 ? 0.004 : 3.0;
+    for (Index i = 0; i < samples; ++i) {
+      const double t = static_cast<double>(i) / kRate.value;
+      signal[i] = place + size * (std::sin(7.0 * t + static_cast<double>(k)) + 0.5 * std::sin(18.0 * t)) +
+                  noise * normal(random);
+    }
+  }
+  return all;
+}
+
+std::vector<Column> columns_of(const std::vector<Vector>& signals) {
+  std::vector<Column> columns;
+  for (const Vector& signal : signals) columns.emplace_back(signal.data(), signal.size());
+  return columns;
+}
+
+const std::vector<Wanted> kTwoAxes = {{0, 0}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {2, 2}, {1, 0}, {3, 0}};
+
+/// The slow plain twin: one filter after the other, one signal after the other.
+Vector plain(const FilterChain& chain, const Vector& signal, int derivative) {
+  twin::Signal values = twin::smoothed(chain.smoothing, derivative, twin::signal_of(signal), kRate);
+  if (!chain.lowpass.empty()) values = twin::zero_phase(chain.lowpass, values, chain.padding);
+  Vector result(static_cast<Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) result[static_cast<Index>(i)] = static_cast<double>(values[i]);
+  return result;
+}
+
+double largest(const Vector& values) {
+  return values.cwiseAbs().maxCoeff();
+}
+
+TEST(FilterChain, AgreesWithOneFilterAfterTheOther) {
+  constexpr double kTolerance = 1e-10;  // of the largest value
+  const auto all = signals(3000, 4, 1);
+  for (const SavitzkyGolay smoothing :
+       {SavitzkyGolay{6, 101}, {6, 151}, {6, 31}, {4, 99}, {2, 41}, {3, 101}, {6, 21}}) {
+    {
+      for (FilterChain c : {chain(smoothing, 5.0), chain(smoothing, 40.0), FilterChain{smoothing, {}, {}}}) {
+        const Matrix filtered = smooth_then_lowpass(c, columns_of(all), kTwoAxes, kRate).value();
+        for (std::size_t k = 0; k < kTwoAxes.size(); ++k) {
+          const Vector want = plain(c, all[static_cast<std::size_t>(kTwoAxes[k].column)], kTwoAxes[k].derivative);
+          ASSERT_EQ(filtered.rows(), want.size());
+          EXPECT_LT(largest(filtered.col(static_cast<Index>(k)) - want), kTolerance * largest(want))
+              << "N " << smoothing.order << ", W " << smoothing.window << ", signal " << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(FilterChain, TakesAnyNumberOfColumnsAndDerivatives) {
+  const auto all = signals(800, 6, 2);
+  std::vector<Wanted> wanted;
+  for (Index column = 0; column < 6; ++column) {
+    for (int derivative = 0; derivative <= static_cast<int>(column % 5); ++derivative) {
+      wanted.push_back({column, derivative});
+    }
+  }
+  const FilterChain c = chain({6, 61}, 15.0);
+  const Matrix filtered = smooth_then_lowpass(c, columns_of(all), wanted, kRate).value();
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const Vector want = plain(c, all[static_cast<std::size_t>(wanted[k].column)], wanted[k].derivative);
+    EXPECT_LT(largest(filtered.col(static_cast<Index>(k)) - want),
+              std::pow(10.0, std::max(wanted[k].derivative, 2) - 12.0) * largest(want))
+        << k << ", derivative " << wanted[k].derivative;
+  }
+}
+
+TEST(FilterChain, ContinuesSignalsAsAsked) {
+  const auto all = signals(900, 2, 3);
+  const std::vector<Wanted> wanted = {{0, 0}, {1, 0}};
+  for (const Extension extension : {Extension::odd, Extension::even, Extension::constant}) {
+    FilterChain c = chain({6, 101}, 5.0);
+    c.padding = {extension, 60};
+    const Matrix filtered = smooth_then_lowpass(c, columns_of(all), wanted, kRate).value();
+    for (Index k = 0; k < 2; ++k) {
+      const Vector want = plain(c, all[static_cast<std::size_t>(k)], 0);
+      EXPECT_LT(largest(filtered.col(k) - want), 1e-11 * largest(want));
+    }
+  }
+}
+
+TEST(FilterChain, KeepsAConstantExactlyAndHasNoDerivativeOfIt) {
+  const std::vector<Vector> constant = {Vector::Constant(500, 0.3)};
+  const std::vector<Wanted> wanted = {{0, 0}, {0, 1}, {0, 2}};
+  for (const Matrix& filtered :
+       {smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(constant), wanted, kRate).value(),
+        smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(constant), wanted, kRate, 7).value()}) {
+    EXPECT_TRUE((filtered.col(0).array() == 0.3).all());
+    EXPECT_TRUE((filtered.rightCols(2).array() == 0.0).all());
+  }
+}
+
+TEST(FilterChain, GivesEveryStepthRowOfTheWhole) {
+  const std::vector<Wanted> three = {{0, 0}, {0, 1}, {0, 2}};
+  for (const Index samples : {1200, 9000, 15001, 30000}) {
+    const auto all = signals(samples, 4, 4);
+    for (FilterChain c : {chain({6, 101}, 5.0), chain({4, 35}, 30.0), FilterChain{{6, 31}, {}, {}}}) {
+      c.padding.samples = 30;
+      for (const Index step : {1, 7, 20, 500}) {
+        for (const std::vector<Wanted>& wanted : {kTwoAxes, three}) {
+          const Matrix full = smooth_then_lowpass(c, columns_of(all), wanted, kRate).value();
+          const Matrix some = smooth_then_lowpass(c, columns_of(all), wanted, kRate, step).value();
+          ASSERT_EQ(some.rows(), (full.rows() - 1) / step + 1);
+          const Matrix want = full(Eigen::seqN(0, some.rows(), step), Eigen::all);
+          for (Index k = 0; k < full.cols(); ++k) {
+            EXPECT_LT(largest(some.col(k) - want.col(k)), 10 * kForgotten * largest(full.col(k)))
+                << samples << " samples, every " << step << "th, signal " << k;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(FilterChain, KnowsHowLongAFilterRemembers) {
+  // Butterworth of order five: the slowest pole decays as exp(−2π f_c sin(18°) t), to 1e-9 within 2.13 s at 5 Hz.
+  const auto lowpass = butterworth_lowpass(5, Hertz(5.0), kRate).value();
+  EXPECT_NEAR(static_cast<double>(memory_of(lowpass, 1e-9)), 2135.0, 10.0);
+  EXPECT_EQ(memory_of({}, 1e-9), 0);
+}
+
+TEST(FilterChain, RefusesWhatItCannotFilter) {
+  const auto all = signals(110, 2, 6);
+  const std::vector<Wanted> wanted = {{0, 0}};
+  const auto message = [&](const auto& result) { return result ? std::string() : result.error().message; };
+  EXPECT_NE(message(smooth_then_lowpass(chain({6, 151}, 5.0), columns_of(all), wanted, kRate)).find("window of 151"),
+            std::string::npos);
+  EXPECT_NE(message(smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), wanted, kRate)).find("padding of 15"),
+            std::string::npos);
+  EXPECT_NE(message(smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), wanted, kRate, 1)).find("padding of 15"),
+            std::string::npos);
+  EXPECT_FALSE(smooth_then_lowpass(chain({6, 31}, 5.0), columns_of(all), wanted, kRate, 0));
+  EXPECT_FALSE(smooth_then_lowpass(chain({6, 100}, 5.0), columns_of(all), wanted, kRate));
+  std::vector<Vector> unequal = {all[0], all[1].head(50)};
+  EXPECT_FALSE(smooth_then_lowpass(chain({6, 31}, 5.0), columns_of(unequal), wanted, kRate));
+}
+
+}  // namespace
+}  // namespace mbk::dsp

@@ -1,0 +1,84 @@
+#include "mbk/base/dsp/spectrum.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+namespace mbk::dsp {
+
+Index fast_length_below(Index n) {
+  for (; n > 1; --n) {
+    Index rest = n;
+    for (const Index factor : {2, 3, 5}) {
+      while (rest % factor == 0) rest /= factor;
+    }
+    if (rest == 1) break;
+  }
+  return n;
+}
+
+Index fast_length_above(Index n) {
+  Index length = std::max<Index>(2, n + n % 2);
+  while (fast_length_below(length) != length) length += 2;
+  return length;
+}
+
+Index segment_length(Hertz sample_rate, Hertz resolution, Index longest) {
+  const auto wanted = static_cast<Index>(std::min(sample_rate.value / resolution.value, 1e9));
+  const Index length = fast_length_below(std::min(std::max<Index>(wanted, 8), longest));
+  return length - length % 2;
+}
+
+Vector hann_window(Index length) {
+  Vector window(length);
+  for (Index i = 0; i < length; ++i) {
+    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length));
+  }
+  return window;
+}
+
+Result<Spectrum> welch(const Vector& signal, Hertz sample_rate, Hertz resolution) {
+  if (!(sample_rate.value > 0.0 && resolution.value > 0.0)) {
+    return bad_usage(fmt::format("sample rate {:g} Hz and resolution {:g} Hz must be positive", sample_rate.value,
+                                 resolution.value));
+  }
+  if (signal.size() < 8) return bad_data(fmt::format("{} samples are too few for a spectrum", signal.size()));
+  const Index length = segment_length(sample_rate, resolution, signal.size());
+  const Vector window = hann_window(length);
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  const Index lines = length / 2 + 1;
+  Vector power = Vector::Zero(lines);
+  Vector piece(length);
+  Eigen::VectorXcd transform(lines);
+  Index pieces = 0;
+  for (Index start = 0; start + length <= signal.size(); start += length / 2, ++pieces) {
+    piece = signal.segment(start, length);
+    piece.array() -= piece.mean();
+    piece.array() *= window.array();
+    fft.fwd(transform, piece);
+    power += transform.cwiseAbs2().head(lines);
+  }
+  power *= 1.0 / (sample_rate.value * window.squaredNorm() * static_cast<double>(pieces));
+  power.segment(1, lines - 2) *= 2.0;
+  const double spacing = sample_rate.value / static_cast<double>(length);
+  return Spectrum{Vector::LinSpaced(lines, 0.0, spacing * static_cast<double>(lines - 1)), power};
+}
+
+Hertz power_quantile(const Spectrum& spectrum, double fraction, Hertz limit) {
+  Index lines = 0;
+  while (lines < spectrum.frequency.size() && spectrum.frequency[lines] <= limit.value) ++lines;
+  if (lines == 0) return Hertz(0.0);
+  const double target = fraction * spectrum.density.head(lines).sum();
+  double sum = 0.0;
+  for (Index i = 0; i < lines; ++i) {
+    sum += spectrum.density[i];
+    if (sum >= target) return Hertz(spectrum.frequency[i]);
+  }
+  return Hertz(spectrum.frequency[lines - 1]);
+}
+
+}  // namespace mbk::dsp

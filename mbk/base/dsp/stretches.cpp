@@ -1,0 +1,362 @@
+#include "mbk/base/dsp/stretches.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "mbk/base/core/vector4.h"
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between functions that are inlined always
+#endif
+
+namespace mbk::dsp {
+namespace {
+
+struct Four {
+  using V = Vector4;
+  static constexpr Index kWidth = 4;
+  static constexpr int kTile = 3;  // rows and columns of products that fit the registers
+  [[gnu::always_inline]] static Unaligned4& at(double* p) { return four(p); }
+  [[gnu::always_inline]] static const Unaligned4& at(const double* p) { return four(p); }
+};
+struct Eight {
+  using V = Vector8;
+  static constexpr Index kWidth = 8;
+  static constexpr int kTile = 4;
+  [[gnu::always_inline]] static Unaligned8& at(double* p) { return eight(p); }
+  [[gnu::always_inline]] static const Unaligned8& at(const double* p) { return eight(p); }
+};
+
+/// @param state  n rows of 16, then the last input    N is n, or 0: any up to kMostStates
+constexpr Index kMostStates = 32;
+template <class Lanes, int N>
+[[gnu::always_inline]] inline void filter_body(const double* coefficients, Index states, double* state,
+                                               const double* input, Index count, double* to, Index stride) {
+  using V = typename Lanes::V;
+  constexpr Index kAtOnce = 2;
+  constexpr Index kCapacity = N > 0 ? N : kMostStates;
+  const Index n = N > 0 ? N : states;
+  for (Index first = 0; first < kStretches; first += kAtOnce * Lanes::kWidth) {
+    V x[kCapacity][kAtOnce], next[kCapacity][kAtOnce], last[kAtOnce];
+    for (Index w = 0; w < kAtOnce; ++w) {
+      const Index lane = first + w * Lanes::kWidth;
+      for (Index r = 0; r < n; ++r) x[r][w] = Lanes::at(state + kStretches * r + lane);
+      last[w] = Lanes::at(state + kStretches * n + lane);
+    }
+    for (Index i = 0; i < count; ++i) {
+      V now[kAtOnce];
+      for (Index w = 0; w < kAtOnce; ++w) now[w] = Lanes::at(input + kStretches * i + first + w * Lanes::kWidth);
+      const double* c = coefficients;
+      for (Index r = 0; r < n; ++r, c += n + 2) {
+        for (Index w = 0; w < kAtOnce; ++w) {
+          next[r][w] = c[n] * last[w];
+          next[r][w] += c[n + 1] * now[w];
+          for (Index k = 0; k < n; ++k) next[r][w] += c[k] * x[k][w];
+          Lanes::at(to + r * stride + kStretches * i + first + w * Lanes::kWidth) = next[r][w];
+        }
+      }
+      for (Index w = 0; w < kAtOnce; ++w) {
+        for (Index r = 0; r < n; ++r) x[r][w] = next[r][w];
+        last[w] = now[w];
+      }
+    }
+    for (Index w = 0; w < kAtOnce; ++w) {
+      const Index lane = first + w * Lanes::kWidth;
+      for (Index r = 0; r < n; ++r) Lanes::at(state + kStretches * r + lane) = x[r][w];
+      Lanes::at(state + kStretches * n + lane) = last[w];
+    }
+  }
+}
+
+/// Rows [first, first + Count) of to = A [x; u], 16 columns; A is rows×(states + inputs), row by row.
+template <class Lanes, int Count>
+[[gnu::always_inline]] inline void advance_rows(const double* A, Index states, Index inputs, const double* x,
+                                                const double* u, double* to) {
+  using V = typename Lanes::V;
+  constexpr Index kParts = kStretches / Lanes::kWidth;
+  const Index across = states + inputs;
+  V sum[Count][kParts] = {};
+  for (Index k = 0; k < across; ++k) {
+    const double* const from = k < states ? x + kStretches * k : u + kStretches * (k - states);
+    for (Index w = 0; w < kParts; ++w) {
+      const V value = Lanes::at(from + w * Lanes::kWidth);
+      for (int r = 0; r < Count; ++r) sum[r][w] += A[r * across + k] * value;
+    }
+  }
+  for (int r = 0; r < Count; ++r) {
+    for (Index w = 0; w < kParts; ++w) Lanes::at(to + kStretches * r + w * Lanes::kWidth) = sum[r][w];
+  }
+}
+template <class Lanes>
+[[gnu::always_inline]] inline void advance_body(const double* A, Index states, Index inputs, const double* x,
+                                                const double* u, double* to) {
+  constexpr int kRows = Lanes::kWidth == 8 ? 4 : 2;
+  const Index across = states + inputs;
+  Index r = 0;
+  for (; r + kRows <= states; r += kRows) {
+    advance_rows<Lanes, kRows>(A + r * across, states, inputs, x, u, to + kStretches * r);
+  }
+  for (; r < states; ++r) advance_rows<Lanes, 1>(A + r * across, states, inputs, x, u, to + kStretches * r);
+}
+
+template <class Lanes>
+[[gnu::always_inline]] inline void combine_body(const double* weights, Index count, const double* from, Index stride,
+                                                const double* plus, Index columns, double* to) {
+  using V = typename Lanes::V;
+  constexpr Index kParts = kStretches / Lanes::kWidth;
+  for (Index c = 0; c < columns; c += kStretches) {
+    V sum[kParts];
+    for (Index w = 0; w < kParts; ++w) sum[w] = Lanes::at(plus + c + w * Lanes::kWidth);
+    for (Index k = 0; k < count; ++k) {
+      for (Index w = 0; w < kParts; ++w) sum[w] += weights[k] * Lanes::at(from + k * stride + c + w * Lanes::kWidth);
+    }
+    for (Index w = 0; w < kParts; ++w) Lanes::at(to + c + w * Lanes::kWidth) = sum[w];
+  }
+}
+
+/// A tile of products; `sums` are eight doubles for each, rows `across` of them apart.
+template <class Lanes, int Left, int Right>
+[[gnu::always_inline]] inline void tile(Rows left, Rows right, Index columns, double* sums, Index across) {
+  using V = typename Lanes::V;
+  V sum[Left][Right];
+  for (Index i = 0; i < Left; ++i) {
+    for (Index j = 0; j < Right; ++j) sum[i][j] = Lanes::at(sums + 8 * (i * across + j));
+  }
+  for (Index c = 0; c < columns; c += Lanes::kWidth) {
+    V b[Right];
+    for (Index j = 0; j < Right; ++j) b[j] = Lanes::at(right.data + j * right.stride + c);
+    for (Index i = 0; i < Left; ++i) {
+      const V a = Lanes::at(left.data + i * left.stride + c);
+      for (Index j = 0; j < Right; ++j) sum[i][j] += a * b[j];
+    }
+  }
+  for (Index i = 0; i < Left; ++i) {
+    for (Index j = 0; j < Right; ++j) Lanes::at(sums + 8 * (i * across + j)) = sum[i][j];
+  }
+}
+template <class Lanes, int Left>
+[[gnu::always_inline]] inline void tiles_across(Rows left, Rows right, Index across, Index columns, double* sums) {
+  constexpr int kTile = Lanes::kTile;
+  Index j = 0;
+  for (; j + kTile <= across; j += kTile) {
+    tile<Lanes, Left, kTile>(left, {right.row(j), right.stride}, columns, sums + 8 * j, across);
+  }
+  const Rows rest{right.row(j), right.stride};
+  switch (across - j) {
+    case 1:
+      return tile<Lanes, Left, 1>(left, rest, columns, sums + 8 * j, across);
+    case 2:
+      return tile<Lanes, Left, 2>(left, rest, columns, sums + 8 * j, across);
+    case 3:
+      return tile<Lanes, Left, 3>(left, rest, columns, sums + 8 * j, across);
+    default:
+      return;
+  }
+}
+template <class Lanes>
+[[gnu::always_inline]] inline void products_body(Rows left, Index down, Rows right, Index across, Index columns,
+                                                 double* sums) {
+  constexpr int kTile = Lanes::kTile;
+  Index i = 0;
+  for (; i + kTile <= down; i += kTile) {
+    tiles_across<Lanes, kTile>({left.row(i), left.stride}, right, across, columns, sums + 8 * i * across);
+  }
+  const Rows rest{left.row(i), left.stride};
+  double* const to = sums + 8 * i * across;
+  switch (down - i) {
+    case 1:
+      return tiles_across<Lanes, 1>(rest, right, across, columns, to);
+    case 2:
+      return tiles_across<Lanes, 2>(rest, right, across, columns, to);
+    case 3:
+      return tiles_across<Lanes, 3>(rest, right, across, columns, to);
+    default:
+      return;
+  }
+}
+
+// ---- for each kind of processor ----
+
+using Filter = void (*)(const double*, Index, double*, const double*, Index, double*, Index);
+constexpr int kMostFixed = 8;
+
+struct Loops {
+  std::array<Filter, kMostFixed + 1> filter;  ///< by the number of states; the first: of any number
+  void (*advance)(const double*, Index, Index, const double*, const double*, double*);
+  void (*combine)(const double*, Index, const double*, Index, const double*, Index, double*);
+  void (*products)(Rows, Index, Rows, Index, Index, double*);
+};
+
+#define MBK_LOOPS(NAME, LANES, TARGET)                                                                              \
+  struct NAME {                                                                                                     \
+    template <int N>                                                                                                \
+    TARGET static void filter(const double* coefficients, Index n, double* state, const double* input, Index count, \
+                              double* to, Index stride) {                                                           \
+      filter_body<LANES, N>(coefficients, n, state, input, count, to, stride);                                      \
+    }                                                                                                               \
+    TARGET static void advance(const double* A, Index states, Index inputs, const double* x, const double* u,       \
+                               double* to) {                                                                        \
+      advance_body<LANES>(A, states, inputs, x, u, to);                                                             \
+    }                                                                                                               \
+    TARGET static void combine(const double* weights, Index count, const double* from, Index stride,                \
+                               const double* plus, Index columns, double* to) {                                     \
+      combine_body<LANES>(weights, count, from, stride, plus, columns, to);                                         \
+    }                                                                                                               \
+    TARGET static void products(Rows left, Index down, Rows right, Index across, Index columns, double* sums) {     \
+      products_body<LANES>(left, down, right, across, columns, sums);                                               \
+    }                                                                                                               \
+  };
+MBK_LOOPS(Any, Four, )
+MBK_LOOPS(V3, Four, MBK_X86_64_V3)
+MBK_LOOPS(V4, Eight, MBK_X86_64_V4)
+#undef MBK_LOOPS
+
+template <class Kind, int... N>
+constexpr Loops loops_of(std::integer_sequence<int, N...>) {
+  return {{Kind::template filter<N>...}, Kind::advance, Kind::combine, Kind::products};
+}
+
+const Loops& loops() {
+  constexpr auto kNumbers = std::make_integer_sequence<int, kMostFixed + 1>();
+  static const Loops kChosen = has_x86_64_v4()   ? loops_of<V4>(kNumbers)
+                               : has_x86_64_v3() ? loops_of<V3>(kNumbers)
+                                                 : loops_of<Any>(kNumbers);
+  return kChosen;
+}
+
+/// [Φᶜ, what each of the c + 1 samples adds], row by row.
+std::vector<double> over_several(const HeldStep& system, const Matrix& power, Index count) {
+  const Index n = system.transition.rows();
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> all(n, n + count + 1);
+  all.setZero();
+  all.leftCols(n) = power;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> added(n, 2), next(n, 2);
+  added << system.from_last, system.from_next;
+  for (Index i = count; i > 0; --i) {
+    all.middleCols(n + i - 1, 2) += added;
+    next.noalias() = system.transition.lazyProduct(added);
+    added.swap(next);
+  }
+  return {all.data(), all.data() + all.size()};
+}
+
+Matrix power_of(Matrix base, Index exponent) {
+  Matrix power = Matrix::Identity(base.rows(), base.cols());
+  for (; exponent > 0; exponent /= 2) {
+    if (exponent % 2 == 1) power = power.lazyProduct(base).eval();
+    if (exponent > 1) base = base.lazyProduct(base).eval();
+  }
+  return power;
+}
+
+double* values(std::vector<Abreast>& rows) {
+  return rows.front().values.data();
+}
+
+}  // namespace
+
+Stretches::Stretches(const std::vector<const Vector*>& signals, Index overlap) {
+  const Index samples = signals.front()->size();
+  length_ = (samples + kStretches - 1) / kStretches;
+  count_ = length_ + 1 + overlap;
+  rows_ = std::make_unique_for_overwrite<Abreast[]>(signals.size() * static_cast<std::size_t>(count_));
+  Abreast* row = rows_.get();
+  for (const Vector* const signal : signals) {
+    for (Index i = 0; i < count_; ++i, ++row) {
+      for (Index l = 0; l < kStretches; ++l) {
+        const Index at = l * length_ + i;
+        row->values[static_cast<std::size_t>(l)] = at < samples ? (*signal)[at] : 0.0;
+      }
+    }
+  }
+}
+
+Matrix states_at_starts(const HeldStep& system, const Stretches& signals, Index input) {
+  constexpr Index kAtOnce = 16;
+  const Index n = system.transition.rows(), length = signals.length(), chunks = length / kAtOnce;
+  const auto advance = loops().advance;
+  std::vector<Abreast> x(static_cast<std::size_t>(n)), next = x;
+  const Matrix over_chunk = power_of(system.transition, kAtOnce);
+  const std::vector<double> chunk = over_several(system, over_chunk, kAtOnce);
+  const std::vector<double> one = over_several(system, system.transition, 1);
+  for (Index i = 0; i < length; std::swap(x, next)) {
+    const bool whole = i + kAtOnce <= length;
+    const Index count = whole ? kAtOnce : 1;
+    advance((whole ? chunk : one).data(), n, count + 1, values(x), signals.row(input, i), values(next));
+    i += count;
+  }
+  const Matrix over_stretch = power_of(over_chunk, chunks) * power_of(system.transition, length % kAtOnce);
+  const Eigen::Map<const Matrix> added(values(x), kStretches, n);
+  Matrix starts = Matrix::Zero(n, kStretches);
+  for (Index l = 1; l < kStretches; ++l) {
+    starts.col(l) = over_stretch * starts.col(l - 1) + added.row(l - 1).transpose();
+  }
+  return starts;
+}
+
+Matrix free_at_starts(const Matrix& transition, const Vector& state, Index length) {
+  const Matrix over_one = power_of(transition, length);
+  Matrix starts(state.size(), kStretches);
+  starts.col(0) = state;
+  for (Index l = 1; l < kStretches; ++l) starts.col(l) = over_one * starts.col(l - 1);
+  return starts;
+}
+
+HeldStep cascaded(const HeldStep& filter, const Vector& weights, double through) {
+  const Index n = filter.transition.rows();
+  HeldStep both{Matrix::Zero(2 * n, 2 * n), Vector(2 * n), Vector(2 * n)};
+  const Vector next_of_state = filter.transition.transpose() * weights;
+  both.transition.topLeftCorner(n, n) = both.transition.bottomRightCorner(n, n) = filter.transition;
+  both.transition.bottomLeftCorner(n, n) =
+      filter.from_last * weights.transpose() + filter.from_next * next_of_state.transpose();
+  both.from_last << filter.from_last, through * filter.from_last + weights.dot(filter.from_last) * filter.from_next;
+  both.from_next << filter.from_next, (weights.dot(filter.from_next) + through) * filter.from_next;
+  return both;
+}
+
+StretchFilter::StretchFilter(const HeldStep& filter, const Matrix& starts)
+    : state_(static_cast<std::size_t>(starts.rows() + 1)), n_(starts.rows()) {
+  for (Index r = 0; r < n_; ++r) {
+    for (Index k = 0; k < n_; ++k) coefficients_.push_back(filter.transition(r, k));
+    coefficients_.push_back(filter.from_last[r]);
+    coefficients_.push_back(filter.from_next[r]);
+    for (Index l = 0; l < kStretches; ++l)
+      state_[static_cast<std::size_t>(r)].values[static_cast<std::size_t>(l)] = starts(r, l);
+  }
+}
+
+void StretchFilter::run(const double* input, Index count, Rows states) {
+  Index i = 0;
+  if (!begun_ && count > 0) {
+    begun_ = true;
+    for (Index r = 0; r < n_; ++r) std::ranges::copy(state_[static_cast<std::size_t>(r)].values, states.row(r));
+    std::copy_n(input, kStretches, state_.back().values.data());
+    i = 1;
+  }
+  const Filter filter = loops().filter[n_ <= kMostFixed ? static_cast<std::size_t>(n_) : 0];
+  filter(coefficients_.data(), n_, values(state_), input + kStretches * i, count - i, states.data + kStretches * i,
+         states.stride);
+}
+
+void combine(const Vector& weights, Rows from, const double* plus, Index columns, double* to) {
+  loops().combine(weights.data(), weights.size(), from.data, from.stride, plus, columns, to);
+}
+
+void Products::add(Rows left, Rows right, Index columns) {
+  if (sums_.empty()) return;
+  loops().products(left, left_, right, right_, columns, sums_.front().values.data());
+}
+
+Matrix Products::total() const {
+  Matrix total(left_, right_);
+  for (Index i = 0; i < left_; ++i) {
+    for (Index j = 0; j < right_; ++j) {
+      const auto& parts = sums_[static_cast<std::size_t>(i * right_ + j)].values;
+      total(i, j) = std::accumulate(parts.begin(), parts.end(), 0.0);
+    }
+  }
+  return total;
+}
+
+}  // namespace mbk::dsp

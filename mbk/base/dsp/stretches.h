@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "mbk/base/dsp/derivative_filter.h"
+
+/// @file
+/// A recursive filter over a long record waits for its own last result. Cut into stretches of equal length that run
+/// side by side it does not, once the state at the beginning of each is known; and that is linear algebra:
+///   x(begin of the next) = Φᵐ x(begin) + what the input of m samples adds from rest.
+/// The inner loops are compiled for several processors; which runs is decided where the program runs.
+namespace mbk::dsp {
+
+inline constexpr Index kStretches = 16;
+
+/// One sample of each stretch.
+struct alignas(64) Abreast {
+  std::array<double, kStretches> values;
+};
+
+/// Signals of N samples as stretches: value l of row i is sample l·m + i, m = ⌈N/16⌉, and 0 after the last.
+class Stretches {
+ public:
+  Stretches() = default;
+  /// @param signals  of equal length    @param overlap  rows beyond the m + 1 that lead to the next stretch
+  explicit Stretches(const std::vector<const Vector*>& signals, Index overlap = 0);
+  [[nodiscard]] Index length() const { return length_; }  ///< m
+  /// Row i of one of the signals; the following ones come after it.
+  [[nodiscard]] const double* row(Index signal, Index i) const {
+    return rows_[static_cast<std::size_t>(signal * count_ + i)].values.data();
+  }
+
+ private:
+  Index length_ = 0, count_ = 0;  // count: of rows
+  std::unique_ptr<Abreast[]> rows_;
+};
+
+/// States at the beginning of each stretch, at rest before the first sample: as many rows as there are states.
+/// @param input  which of the signals
+[[nodiscard]] Matrix states_at_starts(const HeldStep& system, const Stretches& signals, Index input);
+
+/// The same of the free motion from `state` at the first sample, for stretches of `length` samples.
+[[nodiscard]] Matrix free_at_starts(const Matrix& transition, const Vector& state, Index length);
+
+/// Two of the same filter one behind the other: the second one's input is weightsᵀx + through·u of the first.
+/// States are those of the first, then of the second.
+[[nodiscard]] HeldStep cascaded(const HeldStep& filter, const Vector& weights, double through);
+
+/// Columns of a table whose rows are signals: row r begins at data + r·stride. Columns come in
+/// multiples of 16.
+struct Rows {
+  double* data;
+  Index stride;
+  [[nodiscard]] double* row(Index r) const { return data + r * stride; }
+};
+
+/// The filter over all stretches at once.
+class StretchFilter {
+ public:
+  /// @param starts  states at the first sample of each stretch, n×16
+  StretchFilter(const HeldStep& filter, const Matrix& starts);
+
+  /// The next samples of every stretch; the first are those of the start itself.
+  /// @param input  rows of 16, the next `count` of them    @param states  n rows, 16·count columns
+  void run(const double* input, Index count, Rows states);
+
+ private:
+  std::vector<double> coefficients_;  // each row of Φ, then its Γ₀ and Γ₁
+  std::vector<Abreast> state_;        // and the last input
+  Index n_;
+  bool begun_ = false;
+};
+
+/// to = plus + Σ_k weights_k · from(k), column by column.   @param columns a multiple of 16
+void combine(const Vector& weights, Rows from, const double* plus, Index columns, double* to);
+
+/// Sums of products of rows, added up block by block.
+class Products {
+ public:
+  Products(Index left, Index right) : left_(left), right_(right), sums_(static_cast<std::size_t>(left * right)) {}
+  /// @param left, right  their first rows    @param columns a multiple of 16
+  void add(Rows left, Rows right, Index columns);
+  [[nodiscard]] Matrix total() const;  ///< left×right
+
+ private:
+  struct alignas(64) Parts {
+    std::array<double, 8> values{};
+  };
+  Index left_, right_;
+  std::vector<Parts> sums_;
+};
+
+}  // namespace mbk::dsp

@@ -1,0 +1,76 @@
+#include "mbk/base/lti/integer_polynomial.h"
+
+#include <gtest/gtest.h>
+
+#include "mbk/base/lti/test_polynomials.h"
+
+namespace mbk::lti {
+namespace {
+
+using numeric::Random;
+
+Polynomial as_rational(const IntegerPolynomial& p) {
+  return Polynomial(std::vector<Rational>(p.begin(), p.end()));
+}
+
+/// Every other coefficient zero, so that degrees drop by more than one.
+Polynomial sparse(Random& random, int degree) {
+  std::vector<Rational> coefficients(static_cast<std::size_t>(degree) + 1);
+  for (std::size_t i = 0; i < coefficients.size(); i += 3) coefficients[i] = random_rational(random);
+  coefficients.back() = random_rational(random) - 20;
+  return Polynomial(coefficients);
+}
+
+TEST(SignedRemainders, AreThoseOfDivisionUpToPositiveFactors) {
+  Random random(1);
+  for (int trial = 0; trial < 60; ++trial) {
+    const int degree = 3 + trial % 6;
+    const Polynomial shared = trial % 4 == 0 ? random_polynomial(random, 2) : Polynomial{-1};
+    const Polynomial a = shared * sparse(random, degree);
+    const Polynomial b = shared * (trial % 2 == 0 ? sparse(random, degree - trial % 3) : random_polynomial(random, 2));
+    std::vector<Polynomial> wanted{a, b};
+    for (;;) {
+      const Polynomial next = -divide(wanted[wanted.size() - 2], wanted.back()).remainder;
+      if (next.is_zero()) break;
+      wanted.push_back(next);
+    }
+    const auto found = signed_remainders(a, b);
+    ASSERT_EQ(found.size(), wanted.size()) << "trial " << trial;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(monic(as_rational(found[k])), monic(wanted[k])) << "trial " << trial << ", " << k;
+      EXPECT_EQ(found[k].back().sign(), wanted[k].leading().sign()) << "trial " << trial << ", " << k;
+    }
+  }
+}
+
+TEST(AreSurelyCoprime, NeverSaysSoOfPolynomialsThatShareARoot) {
+  Random random(2);
+  int proven = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Polynomial a = random_polynomial(random, 4), b = random_polynomial(random, 5);
+    const Polynomial shared = random_polynomial(random, 1 + trial % 2);
+    EXPECT_FALSE(are_surely_coprime(primitive(shared * a), primitive(shared * b))) << "trial " << trial;
+    if (are_surely_coprime(primitive(a), primitive(b))) ++proven;
+  }
+  EXPECT_GT(proven, 190);
+}
+
+TEST(AreSurelyCoprime, SaysNothingWhereThePrimeHidesADivisor) {
+  // 2³¹ − 1 divides the leading coefficient of the root that both share
+  const Polynomial shared{1, 2147483647};
+  EXPECT_FALSE(are_surely_coprime(primitive(shared), primitive(shared)));
+  EXPECT_FALSE(are_surely_coprime(primitive(shared * Polynomial{1, 1}), primitive(shared * Polynomial{2, 1})));
+  EXPECT_EQ(gcd(shared * Polynomial{1, 1}, shared * Polynomial{2, 1}), monic(shared));
+}
+
+TEST(SignAt, IsThatOfTheValue) {
+  Random random(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Polynomial p = random_polynomial(random, trial % 5);
+    const Rational x = random_rational(random);
+    EXPECT_EQ(sign_at(primitive(p), x), p(x).sign());
+  }
+}
+
+}  // namespace
+}  // namespace mbk::lti

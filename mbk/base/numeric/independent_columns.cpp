@@ -1,0 +1,37 @@
+#include "mbk/base/numeric/independent_columns.h"
+
+#include <Eigen/QR>
+
+namespace mbk::numeric {
+
+IndependentColumns independent_columns(const Matrix& Z, double tolerance) {
+  const Index p = Z.cols();
+  Matrix small = Z;
+  if (Z.rows() > 4 * p) {
+    const Eigen::HouseholderQR<Matrix> qr(Z);
+    small = Matrix(qr.matrixQR().topRows(p).triangularView<Eigen::Upper>());
+  }
+  Matrix directions(small.rows(), p);
+  IndependentColumns found;
+  for (Index j = 0; j < p; ++j) {
+    const auto count = static_cast<Index>(found.kept.size());
+    const double length = small.col(j).norm();
+    Vector rest = small.col(j);
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Index k = 0; k < count; ++k) rest -= directions.col(k).dot(rest) * directions.col(k);
+    }
+    if (!(rest.norm() > tolerance * length)) continue;
+    directions.col(count) = rest.normalized();
+    found.kept.push_back(j);
+  }
+  const auto count = static_cast<Index>(found.kept.size());
+  found.combination = Matrix::Zero(count, p);
+  if (count == 0) return found;
+  const Matrix basis = small(Eigen::all, found.kept);
+  found.combination = Eigen::HouseholderQR<Matrix>(basis).solve(small);
+  for (Index k = 0; k < count; ++k)
+    found.combination.col(found.kept[static_cast<std::size_t>(k)]) = Vector::Unit(count, k);
+  return found;
+}
+
+}  // namespace mbk::numeric

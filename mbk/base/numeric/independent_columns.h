@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+
+namespace mbk::numeric {
+
+/// Which columns of a regression can be told apart, and what the others are made of.
+struct IndependentColumns {
+  std::vector<Index> kept;  ///< in order
+  Matrix combination;       ///< kept×p: column j is Z(:, kept) · combination.col(j), to the tolerance
+};
+
+/// From left to right: a column is kept where its distance from the span of those kept before it is more than
+/// `tolerance` of its length (modified Gram–Schmidt, twice). A column of zeros is never kept.
+[[nodiscard]] IndependentColumns independent_columns(const Matrix& Z, double tolerance);
+
+}  // namespace mbk::numeric

@@ -1,0 +1,186 @@
+#include "mbk/base/numeric/least_squares.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "mbk/base/core/vector4.h"
+
+namespace mbk::numeric {
+
+namespace {
+
+/// Dot products of columns, block by block, so that a block stays in the first cache while all pairs are taken.
+[[gnu::always_inline]] inline void gram_body(const double* const* columns, Index count, Index rows, double* gram) {
+  constexpr Index kBlock = 256;
+  for (Index begin = 0; begin < rows; begin += kBlock) {
+    const Index end = std::min(rows, begin + kBlock), fours = begin + (end - begin) / 4 * 4;
+    for (Index j = 0; j < count; ++j) {
+      for (Index i = 0; i <= j; ++i) {
+        const double *a = columns[i], *b = columns[j];
+        Vector4 sum = {};
+        for (Index t = begin; t < fours; t += 4) sum += four(a + t) * four(b + t);
+        double rest = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+        for (Index t = fours; t < end; ++t) rest += a[t] * b[t];
+        gram[j * count + i] += rest;
+      }
+    }
+  }
+}
+void gram_any(const double* const* columns, Index count, Index rows, double* gram) {
+  gram_body(columns, count, rows, gram);
+}
+MBK_X86_64_V3 void gram_v3(const double* const* columns, Index count, Index rows, double* gram) {
+  gram_body(columns, count, rows, gram);
+}
+
+/// [Z Y]ᵀ[Z Y].
+Matrix gram_matrix(const Matrix& Z, const Matrix& Y) {
+  std::vector<const double*> columns;
+  for (Index j = 0; j < Z.cols(); ++j) columns.push_back(Z.col(j).data());
+  for (Index j = 0; j < Y.cols(); ++j) columns.push_back(Y.col(j).data());
+  const auto count = static_cast<Index>(columns.size());
+  Matrix gram = Matrix::Zero(count, count);
+  (has_x86_64_v3() ? gram_v3 : gram_any)(columns.data(), count, Z.rows(), gram.data());
+  return gram.selfadjointView<Eigen::Upper>();
+}
+
+/// What a QR decomposition of Z Λ⁻¹ leaves of the problem: R, p×p, and Qᵀ Y, p×q.
+struct Triangle {
+  Matrix R, Qty;
+};
+
+Triangle reduce_by_householder(const Matrix& Z, const Matrix& Y, const Vector& length) {
+  const Index p = Z.cols(), q = Y.cols();
+  Matrix work(Z.rows(), p + q);
+  work << Z * length.cwiseInverse().asDiagonal(), Y;
+  const Eigen::HouseholderQR<Eigen::Ref<Matrix>> qr(work);
+  Triangle triangle{Matrix::Zero(p, p), work.topRightCorner(p, q)};
+  triangle.R.triangularView<Eigen::Upper>() = work.topLeftCorner(p, p).triangularView<Eigen::Upper>();
+  return triangle;
+}
+
+/// By the Cholesky factor of the scaled ZᵀZ, with one step of refinement from the residuals (corrected seminormal
+/// equations, Björck 1987): as exact as Householder's while the condition is moderate, in a third of the time.
+Triangle reduce(const Matrix& Z, const Matrix& Y, const Matrix& gram, const Vector& length) {
+  constexpr double kModerate = 1e-6;  // squared reciprocal of a condition of 1000
+  const Index p = Z.cols(), q = Y.cols();
+  const Vector inverse = length.cwiseInverse();
+  const Matrix G = inverse.asDiagonal() * gram.topLeftCorner(p, p) * inverse.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(G, Eigen::EigenvaluesOnly);
+  if (!(eigen.eigenvalues()[0] > kModerate * eigen.eigenvalues()[p - 1])) return reduce_by_householder(Z, Y, length);
+  const Eigen::LLT<Matrix> cholesky(G);
+  Matrix scaled = cholesky.solve(inverse.asDiagonal() * gram.topRightCorner(p, q));
+  const Matrix residual = Y - Z * (inverse.asDiagonal() * scaled);
+  scaled += cholesky.solve(inverse.asDiagonal() * (Z.transpose() * residual));
+  const Matrix R = cholesky.matrixU();
+  return {R, R * scaled};
+}
+
+}  // namespace
+
+Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matrix& S) {
+  const Index n = Z.rows(), p = Z.cols(), q = Y.cols();
+  if (Y.rows() != n || (S.size() > 0 && S.rows() != p * q)) {
+    return bad_data(
+        fmt::format("regression shapes differ: Z is {}×{}, Y {}×{}, S {}×{}", n, p, Y.rows(), q, S.rows(), S.cols()));
+  }
+  if (n < p) return bad_data(fmt::format("{} samples cannot determine {} parameters per axis", n, p), "record longer");
+  const auto gram = gram_matrix(Z, Y);
+  if (!gram.allFinite()) {
+    for (Index row = 0; row < n; ++row) {
+      if (Z.row(row).allFinite() && Y.row(row).allFinite()) continue;
+      return bad_data(fmt::format("a value is not finite in row {} of the regression", row));
+    }
+    return bad_data("the values of the regression are too large to be squared", "use SI units");
+  }
+  Vector length = gram.diagonal().head(p).cwiseSqrt();
+  length = (length.array() > 0.0).select(length, 1.0);
+  const Triangle triangle = reduce(Z, Y, gram, length);
+  const auto& [R, Qty] = triangle;
+
+  LinearFit fit;
+  const Eigen::JacobiSVD<Matrix> svd(R);
+  const Vector& singular = svd.singularValues();
+  const double smallest_counted = static_cast<double>(p) * std::numeric_limits<double>::epsilon() * singular[0];
+  fit.rank = static_cast<int>((singular.array() > smallest_counted).count());
+  fit.condition = fit.rank < p ? std::numeric_limits<double>::infinity() : singular[0] / singular[p - 1];
+
+  fit.structure = S.size() > 0 ? S : Matrix::Identity(p * q, p * q);
+  // (I ⊗ R Λ) S φ = vec(Qᵀ Y), with Λ the column lengths.
+  const Matrix RL = R * length.asDiagonal();
+  Matrix small(p * q, fit.structure.cols());
+  for (Index j = 0; j < q; ++j) small.middleRows(j * p, p) = RL * fit.structure.middleRows(j * p, p);
+  Vector scale = small.colwise().norm();
+  scale = (scale.array() > 0.0).select(scale, 1.0);
+  small *= scale.cwiseInverse().asDiagonal();
+  const Eigen::CompleteOrthogonalDecomposition<Matrix> solver(small);
+  fit.free = scale.cwiseInverse().asDiagonal() * solver.solve(Vector(Qty.reshaped()));
+  const Vector theta = fit.structure * fit.free;
+  fit.coefficients = theta.reshaped(p, q);
+  const Matrix inverse = scale.cwiseInverse().asDiagonal() * solver.pseudoInverse();
+  fit.inverse_gram = inverse * inverse.transpose();
+  return fit;
+}
+
+Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
+                           const std::function<Matrix(const RowRange&)>& scores_of) {
+  Matrix omega = Matrix::Zero(k, k);
+  constexpr Index kBlock = 512;  // window sums are collected in blocks and added to Ω by one matrix product
+  Matrix block(k, kBlock);
+  for (const RowRange& range : ranges) {
+    const Index n = range.size();
+    const Matrix scores = scores_of(range);
+    Vector sum = Vector::Zero(k);
+    Index filled = 0;
+    for (Index t = 0; t < n + lags; ++t) {  // the window [t − lags, t], clipped to the range
+      if (t < n) sum += scores.col(t);
+      if (t - lags - 1 >= 0) sum -= scores.col(t - lags - 1);
+      block.col(filled++) = sum;
+      if (filled == kBlock || t + 1 == n + lags) {
+        omega.selfadjointView<Eigen::Lower>().rankUpdate(block.leftCols(filled));
+        filled = 0;
+      }
+    }
+  }
+  omega /= static_cast<double>(lags + 1);
+  return omega.selfadjointView<Eigen::Lower>();
+}
+
+Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix& structure, const RowRange& range) {
+  const Index p = R.cols(), q = residuals.cols(), n = range.size();
+  Matrix full(p * q, n);
+  for (Index j = 0; j < q; ++j) {
+    full.middleRows(j * p, p) =
+        (R.middleRows(range.begin, n).array().colwise() * residuals.col(j).segment(range.begin, n).array())
+            .matrix()
+            .transpose();
+  }
+  const bool tied = structure.rows() != structure.cols() || !structure.isIdentity(0.0);
+  return tied ? Matrix(structure.transpose() * full) : full;
+}
+
+Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,
+                             const std::vector<RowRange>& ranges, Index lags) {
+  const Matrix omega = long_run_covariance(fit.free.size(), ranges, lags, [&](const RowRange& range) {
+    return regression_scores(Z, residuals, fit.structure, range);
+  });
+  return fit.inverse_gram * omega * fit.inverse_gram;
+}
+
+double newey_west_widening(double b) {
+  const double within = std::clamp(b, 0.0, 1.0);
+  return 1.0 + within * (2.9694 + within * (0.4160 - within * 0.5324)) / 1.9600;
+}
+
+double fitted_widening(double independent, double coefficients) {
+  return std::sqrt(1.0 / (1.0 - std::clamp(coefficients / independent, 0.0, 0.5)));
+}
+
+}  // namespace mbk::numeric

@@ -1,0 +1,40 @@
+#include "mbk/base/numeric/random.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace mbk::numeric {
+namespace {
+
+TEST(Random, StreamsOfOneSeedDiffer) {
+  EXPECT_NE(Random(1, 0).uniform(), Random(1, 1).uniform());
+  EXPECT_NE(Random(1, 0).uniform(), Random(2, 0).uniform());
+  EXPECT_NE(Random(1).uniform(), Random(1 + (std::uint64_t{1} << 32)).uniform());
+}
+
+TEST(Random, BelowReachesEveryNumberAboutEquallyOften) {
+  Random random(3);
+  std::vector<int> counts(7);
+  for (int i = 0; i < 70000; ++i) ++counts[random.below(7)];
+  for (const int count : counts) EXPECT_NEAR(count, 10000, 5 * 93);  // 5 standard deviations, √(n p (1−p)) = 92.6
+}
+
+TEST(Random, NormalHasTheMomentsOfTheStandardNormal) {
+  Random random(5);
+  constexpr int kDraws = 200000;
+  double sum = 0.0, squares = 0.0, fourths = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double w = random.normal();
+    sum += w;
+    squares += w * w;
+    fourths += w * w * w * w;
+  }
+  // 5 standard errors of each moment: √(1/n), √(2/n), √(96/n)
+  EXPECT_NEAR(sum / kDraws, 0.0, 5 * 0.00224);
+  EXPECT_NEAR(squares / kDraws, 1.0, 5 * 0.00317);
+  EXPECT_NEAR(fourths / kDraws, 3.0, 5 * 0.0219);
+}
+
+}  // namespace
+}  // namespace mbk::numeric

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <utility>
+
+#include "mbk/base/core/linear_algebra.h"
+
+namespace mbk::numeric {
+
+/// z with P(|Z| < z) = 0.95 for a standard normal Z.
+inline constexpr double kNormal95 = 1.959963984540054;
+inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
+
+/// Σ(x − x̄)²/(n − 1), in two passes; 0 for fewer than two values.
+[[nodiscard]] double variance(const Eigen::Ref<const Vector>& values);
+
+/// Variance accounted for, 100 (1 − var(f − f̂)/var(f)) [%]   (Dyck 2013, eq. 3.10).
+/// It ignores a constant error and may be negative: always show the RMSE beside it. NaN where f is constant.
+[[nodiscard]] double variance_accounted_for(const Vector& measured, const Vector& residual);
+
+/// √(mean of squares).
+[[nodiscard]] double root_mean_square(const Vector& values);
+
+/// Interval of a positive quantity whose logarithm is taken as normal: value · exp(±1.96 se/value). It cannot cross 0.
+[[nodiscard]] std::pair<double, double> positive_interval95(double value, double standard_error);
+
+/// value ± 1.96 se.
+[[nodiscard]] std::pair<double, double> interval95(double value, double standard_error);
+
+/// Φ(z), P(Z ≤ z) of a standard normal Z.
+[[nodiscard]] double normal_probability(double z);
+
+/// Φ⁻¹(p), by bisection to the last digits; −∞ for p ≤ 0, ∞ for p ≥ 1.
+[[nodiscard]] double normal_quantile(double p);
+
+/// t with P(T ≤ t) = p for Student's T, by bisection of its finite sums (Abramowitz & Stegun 1964, 26.7.3 and 26.7.4).
+/// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
+[[nodiscard]] double student_quantile(double p, int degrees_of_freedom);
+
+/// The value below which a share p of sorted values lies, by straight lines between them; NaN where there are none.
+/// @param sorted rising    @param p in [0, 1]
+[[nodiscard]] double quantile(const Eigen::Ref<const Vector>& sorted, double p);
+
+/// Exact (Clopper–Pearson) interval of a binomial proportion, by bisection of the binomial tails.
+/// @param successes 0…trials    @param confidence e.g. 0.99
+[[nodiscard]] std::pair<double, double> binomial_interval(int successes, int trials, double confidence);
+
+}  // namespace mbk::numeric

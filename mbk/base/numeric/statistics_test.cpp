@@ -1,0 +1,81 @@
+#include "mbk/base/numeric/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace mbk::numeric {
+namespace {
+
+TEST(Statistics, VarianceIsNormalisedByOneLessThanTheCount) {
+  EXPECT_DOUBLE_EQ(variance((Vector(4) << 1, 2, 3, 4).finished()), 5.0 / 3.0);
+  EXPECT_EQ(variance(Vector::Constant(1, 3.0)), 0.0);
+  EXPECT_EQ(variance(Vector()), 0.0);
+}
+
+TEST(Statistics, VarianceKeepsItsDigitsFarFromZero) {
+  EXPECT_NEAR(variance((Vector(3) << 1e9 + 1, 1e9 + 2, 1e9 + 3).finished()), 1.0, 1e-9);
+}
+
+TEST(Statistics, VarianceAccountedForIgnoresAnOffsetAndMayBeNegative) {
+  const Vector force = (Vector(4) << 1, -1, 1, -1).finished();
+  EXPECT_DOUBLE_EQ(variance_accounted_for(force, Vector::Constant(4, 7.0)), 100.0);
+  EXPECT_DOUBLE_EQ(variance_accounted_for(force, 0.5 * force), 75.0);
+  EXPECT_DOUBLE_EQ(variance_accounted_for(force, 2.0 * force), -300.0);
+  EXPECT_TRUE(std::isnan(variance_accounted_for(Vector::Ones(4), force)));
+}
+
+TEST(Statistics, StudentQuantileIsThatOfTheTables) {
+  // mpmath with 30 digits; of two degrees √2 (2p − 1)/√(1 − (2p − 1)²)
+  EXPECT_NEAR(student_quantile(0.975, 1), 12.7062047361747, 1e-11);
+  EXPECT_NEAR(student_quantile(0.95, 2), std::sqrt(2.0) * 0.9 / std::sqrt(1.0 - 0.81), 1e-12);
+  EXPECT_NEAR(student_quantile(0.975, 5), 2.57058183563631, 1e-12);
+  EXPECT_NEAR(student_quantile(0.05, 15), -1.75305035569257, 1e-12);
+  EXPECT_NEAR(student_quantile(0.975, 1000), 1.96233908082641, 1e-12);
+  EXPECT_NEAR(student_quantile(0.5, 3), 0.0, 1e-15);
+}
+
+TEST(Statistics, StudentQuantileTendsToTheNormal) {
+  EXPECT_NEAR(normal_probability(student_quantile(0.975, 1000000)), 0.975, 1e-6);  // they differ by about z³/4ν
+  EXPECT_NEAR(normal_probability(kNormal95), 0.975, 1e-15);
+}
+
+TEST(Statistics, QuantileLiesBetweenTheSortedValues) {
+  const Vector sorted = (Vector(4) << 1, 2, 4, 8).finished();
+  EXPECT_EQ(quantile(sorted, 0.0), 1.0);
+  EXPECT_EQ(quantile(sorted, 0.5), 3.0);
+  EXPECT_EQ(quantile(sorted, 1.0), 8.0);
+  EXPECT_EQ(quantile(Vector::Ones(1), 0.7), 1.0);
+  EXPECT_TRUE(std::isnan(quantile(Vector(), 0.5)));
+}
+
+TEST(Statistics, BinomialIntervalIsClopperAndPearsons) {
+  // Beta quantiles: B(0.005; 380, 21) and B(0.995; 381, 20), from SciPy.
+  const auto [lower, upper] = binomial_interval(380, 400, 0.99);
+  EXPECT_NEAR(lower, 0.9149188396, 1e-9);
+  EXPECT_NEAR(upper, 0.9738313266, 1e-9);
+  EXPECT_EQ(binomial_interval(0, 10, 0.95).first, 0.0);
+  EXPECT_NEAR(binomial_interval(0, 10, 0.95).second, 1.0 - std::pow(0.025, 0.1), 1e-12);  // closed form
+  EXPECT_EQ(binomial_interval(10, 10, 0.95).second, 1.0);
+}
+
+TEST(Statistics, NormalProbabilityAndItsQuantileAreEachOthersInverse) {
+  EXPECT_NEAR(normal_probability(kNormal95), 0.975, 1e-15);
+  EXPECT_NEAR(normal_quantile(0.975), kNormal95, 1e-12);
+  EXPECT_NEAR(normal_quantile(0.995), kNormal99, 1e-12);
+  for (double z = -8.0; z < 8.0; z += 0.37) {
+    EXPECT_NEAR(normal_quantile(normal_probability(z)), z, z < 4.0 ? 1e-9 : 0.1) << z;  // near 1 the digits are gone
+  }
+  EXPECT_EQ(normal_quantile(0.0), -INFINITY);
+  EXPECT_EQ(normal_quantile(1.0), INFINITY);
+  EXPECT_TRUE(std::isnan(normal_quantile(std::nan(""))));
+}
+
+TEST(Statistics, APositiveQuantityHasAPositiveInterval) {
+  const auto [low, high] = positive_interval95(2.0, 3.0);
+  EXPECT_GT(low, 0.0);
+  EXPECT_DOUBLE_EQ(low * high, 4.0);
+}
+
+}  // namespace
+}  // namespace mbk::numeric

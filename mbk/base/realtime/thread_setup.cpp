@@ -1,0 +1,45 @@
+#include "mbk/base/realtime/thread_setup.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+
+namespace mbk::realtime {
+namespace {
+
+void touch_stack() {
+  std::array<volatile std::byte, 256 * 1024> pages;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  for (std::size_t i = 0; i < pages.size(); i += 4096) pages[i] = std::byte{0};
+}
+
+}  // namespace
+
+ThreadSetup prepare_thread(int priority) {
+  ThreadSetup setup;
+  const auto refuse = [&](const char* what, int error, const char* remedy) {
+    setup.refused += fmt::format("{}{}: {}; {}", setup.refused.empty() ? "" : ". ", what, std::strerror(error), remedy);
+  };
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters); error == 0) {
+    setup.fifo = true;
+  } else {
+    refuse("no real-time scheduling (SCHED_FIFO)", error,
+           "give the user 'rtprio 90' in /etc/security/limits.d, or the program CAP_SYS_NICE");
+  }
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+    setup.locked_memory = true;
+  } else {
+    refuse("memory is not locked", errno, "give the user 'memlock unlimited' in /etc/security/limits.d");
+  }
+  touch_stack();
+  return setup;
+}
+
+}  // namespace mbk::realtime

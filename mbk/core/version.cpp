@@ -1,9 +1,0 @@
-#include "mbk/core/version.h"
-
-namespace mbk {
-
-std::string_view version() {
-  return MBK_VERSION;
-}
-
-}  // namespace mbk

@@ -1,0 +1,54 @@
+#include "mbk/experiment/console/command.h"
+
+#include <gtest/gtest.h>
+
+namespace mbk::console {
+namespace {
+
+TEST(Command, EveryActionHasANameThatLeadsBackToIt) {
+  for (const Action action :
+       {Action::stop, Action::end, Action::start, Action::repeat, Action::next, Action::abort, Action::reset}) {
+    const auto command = parse_command(R"({"command":")" + std::string(text(action)) + R"("})");
+    ASSERT_TRUE(command) << command.error().line();
+    EXPECT_EQ(command->action, action);
+    EXPECT_EQ(command->text, "");
+  }
+}
+
+TEST(Command, ANoteCarriesItsTextAndAResetItsCode) {
+  EXPECT_EQ(parse_command(R"({"command":"note","text":"talked"})")->text, "talked");
+  EXPECT_EQ(parse_command(R"({"command":"reset","code":"7"})")->text, "7");
+}
+
+TEST(Command, WhatIsNoCommandIsRefused) {
+  for (const char* const message :
+       {"", "{", "[]", "null", "\"stop\"", "{}", R"({"command":1})", R"({"command":"jump"})", R"({"command":"note"})",
+        R"({"command":"note","text":" \n"})", R"({"command":"note","text":7})", R"({"command":"stop","code":"1"})",
+        R"({"command":"reset","text":"1"})", R"({"command":"stop")", "\xff\xfe"}) {
+    EXPECT_FALSE(parse_command(message)) << message;
+  }
+  EXPECT_FALSE(parse_command(R"({"command":"note","text":")" + std::string(kLongestNote + 1, 'a') + R"("})"));
+  EXPECT_FALSE(parse_command(std::string(100'000, '[')));
+}
+
+TEST(Command, AKeyThatIsThereTwiceIsRefusedInEachForm) {
+  for (const char* const message :
+       {R"({"command":"stop","command":"start"})", R"({"command":"start","command":"stop"})",
+        R"({"command":"stop","command":"stop"})", R"({"command":"start","com\u006dand":"stop"})",
+        R"({"command":"note","text":"a","text":"b"})", R"({"command":"reset","code":"1","command":"note"})"}) {
+    const auto command = parse_command(message);
+    ASSERT_FALSE(command) << message;
+    EXPECT_NE(command.error().message.find("twice"), std::string::npos) << command.error().line();
+  }
+}
+
+TEST(Command, NothingIsNested) {
+  for (const char* const message :
+       {R"({"command":{"command":"stop"}})", R"({"command":"stop","more":[]})", R"([{"command":"stop"}])",
+        R"({"a":{"command":"stop","command":"start"},"command":"start"})"}) {
+    EXPECT_FALSE(parse_command(message)) << message;
+  }
+}
+
+}  // namespace
+}  // namespace mbk::console

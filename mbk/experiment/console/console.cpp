@@ -1,0 +1,484 @@
+#include "mbk/experiment/console/console.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <utility>
+
+#include "mbk/base/core/version.h"
+#include "mbk/experiment/console/frame.h"
+#include "mbk/experiment/console/page.h"
+#include "mbk/experiment/control/sequencer.h"
+#include "mbk/experiment/safety/trip.h"
+#include "mbk/present/result/json.h"
+#include "mbk/simulate/laboratory/scenario.h"
+
+namespace mbk::console {
+namespace {
+
+using Json = nlohmann::json;
+using journal::Tick;
+using session::Trial;
+
+constexpr std::size_t kMostPending = 8192;  // samples of a frame, at most
+constexpr std::uint64_t kStateBeats = 12;   // a state at least so often
+constexpr std::uint64_t kDiskBeats = 120;
+constexpr std::size_t kMostReports = 30;  // that can still be opened: of a session of months the last ones
+constexpr std::size_t kShownNotes = 20;   // in a state, and their bytes
+constexpr std::size_t kShownNoteBytes = 8 << 10;
+constexpr std::size_t kLongestText = 600;  // in a state, of each sentence [bytes]
+
+Json times_json(const realtime::CycleRecord& record) {
+  Json bins = Json::array();
+  for (int bin = 0; bin < std::ssize(record.bins()); ++bin) {
+    const std::uint64_t count = record.bins()[static_cast<std::size_t>(bin)];
+    if (count > 0) bins.push_back({1e-3 * record.edge(bin), 1e-3 * record.edge(bin + 1), count});
+  }
+  return {{"median_us", 1e-3 * record.quantile(0.5)},
+          {"p999_us", 1e-3 * record.quantile(0.999)},
+          {"worst_us", 1e-3 * static_cast<double>(record.worst())},
+          {"bins", std::move(bins)}};
+}
+
+const char* text(Question question) {
+  switch (question) {
+    case Question::none:
+      break;
+    case Question::begin:
+      return "begin";
+    case Question::after:
+      return "after";
+    case Question::reset:
+      return "reset";
+  }
+  return "";
+}
+
+bool answers(Question question, Action action) {
+  switch (question) {
+    case Question::none:
+      return false;
+    case Question::begin:
+      return action == Action::start || action == Action::abort;
+    case Question::after:
+      return action == Action::repeat || action == Action::next || action == Action::abort;
+    case Question::reset:
+      return action == Action::reset || action == Action::abort;
+  }
+  return false;
+}
+
+/// Where a trip has a value, its sentence is whole only with the outcome.
+std::string sentence_of(const safety::Trip& trip) {
+  if (trip.reason == safety::Reason::none) return "";
+  const bool whole = safety::unit(trip.reason).empty() || trip.limit != 0.0 || trip.value != 0.0;
+  return whole ? safety::sentence(trip) : std::string(safety::code(trip.reason));
+}
+
+const char* text(RobotStatus::Motors motors) {
+  switch (motors) {
+    case RobotStatus::Motors::unknown:
+      break;
+    case RobotStatus::Motors::off:
+      return "off";
+    case RobotStatus::Motors::on:
+      return "on";
+  }
+  return "unknown";
+}
+
+/// At most so much of it, cut between two characters of UTF-8.
+std::string beginning(std::string text) {
+  if (text.size() <= kLongestText) return text;
+  std::size_t end = kLongestText;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  text.resize(end);
+  return text + " …";
+}
+
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Console::Console(const std::vector<Trial>& trials, session::Signals& signals)
+    : signals_(signals), protocol_(trials.empty() ? "" : trials.front().protocol) {
+  for (const Trial& trial : trials) {
+    Listed listed;
+    listed.name = trial.name.empty() ? trial.protocol : trial.name;
+    listed.condition = trial.scenario.condition;
+    listed.home = trial.planar().home;
+    listed.force = !std::holds_alternative<control::PositionMode>(trial.planar().control);
+    if (const auto schedule = laboratory::make_schedule(trial.scenario.perturbation, trial.scenario.seed)) {
+      listed.duration = schedule->duration();
+    }
+    trials_.push_back(std::move(listed));
+  }
+  if (const auto html = operator_page()) operator_page_ = make_page(std::string(*html));
+  for (auto* ticks : {&pending_, &sending_}) ticks->reserve(kMostPending);
+  live_ =
+      std::make_unique<session::LiveEstimate>([this](const session::LiveEstimate::Estimate& one) { estimated(one); });
+}
+
+Console::~Console() {
+  if (server_) server_->stop();
+}
+
+Result<std::unique_ptr<Console>> Console::open(std::uint16_t port, const std::vector<Trial>& trials,
+                                               session::Signals& signals, std::function<void(const std::string&)> log) {
+  std::unique_ptr<Console> console(new Console(trials, signals));
+  Console& self = *console;
+  auto server = Server::listen(port, {[&self](std::string_view path) { return self.page(path); },
+                                      [&self](const Command& command) { return self.command(command); },
+                                      [&self] { self.beat(); }, std::move(log)});
+  if (!server) return tl::unexpected(server.error());
+  const std::scoped_lock lock(self.mutex_);
+  self.server_ = std::move(*server);
+  return console;
+}
+
+std::string Console::address() const {
+  return fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), server_->token());
+}
+
+std::string Console::viewing_address() const {
+  return fmt::format("http://127.0.0.1:{}/?token={}", server_->port(), server_->viewing_token());
+}
+
+std::string Console::participant_address() const {
+  return fmt::format("http://127.0.0.1:{}/participant?token={}", server_->port(), server_->viewing_token());
+}
+
+void Console::begin(std::size_t index, const journal::Header& header, const measurement::Options& options,
+                    const std::filesystem::path& target, double duration) {
+  live_->begin(header, options);
+  const std::scoped_lock lock(mutex_);
+  current_ = index;
+  geometry_ = header.geometry;
+  expected_duration_ = duration;
+  target_ = target;
+  pending_.clear();
+  last_ = {};
+  ticks_ = dropped_ticks_ = skipped_samples_ = next_number_ = 0;
+  times_ = {};
+  times_apart_ = {};
+  trip_ = {};
+  recording_notes_ = notes_.size();
+  recording_note_bytes_ = 0;
+  for (const std::string& note : notes_) recording_note_bytes_ += note.size();
+  estimate_ = std::make_shared<std::string>(R"({"type":"estimate"})");
+  Listed& listed = trials_[index];
+  listed.progress = Progress::running;
+  listed.recording = target.string();
+  listed.ending.clear();
+  listed.report = 0;
+  running_ = changed_ = true;
+  said_.clear();
+}
+
+void Console::watch(std::span<const Tick> ticks) noexcept {
+  try {
+    watch_throwing(ticks);
+  } catch (...) {  // no memory: the pages miss these, the recording does not
+    const std::scoped_lock lock(mutex_);
+    skipped_samples_ += ticks.size();
+  }
+}
+
+void Console::watch_throwing(std::span<const Tick> ticks) {
+  bool tripped = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    Times& apart = times_apart_[server_->status().viewers > 0 ? 1 : 0];
+    for (const Tick& tick : ticks) {
+      dropped_ticks_ += tick.number - next_number_;
+      next_number_ = tick.number + 1;
+      for (Times* times : {&times_, &apart}) {
+        if (tick.number > 0) times->compute.add(static_cast<std::int64_t>(1e9 * static_cast<double>(tick.compute)));
+        times->lateness.add(static_cast<std::int64_t>(1e9 * tick.late));
+      }
+      const auto reason = static_cast<safety::Reason>(tick.reason);
+      if (reason != trip_.reason) {
+        trip_ = {reason, tick.time, tick.number, 0.0, 0.0};
+        tripped = true;
+      }
+      changed_ = changed_ || tick.phase != last_.phase || tick.reason != last_.reason;
+      last_ = tick;
+      ++ticks_;
+    }
+    const std::size_t room = kMostPending - std::min(kMostPending, pending_.size());
+    const auto taken = ticks.first(std::min(ticks.size(), room));
+    pending_.insert(pending_.end(), taken.begin(), taken.end());
+    skipped_samples_ += ticks.size() - taken.size();
+  }
+  if (tripped) server_->beat();
+  live_->add(ticks);
+}
+
+void Console::finish(const session::TrialOutcome& outcome) {
+  live_->finish();
+  const std::scoped_lock lock(mutex_);
+  Listed& listed = trials_[current_];
+  trip_ = outcome.trip;
+  listed.progress = trip_.reason == safety::Reason::none ? Progress::done : Progress::stopped;
+  listed.recording = outcome.recording.string();
+  listed.ending = outcome.ending.how;
+  dropped_ticks_ = outcome.ending.dropped;
+  running_ = false;
+  changed_ = true;
+}
+
+Console::Times Console::times(bool watched) {
+  const std::scoped_lock lock(mutex_);
+  return times_apart_[watched ? 1 : 0];
+}
+
+void Console::show_report(std::string html, std::string why) {
+  Page page = html.empty() ? Page{} : make_page(std::move(html));
+  const std::scoped_lock lock(mutex_);
+  if (page.html) {
+    reports_[++last_report_] = std::move(page);
+    trials_[current_].report = last_report_;
+  }
+  trials_[current_].report_missing = std::move(why);
+  while (reports_.size() > kMostReports) {
+    const int oldest = reports_.begin()->first;
+    reports_.erase(reports_.begin());
+    const auto of = std::ranges::find(trials_, oldest, &Listed::report);
+    if (of == trials_.end()) continue;  // the trial was repeated
+    of->report = 0;
+    of->report_missing = "no longer kept here; 'mbk measure --report' makes it again";
+  }
+  changed_ = true;
+}
+
+Action Console::ask(Question question) {
+  std::unique_lock lock(mutex_);
+  question_ = signals_.operator_stop ? Question::reset : question;
+  decision_.reset();
+  reset_code_.clear();
+  changed_ = true;
+  constexpr auto kLook = std::chrono::milliseconds(100);
+  while (!decided_.wait_for(lock, kLook, [&] { return decision_.has_value(); })) {
+    if (signals_.end_session) decision_ = Action::abort;
+  }
+  question_ = Question::none;
+  reset_code_.clear();
+  changed_ = true;
+  if (*decision_ == Action::reset) trip_ = {};
+  return *decision_;
+}
+
+void Console::say(std::string message) {
+  const std::scoped_lock lock(mutex_);
+  said_ = std::move(message);
+  changed_ = true;
+}
+
+void Console::show_robot(const RobotStatus& robot) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (robot == robot_) return;
+    robot_ = robot;
+    changed_ = true;
+  }
+  server_->beat();
+}
+
+void Console::wait_until_left() {
+  {
+    const std::scoped_lock lock(mutex_);
+    over_ = changed_ = true;
+  }
+  constexpr auto kLook = std::chrono::milliseconds(200);
+  constexpr int kGrace = 15;  // a page that is loaded again is away for a moment
+  for (int away = 0; away < kGrace && !signals_.end_session; away = status().viewers > 0 ? 0 : away + 1) {
+    std::this_thread::sleep_for(kLook);
+  }
+}
+
+std::vector<std::string> Console::take_notes() {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(notes_, {});
+}
+
+Page Console::page(std::string_view path) {
+  if (path == "/" || path == "/participant") return operator_page_;
+  constexpr std::string_view kReport = "/report/";
+  if (!path.starts_with(kReport)) return {};
+  path.remove_prefix(kReport.size());
+  int number = 0;
+  const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
+  if (error != std::errc() || end != path.data() + path.size()) return {};
+  const std::scoped_lock lock(mutex_);
+  const auto found = reports_.find(number);
+  return found == reports_.end() ? Page{} : found->second;
+}
+
+Result<void> Console::command(const Command& command) {
+  if (command.action == Action::stop) signals_.operator_stop = true;
+  const std::scoped_lock lock(mutex_);
+  changed_ = true;
+  switch (command.action) {
+    case Action::stop:
+      // while nothing runs a stop holds what would come next, until it is reset
+      if (question_ != Question::none) question_ = Question::reset;
+      return {};
+    case Action::end:
+      if (!running_) return bad_usage("no trial is running");
+      signals_.end_trial = true;
+      return {};
+    case Action::note:
+      return note(command.text);
+    default:
+      break;
+  }
+  if (!answers(question_, command.action)) {
+    return bad_usage(fmt::format("'{}' is not what is asked for now", console::text(command.action)));
+  }
+  return command.action == Action::reset ? reset(command.text) : (decide(command.action), Result<void>{});
+}
+
+Result<void> Console::reset(const std::string& code) {
+  if (code.empty()) {
+    reset_code_ = fmt::format("{}-{}", current_, ticks_);
+    return {};
+  }
+  if (reset_code_.empty() || code != reset_code_) return bad_usage("a reset takes two steps: ask, then confirm");
+  decide(Action::reset);
+  return {};
+}
+
+Result<void> Console::note(const std::string& text) {
+  if (recording_notes_ == kMostNotes || recording_note_bytes_ + text.size() > kMostNoteBytes) {
+    return bad_usage(fmt::format("the recording takes no further note: it has {} of {}, {} of {} bytes",
+                                 recording_notes_, kMostNotes, recording_note_bytes_, kMostNoteBytes),
+                     "write it down elsewhere");
+  }
+  ++recording_notes_;
+  recording_note_bytes_ += text.size();
+  notes_.push_back(text);
+  ++note_count_;
+  shown_notes_.push_back(text);
+  shown_note_bytes_ += text.size();
+  while (shown_notes_.size() > kShownNotes || shown_note_bytes_ > kShownNoteBytes) {
+    shown_note_bytes_ -= shown_notes_.front().size();
+    shown_notes_.pop_front();
+  }
+  if (question_ != Question::none && !decision_) decide(Action::note);  // never instead of an answer
+  return {};
+}
+
+void Console::decide(Action action) {
+  decision_ = action;
+  decided_.notify_all();
+}
+
+void Console::estimated(const session::LiveEstimate::Estimate& estimate) {
+  std::string json =
+      fmt::format(R"({{"type":"estimate","final":{},"perturbed_s":{:.3f},)", estimate.final, estimate.perturbed);
+  if (estimate.measured) {
+    json += "\"result\":" + result::to_json(*estimate.measured) + "}";
+  } else {
+    json += "\"why\":" + dump(estimate.measured.error().line()) + "}";
+  }
+  const std::scoped_lock lock(mutex_);
+  estimate_ = std::make_shared<std::string>(std::move(json));
+}
+
+std::string Console::state() {
+  const std::scoped_lock lock(mutex_);
+  return state_locked();
+}
+
+std::string Console::state_locked() const {
+  Json trials = Json::array();
+  for (const Listed& listed : trials_) {
+    constexpr std::array<const char*, 4> kProgress = {"waiting", "running", "done", "stopped"};
+    trials.push_back({{"name", listed.name},
+                      {"condition", listed.condition},
+                      {"duration_s", listed.duration},
+                      {"home_m", {listed.home[0], listed.home[1]}},
+                      {"reference_unit", listed.force ? "N" : "m"},
+                      {"progress", kProgress[static_cast<std::size_t>(listed.progress)]},
+                      {"recording", listed.recording},
+                      {"ending", beginning(listed.ending)},
+                      {"report", listed.report},
+                      {"report_missing", beginning(listed.report_missing)}});
+  }
+  const bool held = signals_.operator_stop && trip_.reason == safety::Reason::none && !running_;
+  const Server::Status status = server_ ? server_->status() : Server::Status{};
+  return dump({{"type", "state"},
+               {"protocol", protocol_},
+               {"software", fmt::format("mbk {}", version())},
+               {"trials", std::move(trials)},
+               {"current", current_},
+               {"running", running_},
+               {"phase", control::text(static_cast<control::Phase>(last_.phase))},
+               {"perturbing", running_ && last_.perturbing()},
+               {"time_s", last_.time},
+               {"perturbation_s", last_.perturbation_time},
+               {"duration_s", expected_duration_},
+               {"ticks", ticks_},
+               {"over", over_},
+               {"question", text(question_)},
+               {"reset_code", reset_code_},
+               {"said", beginning(said_)},
+               {"safety",
+                {{"tripped", trip_.reason != safety::Reason::none || held},
+                 {"reason", held ? safety::code(safety::Reason::operator_stop) : safety::code(trip_.reason)},
+                 {"sentence", held ? "stopped while nothing ran: nothing begins before a reset" : sentence_of(trip_)},
+                 {"cut", last_.cut != 0},
+                 {"enabled", last_.enabled != 0}}},
+               {"robot",
+                {{"motors", text(robot_.motors)},
+                 {"confirmed_off", robot_.confirmed_off ? Json(*robot_.confirmed_off) : Json()},
+                 {"stop_button", robot_.stop_button},
+                 {"link", robot_.link},
+                 {"fault", robot_.fault},
+                 {"sentence", beginning(robot_.sentence)}}},
+               {"times", {{"compute", times_json(times_.compute)}, {"lateness", times_json(times_.lateness)}}},
+               {"dropped_ticks", dropped_ticks_},
+               {"skipped_samples", skipped_samples_},
+               {"disk_free_bytes", disk_free_},
+               {"notes", shown_notes_},
+               {"note_count", note_count_},
+               {"viewers", status.viewers},
+               {"dropped_frames", status.dropped_frames},
+               {"refused", status.refused},
+               {"participant", server_ ? participant_address() : ""},
+               {"viewing", server_ ? viewing_address() : ""}});
+}
+
+void Console::beat() {
+  sending_.clear();
+  Message state, estimate;
+  std::uint32_t trial = 0;
+  robot::Geometry geometry;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!server_) return;
+    sending_.swap(pending_);
+    trial = static_cast<std::uint32_t>(current_);
+    geometry = geometry_;
+    estimate = std::exchange(estimate_, nullptr);
+    if (beats_ % kDiskBeats == 0) {
+      std::error_code error;
+      const auto folder = target_.parent_path();
+      const auto space = std::filesystem::space(folder.empty() ? std::filesystem::path(".") : folder, error);
+      if (!error) disk_free_ = space.available;
+    }
+    if (changed_ || beats_ % kStateBeats == 0) state = std::make_shared<std::string>(state_locked());
+    changed_ = false;
+    ++beats_;
+  }
+  if (state) server_->send(Topic::state, state);
+  if (estimate) server_->send(Topic::estimate, estimate);
+  if (!sending_.empty()) server_->send_frame(std::make_shared<std::string>(frame(sending_, geometry, trial)));
+}
+
+}  // namespace mbk::console

@@ -1,0 +1,168 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mbk/base/realtime/cycle_record.h"
+#include "mbk/experiment/console/server.h"
+#include "mbk/experiment/device/device.h"
+#include "mbk/experiment/session/live_estimate.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/measure/measurement/measure.h"
+
+namespace mbk::console {
+
+/// What the run waits for.
+enum class Question {
+  none,
+  begin,  ///< the first trial
+  after,  ///< a trial is over: once more, on, or no further
+  reset,  ///< after a stop
+};
+
+/// What is known of the robot itself, between trials too.
+struct RobotStatus {
+  using Motors = device::Motors;
+  Motors motors = Motors::unknown;    ///< as the robot reports them
+  std::optional<bool> confirmed_off;  ///< after a stop, whether the robot has confirmed it; absent: nothing to confirm
+  bool stop_button = false;           ///< is pressed
+  bool link = true;                   ///< states of the robot come
+  std::uint32_t fault = 0;            ///< the robot's own code; 0: none
+  std::string sentence;               ///< more about it, for the operator
+
+  bool operator==(const RobotStatus&) const = default;
+};
+
+/// Notes of one recording, all together.
+inline constexpr std::size_t kMostNotes = 200, kMostNoteBytes = 32 << 10;
+
+/// The pages of a session: what happens is shown, and what is asked for there is done. Fed by the recorder, never by
+/// the loop: the loop sees nothing of it but Signals.
+class Console {
+ public:
+  /// @param trials  in their order    @param signals  of the session; outlives the console
+  /// @param log  one line about what was refused; from the server's thread
+  /// @fails  as Server::listen
+  [[nodiscard]] static Result<std::unique_ptr<Console>> open(std::uint16_t port,
+                                                             const std::vector<session::Trial>& trials,
+                                                             session::Signals& signals,
+                                                             std::function<void(const std::string&)> log);
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+  ~Console();
+
+  [[nodiscard]] std::string address() const;              ///< of the operator, with the token
+  [[nodiscard]] std::string viewing_address() const;      ///< for those who only watch
+  [[nodiscard]] std::string participant_address() const;  ///< for the second screen
+  [[nodiscard]] Server::Status status() const { return server_->status(); }
+
+  /// A trial is about to begin.   @param index  in the list
+  void begin(std::size_t index, const journal::Header& header, const measurement::Options& options,
+             const std::filesystem::path& target, double duration);
+
+  /// What the recorder is to call (session::Watch).
+  void watch(std::span<const journal::Tick> ticks) noexcept;
+
+  /// The trial is over. Returns once the last estimate is there.
+  void finish(const session::TrialOutcome& outcome);
+
+  /// How long the ticks of the last trial took and how late they came, apart for those while pages were open and for
+  /// the others.
+  struct Times {
+    realtime::CycleRecord compute, lateness;
+  };
+  [[nodiscard]] Times times(bool watched);
+
+  /// Its report can be opened.   @param html  of report::page; empty: there is none, for a reason that `why` says
+  void show_report(std::string html, std::string why = "");
+
+  /// Asks the page, and waits until it decides: start, repeat, next, abort or reset; or a note came, and the question
+  /// is to be asked again. A stop while it waits asks for a reset before anything else. Where the program is asked to
+  /// end (Signals::end_session) the answer is abort.
+  [[nodiscard]] Action ask(Question question);
+
+  /// What the answer came to, where it could not be done.
+  void say(std::string message);
+
+  /// Shows it from now on. What is confirmed not to be off is shown as an alarm. From any thread.
+  void show_robot(const RobotStatus& robot);
+
+  /// The session is over: waits until nobody watches any more, or Signals::end_session.
+  void wait_until_left();
+
+  /// Remarks that belong to the recording of the trial that is running or was last, and are not in it yet.
+  [[nodiscard]] std::vector<std::string> take_notes();
+
+  /// What pages get as the state, as JSON. For tests.
+  [[nodiscard]] std::string state();
+
+ private:
+  enum class Progress { waiting, running, done, stopped };
+  struct Listed {
+    std::string name, condition;
+    double duration = 0.0;  ///< of the perturbation [s]
+    Eigen::Vector2d home;   ///< [m]
+    bool force = false;     ///< the perturbation is a force
+    Progress progress = Progress::waiting;
+    std::string recording, ending;
+    int report = 0;  ///< its number, from 1; 0: none
+    std::string report_missing;
+  };
+
+  Console(const std::vector<session::Trial>& trials, session::Signals& signals);
+  Page page(std::string_view path);
+  Result<void> command(const Command& command);
+  Result<void> reset(const std::string& code);
+  Result<void> note(const std::string& text);
+  void decide(Action action);
+  void beat();
+  void estimated(const session::LiveEstimate::Estimate& estimate);
+  void watch_throwing(std::span<const journal::Tick> ticks);
+  [[nodiscard]] std::string state_locked() const;
+
+  session::Signals& signals_;
+  std::string protocol_, reset_code_, said_;
+  std::mutex mutex_;
+  std::condition_variable decided_;
+  std::vector<Listed> trials_;
+  Page operator_page_;
+  std::map<int, Page> reports_;  // the last ones, by number
+  int last_report_ = 0;
+  std::vector<std::string> notes_;  // not taken yet
+  std::deque<std::string> shown_notes_;
+  std::size_t shown_note_bytes_ = 0, recording_notes_ = 0, recording_note_bytes_ = 0;  // the last two: of one recording
+  std::uint64_t note_count_ = 0;
+  RobotStatus robot_;
+  std::size_t current_ = 0;
+  bool running_ = false, changed_ = true, over_ = false;
+  Question question_ = Question::none;
+  std::optional<Action> decision_;
+
+  robot::Geometry geometry_;
+  double expected_duration_ = 0.0;
+  std::filesystem::path target_;
+  std::vector<journal::Tick> pending_, sending_;
+  journal::Tick last_;
+  std::uint64_t ticks_ = 0, dropped_ticks_ = 0, skipped_samples_ = 0, next_number_ = 0;
+  Times times_;
+  std::array<Times, 2> times_apart_;  // without pages, with pages
+  safety::Trip trip_;
+  Message estimate_;
+  std::uint64_t beats_ = 0;
+  std::uintmax_t disk_free_ = 0;
+  std::unique_ptr<session::LiveEstimate> live_;
+  std::unique_ptr<Server> server_;  // the last to be made, and the first to go
+};
+
+}  // namespace mbk::console

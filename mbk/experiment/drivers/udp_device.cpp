@@ -1,0 +1,201 @@
+#include "mbk/experiment/drivers/udp_device.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+#include <random>
+
+#include "mbk/base/core/option_limits.h"
+#include "mbk/base/realtime/clock.h"
+
+namespace mbk::drivers {
+namespace {
+
+using realtime::monotonic_ns;
+
+constexpr double kShortestWatchdog = 1e-3, kLongestWatchdog = 10.0;  // [s]
+constexpr double kAskAgain = 0.02;                                   // [s]
+constexpr int kMostAtOnce = 256;  // datagrams of one tick: a flood must not hold the loop up
+constexpr int kGoodbyes = 5;
+
+/// Of the last words: beyond any that a session reaches, exact as a double, and the highest where a robot keeps the low
+/// 31 or 32 bits alone and takes them for a signed number.
+constexpr std::uint64_t kLastSequence = (std::uint64_t{1} << 52U) + 0x7FFFFFFFU;
+
+std::int64_t after(double seconds) noexcept {
+  return monotonic_ns() + std::llround(1e9 * seconds);
+}
+
+const char* yes_or_no(bool fitted) {
+  return fitted ? "one" : "none";
+}
+
+}  // namespace
+
+UdpDevice::UdpDevice(UdpOptions options, const Fittings& fittings) : options_(std::move(options)), fittings_(fittings) {
+  facts_.name = fmt::format("UDP {}:{}", options_.address, options_.port);
+  facts_.has_force = fittings.has_force;
+  facts_.has_acceleration = fittings.has_acceleration;
+  facts_.keeps_time = !options_.lock_step;
+  facts_.acknowledges = true;
+  facts_.force_latency = fittings.force_latency;
+}
+
+Result<std::unique_ptr<UdpDevice>> UdpDevice::create(const UdpOptions& options, const Fittings& fittings) {
+  if (options.port == 0) return bad_usage("the robot's UDP port is 0", "name the port where the robot listens");
+  if (!(options.watchdog >= kShortestWatchdog && options.watchdog <= kLongestWatchdog)) {
+    return bad_usage(fmt::format("watchdog {:g} s is not between {:g} and {:g} s", options.watchdog, kShortestWatchdog,
+                                 kLongestWatchdog));
+  }
+  if (auto ok = above_zero({{"time to answer", options.answer_within, "s"}}); !ok) return tl::unexpected(ok.error());
+  if (fittings.force_latency < 0) return bad_usage("the latency of the force is below zero");
+  return std::unique_ptr<UdpDevice>(new UdpDevice(options, fittings));
+}
+
+Result<void> UdpDevice::start() {
+  const auto robot = UdpAddress::find(options_.address, options_.port);
+  if (!robot) return tl::unexpected(robot.error());
+  auto socket = UdpSocket::open({0, options_.local_port});
+  if (!socket) return tl::unexpected(socket.error());
+  has_last_words_ = false;
+  robot_ = *robot;
+  socket_ = std::move(*socket);
+  counts_ = {};
+  newest_ = {};
+  heard_ = broken_ = false;
+  last_ = {};
+  while (last_.session == 0) last_.session = std::random_device{}();
+  last_.watchdog = static_cast<std::uint32_t>(std::lround(1e3 * options_.watchdog));
+  last_.greeting = true;
+  last_.lock_step = options_.lock_step;
+  last_.sequence = 1;
+  CommandDatagram off = last_;
+  off.greeting = false;
+  off.sequence = kLastSequence;
+  last_words_ = encode(off);
+  has_last_words_ = true;
+  for (const std::int64_t until = after(options_.answer_within); !heard_ && monotonic_ns() < until;) {
+    if (!send_last()) break;
+    if (socket_->wait(kAskAgain)) take_all();
+  }
+  last_.greeting = false;
+  if (!heard_) return tl::unexpected(no_answer());
+  if (newest_.enabled) {
+    return bad_data(fmt::format("{}: the robot says that its motors are on, before any command", facts_.name),
+                    "switch them off at the robot: its program must answer a greeting with its motors off");
+  }
+  const auto differs = [&](const char* what, const char* key, bool sent, bool expected) -> Result<void> {
+    if (sent == expected) return {};
+    return bad_data(fmt::format("{}: of {} the robot has {}, and the experiment expects {}", facts_.name, what,
+                                yes_or_no(sent), yes_or_no(expected)),
+                    fmt::format("set {} in [device], or connect the sensor", key));
+  };
+  if (auto ok = differs("force sensors", "has_force", newest_.has_force, facts_.has_force); !ok) return ok;
+  return differs("accelerometers", "has_acceleration", newest_.has_acceleration, facts_.has_acceleration);
+}
+
+Error UdpDevice::no_answer() const {
+  std::string came;
+  const auto add = [&](std::uint64_t count, std::string_view what) {
+    if (count > 0) came += fmt::format("{}{} × {}", came.empty() ? "; what came instead: " : ", ", count, what);
+  };
+  for (std::size_t i = 0; i < counts_.refused.size(); ++i) add(counts_.refused[i], text(static_cast<Refusal>(i)));
+  add(counts_.foreign, "from another address");
+  add(counts_.old, "of another session");
+  return fail(ErrorKind::data, fmt::format("{}: no answer within {:g} s{}", facts_.name, options_.answer_within, came),
+              "start the robot's program, and check address, port, cable and firewall")
+      .value();
+}
+
+void UdpDevice::take_all() noexcept {
+  std::array<std::byte, 2 * kStateBytes2> bytes{};
+  UdpAddress from;
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    const int size = socket_->receive(bytes, from);
+    if (size < 0) return;
+    if (from != robot_) {
+      ++counts_.foreign;
+      continue;
+    }
+    StateDatagram came;
+    const Refusal refusal = decode(std::span(bytes).first(static_cast<std::size_t>(size)), came);
+    if (refusal != Refusal::none) {
+      ++counts_.refused[static_cast<std::size_t>(refusal)];
+      continue;
+    }
+    if (came.session != last_.session || (heard_ && came.raw.sequence <= newest_.raw.sequence)) {
+      ++counts_.old;
+      continue;
+    }
+    ++counts_.believed;
+    if (heard_) counts_.lost += came.raw.sequence - newest_.raw.sequence - 1;
+    newest_ = came;
+    heard_ = true;
+  }
+}
+
+void UdpDevice::await_answer() noexcept {
+  const std::int64_t until = after(options_.answer_within);
+  take_all();
+  while (newest_.answered != last_.sequence) {
+    if (broken_ || monotonic_ns() > until) {
+      broken_ = true;
+      return;
+    }
+    if (!socket_->wait(kAskAgain)) {
+      ++counts_.repeated;
+      if (!send_last()) broken_ = true;
+    }
+    take_all();
+  }
+}
+
+bool UdpDevice::read(device::State& state) noexcept {
+  if (!socket_) return false;
+  if (options_.lock_step) {
+    await_answer();
+  } else {
+    take_all();
+  }
+  state = fittings_.wiring.state(newest_.raw);
+  state.answered = newest_.answered > 0 ? newest_.answered - 1 : 0;  // the greeting is no command
+  state.motors = newest_.enabled ? device::Motors::on : device::Motors::off;
+  state.has_force = newest_.has_force;
+  state.has_acceleration = newest_.has_acceleration;
+  state.watchdog_expired = newest_.watchdog_expired;
+  state.drives_measure = newest_.drives_measure;
+  state.drive_torque = fittings_.wiring.torque(newest_.measured);
+  state.fault = newest_.fault;
+  return !broken_;
+}
+
+bool UdpDevice::send_last() noexcept {
+  return socket_->send(encode(last_), robot_);
+}
+
+bool UdpDevice::write(const device::Command& command) noexcept {
+  if (!socket_) return false;
+  ++last_.sequence;
+  last_.command = fittings_.wiring.command(command.torque);
+  last_.enabled = command.enabled;
+  if (!send_last()) broken_ = true;
+  return !broken_;
+}
+
+void UdpDevice::stop() noexcept {
+  if (!socket_) return;
+  write({});
+  constexpr timespec kPause{0, 1'000'000};
+  for (int i = 1; i < kGoodbyes; ++i) {
+    nanosleep(&kPause, nullptr);
+    send_last();
+  }
+}
+
+void UdpDevice::emergency_off() noexcept {
+  if (!has_last_words_) return;
+  for (int i = 0; i < kGoodbyes; ++i) socket_->send(last_words_, robot_);
+}
+
+}  // namespace mbk::drivers

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+
+#include "mbk/experiment/device/device.h"
+#include "mbk/experiment/safety/limits.h"
+#include "mbk/experiment/safety/trip.h"
+
+namespace mbk::safety {
+
+using device::Motors;
+
+/// What the robot reports of itself with a new state.
+struct RobotReport {
+  double time = 0.0;           ///< on the robot's clock [s]
+  bool acknowledges = false;   ///< `answered` and `motors` are meant
+  std::uint64_t answered = 0;  ///< commands up to the one that it obeys; 0: none
+  Motors motors = Motors::unknown;
+  bool force_sensor = true;   ///< none of the sensors that were there at the start is missing
+  bool accelerometer = true;  ///< the same
+  bool watchdog_expired = false;
+  bool drives_measure = false;
+  Vector2d drive_torque = {0.0, 0.0};  ///< as the drives measure it [N·m]
+  std::uint32_t fault = 0;             ///< its own fault code; 0: none
+};
+
+/// One thing that must not be: with what was measured, against what limit.
+struct Violation {
+  Reason reason = Reason::none;
+  double value = 0.0, limit = 0.0;
+  explicit operator bool() const noexcept { return reason != Reason::none; }
+};
+
+/// Holds what the robot reports against what it was told: which command it obeys, how old its states are, whether its
+/// clock runs, whether motors and sensors are as they should be. Nothing allocates.
+///   The age of a state is measured by the robot's clock: how much more time has passed here than there since the
+/// state that came fastest. That one may slip by kClockDrift, so that two honest clocks do not part; what delays every
+/// state alike from the beginning shows in the acknowledgement only.
+class ReportCheck {
+ public:
+  explicit ReportCheck(const Limits& limits, double sample_time) noexcept
+      : limits_(limits), sample_time_(sample_time) {}
+
+  /// Forgets what came before.
+  void forget() noexcept;
+
+  /// @param now  on the loop's clock, where the robot keeps time by itself [s]
+  /// @param sent  commands that have left, all of them with motors on
+  [[nodiscard]] Violation check(const RobotReport& report, double now, bool keeps_time, std::uint64_t sent) noexcept;
+
+ private:
+  static constexpr double kClockDrift = 5e-4;  ///< of one clock against the other
+  [[nodiscard]] Violation check_clock(const RobotReport& report, double now, bool keeps_time) noexcept;
+  [[nodiscard]] Violation check_answer(const RobotReport& report, double now, std::uint64_t sent) noexcept;
+
+  Limits limits_;
+  double sample_time_;
+  bool begun_ = false, measured_ = false;
+  double began_ = 0.0;                      // here [s]
+  double last_ = 0.0, last_now_ = 0.0;      // stamps of the state before, there and here [s]
+  double fastest_ = 0.0;                    // here − there [s]
+  double window_ = 0.0, window_now_ = 0.0;  // where the comparison of the two clocks' rates began [s]
+  std::uint64_t answered_ = 0;
+  double motors_wrong_since_ = 0.0;
+  bool motors_wrong_ = false;
+};
+
+}  // namespace mbk::safety

@@ -1,0 +1,141 @@
+#include "mbk/experiment/session/live_estimate.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <iterator>
+
+#include "mbk/base/realtime/signal_stack.h"
+#include "mbk/files/recording/inspect.h"
+#include "mbk/measure/preprocess/perturbation_only.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::session {
+namespace {
+
+constexpr auto kInterval = std::chrono::seconds(1);
+constexpr double kShortest = 2.0;  // of a perturbation worth a look [s]
+constexpr int kNiceness = 10;
+
+double perturbed(const journal::Journal& journal) {
+  const auto last = std::find_if(journal.ticks.rbegin(), journal.ticks.rend(),
+                                 [](const journal::Tick& tick) { return tick.perturbing(); });
+  return last == journal.ticks.rend() ? 0.0 : last->perturbation_time;
+}
+
+/// While a perturbation goes on, the last samples have no reading of their own yet where the sensor's comes later.
+void cut_unread(Recording& recording, int latency) {
+  const Index samples = std::max<Index>(0, recording.samples() - latency);
+  recording.time.conservativeResize(samples);
+  for (Channel& channel : recording.channels) channel.values.conservativeResize(samples);
+}
+
+}  // namespace
+
+measurement::Options across_missed_ticks(const Recording& recording, Hertz rate, measurement::Options options) {
+  if (!options.resample && !recording::inspect(recording).gaps.empty()) options.resample = rate;
+  return options;
+}
+
+Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options) {
+  auto recording = journal::to_recording(journal);
+  if (!recording) return tl::unexpected(recording.error());
+  const auto holds = [&](const char* name) {
+    return std::ranges::find(recording->events, name, &Event::name) != recording->events.end();
+  };
+  if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
+  if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
+  const Recording window = preprocess::perturbation_only(std::move(*recording));
+  return measurement::measure({&window, 1}, across_missed_ticks(window, Hertz(journal.header.rate), options));
+}
+
+LiveEstimate::LiveEstimate(std::function<void(const Estimate&)> done)
+    : done_(std::move(done)), thread_([this] { run(); }) {}
+
+LiveEstimate::~LiveEstimate() {
+  {
+    const std::scoped_lock lock(mutex_);
+    over_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void LiveEstimate::begin(journal::Header header, measurement::Options options) {
+  std::unique_lock lock(mutex_);
+  finished_.wait(lock, [&] { return !busy_; });
+  journal_ = {std::move(header), {}, {}, {}};
+  incoming_.clear();
+  options_ = std::move(options);
+  options_.passivity = false;
+  running_ = true;
+  finishing_ = false;
+}
+
+void LiveEstimate::add(std::span<const journal::Tick> ticks) {
+  const std::scoped_lock lock(mutex_);
+  if (running_) incoming_.insert(incoming_.end(), ticks.begin(), ticks.end());
+}
+
+void LiveEstimate::finish() {
+  std::unique_lock lock(mutex_);
+  if (!running_) return;
+  finishing_ = true;
+  wake_.notify_all();
+  finished_.wait(lock, [&] { return !running_; });
+}
+
+void LiveEstimate::look(std::span<const journal::Tick> came, bool final) noexcept {
+  double seen = 0.0;
+  const auto give_up = [&](const char* why) {
+    done_({final, seen, bad_data(fmt::format("not estimated: {}", why), "the recording can be measured later")});
+  };
+  try {
+    try {
+      journal_.ticks.insert(journal_.ticks.end(), came.begin(), came.end());
+      seen = perturbed(journal_);
+      if (seen < kShortest) {
+        if (final) done_({final, seen, bad_data(fmt::format("the perturbation went on for {:.1f} s only", seen))});
+      } else if (final || (!came.empty() && came.back().perturbing())) {
+        done_({final, seen, estimate(journal_, options_)});
+      }
+    } catch (const std::exception& error) {
+      give_up(error.what());
+    }
+  } catch (...) {  // it cannot be said either: the last estimate stays
+  }
+}
+
+void LiveEstimate::make(std::unique_lock<std::mutex>& lock, bool final) noexcept {
+  std::vector<journal::Tick> came;
+  came.swap(incoming_);
+  busy_ = true;
+  lock.unlock();
+  look(came, final);
+  lock.lock();
+  busy_ = false;
+}
+
+void LiveEstimate::run() noexcept {
+  const realtime::SignalStack stack;
+  // a thread of Linux has a priority of its own; where it is refused, nothing is lost
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  std::unique_lock lock(mutex_);
+  while (!over_) {
+    wake_.wait_for(lock, kInterval, [&] { return over_ || finishing_; });
+    if (over_) break;
+    if (!running_) continue;
+    const bool final = finishing_;
+    make(lock, final);
+    if (final) running_ = finishing_ = false;
+    finished_.notify_all();
+  }
+  running_ = false;
+  finished_.notify_all();
+}
+
+}  // namespace mbk::session

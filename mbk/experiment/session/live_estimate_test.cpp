@@ -1,0 +1,107 @@
+#include "mbk/experiment/session/live_estimate.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <new>
+
+#include "mbk/experiment/session/plan.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/simulate/laboratory/simulated_device.h"
+
+namespace mbk::session {
+namespace {
+
+constexpr const char* kExperiment = R"(
+[robot]
+handle_mass_kg = 0.194
+[control]
+kind = "position"
+[perturbation]
+kind = "multisine"
+duration_s = 14
+moving_in_s = 2
+[participant]
+kind = "arm"
+number = 1
+)";
+
+/// The journal of a whole trial.
+journal::Journal recorded() {
+  const Trial trial = read_experiment(kExperiment, "experiment.toml").value().front();
+  const auto robot = laboratory::SimulatedDevice::create(trial.scenario).value();
+  journal::Journal journal{header_of(trial, robot->facts(), make_plan(trial)->schedule), {}, {}, {}};
+  const auto target = std::filesystem::temp_directory_path() / fmt::format("mbk_live_estimate_{}.h5", getpid());
+  std::filesystem::remove(target);
+  Session session({true, 0.0});
+  const auto outcome = session.perform(*robot, trial, target, [&](std::span<const journal::Tick> ticks) {
+    journal.ticks.insert(journal.ticks.end(), ticks.begin(), ticks.end());
+  });
+  EXPECT_TRUE(outcome) << outcome.error().line();
+  std::filesystem::remove(target);
+  return journal;
+}
+
+bool warns_of_resampling(const Measurement& measured) {
+  return std::ranges::count(measured.identification.warnings, WarningCode::resampled, &Warning::code) > 0;
+}
+
+TEST(LiveEstimate, MissedTicksAreBridgedAndSaid) {
+  journal::Journal journal = recorded();
+  measurement::Options options;
+  options.identify.handle_mass = 0.194;
+  options.passivity = false;
+  const auto whole = estimate(journal, options);
+  ASSERT_TRUE(whole) << whole.error().line();
+  EXPECT_FALSE(warns_of_resampling(*whole));
+
+  std::size_t k = 0;
+  std::erase_if(journal.ticks, [&](const journal::Tick&) { return ++k % 1000 < 3; });  // two in a thousand
+  std::uint64_t number = 0;
+  for (journal::Tick& tick : journal.ticks) tick.number = number++;  // they were never made: none is lost
+  const auto with_gaps = estimate(journal, options);
+  ASSERT_TRUE(with_gaps) << with_gaps.error().line();
+  EXPECT_TRUE(warns_of_resampling(*with_gaps));
+  const Identification &one = whole->identification, &other = with_gaps->identification;
+  // what is bridged is far shorter than the fastest motion: a small part of the doubt that there is anyway
+  for (Index i : {0, 1}) {
+    for (Index j : {0, 1}) {
+      EXPECT_NEAR(other.model.K(i, j), one.model.K(i, j), 0.2 * one.standard_error.K(i, j));
+      EXPECT_NEAR(other.model.M(i, j), one.model.M(i, j), 0.2 * one.standard_error.M(i, j));
+    }
+  }
+}
+
+TEST(LiveEstimate, AnExceptionIsShownAndEndsNothing) {
+  const journal::Journal journal = recorded();
+  std::vector<std::string> why;
+  LiveEstimate live([&](const LiveEstimate::Estimate& estimate) {
+    if (estimate.measured) throw std::bad_alloc();  // as the console's own text of it may
+    why.push_back(estimate.measured.error().line());
+  });
+  for (int trial = 0; trial < 2; ++trial) {
+    live.begin(journal.header, {});
+    live.add(journal.ticks);
+    live.finish();
+  }
+  ASSERT_GE(why.size(), 2U);
+  EXPECT_NE(why.back().find("bad_alloc"), std::string::npos) << why.back();
+
+  LiveEstimate hopeless([](const LiveEstimate::Estimate&) { throw 3; });
+  hopeless.begin(journal.header, {});
+  hopeless.add(journal.ticks);
+  hopeless.finish();
+}
+
+TEST(LiveEstimate, WaitsForThePerturbation) {
+  journal::Journal journal = recorded();
+  std::erase_if(journal.ticks, [](const journal::Tick& tick) { return tick.perturbing(); });
+  const auto nothing = estimate(journal, {});
+  ASSERT_FALSE(nothing);
+  EXPECT_NE(nothing.error().line().find("nothing was perturbed yet"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mbk::session

@@ -1,0 +1,129 @@
+#include "mbk/experiment/session/loop.h"
+
+#include <algorithm>
+#include <ctime>
+
+namespace mbk::session {
+namespace {
+
+using realtime::monotonic_ns;
+
+constexpr std::int64_t kLongestWait = 2'000'000'000;  // [ns]
+
+/// False where the recorder makes no room in time.
+bool wait_for_room(const realtime::BoundedRing<journal::Tick>& ticks) noexcept {
+  if (ticks.room() > 0) return true;
+  const std::int64_t until = monotonic_ns() + kLongestWait;
+  constexpr timespec kNap{0, 200'000};
+  while (ticks.room() < ticks.capacity() / 2) {
+    if (monotonic_ns() > until) return false;
+    nanosleep(&kNap, nullptr);
+  }
+  return true;
+}
+
+std::array<double, 2> pair(const Eigen::Vector2d& v) noexcept {
+  return {v[0], v[1]};
+}
+
+safety::RobotReport report_of(const device::Facts& facts, const device::State& state) noexcept {
+  safety::RobotReport report;
+  report.time = state.time;
+  report.acknowledges = facts.acknowledges;
+  report.answered = state.answered;
+  report.motors = state.motors;
+  report.force_sensor = state.has_force || !facts.has_force;
+  report.accelerometer = state.has_acceleration || !facts.has_acceleration;
+  report.watchdog_expired = state.watchdog_expired;
+  report.drives_measure = state.drives_measure;
+  report.drive_torque = state.drive_torque;
+  report.fault = state.fault;
+  return report;
+}
+
+}  // namespace
+
+void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
+              realtime::BoundedRing<journal::Tick>& ticks, Signals& signals, LoopTimes& times) noexcept {
+  const device::Facts& facts = robot.facts();
+  device::State state;
+  std::uint64_t last_sequence = 0;
+  double compute = 0.0, first_time = 0.0, left = 0.0, interval = 0.0;
+  bool link = true;
+  clock.start();
+  for (std::uint64_t number = 0; !gate.settled(); ++number) {
+    const double late = clock.wait();
+    const std::int64_t begin = monotonic_ns();
+    const bool reads = robot.read(state);
+    const double now = clock.now();  // when the state was here
+    link = link && reads;
+    if (signals.end_trial.load(std::memory_order_relaxed)) sequence.end_early();
+    const bool over = gate.tripped() || gate.off();
+    const control::Sequencer::Step step = over ? control::Sequencer::Step{} : sequence.step(state.joint);
+    if (step.phase == control::Phase::done && !gate.tripped()) gate.release();
+
+    if (number == 0) {
+      first_time = now;
+      left = now - clock.period();
+    }
+    safety::Observation seen;
+    seen.time = now - first_time;
+    seen.fresh = state.sequence != last_sequence;
+    seen.link = gate.off() ? reads : link;
+    seen.stop_button = state.stop;
+    seen.operator_stop = signals.operator_stop.load(std::memory_order_relaxed);
+    seen.recording = signals.recording.load(std::memory_order_relaxed) &&
+                     (facts.keeps_time ? ticks.room() > ticks.capacity() / 4 : wait_for_room(ticks));
+    // a stall inside a tick is in it, before the command left or behind it
+    const double overdue = std::max(0.0, std::max(now - left, interval) - clock.period());
+    seen.late = facts.keeps_time ? overdue : 0.0;
+    seen.keeps_time = facts.keeps_time;
+    seen.report = report_of(facts, state);
+    seen.joint = state.joint;
+    seen.force = state.force;
+    seen.acceleration = state.acceleration;
+    seen.has_force = facts.has_force;
+    seen.has_acceleration = facts.has_acceleration;
+    seen.follows = step.follows;
+    seen.joint_reference = step.joint_reference;
+    seen.perturbing = step.phase == control::Phase::perturbing;
+    const safety::Gate::Decision decision = gate.step(seen, step.torque);
+    link = robot.write({number, decision.torque, decision.enabled}) && link;
+    last_sequence = state.sequence;
+    const double leaves = clock.now();
+    if (number > 0) {
+      interval = leaves - left;
+      times.interval.add(static_cast<std::int64_t>(1e9 * interval));
+    }
+    left = leaves;
+
+    journal::Tick tick;
+    tick.number = number;
+    tick.time = seen.time;
+    tick.late = overdue;
+    tick.perturbation_time = step.perturbation_time;
+    tick.joint = pair(state.joint);
+    tick.force = pair(state.force);
+    tick.acceleration = pair(state.acceleration);
+    tick.reference = pair(step.reference);
+    tick.asked = pair(step.torque);
+    tick.torque = pair(decision.torque);
+    tick.sequence = state.sequence;
+    tick.compute = static_cast<float>(compute);
+    tick.phase = static_cast<std::uint8_t>(step.phase);
+    tick.reason = static_cast<std::uint8_t>(gate.trip().reason);
+    tick.enabled = decision.enabled ? 1 : 0;
+    tick.cut = decision.cut ? 1 : 0;
+    ticks.push(tick);
+
+    const std::int64_t took = monotonic_ns() - begin;
+    compute = 1e-9 * static_cast<double>(took);
+    times.compute.add(took);
+    times.lateness.add(static_cast<std::int64_t>(1e9 * late));
+    ++times.ticks;
+  }
+  times.missed += clock.missed();
+  robot.stop();
+}
+
+}  // namespace mbk::session

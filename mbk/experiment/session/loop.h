@@ -1,0 +1,41 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "mbk/base/realtime/bounded_ring.h"
+#include "mbk/base/realtime/clock.h"
+#include "mbk/base/realtime/cycle_record.h"
+#include "mbk/experiment/control/sequencer.h"
+#include "mbk/experiment/device/device.h"
+#include "mbk/experiment/safety/gate.h"
+#include "mbk/files/journal/tick.h"
+
+namespace mbk::session {
+
+/// What other threads tell the loop, and it them.
+struct Signals {
+  std::atomic<bool> operator_stop{false};  ///< safety stop by key or console
+  std::atomic<bool> end_trial{false};      ///< end the perturbation early, and go back
+  std::atomic<bool> end_session{false};    ///< the program is asked to end: no question is asked, no trial begun
+  std::atomic<bool> recording{true};       ///< what is recorded reaches its file
+};
+
+/// What the loop says of its own time.
+struct LoopTimes {
+  realtime::CycleRecord compute;   ///< from the wake-up to the command's end
+  realtime::CycleRecord lateness;  ///< of the wake-up
+  realtime::CycleRecord interval;  ///< from one command that left to the next
+  std::uint64_t ticks = 0;
+  std::uint64_t missed = 0;  ///< ticks that went by without a wake-up
+};
+
+/// Runs a trial from the first tick to the last: wait, read the robot, decide, pass the gate, write the robot, hand the
+/// tick over. Where the sequence is done, or a trip's ramp is over, it goes on with motors off until the robot has
+/// confirmed that, or has not within Limits::motors_off (Gate::motors). Nothing in it allocates, locks, prints or
+/// touches a file. A robot that waits for its commands (Facts::keeps_time) is made to wait for a recorder that lags,
+/// up to two seconds; any other is not, and a lagging recorder trips the gate.
+void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
+              realtime::BoundedRing<journal::Tick>& ticks, Signals& signals, LoopTimes& times) noexcept;
+
+}  // namespace mbk::session

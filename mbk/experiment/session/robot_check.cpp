@@ -1,0 +1,279 @@
+#include "mbk/experiment/session/robot_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "mbk/base/config/document.h"
+#include "mbk/model/robot/workspace.h"
+#include "mbk/model/robot_file/planar_keys.h"
+#include "mbk/model/robot_file/robot_file.h"
+
+namespace mbk::session {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Verdict = Finding::Verdict;
+
+constexpr double kDegree = 0.017453292519943295;
+constexpr double kMillimetre = 1e-3, kMicrometre = 1e-6;
+constexpr double kShortestLink = 0.05, kLongestLink = 2.0;   // [m]: a robot for an arm
+constexpr double kLeastMass = 0.05, kMostMass = 20.0;        // of the robot at the hand [kg]
+constexpr double kFineCount = 100e-6, kCoarseCount = 1e-3;   // at the hand [m]
+constexpr double kCoarseForce = 0.05;                        // [N]: a quarter of the published sensor's noise
+constexpr double kLongWatchdog = 0.2;                        // [s]
+constexpr double kSmallCommand = 1e-3, kLargeCommand = 1e3;  // of the largest torque, in units of command
+constexpr double kUnevenGain = 5.0;                          // ratio of a force sensor's axes
+
+class Findings {
+ public:
+  void add(Verdict verdict, std::string text) { all_.push_back({verdict, std::move(text)}); }
+  /// `remedy` is said only where it is not fine.
+  void judge(Verdict verdict, const std::string& text, const char* remedy) {
+    add(verdict, verdict == Verdict::fine ? text : fmt::format("{}; {}", text, remedy));
+  }
+  [[nodiscard]] std::vector<Finding> take() { return std::move(all_); }
+
+ private:
+  std::vector<Finding> all_;
+};
+
+Verdict doubtful_unless(bool fine) {
+  return fine ? Verdict::fine : Verdict::doubtful;
+}
+
+Verdict wrong_unless(bool fine) {
+  return fine ? Verdict::fine : Verdict::wrong;
+}
+
+double largest_singular_value(const Matrix2d& matrix) {
+  return Eigen::JacobiSVD<Matrix2d>(matrix).singularValues()[0];
+}
+
+void check_links(const RobotSetup& setup, Findings& findings) {
+  const robot::Geometry& g = setup.robot.geometry;
+  const auto in_range = [](double d) { return d >= kShortestLink && d <= kLongestLink; };
+  findings.judge(doubtful_unless(in_range(g.d1) && in_range(g.d2)),
+                 fmt::format("links of {:.4g} and {:.4g} mm", g.d1 / kMillimetre, g.d2 / kMillimetre),
+                 "a robot for an arm has links of 50 to 2000 mm: are d1_mm and d2_mm in millimetres?");
+}
+
+void check_inertia(const RobotSetup& setup, const Vector2d& theta, Findings& findings) {
+  const auto mass = setup.robot.inertia_at_hand(theta);
+  if (!mass) {
+    findings.add(Verdict::wrong, mass.error().line());
+    return;
+  }
+  const Vector2d eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix2d>(*mass).eigenvalues();
+  const std::string text =
+      fmt::format("the hand feels {:.3g} to {:.3g} kg of the robot", eigenvalues[0], eigenvalues[1]);
+  if (eigenvalues[0] <= 0.0) {
+    findings.judge(Verdict::wrong, text, "no robot has such an inertia: see alpha_kg_m2 and its order α₁, α₂, α₃");
+  } else {
+    findings.judge(doubtful_unless(eigenvalues[0] >= kLeastMass && eigenvalues[1] <= kMostMass), text,
+                   "is alpha_kg_m2 in kg·m²?");
+  }
+}
+
+/// @returns  a posture to look at the robot in: home, or the middle of what the joints can do
+std::optional<Vector2d> check_places(const RobotSetup& setup, Findings& findings) {
+  const robot::Geometry& g = setup.robot.geometry;
+  const auto workspace = robot::workspace(g);
+  if (!workspace) {
+    findings.add(Verdict::wrong, "no workspace: " + workspace.error().line());
+    return std::nullopt;
+  }
+  findings.judge(doubtful_unless(workspace->area >= 1e-2),
+                 fmt::format("the hand reaches {:.0f} cm²", 1e4 * workspace->area),
+                 "that is less than a palm: see theta1_deg, theta2_deg and smallest_opening_deg");
+  if (!setup.home) {
+    const std::vector<Vector2d> corners = robot::joint_space_corners(g.limits);
+    Vector2d middle = Vector2d::Zero();
+    for (const Vector2d& corner : corners) middle += corner / static_cast<double>(corners.size());
+    return middle;
+  }
+  const Vector2d& home = *setup.home;
+  const auto theta = robot::check_hand(g, home);
+  if (!theta) {
+    findings.add(Verdict::wrong, "home cannot be reached: " + theta.error().line());
+    return std::nullopt;
+  }
+  const double margin = robot::margin(g.limits, *theta);
+  const bool inside = (home.array() >= setup.limits.workspace_low.array()).all() &&
+                      (home.array() <= setup.limits.workspace_high.array()).all();
+  findings.judge(
+      wrong_unless(margin > setup.limits.joint_margin && inside),
+      fmt::format("home is at {:.1f}, {:.1f} mm, {:.1f}° from the nearest limit of a joint{}", home[0] / kMillimetre,
+                  home[1] / kMillimetre, margin / kDegree, inside ? "" : ", outside the safety workspace"),
+      "move home_mm, or see [safety] joint_margin_deg and workspace_low_mm");
+  return *theta;
+}
+
+void check_encoders(const RobotSetup& setup, const Vector2d& theta, Findings& findings) {
+  if (!setup.device.counts) return;
+  const device::Wiring& w = setup.device.fittings.wiring;
+  const double count =
+      largest_singular_value(robot::jacobian(setup.robot.geometry, theta) * w.radians_per_count.asDiagonal());
+  findings.judge(count > kCoarseCount ? Verdict::wrong : doubtful_unless(count <= kFineCount),
+                 fmt::format("one count of an encoder is at most {:.3g} µm at the hand", count / kMicrometre),
+                 "velocities and accelerations will be rough: see counts_per_turn (after the gear, all four edges)");
+  const double jump = setup.limits.encoder_jump / w.radians_per_count.cwiseAbs().maxCoeff();
+  findings.judge(jump < 2.0 ? Verdict::wrong : doubtful_unless(jump >= 5.0),
+                 fmt::format("the gate takes {:.3g} counts within a tick for a jump", jump),
+                 "raise [safety] encoder_jump_deg: what the encoder rounds must not trip");
+}
+
+void check_force(const RobotSetup& setup, Findings& findings) {
+  const drivers::Fittings& f = setup.device.fittings;
+  if (!f.has_force) {
+    findings.add(Verdict::doubtful, "without a force sensor: what is measured needs --force-source virtual");
+    return;
+  }
+  const Vector2d gains = Eigen::JacobiSVD<Matrix2d>(f.wiring.force_gain).singularValues();
+  findings.judge(doubtful_unless(gains[0] <= kUnevenGain * gains[1]),
+                 fmt::format("the force sensor gives {:.4g} to {:.4g} N per unit", gains[1], gains[0]),
+                 "its axes differ much, or both read nearly the same: see force_gain_N_per_unit");
+  if (setup.device.force_step) {
+    const double step = gains[0] * *setup.device.force_step;
+    findings.judge(doubtful_unless(step <= kCoarseForce), fmt::format("its smallest step is {:.3g} mN", 1e3 * step),
+                   "that is coarse beside an arm's forces: use more of the converter's range");
+  }
+}
+
+void check_motors(const RobotSetup& setup, const Vector2d& theta, Findings& findings) {
+  const device::Wiring& w = setup.device.fittings.wiring;
+  const Vector2d most = setup.limits.joint_torque.cwiseQuotient(w.torque_per_command).cwiseAbs();
+  findings.judge(doubtful_unless(most.minCoeff() >= kSmallCommand && most.maxCoeff() <= kLargeCommand),
+                 fmt::format("the largest torques, {:g} and {:g} N·m, are {:.3g} and {:.3g} units of command",
+                             setup.limits.joint_torque[0], setup.limits.joint_torque[1], most[0], most[1]),
+                 "see torque_per_command_Nm and gear");
+  const Matrix2d J = robot::jacobian(setup.robot.geometry, theta);
+  const Vector2d unit = J.transpose().inverse() * Vector2d(w.torque_per_command[0], 0.0);
+  findings.add(Verdict::fine,
+               fmt::format("one unit of command to motor 1 pushes the hand with {:.3g}, {:.3g} N", unit[0], unit[1]));
+}
+
+void check_times(const RobotSetup& setup, Findings& findings) {
+  const auto watchdog = [&](double seconds) {
+    const double tick = 1.0 / setup.scenario.rate.value;
+    const std::string text = fmt::format("the robot's watchdog is {:g} ms", 1e3 * seconds);
+    if (seconds < 3.0 * tick) {
+      findings.judge(Verdict::wrong, text, "it would bite at the first late tick: take 20 to 100 ms");
+    } else {
+      findings.judge(doubtful_unless(seconds <= kLongWatchdog), text,
+                     "motors that run on for so long can hurt: take 20 to 100 ms");
+    }
+  };
+  if (const auto* udp = std::get_if<drivers::UdpOptions>(&setup.device.kind)) watchdog(udp->watchdog);
+  if (const auto* plugin = std::get_if<drivers::PluginOptions>(&setup.device.kind)) watchdog(plugin->watchdog);
+}
+
+std::string device_text(const DevicePlan& plan) {
+  if (const auto* udp = std::get_if<drivers::UdpOptions>(&plan.kind)) {
+    return fmt::format("UDP {}:{}{}", udp->address, udp->port, udp->lock_step ? ", in lock-step" : "");
+  }
+  if (const auto* plugin = std::get_if<drivers::PluginOptions>(&plan.kind)) {
+    return fmt::format("plug-in {}", plugin->library.string());
+  }
+  return "simulated";
+}
+
+std::string frame_text(device::Wiring::Frame frame) {
+  return frame == device::Wiring::Frame::base ? "the base" : "the last link";
+}
+
+}  // namespace
+
+Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem::path& file) {
+  const auto document = config::Document::parse(text, file.string());
+  if (!document) return tl::unexpected(document.error());
+  const config::Section root = document->root();
+  RobotSetup setup;
+  setup.has_device = root.has("device");
+  if (root.has("control") || root.has("perturbation") || root.has("trial")) {
+    auto trials = read_experiment(text, file);
+    if (!trials) return tl::unexpected(trials.error());
+    const Trial& first = trials->front();
+    setup.robot = first.planar().robot.robot;
+    setup.limits = first.limits;
+    setup.device = first.device;
+    setup.has_device = true;
+    setup.home = first.planar().home;
+    setup.scenario = first.scenario;
+    return setup;
+  }
+  const config::Section robot = root.section("robot");
+  if (robot.text("kind", "planar") != "planar") {
+    return tl::unexpected(robot.error("kind", "only planar robots can be driven, and checked, so far",
+                                      "'mbk robot describe' shows what is understood of others"));
+  }
+  // The whole description is judged by its own reader, which knows every key.
+  if (auto ok = robot_file::parse_robot_description(text, "", file.string()); !ok) return tl::unexpected(ok.error());
+  setup.robot = robot_file::read_planar_robot(robot);
+  setup.device = read_device(root.section("device"), file.parent_path());
+  root.leave_to_others("robot");
+  root.leave_to_others("drive");
+  if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());
+  return setup;
+}
+
+Finding::Verdict worst(const std::vector<Finding>& findings) {
+  Verdict most = Verdict::fine;
+  for (const Finding& one : findings) most = std::max(most, one.verdict);
+  return most;
+}
+
+std::vector<Finding> check_setup(const RobotSetup& setup) {
+  Findings findings;
+  check_links(setup, findings);
+  const auto theta = check_places(setup, findings);
+  if (theta) check_inertia(setup, *theta, findings);
+  if (auto ok = safety::check(setup.limits); !ok) findings.add(Verdict::wrong, ok.error().line());
+  if (setup.device.simulated() || !theta) return findings.take();
+  check_encoders(setup, *theta, findings);
+  check_force(setup, findings);
+  check_motors(setup, *theta, findings);
+  check_times(setup, findings);
+  return findings.take();
+}
+
+std::string setup_text(const RobotSetup& setup) {
+  const robot::Geometry& g = setup.robot.geometry;
+  const robot::JointLimits& l = g.limits;
+  std::string text = fmt::format("robot      d₁ {:.1f} mm, d₂ {:.1f} mm\n", g.d1 / kMillimetre, g.d2 / kMillimetre);
+  text += fmt::format("joints     θ₁ {:.1f} to {:.1f}°, θ₂ {:.1f} to {:.1f}°, smallest opening {:.1f}°\n",
+                      l.theta1_low / kDegree, l.theta1_high / kDegree, l.theta2_low / kDegree, l.theta2_high / kDegree,
+                      l.smallest_opening / kDegree);
+  text += fmt::format("device     {}\n", setup.has_device ? device_text(setup.device) : "none is named");
+  if (!setup.has_device || setup.device.simulated()) return text;
+  const drivers::Fittings& f = setup.device.fittings;
+  const device::Wiring& w = f.wiring;
+  if (setup.device.counts) {
+    text += fmt::format("encoders   {:+.6g} and {:+.6g}° per count, θ = 0 at counts {:g} and {:g}\n",
+                        w.radians_per_count[0] / kDegree, w.radians_per_count[1] / kDegree, w.count_offset[0],
+                        w.count_offset[1]);
+  } else {
+    text += fmt::format("encoders   angles in rad, senses {:+g} and {:+g}\n", w.radians_per_count[0],
+                        w.radians_per_count[1]);
+  }
+  const auto sensor = [&](const char* name, bool fitted, const char* unit, const Matrix2d& gain, const Vector2d& offset,
+                          device::Wiring::Frame frame) {
+    text += fitted ? fmt::format("{:<11}[{:g} {:g}; {:g} {:g}] {} per unit, zero at {:g} and {:g}, axes of {}\n", name,
+                                 gain(0, 0), gain(0, 1), gain(1, 0), gain(1, 1), unit, offset[0], offset[1],
+                                 frame_text(frame))
+                   : fmt::format("{:<11}not fitted\n", name);
+  };
+  sensor("force", f.has_force, "N", w.force_gain, w.force_offset, w.force_frame);
+  sensor("accel.", f.has_acceleration, "m/s²", w.acceleration_gain, w.acceleration_offset, w.acceleration_frame);
+  if (f.force_latency > 0) text += fmt::format("latency    force and acceleration are {} ticks old\n", f.force_latency);
+  text += fmt::format("motors     {:+g} and {:+g} N·m per unit of command\n", w.torque_per_command[0],
+                      w.torque_per_command[1]);
+  return text;
+}
+
+}  // namespace mbk::session

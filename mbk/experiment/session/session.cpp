@@ -1,0 +1,262 @@
+#include "mbk/experiment/session/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <ctime>
+#include <utility>
+
+#include "mbk/base/core/printable.h"
+#include "mbk/base/core/version.h"
+#include "mbk/base/realtime/signal_stack.h"
+#include "mbk/experiment/session/plan.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/files/recording/write.h"
+#include "mbk/files/recording/write_file.h"
+
+namespace mbk::session {
+namespace {
+
+namespace fs = std::filesystem;
+using journal::Header;
+using journal::Tick;
+
+/// Two seconds at 1 kHz: longer than any stall that a machine fit for this work has.
+constexpr std::size_t kRing = 4096;
+
+std::string now_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                     utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
+  journal::Ending ending;
+  ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
+  if (gate.tripped()) {
+    ending.detail = safety::sentence(gate.trip());
+    ending.trip = safety::code(gate.trip().reason);
+  }
+  ending.motors = safety::sentence(gate.motors());
+  ending.overruns = times.missed;
+  ending.ticks = times.ticks;
+  return ending;
+}
+
+/// Starts the robot, and looks at its stop button before anything moves.
+Result<void> start(device::Device& robot) {
+  if (auto ok = robot.start(); !ok) return ok;
+  device::State state;
+  robot.read(state);
+  if (!state.stop) return {};
+  robot.stop();
+  return bad_usage(fmt::format("{}: the stop button is pressed", robot.facts().name), "release it, then begin again");
+}
+
+/// To the bit, but that one NaN is as good as another.
+bool same(const Vector& one, const Vector& other) {
+  const auto equal = [](double a, double b) {
+    return std::isnan(a) ? std::isnan(b) : std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  };
+  return one.size() == other.size() && std::equal(one.begin(), one.end(), other.begin(), equal);
+}
+
+/// Whether a file holds the recording. A channel that is NaN throughout may be left out, as MAT files do.
+bool holds_the_same(const fs::path& target, const Recording& recording) {
+  std::error_code ignored;
+  if (!fs::exists(target, ignored)) return false;
+  const auto there = recording::read(target, {});
+  if (!there || !same(there->time, recording.time) || there->events.size() != recording.events.size()) return false;
+  for (const char* key : {"ended", "ticks_lost", "gaps"}) {
+    const auto value = recording.metadata.find(key), twin = there->metadata.find(key);
+    if (value != recording.metadata.end() && (twin == there->metadata.end() || *twin != *value)) return false;
+  }
+  return std::ranges::all_of(recording.channels, [&](const Channel& channel) {
+    const Channel* const twin = there->find(channel.name);
+    return twin != nullptr ? same(twin->values, channel.values) : channel.values.array().isNaN().all();
+  });
+}
+
+/// Until the loop has a thread: whatever is in the way leaves the robot stopped, and no journal without ticks.
+struct NotBegun {
+  fs::path journal;
+  device::Device* robot = nullptr;  // once it was started
+  bool begun = false;
+  ~NotBegun() {
+    if (begun) return;
+    if (robot != nullptr) robot->stop();
+    std::error_code ignored;
+    fs::remove(journal, ignored);
+  }
+};
+
+}  // namespace
+
+Header header_of(const Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
+  Header header;
+  header.metadata = metadata_of(trial.person);
+  // The scenario's participant is at the handle only where the robot is simulated.
+  if (trial.device.simulated()) header.metadata.merge(laboratory::scenario_metadata(trial.scenario));
+  header.metadata["protocol"] = trial.protocol;
+  if (!trial.name.empty()) header.metadata["trial"] = trial.name;
+  if (!trial.scenario.condition.empty()) header.metadata["condition"] = trial.scenario.condition;
+  header.metadata["robot"] = facts.name;
+  header.metadata["seed"] = std::to_string(trial.scenario.seed);
+  header.metadata["handle_mass_kg"] = fmt::format("{:.12g}", trial.planar().robot.handle_mass);
+  header.metadata["software"] = fmt::format("mbk {}", version());
+  header.metadata["began"] = now_text();
+  header.geometry = trial.planar().robot.robot.geometry;
+  header.rate = trial.scenario.rate.value;
+  header.readers = trial.scenario.readers;
+  header.reference_unit = schedule.quantity() == perturbation::Quantity::force ? "N" : "m";
+  header.has_force = facts.has_force;
+  header.has_acceleration = facts.has_acceleration;
+  header.force_latency = facts.force_latency;
+  for (const auto& event : schedule.events()) header.events.push_back({event.time, event.name, event.value});
+  return header;
+}
+
+fs::path journal_of(const fs::path& recording) {
+  return recording.string() + ".journal";
+}
+
+void Session::see_idle(const IdleState& state) {
+  const std::scoped_lock lock(*gate_mutex_);
+  if (gate_) gate_->see_idle(state.stop_button, state.confirmed_off);
+}
+
+Result<void> Session::reset() {
+  const std::scoped_lock lock(*gate_mutex_);
+  if (gate_) {
+    if (auto ok = gate_->reset(); !ok) return ok;
+  }
+  signals_->operator_stop = false;
+  signals_->recording = true;
+  return {};
+}
+
+Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial, const fs::path& target,
+                                      const Watch& watch) {
+  if (trial.person.withdrawn) {
+    return bad_usage("the person has withdrawn: no further trial is begun", "see [person] withdrawn");
+  }
+  if (gate_ && gate_->tripped()) {
+    return bad_usage("the gate is tripped: " + safety::sentence(gate_->trip()), "see to the reason, then reset");
+  }
+  std::error_code ignored;
+  if (fs::exists(target, ignored)) {
+    return fail(ErrorKind::usage, "is there already", "choose another name, or move it away", target.string());
+  }
+  if (pace_.virtual_clock && robot.facts().keeps_time && !trial.device.simulated()) {
+    return bad_usage(fmt::format("{} keeps its own time, which a virtual clock cannot hurry", robot.facts().name),
+                     "run it without --fast and --speed; a simulation behind UDP can wait: lock_step = true");
+  }
+  auto plan = make_plan(trial);
+  if (!plan) return tl::unexpected(plan.error());
+  const double sample_time = 1.0 / trial.scenario.rate.value;
+
+  TrialOutcome outcome;
+  outcome.recording = target;
+  outcome.journal = journal_of(target);
+  const auto expected = static_cast<std::uint64_t>(plan->sequence.duration(0.5) / sample_time);
+  auto writer = journal::Writer::create(outcome.journal, header_of(trial, robot.facts(), plan->schedule), expected);
+  if (!writer) return tl::unexpected(writer.error());
+  NotBegun guard{outcome.journal};
+  if (auto ok = start(robot); !ok) return tl::unexpected(ok.error());
+  guard.robot = &robot;
+
+  gate_ = std::move(plan->gate);
+  signals_->end_trial = false;
+  signals_->recording = true;
+  realtime::BoundedRing<Tick> ring(kRing);
+  const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
+  Recorder recorder(ring, std::move(*writer), *signals_, watch, in_real_time);
+  std::thread loop([&] {
+    const realtime::SignalStack stack;
+    if (pace_.clock != nullptr) {
+      run_loop(robot, plan->sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
+    } else if (pace_.virtual_clock) {
+      realtime::VirtualClock clock(sample_time, pace_.speed);
+      run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
+    } else {
+      outcome.setup = realtime::prepare_thread();
+      realtime::WallClock clock(sample_time);
+      run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
+    }
+  });
+  guard.begun = true;
+  loop.join();
+
+  outcome.trip = gate_->trip();
+  outcome.motors = gate_->motors();
+  outcome.ending = ending_of(*gate_, *signals_, outcome.times);
+  const auto closed = recorder.finish(outcome.ending);
+  outcome.journal = recorder.journal();
+  if (!closed) {
+    Error error = closed.error();
+    if (gate_->tripped()) error.message += "; safety stop: " + outcome.ending.detail;
+    error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
+    return tl::unexpected(error);
+  }
+  outcome.ending = *closed;
+  const auto recovered = recover(outcome.journal, target, {.ending = outcome.ending});
+  if (!recovered) return tl::unexpected(recovered.error());
+  outcome.damage = recovered->damage;
+  outcome.incomplete = recovered->incomplete || recovered->ticks != outcome.times.ticks;
+  outcome.ending.how = recovered->recording.metadata.at("ended");
+  return outcome;
+}
+
+Result<void> annotate(const fs::path& file, const std::vector<std::string>& notes) {
+  auto recording = recording::read(file, {});
+  if (!recording) return tl::unexpected(recording.error());
+  const auto format = recording::format_of(file);
+  if (!format) return tl::unexpected(format.error());
+  std::string& text = recording->metadata["notes"];
+  for (std::string note : notes) {
+    std::ranges::replace(note, '\n', ' ');
+    text += (text.empty() ? "" : " | ") + printable(std::move(note));
+  }
+  return recording::write(*recording, file, *format, true, recording::readers_of(file));
+}
+
+Result<Recovered> recover(const fs::path& file, const fs::path& target, const RecoverOptions& options) {
+  Recovered recovered;
+  auto readers = options.readers;
+  {
+    auto journal = journal::read(file);  // gone before the recording is written: half a gigabyte for an hour
+    if (!journal) return tl::unexpected(journal.error());
+    if (options.ending) journal->end_with(*options.ending);
+    auto made = journal::to_recording(*journal);
+    if (!made) return tl::unexpected(made.error().in(file.string()));
+    if (!readers) readers = journal->header.readers;
+    recovered.ticks = journal->ticks.size();
+    recovered.incomplete = journal->incomplete();
+    recovered.damage = std::move(journal->damage);
+    recovered.recording = std::move(*made);
+  }
+  const Recording& recording = recovered.recording;
+  const auto format = recording::format_of(target);
+  if (!format) return tl::unexpected(format.error());
+  if (options.overwrite || !holds_the_same(target, recording)) {
+    if (auto ok = recording::write(recording, target, *format, options.overwrite, *readers); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    if (!holds_the_same(target, recording)) {
+      std::error_code ignored;
+      fs::remove(target, ignored);
+      return bad_data("the recording did not read back as it was written, and was removed",
+                      fmt::format("look at the disk, then 'mbk recover {}'", file.string()), target.string());
+    }
+  }
+  std::error_code failed;
+  const bool pristine = !recovered.damage.any() && !recovered.incomplete;
+  recovered.removed = pristine && !options.keep && fs::remove(file, failed);
+  return recovered;
+}
+
+}  // namespace mbk::session

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "mbk/base/core/result.h"
+#include "mbk/base/realtime/thread_setup.h"
+#include "mbk/experiment/device/device.h"
+#include "mbk/experiment/session/experiment.h"
+#include "mbk/experiment/session/idle_watch.h"
+#include "mbk/experiment/session/loop.h"
+#include "mbk/experiment/session/recorder.h"
+
+namespace mbk::session {
+
+/// How time passes.
+struct Pace {
+  bool virtual_clock = false;        ///< ticks come as fast as the machine can, or `speed` times as fast as real ones
+  double speed = 0.0;                ///< of a virtual clock; 0: as fast as it can
+  realtime::Clock* clock = nullptr;  ///< where given, this one instead, of the experiment's sample time
+};
+
+/// A trial that is over.
+struct TrialOutcome {
+  std::filesystem::path recording;  ///< absent file where it could not be made: the journal then still is
+  std::filesystem::path journal;    ///< removed once the recording is there and holds every tick
+  bool incomplete = false;          ///< not every tick that the loop made came back from the recording
+  journal::Damage damage;           ///< of the journal; where there is any, it is kept
+  journal::Ending ending;
+  safety::Trip trip;         ///< Reason::none where nothing tripped
+  safety::MotorsOff motors;  ///< whether the robot has confirmed that they are off
+  LoopTimes times;
+  realtime::ThreadSetup setup;
+};
+
+/// Runs trials one after the other. A trip outlives its trial: none begins before `reset`.
+class Session {
+ public:
+  explicit Session(const Pace& pace = {}) : pace_(pace) {}
+
+  /// Everything that can be known to fail is asked before the robot moves.
+  /// @param target  of the recording (.h5); the journal stands beside it as NAME.h5.journal
+  /// @param watch  see Recorder; may be empty
+  /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; the robot's stop
+  ///         button is pressed; the robot keeps its own time and the clock is virtual; a limit or check
+  ///         failed, which the message names. data: the robot does not answer; the folder, space or disk.
+  [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const Trial& trial,
+                                             const std::filesystem::path& target, const Watch& watch = {});
+
+  /// For other threads, and for signal handlers: a stop, or an early end, of the trial that runs.
+  [[nodiscard]] Signals& signals() { return *signals_; }
+
+  /// Of the last trial; null before the first.
+  [[nodiscard]] const safety::Gate* gate() const { return gate_ ? &*gate_ : nullptr; }
+
+  /// By the operator, after a trip.   @fails  as Gate::reset
+  [[nodiscard]] Result<void> reset();
+
+  /// What IdleWatch saw, so that a reset knows of the stop button and the motors. From any thread.
+  void see_idle(const IdleState& state);
+
+ private:
+  Pace pace_;
+  std::unique_ptr<std::mutex> gate_mutex_ = std::make_unique<std::mutex>();  // between trials: reset and see_idle
+  std::optional<safety::Gate> gate_;
+  std::unique_ptr<Signals> signals_ = std::make_unique<Signals>();
+};
+
+/// What a trial's journal says before the first tick.
+[[nodiscard]] journal::Header header_of(const Trial& trial, const device::Facts& facts,
+                                        const perturbation::Schedule& schedule);
+
+/// Adds remarks to the metadata of a recording, as `notes` in one line with " | " between them.
+/// @fails  data: the recording cannot be read or written.
+[[nodiscard]] Result<void> annotate(const std::filesystem::path& recording, const std::vector<std::string>& notes);
+
+/// The journal beside a recording: NAME.h5 → NAME.h5.journal.
+[[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& recording);
+
+/// How a journal becomes a recording.
+struct RecoverOptions {
+  bool overwrite = false;                 ///< a recording that is there
+  bool keep = false;                      ///< the journal, in any case
+  std::optional<Readers> readers;         ///< instead of the journal's
+  std::optional<journal::Ending> ending;  ///< where it is known from elsewhere, instead of the journal's
+};
+
+/// What a journal gave.
+struct Recovered {
+  Recording recording;
+  journal::Damage damage;
+  std::uint64_t ticks = 0;  ///< that the recording holds
+  bool incomplete = false;  ///< ticks were lost, or may have been
+  bool removed = false;     ///< the journal
+};
+
+/// Makes the recording that a journal holds, reads it back, and removes the journal where it was exactly as it was
+/// written and the recording holds it to the bit. A target that is there and holds the same is left as it is.
+/// @fails  usage: another target is there and `overwrite` is false. data: as journal::read; the recording cannot be
+///         written, or does not read back as it was written, and is then removed.
+[[nodiscard]] Result<Recovered> recover(const std::filesystem::path& journal, const std::filesystem::path& target,
+                                        const RecoverOptions& options = {});
+
+}  // namespace mbk::session

@@ -1,0 +1,100 @@
+#include "mbk/files/hdf5/hdf5_layout.h"
+
+#include <fmt/format.h>
+
+#include "mbk/files/hdf5/dataspace.h"
+
+namespace mbk::hdf5 {
+namespace {
+
+/// The shape of a chunk and, as the last dimension, the size of an element.
+bool read_chunk_shape(Cursor& in, std::size_t dimensions, std::size_t bytes_each, ChunkIndex& chunks) {
+  if (dimensions < 2 || dimensions > kMostDimensions + 1 || bytes_each == 0 || bytes_each > 8) return false;
+  for (std::size_t i = 0; i + 1 < dimensions; ++i) {
+    chunks.chunk.push_back(in.number(bytes_each));
+    if (chunks.chunk.back() == 0) return false;
+  }
+  chunks.element_size = in.number(bytes_each);
+  return in.ok();
+}
+
+Result<Layout> broken() {
+  return damaged("its layout is broken");
+}
+
+Result<Layout> chunked_since_1_10(Cursor& in, Layout layout) {
+  constexpr unsigned kPlainEdges = 1, kSingleIsPacked = 2;
+  ChunkIndex& chunks = layout.chunks;
+  const unsigned flags = in.byte();
+  const std::size_t dimensions = in.byte();
+  const std::size_t bytes_each = in.byte();
+  if (!read_chunk_shape(in, dimensions, bytes_each, chunks)) return broken();
+  chunks.whole_edges = (flags & kPlainEdges) == 0;
+  const int kind = in.byte();
+  switch (kind) {
+    case 1:
+      chunks.kind = ChunkIndex::Kind::single;
+      if ((flags & kSingleIsPacked) != 0) {
+        chunks.single_size = in.length();
+        chunks.single_skipped = in.dword();
+      }
+      break;
+    case 2:
+      chunks.kind = ChunkIndex::Kind::implicit;
+      break;
+    case 3:
+      chunks.kind = ChunkIndex::Kind::fixed_array;
+      in.skip(1);  // the index itself says it again
+      break;
+    case 4:
+      chunks.kind = ChunkIndex::Kind::extensible_array;
+      in.skip(5);
+      break;
+    case 5:
+      chunks.kind = ChunkIndex::Kind::btree2;
+      in.skip(6);
+      break;
+    default:
+      layout.kind = Layout::Kind::unread;
+      layout.what = "chunked in a way that is not read (write it with libver='earliest')";
+      return layout;
+  }
+  chunks.address = in.address();
+  if (!in.ok()) return broken();
+  return layout;
+}
+
+}  // namespace
+
+Result<Layout> read_layout(Cursor in) {
+  constexpr int kCompact = 0, kContiguous = 1, kChunked = 2, kVirtual = 3;
+  const int version = in.byte();
+  const int kind = in.byte();
+  Layout layout;
+  if (version != 3 && version != 4) {
+    layout.what = fmt::format("in a layout of version {} (write it with libver='earliest')", version);
+    return layout;
+  }
+  if (kind == kCompact) {
+    layout.kind = Layout::Kind::compact;
+    layout.compact = in.take(in.word());
+  } else if (kind == kContiguous) {
+    layout.kind = Layout::Kind::contiguous;
+    layout.address = in.address();
+    layout.size = in.length();
+  } else if (kind == kChunked) {
+    layout.kind = Layout::Kind::chunked;
+    if (version == 4) return chunked_since_1_10(in, std::move(layout));
+    const std::size_t dimensions = in.byte();
+    layout.chunks.address = in.address();
+    if (!read_chunk_shape(in, dimensions, 4, layout.chunks)) return broken();
+  } else if (kind == kVirtual) {
+    layout.what = "kept in other datasets";
+  } else {
+    return broken();
+  }
+  if (!in.ok()) return broken();
+  return layout;
+}
+
+}  // namespace mbk::hdf5

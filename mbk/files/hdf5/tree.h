@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+
+namespace mbk::hdf5 {
+
+/// How numbers are stored in a file; in memory they are doubles.
+enum class Stored { float64, float32, int8, uint8, int16, uint16, int32, uint32, int64, uint64 };
+
+/// Numbers in the order of the file: the last dimension runs fastest.
+struct Numbers {
+  Vector values;
+  Stored stored = Stored::float64;
+};
+
+using Texts = std::vector<std::string>;  ///< UTF-8, without the padding of strings of fixed length
+
+/// Other objects of the same file, by their paths ("/#refs#/a"); "" is the null reference.
+struct References {
+  std::vector<std::string> paths;
+};
+
+/// Something that this library does not read, in words: "of a compound type", "packed by filter 32000".
+struct Unread {
+  std::string what;
+};
+
+/// What a dataset or an attribute holds.
+struct Value {
+  std::vector<std::uint64_t> shape;  ///< slowest dimension first, as HDF5 counts; empty: a single value
+  std::variant<Numbers, Texts, References, Unread> data;
+};
+
+using Attributes = std::map<std::string, Value>;
+
+struct Dataset {
+  Value value;
+  Attributes attributes;
+};
+
+/// A folder of a file, with everything in it.
+struct Group {
+  Attributes attributes;
+  std::map<std::string, Dataset> datasets;
+  std::map<std::string, Group> groups;
+};
+
+}  // namespace mbk::hdf5

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/recording/contents.h"
+
+namespace mbk::recording {
+
+// What is said about a recording, beside its channels, stands in a MAT file as two structures:
+//   metadata            one field of text for each key; `unit_<channel>` is the SI unit of a channel
+//                       that is not the one that its place in the file implies (reference_x in N)
+//   events              fields `time` [s] and `value`, N×1, and `name`, a cell array N×1 of texts
+
+/// "unit_reference_x"
+[[nodiscard]] std::string unit_key(std::string_view channel);
+
+/// Moves the texts `metadata.KEY` into `metadata`, and `events.time`, `.name`, `.value` into `events` where they are N
+/// numbers, N texts, N numbers; an `events` of another shape stays as it is. Every other text becomes a note.
+void take_annotations(Contents& contents);
+
+/// A letter, then letters, digits and _; 63 at most.
+[[nodiscard]] bool is_matlab_name(std::string_view name);
+
+/// What stands as `metadata` in a MAT file: that of the recording, and the units of channels.
+/// @fails  data: a key that cannot be the name of a MATLAB field; a unit that another entry contradicts.
+[[nodiscard]] Result<std::map<std::string, std::string>> metadata_to_write(const Recording& recording);
+
+}  // namespace mbk::recording

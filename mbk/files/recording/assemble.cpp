@@ -1,0 +1,661 @@
+#include "mbk/files/recording/assemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "mbk/files/recording/annotations.h"
+#include "mbk/files/recording/channel_table.h"
+#include "mbk/files/recording/inspect.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr double kRateTolerance = 1e-3;  ///< relative: what clocks of two machines differ by at most
+constexpr std::size_t kMostListed = 12;
+
+/// One row or column of an array.
+struct Line {
+  const Array* array = nullptr;
+  Index index = 0;
+  bool row = false;
+  Index step = 1;  ///< every step-th sample, from the first on
+
+  [[nodiscard]] Index size() const { return ((row ? array->values.cols() : array->values.rows()) + step - 1) / step; }
+  [[nodiscard]] auto samples(Index begin, Index count) const {
+    const Index rows = array->values.rows();
+    const Index stride = (row ? rows : 1) * step;
+    const double* const first = array->values.data() + (row ? index : index * rows);
+    return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(first + begin * stride, count,
+                                                             Eigen::InnerStride<>(stride));
+  }
+  /// [Hz]; 0 where the file does not say it
+  [[nodiscard]] double rate_hz() const { return array->rate_hz / static_cast<double>(step); }
+};
+
+/// A channel and where it stands in the file.
+struct Signal {
+  const ChannelKind* kind = nullptr;
+  Line line;
+  const Unit* unit = nullptr;  ///< of the file; nullptr: SI, or unknown where the kind measures several things
+  bool negate = false;
+  std::string source;  ///< for messages
+  double gain = 1.0;
+  double offset = 0.0;  ///< in `unit`
+
+  [[nodiscard]] bool is_plain() const { return gain == 1.0 && offset == 0.0; }
+};
+
+bool same_rate(double a_hz, double b_hz) {
+  return std::abs(a_hz - b_hz) <= kRateTolerance * b_hz;
+}
+
+/// How many times `slow` goes into `fast`; 0 where it is no whole number.
+Index whole_ratio(double fast_hz, double slow_hz) {
+  const double ratio = slow_hz > 0.0 ? fast_hz / slow_hz : 0.0;
+  return ratio >= 0.5 && ratio < 1e6 && same_rate(std::round(ratio) * slow_hz, fast_hz)
+             ? static_cast<Index>(std::round(ratio))
+             : 0;
+}
+
+std::string ordinal(Index n) {
+  const bool teen = n % 100 / 10 == 1;
+  return fmt::format("{}{}", n,
+                     teen || n % 10 > 3 || n % 10 == 0 ? "th"
+                     : n % 10 == 1                     ? "st"
+                     : n % 10 == 2                     ? "nd"
+                                                       : "rd");
+}
+
+bool is_vector(const Array& array) {
+  return std::min(array.values.rows(), array.values.cols()) == 1 && (array.values.size() > 1 || array.signal);
+}
+
+bool is_matrix(const Array& array) {
+  return std::min(array.values.rows(), array.values.cols()) > 1;
+}
+
+/// NaN throughout; most rows say otherwise at once.
+bool not_recorded(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row) {
+  return std::all_of(row.begin(), row.end(), [](double value) { return std::isnan(value); });
+}
+
+Line vector_of(const Array& array) {
+  return {&array, 0, array.values.rows() == 1 && array.values.cols() > 1};
+}
+
+std::string shape(const Array& array) {
+  return fmt::format("{}×{}", array.values.rows(), array.values.cols());
+}
+
+std::string quoted(std::vector<std::string> names) {
+  const std::size_t more = names.size() > kMostListed ? names.size() - kMostListed : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// "it has 3 columns: time_s, position_rad, torque_Nm".
+std::string inventory(const Contents& contents) {
+  std::vector<std::string> names;
+  for (const Array& array : contents.arrays) {
+    if (!contents.table) {
+      names.push_back(fmt::format("{} ({})", array.name, shape(array)));
+    } else if (!array.name.empty()) {
+      names.push_back(array.name);
+    }
+  }
+  if (!contents.table) {
+    std::string text = names.empty() ? "it has no numeric variable" : "it has the variables " + quoted(names);
+    if (!contents.notes.empty()) text += "; " + contents.notes.front();
+    if (contents.notes.size() > 1) text += fmt::format(" (and {} more)", contents.notes.size() - 1);
+    return text;
+  }
+  const std::string count =
+      fmt::format("it has {} column{}", contents.arrays.size(), contents.arrays.size() == 1 ? "" : "s");
+  return names.empty() ? count + " without names" : count + ": " + quoted(names);
+}
+
+/// "trial.force", "trial/force" and "/trial/force" name the same: fields in MAT files, paths in HDF5.
+std::string with_dots(std::string_view name) {
+  std::string dotted(name.substr(name.starts_with('/') ? 1 : 0));
+  std::ranges::replace(dotted, '/', '.');
+  return dotted;
+}
+
+/// The array of that name or, where there is none, the only one whose name differs in dots and slashes alone.
+const Array* find(const Contents& contents, std::string_view name) {
+  const auto exact = std::ranges::find(contents.arrays, name, &Array::name);
+  if (exact != contents.arrays.end()) return &*exact;
+  if (contents.table) return nullptr;
+  const auto dotted = [](const Array& array) { return with_dots(array.name); };
+  const std::string wanted = with_dots(name);
+  if (std::ranges::count(contents.arrays, wanted, dotted) != 1) return nullptr;
+  return &*std::ranges::find(contents.arrays, wanted, dotted);
+}
+
+/// The last part of a variable's name: "force" of "trial.force" and of "trial/force".
+std::string_view leaf(std::string_view name) {
+  return name.substr(name.find_last_of("./") + 1);
+}
+
+class Assembler {
+ public:
+  Assembler(const Contents& contents, const ReadOptions& options) : contents_(contents), options_(options) {}
+
+  Result<Recording> run() {
+    recording_.notes = contents_.notes;
+    recording_.metadata = contents_.metadata;
+    recording_.events = contents_.events;
+    if (options_.axes < 0 || options_.axes > 2) {
+      return bad_usage(fmt::format("{} axes are not possible", options_.axes), "pass --axes 1 or --axes 2");
+    }
+    if (contents_.table && !options_.variable.empty()) {
+      return bad_usage(
+          fmt::format("--variable {} means a variable of a MAT file, and this is a table", options_.variable),
+          "name its columns with --channels");
+    }
+    if (options_.channels.empty() || !options_.wanted.empty()) {
+      if (auto ok = recognise(); !ok) return tl::unexpected(ok.error());
+    }
+    if (!options_.channels.empty()) {
+      if (auto ok = follow_map(); !ok) return tl::unexpected(ok.error());
+    }
+    if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+    follow_metadata();
+    extract();
+    if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
+    return std::move(recording_);
+  }
+
+ private:
+  // ---- which signals ----
+
+  Result<void> recognise() {
+    const auto logs = find_logs();
+    if (!logs) return tl::unexpected(logs.error());
+    if (*logs != nullptr) return take_logs(**logs);
+    if (auto ok = take_names(); !ok) return ok;
+    if (std::ranges::any_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) return {};
+    if (!options_.channels.empty()) return {};  // the map names them
+    for (const Array& array : contents_.arrays) {
+      if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
+    }
+    const bool time = !signals_.empty();
+    return bad_data(
+        fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
+        !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
+        : contents_.arrays.front().rate_hz > 0.0
+            ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
+            : "say which is which, as in --channels time=1,x=2,Fx=3");
+  }
+
+  static tl::unexpected<Error> tall(const Array& array) {
+    return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(array), kLogsRows),
+                    "if its columns are the signals, name them: --channels time=1,x=2,y=3,Fx=10,Fy=11; it is not "
+                    "transposed by itself",
+                    fmt::format("variable '{}'", array.name));
+  }
+
+  /// The logs matrix, or nullptr where there is none.
+  Result<const Array*> find_logs() const {
+    if (contents_.table) return nullptr;
+    const Array* named = find(contents_, options_.variable.empty() ? "logs" : options_.variable);
+    if (!options_.variable.empty() && named == nullptr && !names_structure()) {
+      return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
+    }
+    if (named != nullptr) {
+      if (named->values.size() == 0) {
+        return bad_data(fmt::format("matrix is {}: there is no sample in it", shape(*named)),
+                        "copy it again from where it was recorded", fmt::format("variable '{}'", named->name));
+      }
+      if (named->values.rows() == kLogsRows) return named;
+      if (named->values.cols() == kLogsRows) return tall(*named);
+      return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
+                      "name its rows or columns, as in --channels x=2,y=3,Fx=10",
+                      fmt::format("variable '{}'", named->name));
+    }
+    std::vector<std::string> names;
+    const Array* found = nullptr;
+    for (const Array& array : contents_.arrays) {
+      if (array.values.rows() != kLogsRows || array.values.cols() < 2 || !within_variable(array)) continue;
+      names.push_back(array.name);
+      found = &array;
+    }
+    if (names.size() > 1) {
+      return bad_usage(fmt::format("several matrices have {} rows: {}", kLogsRows, quoted(names)),
+                       "say which with --variable NAME");
+    }
+    return found;
+  }
+
+  Result<void> take_logs(const Array& logs) {
+    std::vector<std::string> absent;
+    for (const ChannelKind& kind : channel_kinds()) {
+      if (kind.logs_row == 0 || !is_wanted(kind)) continue;
+      const Line line{&logs, kind.logs_row - 1, true};
+      if (kind.name != "time" && not_recorded(logs.values.row(line.index))) {
+        absent.emplace_back(kind.name);
+      } else {
+        signals_.push_back({&kind, line, nullptr, false, fmt::format("row {}", kind.logs_row)});
+      }
+    }
+    recording_.notes.push_back(fmt::format(
+        "variable '{}' ({}) was read as a logs matrix; its rows 4, 5, 8, 9, 16 and 17 have no name and were left aside",
+        logs.name, shape(logs)));
+    if (!absent.empty()) {
+      recording_.notes.push_back(fmt::format("not recorded (NaN throughout): {}", quoted(absent)));
+    }
+    return {};
+  }
+
+  /// Whether somebody asks for such a channel: otherwise nothing of it can stand in the way.
+  [[nodiscard]] bool is_wanted(const ChannelKind& kind) const {
+    if (kind.name == "time" || options_.wanted.empty()) return !kind.only_if_asked;
+    return std::ranges::any_of(options_.wanted, [&](const std::string& name) {
+      const auto kinds = kinds_called(name);
+      return std::ranges::find(kinds, &kind) != kinds.end();
+    });
+  }
+
+  Result<void> take_names() {
+    struct Candidate {
+      const Array* array;
+      ColumnName name;
+    };
+    std::vector<Candidate> candidates;
+    std::vector<std::vector<const ChannelKind*>> meanings;
+    std::vector<std::string> aside;
+    for (const Array& array : contents_.arrays) {
+      ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name));
+      std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_wanted(*kind); });
+      if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
+        aside.push_back(array.name);
+        continue;
+      }
+      meanings.push_back(name.kinds);
+      candidates.push_back({&array, std::move(name)});
+    }
+    const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
+    for (const Candidate& candidate : candidates) {
+      const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
+      if (kind == nullptr) {
+        aside.push_back(candidate.array->name);
+      } else if (is_wanted(*kind)) {
+        const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
+        if (!unit) return tl::unexpected(unit.error());
+        signals_.push_back({kind, vector_of(*candidate.array), *unit, false, candidate.array->name});
+      }
+    }
+    std::erase(aside, "");
+    if (!aside.empty()) {
+      recording_.notes.push_back(
+          fmt::format("left aside, as their names are not those of channels: {}", quoted(aside)));
+    }
+    return {};
+  }
+
+  /// The unit that the file says beside the name of an array, or else the one that its name says.
+  static Result<const Unit*> unit_said(const ChannelKind& kind, const Array& array, const Unit* in_name) {
+    if (array.unit.empty()) return in_name;
+    const Unit* const unit = find_unit(array.unit);
+    if (kind.measures.empty() || (unit != nullptr && kind.accepts(*unit))) return unit;
+    return bad_data(fmt::format("the file says that '{}' is in '{}', which channel {} cannot be in", array.name,
+                                array.unit, kind.name),
+                    fmt::format("say the unit with --channels {}={}:UNIT; possible are {}", kind.name, array.name,
+                                unit_names(kind.measures)));
+  }
+
+  Result<void> follow_map() {
+    std::vector<std::vector<const ChannelKind*>> meanings;
+    for (const ChannelSource& entry : options_.channels) meanings.push_back(kinds_called(entry.channel));
+    const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
+    for (std::size_t i = 0; i < options_.channels.size(); ++i) {
+      ChannelSource entry = options_.channels[i];
+      // "Arm:m" is a name where the file has it, and else Arm in metres.
+      if (const std::string whole = entry.source + ":" + entry.unit; find(contents_, whole) != nullptr) {
+        entry.source = whole;
+        entry.unit.clear();
+      }
+      // A name that means one thing only is taken as it stands, whatever the number of axes.
+      const ChannelKind* kind = meanings[i].size() == 1 ? meanings[i].front() : kind_for_axes(meanings[i], axes);
+      if (kind == nullptr) {
+        return bad_usage(fmt::format("unknown channel '{}'", entry.channel),
+                         fmt::format("did you mean '{}'?", nearest_channel_name(entry.channel)));
+      }
+      const auto found = resolve(entry);
+      if (!found) return tl::unexpected(found.error());
+      const Line* const line = &found->line;
+      Signal signal{kind, *line, nullptr, entry.negate, entry.source, found->gain, found->offset};
+      if (!entry.unit.empty()) {
+        signal.unit = find_unit(entry.unit);
+        if (signal.unit == nullptr || !kind->accepts(*signal.unit)) {
+          return bad_data(fmt::format("channel {} cannot be in '{}'", kind->name, entry.unit),
+                          fmt::format("possible are {}", unit_names(kind->measures)));
+        }
+      } else if (!line->array->unit.empty() && (signal.is_plain() || in_unit_of(*kind, *line->array))) {
+        const auto unit = unit_said(*kind, *line->array, nullptr);
+        if (!unit) return tl::unexpected(unit.error());
+        signal.unit = *unit;
+      } else if (const ColumnName name = parse_column_name(line->array->name);
+                 is_named(*line) && name.unit != nullptr && kind->accepts(*name.unit)) {
+        signal.unit = name.unit;
+        recording_.notes.push_back(
+            fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
+      }
+      if (!signal.is_plain()) note_arithmetic(signal);
+      signals_.push_back(std::move(signal));
+    }
+    return find_time();
+  }
+
+  /// Whether the file says a unit of the array that the channel can be in: a gain then keeps it, and else changes it.
+  static bool in_unit_of(const ChannelKind& kind, const Array& array) {
+    const Unit* const unit = find_unit(array.unit);
+    return unit != nullptr && kind.accepts(*unit);
+  }
+
+  void note_arithmetic(const Signal& signal) {
+    const std::string_view unit = signal.unit != nullptr ? signal.unit->name : signal.kind->default_unit();
+    recording_.notes.push_back(fmt::format("{} is {}{}, as asked{}", signal.kind->name, signal.negate ? "-" : "",
+                                           printable(signal.source), unit.empty() ? "" : fmt::format(", in {}", unit)));
+  }
+
+  struct Found {
+    Line line;
+    double gain, offset;
+  };
+
+  /// The longest name of `entry` that the file has, and what is to be done with its numbers.
+  Result<Found> resolve(const ChannelSource& entry) {
+    const std::vector<SourceReading> ways = readings(entry.source);
+    for (const SourceReading& way : ways) {
+      const auto line = source({entry.channel, std::string(way.name), "", false}, entry.source);
+      if (!line && &way != &ways.back()) continue;
+      if (!line) return without_unit(entry, line.error());
+      if (way.gain == 0.0) {
+        return bad_usage(fmt::format("channel {}: the gain 0 leaves nothing of '{}'", entry.channel, way.name),
+                         "give another gain");
+      }
+      return Found{*line, way.gain, way.offset};
+    }
+    return bad_usage(fmt::format("channel {} names no source", entry.channel));
+  }
+
+  /// `error`, or that what stands behind the last colon is no unit, where what stands before it is there.
+  Result<Found> without_unit(const ChannelSource& entry, const Error& error) {
+    const auto colon = entry.source.rfind(':');
+    if (colon == entry.source.npos) return tl::unexpected(error);
+    if (!resolve({entry.channel, entry.source.substr(0, colon), "", false})) return tl::unexpected(error);
+    return unknown_unit(entry, entry.source.substr(colon + 1));
+  }
+
+  /// A map that does not name the time leaves it to its own name, or to row 1 of a logs matrix.
+  Result<void> find_time() {
+    const auto is_time = [](const ChannelKind* kind) { return kind->name == "time"; };
+    if (std::ranges::any_of(signals_, [&](const Signal& s) { return is_time(s.kind); })) return {};
+    const ChannelKind* const time = kinds_called("time").front();
+    const Line& first = signals_.front().line;
+    if (!contents_.table && first.row && first.array->values.rows() == kLogsRows) {
+      signals_.push_back({time, {first.array, time->logs_row - 1, true}, nullptr, false, "row 1"});
+      recording_.notes.push_back("time is row 1, as in a logs matrix");
+      return {};
+    }
+    for (const Array& array : contents_.arrays) {
+      const ColumnName name = parse_column_name(array.name);
+      const Line line = vector_of(array);
+      if (std::ranges::none_of(name.kinds, is_time) || is_matrix(array) || line.size() != first.size()) continue;
+      const auto unit = unit_said(*time, array, name.unit);
+      if (!unit) return tl::unexpected(unit.error());
+      signals_.push_back({time, line, *unit, false, array.name});
+      recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
+      return {};
+    }
+    return {};
+  }
+
+  /// Whether the array's name is that of this one line.
+  [[nodiscard]] bool is_named(const Line& line) const { return contents_.table || !is_matrix(*line.array); }
+
+  /// @param asked  the whole of what the map says, for messages
+  Result<Line> source(const ChannelSource& entry, const std::string& asked) {
+    if (const auto at = entry.source.rfind('@'); at != entry.source.npos && find(contents_, entry.source) == nullptr) {
+      return thinned(entry, at, asked);
+    }
+    if (const Array* array = find(contents_, entry.source)) {
+      if (contents_.table || is_vector(*array)) return vector_of(*array);
+      return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
+                                  entry.source, shape(*array)),
+                      is_matrix(*array)
+                          ? fmt::format("pass --variable {} and a number, as in {}=2", entry.source, entry.channel)
+                          : "name a signal");
+    }
+    Index number = 0;
+    const char* const end = entry.source.data() + entry.source.size();
+    if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
+        error != std::errc() || stop != end) {
+      const std::string neither = asked == entry.source ? "" : fmt::format("'{}' and no ", asked);
+      return bad_data(fmt::format("channel {}: there is no {}'{}'; {}", entry.channel, neither, entry.source,
+                                  inventory(contents_)));
+    }
+    if (contents_.table) {
+      if (number < 1 || number > std::ssize(contents_.arrays)) {
+        return bad_data(
+            fmt::format("channel {}: there is no column {}; {}", entry.channel, number, inventory(contents_)),
+            "columns are counted from 1");
+      }
+      return vector_of(contents_.arrays[static_cast<std::size_t>(number - 1)]);
+    }
+    const auto matrix = numbered_matrix();
+    if (!matrix) return tl::unexpected(matrix.error());
+    const Array& array = **matrix;
+    const bool wide = array.values.cols() >= array.values.rows();
+    const Index lines = wide ? array.values.rows() : array.values.cols();
+    if (number < 1 || number > lines) {
+      return bad_data(fmt::format("channel {}: there is no {} {}; the matrix is {}", entry.channel,
+                                  wide ? "row" : "column", number, shape(array)),
+                      "they are counted from 1", fmt::format("variable '{}'", array.name));
+    }
+    return Line{&array, number - 1, wide};
+  }
+
+  static tl::unexpected<Error> unknown_unit(const ChannelSource& entry, std::string_view unit) {
+    std::vector<Dimension> possible;
+    for (const ChannelKind* kind : kinds_called(entry.channel)) {
+      possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
+    }
+    return bad_data(fmt::format("unknown unit '{}' of channel {}", unit, entry.channel),
+                    fmt::format("possible are {}", unit_names(possible)));
+  }
+
+  /// SOURCE@RATE: every k-th sample of a source that runs at k times that rate.
+  Result<Line> thinned(const ChannelSource& entry, std::size_t at, const std::string& asked) {
+    const std::string name = entry.source.substr(0, at);
+    auto line = source({entry.channel, name, entry.unit, entry.negate}, asked == entry.source ? name : asked);
+    if (!line) return line;
+    double rate = 0.0;
+    const char* const end = entry.source.data() + entry.source.size();
+    const auto [stop, error] = std::from_chars(entry.source.data() + at + 1, end, rate);
+    line->step = error == std::errc() && stop == end ? whole_ratio(line->array->rate_hz, rate) : 0;
+    if (line->step == 0) {
+      return bad_usage(
+          line->array->rate_hz > 0.0
+              ? fmt::format("channel {}: '{}' runs at {} Hz, of which '{}' is no whole part", entry.channel,
+                            line->array->name, line->array->rate_hz, entry.source.substr(at + 1))
+              : fmt::format("channel {}: the file does not say the rate of '{}'", entry.channel, line->array->name),
+          line->array->rate_hz > 0.0 ? fmt::format("{}={}@{} takes every second sample", entry.channel,
+                                                   line->array->name, line->array->rate_hz / 2)
+                                     : "leave @ out");
+    }
+    recording_.notes.push_back(
+        fmt::format("{} is every {} sample of '{}', as asked; what '{}' holds above {:.6g} Hz folds down into it",
+                    entry.channel, ordinal(line->step), line->array->name, line->array->name, line->rate_hz() / 2));
+    return line;
+  }
+
+  /// The MAT variable whose rows or columns the numbers of the map count.
+  Result<const Array*> numbered_matrix() const {
+    if (!options_.variable.empty()) {
+      if (const Array* named = find(contents_, options_.variable)) return named;
+      return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
+    }
+    if (const Array* logs = find(contents_, "logs")) return logs;
+    std::vector<const Array*> matrices;
+    for (const Array& array : contents_.arrays) {
+      if (is_matrix(array)) matrices.push_back(&array);
+    }
+    if (matrices.empty()) {
+      for (const Array& array : contents_.arrays) {
+        if (is_vector(array)) matrices.push_back(&array);
+      }
+    }
+    if (matrices.size() == 1) return matrices.front();
+    return bad_usage(fmt::format("numbers could count the lines of several variables; {}", inventory(contents_)),
+                     "say which with --variable NAME");
+  }
+
+  [[nodiscard]] bool within_variable(const Array& array) const {
+    const std::string name = with_dots(array.name);
+    const std::string wanted = with_dots(options_.variable);
+    return wanted.empty() || name == wanted || name.starts_with(wanted + ".");
+  }
+  [[nodiscard]] bool names_structure() const {
+    return std::ranges::any_of(contents_.arrays, [&](const Array& array) { return within_variable(array); });
+  }
+
+  // ---- what they hold ----
+
+  Result<void> check() const {
+    if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
+      return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");
+    }
+    const Signal& first = signals_.front();
+    for (std::size_t i = 0; i < signals_.size(); ++i) {
+      const Signal& signal = signals_[i];
+      for (std::size_t j = 0; j < i; ++j) {
+        if (signals_[j].kind != signal.kind) continue;
+        return bad_data(fmt::format("'{}' and '{}' both are {}", signals_[j].source, signal.source, signal.kind->name),
+                        fmt::format("say which with --channels {}=NAME,…", signal.kind->name));
+      }
+      if (auto ok = check_rates(first, signal); !ok) return ok;
+      if (signal.line.size() != first.line.size()) {
+        return bad_data(fmt::format("{} ('{}') has {} samples, {} ('{}') has {}", first.kind->name, first.source,
+                                    first.line.size(), signal.kind->name, signal.source, signal.line.size()),
+                        "channels of one recording must have equal lengths; name them with --channels");
+      }
+    }
+    if (first.line.size() == 0) return bad_data("the recording has no samples", "nothing was recorded");
+    return {};
+  }
+
+  static Result<void> check_rates(const Signal& a, const Signal& b) {
+    if (a.line.rate_hz() == 0.0 || b.line.rate_hz() == 0.0 || same_rate(a.line.rate_hz(), b.line.rate_hz())) return {};
+    const bool a_is_faster = a.line.rate_hz() > b.line.rate_hz();
+    const Signal& fast = a_is_faster ? a : b;
+    const double slow_hz = (a_is_faster ? b : a).line.rate_hz();
+    const Index ratio = whole_ratio(fast.line.rate_hz(), slow_hz);
+    return bad_data(fmt::format("{} ('{}') runs at {} Hz, {} ('{}') at {} Hz", a.kind->name, a.source, a.line.rate_hz(),
+                                b.kind->name, b.source, b.line.rate_hz()),
+                    ratio > 1
+                        ? fmt::format("name channels of one rate, or take every {} sample of the faster: {}={}@{}",
+                                      ordinal(ratio), fast.kind->name, fast.source, slow_hz)
+                        : "name channels of one rate; they are not resampled");
+  }
+
+  /// Units that the metadata say, where nothing nearer says another.
+  void follow_metadata() {
+    for (Signal& signal : signals_) {
+      const auto said = recording_.metadata.find(unit_key(signal.kind->name));
+      if (said == recording_.metadata.end() || signal.unit != nullptr) continue;
+      const Unit* unit = find_unit(said->second);
+      if (unit == nullptr || !signal.kind->accepts(*unit)) {
+        recording_.notes.push_back(fmt::format("metadata '{}' is '{}', which {} cannot be in; left aside", said->first,
+                                               said->second, signal.kind->name));
+        continue;
+      }
+      signal.unit = unit;
+      recording_.metadata.erase(said);
+    }
+  }
+
+  void extract() {
+    const Index samples = signals_.front().line.size();
+    std::vector<Vector> values(signals_.size(), Vector(samples));
+    // Blocks of samples, so that the rows of a wide matrix are gathered from memory that is still in the cache.
+    constexpr Index kBlock = 256;
+    for (Index begin = 0; begin < samples; begin += kBlock) {
+      const Index count = std::min(kBlock, samples - begin);
+      for (std::size_t s = 0; s < signals_.size(); ++s) {
+        const Line& line = signals_[s].line;
+        values[s].segment(begin, count) = line.samples(begin, count);
+      }
+    }
+    for (std::size_t s = 0; s < signals_.size(); ++s) {
+      const Signal& signal = signals_[s];
+      Vector& channel = values[s];
+      if (signal.negate) channel = -channel;
+      if (!signal.is_plain()) channel = (signal.gain * channel.array() + signal.offset).matrix();
+      if (signal.unit != nullptr && signal.unit->multiply != signal.unit->divide) {
+        channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
+      }
+      if (signal.kind->name == "time") {
+        recording_.time = std::move(channel);
+        continue;
+      }
+      const auto unit = signal.unit != nullptr          ? si_unit(signal.unit->dimension)
+                        : signal.kind->measures.empty() ? std::string_view(signal.line.array->unit)
+                                                        : signal.kind->default_unit();
+      recording_.channels.push_back(
+          {std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame), std::move(channel)});
+    }
+  }
+
+  Result<void> settle_time() {
+    if (options_.rate && !(options_.rate->value > 0.0 && std::isfinite(options_.rate->value))) {
+      return bad_usage(fmt::format("rate {} Hz is not positive", options_.rate->value),
+                       "pass the sample rate: --rate 1000");
+    }
+    if (recording_.time.size() == 0) {
+      const double own = signals_.front().line.rate_hz();
+      if (own == 0.0 && !options_.rate && options_.untimed) {
+        const Index rows = recording_.channels.front().values.size();
+        recording_.time = Vector::LinSpaced(rows, 0.0, static_cast<double>(rows - 1));
+        recording_.untimed = true;
+        return {};
+      }
+      if (own == 0.0 && !options_.rate) {
+        return bad_data("the file holds no time that is recognised",
+                        "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
+      }
+      if (own > 0.0 && options_.rate && !same_rate(own, options_.rate->value)) {
+        return bad_usage(fmt::format("rate {} Hz contradicts the file, which says {} Hz", options_.rate->value, own),
+                         "leave --rate out");
+      }
+      recording_.time_from_rate = true;
+      const Index samples = recording_.channels.front().values.size();
+      recording_.time =
+          Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / (own > 0.0 ? own : options_.rate->value);
+      return {};
+    }
+    if (!options_.rate || recording_.time.size() < 2) return {};
+    const double own = inspect(recording_).rate_hz;
+    if (same_rate(own, options_.rate->value)) return {};
+    return bad_usage(
+        fmt::format("rate {} Hz contradicts the file's own time, which runs at {:.6g} Hz", options_.rate->value, own),
+        "leave --rate out, or correct the unit of time (--channels time=…:ms)");
+  }
+
+  const Contents& contents_;
+  const ReadOptions& options_;
+  std::vector<Signal> signals_;
+  Recording recording_;
+};
+
+}  // namespace
+
+Result<Recording> assemble(const Contents& contents, const ReadOptions& options) {
+  return Assembler(contents, options).run();
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "mbk/files/recording/contents.h"
+#include "mbk/files/recording/read.h"
+
+namespace mbk::recording {
+
+/// Gives the arrays of a file their meaning: which is which channel, in SI. See `read` for the rules and failures.
+[[nodiscard]] Result<Recording> assemble(const Contents& contents, const ReadOptions& options);
+
+}  // namespace mbk::recording

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/recording/contents.h"
+
+namespace mbk::recording {
+
+/// Whether the file begins as a C3D file does.
+[[nodiscard]] bool looks_like_c3d(std::span<const std::byte> file);
+
+/// Reads a C3D file (The C3D File Format, User Guide, Motion Lab Systems, 2008 and c3d.org): written on Intel, DEC or
+/// SGI processors, with integers or reals, up to 65535 points and channels, and more than 65535 frames where
+/// POINT:LONG_FRAMES, TRIAL:ACTUAL_END_FIELD or a real POINT:FRAMES says so.
+///
+/// A point gives the arrays LABEL.x, LABEL.y and LABEL.z in POINT:UNITS, or in the units of its type (ANGLES and
+/// ANGLE_UNITS, …); they are NaN where the point is marked invalid. An analog channel gives the array LABEL with
+/// (stored − OFFSET)·SCALE·GEN_SCALE in its ANALOG:UNITS. Labels that are missing become point_7 or analog_7, and those
+/// that repeat get #2, #3, …. Arrays know their rate. Events come from the header and from the groups EVENT and EVENTS,
+/// on a clock that is 0 at the first frame of the file. Contents::notes says what is unusual.
+///
+/// The parameters go before the header, and where the two disagree on frames or on where the data begin, a note says
+/// so.
+///
+/// @fails  data: an unknown processor; a damaged parameter section; header and parameters disagree on the number of
+/// points, channels or samples in a frame, or on whether numbers are integers or reals; there are no frames, or neither
+/// points nor channels; the file ends before the last frame.
+[[nodiscard]] Result<Contents> decode_c3d(std::span<const std::byte> file);
+
+}  // namespace mbk::recording

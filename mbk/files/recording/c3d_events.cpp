@@ -1,0 +1,84 @@
+#include "mbk/files/recording/c3d_events.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::uint16_t kFourLetterLabels = 12345;
+constexpr std::size_t kKeyAt = 298, kCountAt = 300, kTimesAt = 304, kLabelsAt = 396;  ///< bytes of the header
+constexpr std::size_t kMostInHeader = 18;
+constexpr double kSameTime = 1e-4;  ///< [s]: two records of one event differ by the rounding of 32-bit reals
+
+std::string trimmed(std::string text) {
+  text.resize(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+std::string named(std::string name) {
+  return name.empty() ? "event" : name;
+}
+
+void add(std::vector<Event>& events, Event event) {
+  const bool known = std::ranges::any_of(events, [&](const Event& other) {
+    return other.name == event.name && std::abs(other.time - event.time) < kSameTime;
+  });
+  if (!known) events.push_back(std::move(event));
+}
+
+}  // namespace
+
+std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& parameters, double rate_hz, double first_frame,
+                              std::vector<std::string>& notes) {
+  std::vector<Event> events;
+  std::size_t no_time = 0;
+  const double from = rate_hz > 0.0 && first_frame > 1.0 ? (first_frame - 1.0) / rate_hz : 0.0;
+  bool shifted = false;
+  for (const std::string_view group : {"EVENT", "EVENTS"}) {
+    const C3dParameter* stored = parameters.find(group, "TIMES");
+    if (stored == nullptr) continue;
+    const auto times = parameters.numbers(group, "TIMES");
+    const auto labels = parameters.texts(group, "LABELS");
+    const auto contexts = parameters.texts(group, "CONTEXTS");
+    const std::size_t each = stored->dimensions.size() == 2 && stored->dimensions.front() == 2 ? 2 : 1;
+    const std::size_t used =
+        static_cast<std::size_t>(std::clamp(parameters.number(group, "USED").value_or(65535.0), 0.0, 65535.0));
+    for (std::size_t k = 0; k < std::min(used, times.size() / each); ++k) {
+      const double time = each == 2 ? 60.0 * times[2 * k] + times[2 * k + 1] : times[k];
+      if (!std::isfinite(time)) {
+        ++no_time;
+        continue;
+      }
+      const std::string context = k < contexts.size() ? contexts[k] : "";
+      const std::string label = k < labels.size() ? labels[k] : "";
+      events.push_back(
+          {time - from, named(context.empty() || label.empty() ? context + label : context + " " + label)});
+      shifted = from > 0.0;
+    }
+  }
+
+  const std::size_t in_header = file.word(kKeyAt) == kFourLetterLabels ? file.word(kCountAt) : 0;
+  for (std::size_t k = 0; k < in_header && k < kMostInHeader; ++k) {
+    const double time = file.real(kTimesAt + 4 * k);
+    std::string name = trimmed(printable(file.view.part(kLabelsAt + 4 * k, 4).padded_text()));
+    if (std::isfinite(time)) {
+      add(events, {time, named(std::move(name))});
+    } else {
+      ++no_time;
+    }
+  }
+  if (in_header > kMostInHeader) {
+    notes.push_back(fmt::format("the header speaks of {} events and has room for {}", in_header, kMostInHeader));
+  }
+  if (no_time > 0) notes.push_back(fmt::format("{} events have no time and were left aside", no_time));
+  if (shifted) {
+    notes.push_back(fmt::format("the first frame is number {}; the times of events count from there", first_frame));
+  }
+  std::ranges::stable_sort(events, {}, &Event::time);
+  return events;
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/recording/byte_view.h"
+
+namespace mbk::recording {
+
+/// C3D files count in blocks of 512 bytes, from 1.
+inline constexpr std::size_t kC3dBlock = 512;
+
+/// What wrote the numbers of a C3D file; the value is that of the file's fourth parameter byte.
+enum class C3dProcessor : std::uint8_t { intel = 84, dec = 85, sgi = 86 };
+
+/// Bytes of a C3D file and how numbers stand in them: little-endian IEEE (Intel), little-endian words with VAX
+/// F-floats (DEC), big-endian IEEE (SGI). Offsets are the caller's to check.
+struct C3dBytes {
+  ByteView view;
+  C3dProcessor processor = C3dProcessor::intel;
+
+  C3dBytes(std::span<const std::byte> bytes, C3dProcessor made_by);
+
+  [[nodiscard]] std::uint16_t word(std::size_t offset) const { return view.at<std::uint16_t>(offset); }
+  [[nodiscard]] std::int16_t signed_word(std::size_t offset) const { return view.at<std::int16_t>(offset); }
+  /// A 4-byte real. A VAX F-float is (−1)^s · 0.1f₂ · 2^(e−128); its reserved operand (s = 1, e = 0) is NaN.
+  [[nodiscard]] double real(std::size_t offset) const;
+  [[nodiscard]] C3dBytes part(std::size_t offset, std::size_t count) const;
+};
+
+/// The array behind a GROUP:NAME.
+struct C3dParameter {
+  enum class Type : std::int8_t { text = -1, byte = 1, word = 2, real = 4 };
+
+  Type type = Type::byte;
+  std::vector<std::uint8_t> dimensions;  ///< the first runs fastest; none for a single value
+  C3dBytes data;                         ///< as long as type and dimensions say
+};
+
+/// The parameter section of a C3D file. Its parameters refer to the file's bytes.
+class C3dParameters {
+ public:
+  /// Groups and parameters are called by their names in capitals; the first of a name counts. Reads the records from
+  /// `begin` to the terminator, the last record, or `end`.
+  /// @fails  data: a record reaches beyond the file or does not lead forward; an unknown type; too many dimensions.
+  [[nodiscard]] static Result<C3dParameters> read(const C3dBytes& file, std::size_t begin, std::size_t end);
+
+  [[nodiscard]] const C3dParameter* find(std::string_view group, std::string_view name) const;
+
+  /// The first value; nothing where there is none or it is text. Words are counted from 0 to 65535.
+  [[nodiscard]] std::optional<double> number(std::string_view group, std::string_view name) const;
+  /// The values of NAME, then of NAME2, NAME3, … as far as they go; empty where NAME is missing or text.
+  [[nodiscard]] std::vector<double> numbers(std::string_view group, std::string_view name,
+                                            bool unsigned_words = false) const;
+  /// The texts of NAME, NAME2, NAME3, … in printable UTF-8 without spaces around them.
+  [[nodiscard]] std::vector<std::string> texts(std::string_view group, std::string_view name) const;
+
+  /// The names of a group's parameters, sorted.
+  [[nodiscard]] std::vector<std::string_view> names(std::string_view group) const;
+
+ private:
+  template <class Use>
+  void for_each_part(std::string_view group, std::string_view name, const Use& use) const;
+
+  std::map<std::string, std::map<std::string, C3dParameter, std::less<>>, std::less<>> groups_;
+};
+
+}  // namespace mbk::recording

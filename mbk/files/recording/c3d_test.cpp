@@ -1,0 +1,396 @@
+#include "mbk/files/recording/c3d.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "mbk/files/recording/read.h"
+#include "mbk/files/recording/test_c3d.h"
+#include "mbk/files/recording/test_files.h"
+
+namespace mbk::recording {
+namespace {
+
+using test::C3d;
+using test::small_c3d;
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kProcessors[] = {84, 85, 86};
+
+Result<Contents> decode(std::string_view bytes) {
+  return decode_c3d(std::as_bytes(std::span(bytes)));
+}
+
+Contents good(const std::string& bytes) {
+  auto contents = decode(bytes);
+  EXPECT_TRUE(contents) << contents.error().line();
+  return contents.value_or(Contents{});
+}
+
+std::string refusal(const std::string& bytes) {
+  const auto contents = decode(bytes);
+  EXPECT_FALSE(contents);
+  return contents ? "" : contents.error().line();
+}
+
+const Array& array(const Contents& contents, std::string_view name) {
+  static const Array none;
+  for (const Array& one : contents.arrays) {
+    if (one.name == name) return one;
+  }
+  ADD_FAILURE() << "there is no " << name;
+  return none;
+}
+
+/// The largest difference of two arrays; infinite where they are not NaN at the same places.
+double difference(const Array& a, const Array& b) {
+  if (a.values.rows() != b.values.rows()) return INFINITY;
+  double largest = 0.0;
+  for (Index i = 0; i < a.values.rows(); ++i) {
+    const double one = a.values(i, 0), other = b.values(i, 0);
+    if (std::isnan(one) != std::isnan(other)) return INFINITY;
+    if (!std::isnan(one)) largest = std::max(largest, std::abs(one - other));
+  }
+  return largest;
+}
+
+// ---- what a file holds ----
+
+TEST(DecodeC3d, GivesPointsAndChannelsWithUnitsAndRates) {
+  const Contents contents = good(small_c3d().bytes());
+  EXPECT_EQ(contents.format, "C3D");
+  std::vector<std::string> names;
+  for (const Array& one : contents.arrays) names.push_back(one.name);
+  EXPECT_THAT(names,
+              ElementsAre("HAND.x", "HAND.y", "HAND.z", "ELBOW.x", "ELBOW.y", "ELBOW.z", "Force X", "Angle", "EMG"));
+  const Array& hand = array(contents, "HAND.y");
+  EXPECT_EQ(hand.unit, "mm");
+  EXPECT_EQ(hand.rate_hz, 100.0);
+  EXPECT_EQ(hand.values, small_c3d().coordinates.col(1));
+  const Array& force = array(contents, "Force X");
+  EXPECT_EQ(force.unit, "N");
+  EXPECT_EQ(force.rate_hz, 200.0);
+  EXPECT_EQ(force.values, Matrix((small_c3d().analog.col(0).array() - 2048.0) * 0.25));
+  EXPECT_EQ(array(contents, "EMG").values, Matrix((small_c3d().analog.col(2).array() + 3.0) * 2.0));
+}
+
+TEST(DecodeC3d, EveryProcessorAndKindOfNumberReadsEqual) {
+  const Contents intel = good(small_c3d().bytes());
+  for (const int processor : kProcessors) {
+    for (const bool real : {true, false}) {
+      const Contents other = good(small_c3d(processor, real).bytes());
+      ASSERT_EQ(other.arrays.size(), intel.arrays.size());
+      for (std::size_t k = 0; k < intel.arrays.size(); ++k) {
+        EXPECT_EQ(other.arrays[k].name, intel.arrays[k].name);
+        EXPECT_EQ(other.arrays[k].unit, intel.arrays[k].unit);
+        EXPECT_EQ(difference(other.arrays[k], intel.arrays[k]), 0.0) << processor << " " << real;
+      }
+      ASSERT_EQ(other.events.size(), 2u);
+      EXPECT_EQ(other.events[1].name, "STOP");
+      EXPECT_FLOAT_EQ(static_cast<float>(other.events[1].time), 0.05f);
+    }
+  }
+}
+
+TEST(DecodeC3d, VaxRealsKeepTheirDigits) {
+  C3d file = small_c3d(85);
+  const double values[] = {1.0, -1.0, 0.1f, -123456.789f, 1.5e-38, 1.0e38, 0.0, 3.14159274};
+  for (Index k = 0; k < 6; ++k) file.coordinates(k, 0) = values[k];
+  const Array hand = array(good(file.bytes()), "HAND.x");
+  for (Index k = 0; k < 6; ++k) EXPECT_EQ(hand.values(k, 0), static_cast<double>(static_cast<float>(values[k])));
+}
+
+TEST(DecodeC3d, AReservedVaxOperandIsNotANumber) {
+  std::string bytes = small_c3d(85).bytes();
+  const std::size_t data = bytes.size() - 512;
+  ASSERT_EQ(good(bytes).arrays[0].values(0, 0), 0.0);
+  bytes.replace(data, 4, std::string("\x00\x80\x00\x00", 4));  // sign 1, exponent 0
+  EXPECT_TRUE(std::isnan(good(bytes).arrays[0].values(0, 0)));
+}
+
+TEST(DecodeC3d, PointsMarkedInvalidAreNotNumbers) {
+  const Contents contents = good(small_c3d(84, false).bytes());
+  const Matrix& elbow = array(contents, "ELBOW.z").values;
+  for (Index f = 0; f < elbow.rows(); ++f) EXPECT_EQ(std::isnan(elbow(f, 0)), f % 3 == 1) << f;
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("1 of 2 points are marked invalid in some frames")));
+}
+
+TEST(DecodeC3d, UnsignedAnalogNumbersAndOffsets) {
+  C3d file = small_c3d(86, false);
+  file.format = "UNSIGNED";
+  file.analog(3, 0) = 65000;
+  file.analog_offset[0] = 40000;
+  EXPECT_EQ(array(good(file.bytes()), "Force X").values(3, 0), 25000 * 0.25);
+  file.format = "SIGNED";
+  EXPECT_EQ(array(good(file.bytes()), "Force X").values(3, 0), (65000 - 65536 - (40000 - 65536)) * 0.25);
+}
+
+TEST(DecodeC3d, AGeneralScaleHoldsForEveryChannel) {
+  C3d file = small_c3d();
+  file.general_scale = 4.0;
+  EXPECT_EQ(array(good(file.bytes()), "Angle").values(1, 0), (file.analog(1, 1) - 0) * 0.5 * 4.0);
+}
+
+TEST(DecodeC3d, ChannelsWithoutScaleAreNamedAndLoseTheirUnit) {
+  C3d file = small_c3d();
+  file.analog_scale.resize(1);
+  const Contents contents = good(file.bytes());
+  EXPECT_EQ(array(contents, "EMG").values(1, 0), file.analog(1, 2) + 3);
+  EXPECT_EQ(array(contents, "EMG").unit, "");
+  EXPECT_EQ(array(contents, "Force X").unit, "N");
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("2 of 3 analog channels have no SCALE")));
+}
+
+TEST(DecodeC3d, PointsOrChannelsAlone) {
+  C3d analog = small_c3d();
+  analog.points.clear();
+  EXPECT_EQ(good(analog.bytes()).arrays.size(), 3u);
+  C3d points = small_c3d();
+  points.channels.clear();
+  EXPECT_EQ(good(points.bytes()).arrays.size(), 6u);
+  points.points.clear();
+  points.analog.resize(12, 0);
+  EXPECT_THAT(refusal(points.bytes()), HasSubstr("neither points nor analog channels"));
+}
+
+TEST(DecodeC3d, MoreThan255PointsAndChannels) {
+  C3d file;
+  for (int k = 1; k <= 600; ++k) {
+    file.points.push_back("P" + std::to_string(k));
+    file.channels.push_back("C" + std::to_string(k));
+    file.analog_scale.push_back(k);
+    file.analog_offset.push_back(-k);
+    file.analog_units.push_back("u" + std::to_string(k));
+  }
+  file.coordinates = Matrix::Constant(2, 2400, 3.0);
+  file.analog = Matrix::Constant(2, 600, 5.0);
+  const Contents contents = good(file.bytes());
+  EXPECT_EQ(contents.arrays.size(), 3 * 600u + 600u);
+  EXPECT_EQ(array(contents, "P600.z").values(1, 0), 3.0);
+  EXPECT_EQ(array(contents, "C599").values(1, 0), (5.0 + 599.0) * 599.0);
+  EXPECT_EQ(array(contents, "C599").unit, "u599");
+}
+
+TEST(DecodeC3d, RepeatedAndMissingLabelsBecomeUnique) {
+  C3d file = small_c3d();
+  file.points = {"*", "*"};
+  file.channels = {"EMG", "", "*.x"};
+  const Contents contents = good(file.bytes());
+  std::vector<std::string> names;
+  for (const Array& one : contents.arrays) names.push_back(one.name);
+  EXPECT_THAT(names, ElementsAre("*.x", "*.y", "*.z", "*#2.x", "*#2.y", "*#2.z", "EMG", "analog_2", "*.x#2"));
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("point labels repeat; the first of them is called '*#2'")));
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("1 of 3 analog labels are missing")));
+}
+
+TEST(DecodeC3d, PointsOfAModelHaveTheUnitOfTheirType) {
+  C3d file = small_c3d();
+  file.records = file.numbers().texts(C3d::kPoint, "ANGLES", {"ELBOW"}) +
+                 file.numbers().texts(C3d::kPoint, "ANGLE_UNITS", {"deg"});
+  const Contents contents = good(file.bytes());
+  EXPECT_EQ(array(contents, "ELBOW.y").unit, "deg");
+  EXPECT_EQ(array(contents, "HAND.y").unit, "mm");
+}
+
+// ---- events ----
+
+TEST(DecodeC3d, EventsOfTheHeaderAndOfTheGroupStandOnceInOrder) {
+  C3d file = small_c3d();
+  const auto n = file.numbers();
+  file.records = n.words(C3d::kEvent, "USED", {3}) + n.texts(C3d::kEvent, "CONTEXTS", {"Left", "", "Right"}) +
+                 n.texts(C3d::kEvent, "LABELS", {"Strike", "PUSH", "Off"}) +
+                 n.parameter(C3d::kEvent, "TIMES", 4, {2, 3},
+                             n.real(1) + n.real(2.5) + n.real(0) + n.real(0.02) + n.real(0) + n.real(0.01));
+  const Contents contents = good(file.bytes());
+  std::vector<std::string> names;
+  for (const Event& event : contents.events) names.push_back(event.name);
+  EXPECT_THAT(names, ElementsAre("Right Off", "PUSH", "STOP", "Left Strike"));
+  EXPECT_EQ(contents.events.back().time, 62.5);
+}
+
+TEST(DecodeC3d, EventsOfTheGroupCountFromFrameOneAndThoseOfTheHeaderFromTheFirst) {
+  C3d file = small_c3d();
+  const auto n = file.numbers();
+  file.first = 301;  // 3 s at 100 Hz
+  file.records = n.words(C3d::kEvent, "USED", {1}) + n.texts(C3d::kEvent, "LABELS", {"GO"}) +
+                 n.parameter(C3d::kEvent, "TIMES", 4, {2, 1}, n.real(0) + n.real(3.25));
+  const Contents contents = good(file.bytes());
+  ASSERT_EQ(contents.events.size(), 3u);
+  EXPECT_EQ(contents.events[2].name, "GO");
+  EXPECT_EQ(contents.events[2].time, 0.25);
+  EXPECT_FLOAT_EQ(static_cast<float>(contents.events[0].time), 0.02f);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("the first frame is number 301")));
+}
+
+// ---- how many frames ----
+
+/// One channel of one sample for each of so many frames.
+C3d long_file(Index frames) {
+  C3d file;
+  file.real = false;
+  file.channels = {"F"};
+  file.analog_scale = {1.0};
+  file.analog_offset = {0.0};
+  file.analog_units = {"N"};
+  file.analog.resize(frames, 1);
+  for (Index k = 0; k < frames; ++k) file.analog(k, 0) = static_cast<double>(k % 30000);
+  return file;
+}
+
+TEST(DecodeC3d, MoreFramesThan65535) {
+  constexpr Index kFrames = 70000;
+  C3d file = long_file(kFrames);
+  const auto n = file.numbers();
+  const std::string ways[] = {n.reals(C3d::kPoint, "LONG_FRAMES", {kFrames}), n.reals(C3d::kPoint, "FRAMES", {kFrames}),
+                              n.words(C3d::kTrial, "ACTUAL_START_FIELD", {1, 0}) +
+                                  n.words(C3d::kTrial, "ACTUAL_END_FIELD", {kFrames % 65536, kFrames / 65536})};
+  for (const std::string& way : ways) {
+    file.records = way;
+    const Contents contents = good(file.bytes());
+    ASSERT_EQ(contents.arrays.size(), 1u);
+    ASSERT_EQ(contents.arrays[0].values.rows(), kFrames);
+    EXPECT_EQ(contents.arrays[0].values(kFrames - 1, 0), (kFrames - 1) % 30000);
+    EXPECT_THAT(contents.notes, Each(Not(HasSubstr("the header counts"))));
+  }
+  file.records.clear();  // nothing says that there are more
+  const Contents cut = good(file.bytes());
+  EXPECT_EQ(cut.arrays[0].values.rows(), 65535);
+  EXPECT_THAT(cut.notes, Contains(HasSubstr("more bytes than its 65535 frames need")));
+}
+
+TEST(DecodeC3d, SaysWhereHeaderAndParametersCountDifferentFrames) {
+  C3d file = small_c3d();
+  file.records = file.numbers().words(C3d::kPoint, "FRAMES", {4});
+  const Contents contents = good(file.bytes());
+  EXPECT_EQ(contents.arrays[0].values.rows(), 4);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("the header counts 6 frames (1 to 6), the parameters 4")));
+}
+
+TEST(DecodeC3d, SaysWhereHeaderAndParametersBeginTheDataDifferently) {
+  std::string bytes = small_c3d().bytes();
+  ASSERT_EQ(good(bytes).notes.size(), 2u);
+  const Contents before = good(bytes);
+  bytes[16] = static_cast<char>(bytes[16] + 1);
+  const Contents contents = good(bytes);
+  EXPECT_EQ(difference(contents.arrays[6], before.arrays[6]), 0.0);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("POINT:DATA_START")));
+}
+
+// ---- refusals ----
+
+TEST(DecodeC3d, RefusesWhereHeaderAndParametersContradictEachOther) {
+  const auto n = small_c3d().numbers();
+  const auto with = [](const std::string& record) {
+    C3d file = small_c3d();
+    file.records = record;
+    return refusal(file.bytes());
+  };
+  EXPECT_THAT(with(n.words(C3d::kPoint, "USED", {3})), HasSubstr("the header says 2 points, the parameters 3"));
+  EXPECT_THAT(with(n.words(C3d::kAnalog, "USED", {4})), HasSubstr("the header says 6 analog numbers"));
+  EXPECT_THAT(with(n.reals(C3d::kPoint, "SCALE", {0.5})), HasSubstr("scale of the points"));
+  EXPECT_THAT(with(n.reals(C3d::kPoint, "SCALE", {0.0})), HasSubstr("leaves open how numbers are stored"));
+  EXPECT_THAT(with(n.reals(C3d::kAnalog, "RATE", {300.0})), HasSubstr("ANALOG:RATE is 300 Hz"));
+  EXPECT_THAT(with(n.words(C3d::kPoint, "FRAMES", {0})), HasSubstr("it holds 0 frames"));
+  EXPECT_THAT(with(n.words(C3d::kPoint, "FRAMES", {60000})), HasSubstr("60000 frames of 56 bytes need more than"));
+  EXPECT_THAT(with(n.words(C3d::kPoint, "DATA_START", {0})), HasSubstr("begin at block 0"));
+}
+
+TEST(DecodeC3d, RefusesUnknownProcessorsTypesAndDimensions) {
+  C3d file = small_c3d();
+  std::string bytes = file.bytes();
+  bytes[515] = 87;
+  EXPECT_THAT(refusal(bytes), HasSubstr("processor 87; 84 (Intel), 85 (DEC) and 86 (SGI) are known"));
+  file.records = file.numbers().parameter(C3d::kPoint, "ODD", 3, {}, "abc");
+  EXPECT_THAT(refusal(file.bytes()), HasSubstr("parameter ODD: unknown type 3"));
+  file.records = file.numbers().parameter(C3d::kPoint, "ODD", 1, std::vector<int>(8, 1), "a");
+  EXPECT_THAT(refusal(file.bytes()), HasSubstr("8 dimensions"));
+  file.records = file.numbers().parameter(C3d::kPoint, "ODD", 4, std::vector<int>(7, 255), "a");
+  EXPECT_THAT(refusal(file.bytes()), HasSubstr("parameter ODD: the parameter section ends within it"));
+}
+
+TEST(DecodeC3d, RefusesARecordThatDoesNotLeadForward) {
+  C3d file = small_c3d();
+  std::string record = file.numbers().words(C3d::kPoint, "LOOP", {1, 2, 3});
+  record[6] = 1;
+  file.records = record;
+  EXPECT_THAT(refusal(file.bytes()), HasSubstr("a record does not lead to the next one"));
+}
+
+TEST(DecodeC3d, RefusesAFileCutAnywhere) {
+  for (const bool real : {true, false}) {
+    const C3d file = small_c3d(84, real);
+    const std::string whole = file.bytes();
+    const std::size_t padding = 512 - file.data().size() % 512;
+    for (std::size_t n = 2; n < whole.size() - padding; ++n) {
+      ASSERT_FALSE(decode(std::string_view(whole).substr(0, n))) << "cut to " << n;
+    }
+    ASSERT_TRUE(decode(std::string_view(whole).substr(0, whole.size() - padding)));
+  }
+}
+
+TEST(DecodeC3d, SurvivesChangedBytes) {
+  std::vector<std::string> wholes;
+  for (const int processor : kProcessors) {
+    for (const bool real : {true, false}) wholes.push_back(small_c3d(processor, real).bytes());
+  }
+  std::mt19937 random(20130602);
+  int read = 0;
+  for (int i = 0; i < 40000; ++i) {
+    std::string file = wholes[random() % wholes.size()];
+    const std::size_t used = file.size() - 200;  // the rest is padding
+    for (unsigned k = 0; k <= random() % 4; ++k) file[2 + random() % (used - 2)] = static_cast<char>(random());
+    const auto contents = decode(file);
+    if (!contents) {
+      ASSERT_FALSE(contents.error().message.empty());
+      continue;
+    }
+    ++read;
+    Index numbers = 0;
+    for (const Array& one : contents->arrays) numbers += one.values.size();
+    ASSERT_LE(numbers, static_cast<Index>(file.size()));
+  }
+  EXPECT_GT(read, 1000);  // the changes do not all hit what must be refused
+  EXPECT_LT(read, 39000);
+}
+
+// ---- files that others made ----
+
+TEST(DecodeC3dRealFiles, TheSameTrialInThreeFormatsReadsEqual) {
+  MBK_DATA_OR_SKIP(folder);
+  const auto read = [&](std::string_view name) { return good(test::bytes_of(folder / "c3d" / name)); };
+  const Contents real = read("Sample01_Eb015pr.c3d");
+  const Contents vax = read("Sample01_Eb015vr.c3d");
+  const Contents integer = read("Sample01_Eb015pi.c3d");
+  ASSERT_EQ(real.arrays.size(), 26 * 3u + 16u);
+  EXPECT_EQ(real.events.size(), 3u);
+  for (std::size_t k = 0; k < real.arrays.size(); ++k) {
+    EXPECT_EQ(vax.arrays.at(k).name, real.arrays[k].name);
+    EXPECT_EQ(integer.arrays.at(k).name, real.arrays[k].name);
+    EXPECT_EQ(difference(vax.arrays[k], real.arrays[k]), 0.0) << real.arrays[k].name;
+    // Integers hold points to half of POINT:SCALE, 1/12 mm, and analog numbers exactly.
+    EXPECT_LE(difference(integer.arrays[k], real.arrays[k]), k < 78 ? 0.5 / 12 + 1e-4 : 0.0) << real.arrays[k].name;
+  }
+}
+
+TEST(DecodeC3dRealFiles, AKneeAsAnalogChannels) {
+  MBK_DATA_OR_SKIP(folder);
+  const auto file = folder / "c3d" / "Sample35_isokinetic_EMG_angle_torque.c3d";
+  ReadOptions options;
+  options.axes = 1;
+  options.channels = {{"x", "Angle"}, {"F", "Torque"}};
+  const auto recording = recording::read(file, options);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->samples(), 29 * 1250);
+  EXPECT_EQ(recording->time[1250], 1.0);
+  EXPECT_EQ(recording->find("position")->unit, "rad");
+  EXPECT_EQ(recording->find("reaction")->unit, "N.m");
+}
+
+}  // namespace
+}  // namespace mbk::recording

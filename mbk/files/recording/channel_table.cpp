@@ -1,0 +1,175 @@
+#include "mbk/files/recording/channel_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace mbk::recording {
+namespace {
+
+using enum Dimension;
+constexpr std::array kTime{time};
+constexpr std::array kLength{length};
+constexpr std::array kForce{force};
+constexpr std::array kAcceleration{acceleration};
+constexpr std::array kVoltage{voltage};
+constexpr std::array kAngleOrLength{angle, length};
+constexpr std::array kTorqueOrForce{torque, force};
+constexpr std::array kLengthOrForce{length, force};
+constexpr std::array kAnyPosition{length, angle};
+constexpr std::array kAnyForce{force, torque};
+constexpr std::array kAnyReference{length, angle, force, torque};
+constexpr std::array kAnyAcceleration{acceleration, angular_acceleration};
+constexpr std::span<const Dimension> kAnything;
+
+constexpr auto kKinds = std::to_array<ChannelKind>({
+    {"time", "t", kTime, "", 0, 1},
+    {"hand_x", "x", kLength, "base", 2, 2},
+    {"hand_y", "y", kLength, "base", 2, 3},
+    {"joint_1", "q1", kAngleOrLength, "joint", 2, 6, true},
+    {"joint_2", "q2", kAngleOrLength, "joint", 2, 7, true},
+    {"joint_3", "q3", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_4", "q4", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_5", "q5", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_6", "q6", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_7", "q7", kAngleOrLength, "joint", 2, 0, true},
+    {"joint_8", "q8", kAngleOrLength, "joint", 2, 0, true},
+    {"force_x", "Fx", kForce, "base", 2, 10},
+    {"force_y", "Fy", kForce, "base", 2, 11},
+    {"reference_x", "xr", kLengthOrForce, "base", 2, 12},
+    {"reference_y", "yr", kLengthOrForce, "base", 2, 13},
+    {"reference_joint_1", "qr1", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_2", "qr2", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_3", "qr3", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_4", "qr4", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_5", "qr5", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_6", "qr6", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_7", "qr7", kAngleOrLength, "joint", 2, 0, true},
+    {"reference_joint_8", "qr8", kAngleOrLength, "joint", 2, 0, true},
+    {"torque_1", "tau1", kTorqueOrForce, "joint", 2, 14, true},
+    {"torque_2", "tau2", kTorqueOrForce, "joint", 2, 15, true},
+    {"torque_3", "tau3", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_4", "tau4", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_5", "tau5", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_6", "tau6", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_7", "tau7", kTorqueOrForce, "joint", 2, 0, true},
+    {"torque_8", "tau8", kTorqueOrForce, "joint", 2, 0, true},
+    {"acceleration_x", "ax", kAcceleration, "base", 2, 18},
+    {"acceleration_y", "ay", kAcceleration, "base", 2, 19},
+    {"voltage_x", "Vx", kVoltage, "", 2, 0},
+    {"voltage_y", "Vy", kVoltage, "", 2, 0},
+    {"position", "x", kAnyPosition, "", 1, 0},
+    {"reaction", "F", kAnyForce, "", 1, 0},
+    {"reference", "xr", kAnyReference, "", 1, 0},
+    {"acceleration", "a", kAnyAcceleration, "", 1, 0},
+    {"input", "input", kAnything, "", 0, 0, false, true},
+    {"output", "output", kAnything, "", 0, 0, false, true},
+    {"drive", "drive", kAnything, "", 0, 0, false, true},
+});
+static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMostJoints);
+
+char lower(char c) {
+  return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+bool same_name(std::string_view name, std::string_view known) {
+  if (known.size() == 1 || known.starts_with('V')) return name == known;
+  return std::ranges::equal(name, known, {}, lower, lower);
+}
+
+/// Levenshtein distance, case aside.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+    }
+  }
+  return row.back();
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace
+
+bool ChannelKind::accepts(const Unit& unit) const {
+  return measures.empty() || std::ranges::find(measures, unit.dimension) != measures.end();
+}
+
+std::span<const ChannelKind> channel_kinds() {
+  return kKinds;
+}
+
+std::vector<const ChannelKind*> kinds_called(std::string_view name) {
+  std::vector<const ChannelKind*> kinds;
+  for (const ChannelKind& kind : kKinds) {
+    if (same_name(name, kind.name) || same_name(name, kind.alias)) kinds.push_back(&kind);
+  }
+  return kinds;
+}
+
+std::string_view nearest_channel_name(std::string_view name) {
+  std::string_view nearest;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const ChannelKind& kind : kKinds) {
+    for (const std::string_view known : {kind.name, kind.alias}) {
+      const std::size_t d = distance(name, known);
+      if (d < least) {
+        least = d;
+        nearest = known;
+      }
+    }
+  }
+  return nearest;
+}
+
+int axes_of(std::span<const std::vector<const ChannelKind*>> meanings) {
+  bool one = false;
+  for (const auto& kinds : meanings) {
+    if (kinds.size() != 1) continue;
+    if (kinds.front()->axes == 2) return 2;
+    one = one || kinds.front()->axes == 1;
+  }
+  return one ? 1 : 2;
+}
+
+const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int axes) {
+  for (const ChannelKind* kind : kinds) {
+    if (kind->axes == 0 || kind->axes == axes) return kind;
+  }
+  return nullptr;
+}
+
+ColumnName parse_column_name(std::string_view name) {
+  name = trimmed(name);
+  ColumnName column{kinds_called(name), nullptr};
+  if (!column.kinds.empty() || name.empty()) return column;
+
+  std::string_view base;
+  const char last = name.back();
+  if (const auto open = name.rfind(last == ']' ? '[' : '('); (last == ']' || last == ')') && open != name.npos) {
+    column.unit = find_unit(trimmed(name.substr(open + 1, name.size() - open - 2)));
+    base = trimmed(name.substr(0, open));
+  } else if (const auto underscore = name.rfind('_'); underscore != name.npos) {
+    const std::string_view suffix = name.substr(underscore + 1);
+    if (suffix != "in") column.unit = find_unit(suffix);  // "signal_in" is an input, not inches
+    base = name.substr(0, underscore);
+  }
+  if (column.unit == nullptr) return column;
+  column.kinds = kinds_called(base);
+  std::erase_if(column.kinds, [&](const ChannelKind* kind) { return !kind->accepts(*column.unit); });
+  return column;
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/recording/contents.h"
+
+namespace mbk::recording {
+
+/// Reads a table of numbers: comma, semicolon or tab between the cells (found from the first lines), comments after #
+/// or
+/// %, an optional header. Empty cells and "nan" are NaN. Lines are counted from 1, as editors do.
+/// Tolerated with a note: a separator at the end of every line; a last line that was not written completely (it is left
+/// aside).
+/// @fails  a line has more or fewer cells than the first; a header does not fit the columns; a cell is not a number;
+///         decimal commas; no line of numbers.
+[[nodiscard]] Result<Contents> decode_csv(std::span<const std::byte> file);
+
+}  // namespace mbk::recording

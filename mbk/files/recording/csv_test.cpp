@@ -1,0 +1,158 @@
+#include "mbk/files/recording/csv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mbk/files/recording/read.h"
+#include "mbk/files/recording/test_files.h"
+
+namespace mbk::recording {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+Result<Contents> csv(std::string_view text) {
+  return decode_csv(std::as_bytes(std::span(text)));
+}
+
+Error error_of(std::string_view text) {
+  const auto contents = csv(text);
+  EXPECT_FALSE(contents) << text;
+  return contents ? Error{} : contents.error();
+}
+
+Matrix values_of(std::string_view text) {
+  const auto contents = csv(text);
+  EXPECT_TRUE(contents) << contents.error().line();
+  if (!contents) return {};
+  Matrix values(contents->arrays[0].values.rows(), std::ssize(contents->arrays));
+  for (Index c = 0; c < values.cols(); ++c) values.col(c) = contents->arrays[static_cast<std::size_t>(c)].values;
+  return values;
+}
+
+const Matrix kTwoByTwo = (Matrix(2, 2) << 0, 1.5, 0.25, -2).finished();
+
+TEST(DecodeCsv, ReadsNumbersWithAndWithoutAHeader) {
+  EXPECT_EQ(values_of("0,1.5\n0.25,-2\n"), kTwoByTwo);
+  EXPECT_EQ(values_of("t,x\n0,1.5\n0.25,-2\n"), kTwoByTwo);
+  EXPECT_EQ(csv("t, \"x\"\n0,1\n")->arrays[1].name, "x");
+}
+
+TEST(DecodeCsv, FindsTheSeparatorAndSaysSo) {
+  EXPECT_EQ(values_of("0;1.5\n0.25;-2\n"), kTwoByTwo);
+  EXPECT_EQ(values_of("0\t1.5\n0.25\t-2\n"), kTwoByTwo);
+  EXPECT_THAT(csv("0;1\n")->notes, Contains("columns are separated by semicolons"));
+}
+
+TEST(DecodeCsv, ToleratesByteOrderMarkCarriageReturnsCommentsAndPlusSigns) {
+  EXPECT_EQ(values_of("\xEF\xBB\xBF# made by\r\nt,x\r\n\r\n0,+1.5\r\n% pause\r\n 0.25 , -2.0e0\r\n"), kTwoByTwo);
+}
+
+TEST(DecodeCsv, ReadsEmptyCellsAsNaN) {
+  const Matrix values = values_of("a,b,c\n1,,nan\nNaN,2,\n");
+  EXPECT_TRUE(std::isnan(values(0, 1)) && std::isnan(values(0, 2)) && std::isnan(values(1, 0)) &&
+              std::isnan(values(1, 2)));
+  EXPECT_EQ(values(1, 1), 2);
+}
+
+TEST(DecodeCsv, ReadsOneNumberPerLine) {
+  EXPECT_EQ(values_of("1\n2\n3\n"), Vector::LinSpaced(3, 1, 3));
+}
+
+TEST(DecodeCsv, ReadsNumbersTooSmallForADouble) {
+  EXPECT_EQ(values_of("1e-400\n4.9e-324\n")(0, 0), 0.0);
+}
+
+TEST(DecodeCsv, RefusesNumbersTooLargeForADouble) {
+  EXPECT_EQ(error_of("1\n1e400\n").where, "line 2, column 1");
+}
+
+TEST(DecodeCsv, RefusesAHeaderThatDoesNotFitTheColumns) {
+  EXPECT_EQ(error_of("a,b,c,d,e\n1,2,3,4,5,6,7,8\n").line(),
+            "line 1: the header names 5 columns, line 2 has 8; give every column one name");
+  EXPECT_THAT(error_of("a,b,c\n1,2\n3,4\n").message, HasSubstr("names 3 columns, line 2 has 2"));
+}
+
+TEST(DecodeCsv, RefusesLinesOfUnequalLength) {
+  EXPECT_EQ(error_of("1,2\n3\n4,5\n").where, "line 2");
+  EXPECT_THAT(error_of("1,2\n3,4,5\n6,7\n").message, HasSubstr("3 cells where the lines before have 2"));
+}
+
+TEST(DecodeCsv, NamesLineColumnAndTextOfWhatIsNotANumber) {
+  EXPECT_EQ(
+      error_of("t,x\n0,1\n1,two\n2,3\n").line(),
+      "line 3, column 2: 'two' is not a number; the table must hold numbers, separated by commas, semicolons or tabs");
+}
+
+TEST(DecodeCsv, KeepsControlCharactersOutOfMessages) {
+  EXPECT_THAT(error_of("1\n2\n\x1b[2Jx\n").message, HasSubstr("'?[2Jx' is not a number"));
+}
+
+TEST(DecodeCsv, RefusesATableOfOneEndlessLine) {
+  EXPECT_THAT(error_of(std::string(20'000, ',') + "\n").message, HasSubstr("20000 columns are more than 10000"));
+}
+
+TEST(DecodeCsv, RefusesDecimalCommas) {
+  EXPECT_THAT(error_of("t;x\n0,001;1,5\n0,002;1,6\n").line(),
+              HasSubstr("line 2, column 1: '0,001' has a decimal comma"));
+  EXPECT_THAT(error_of("0,001;1,5\n0,002;1,6\n").line(), HasSubstr("line 1, column 1: '0,001' has a decimal comma"));
+}
+
+TEST(DecodeCsv, ToleratesASeparatorAtTheEndOfEveryLine) {
+  EXPECT_EQ(values_of("t,x\n0,1.5,\n0.25,-2,\n"), kTwoByTwo);
+  EXPECT_EQ(values_of("t,x,\n0,1.5,\n0.25,-2,\n"), kTwoByTwo);
+  EXPECT_EQ(values_of("0,1.5,\n0.25,-2,\n"), kTwoByTwo);
+  EXPECT_THAT(csv("0,1,\n")->notes, Contains("every line ends with a separator, which was not taken as a column"));
+}
+
+TEST(DecodeCsv, RefusesASeparatorAtTheEndOfSomeLines) {
+  EXPECT_EQ(error_of("0,1,\n2,3\n4,5,\n").where, "line 2");
+}
+
+TEST(DecodeCsv, LeavesAnIncompleteLastLineAsideAndSaysSo) {
+  for (const char* text :
+       {"t,x\n0,1.5\n0.25,-2\n0.5", "0,1.5\n0.25,-2\n0.5,", "0,1.5\n0.25,-2\n0.5,1e", "0,1.5\n0.25,-2\n0.5,-"}) {
+    EXPECT_EQ(values_of(text), kTwoByTwo) << text;
+    EXPECT_THAT(csv(text)->notes, Contains(HasSubstr("is incomplete"))) << text;
+  }
+}
+
+TEST(DecodeCsv, SaysThatALastNumberWithoutLineEndMayBeCut) {
+  EXPECT_EQ(values_of("0,1.5\n0.25,-2"), kTwoByTwo);
+  EXPECT_THAT(csv("0,1.5\n0.25,-2")->notes, Contains(HasSubstr("line 2 has no line end")));
+}
+
+TEST(DecodeCsv, RefusesAFileWithoutNumbers) {
+  EXPECT_EQ(error_of("t,x\n").message, "the file holds no line of numbers");
+  EXPECT_EQ(error_of("# nothing\n").message, "the file holds no line of numbers");
+  EXPECT_THAT(error_of("t,x\n0.5").message, HasSubstr("the only line of numbers, line 2, is incomplete"));
+}
+
+TEST(DecodeCsv, CutAnywhereGivesAnErrorOrTheCompleteLines) {
+  const std::string whole = "t,x,Fx\n0.000,0.125,-1.5\n0.001,0.25,-2.5\n0.002,0.375,-3.5\n";
+  const Matrix all = values_of(whole);
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    const std::string_view cut = std::string_view(whole).substr(0, n);
+    const auto contents = csv(cut);
+    if (!contents) continue;
+    const Matrix values = values_of(cut);
+    ASSERT_LE(values.rows(), all.rows()) << n;
+    const bool ends_with_line = whole[n - 1] == '\n';
+    EXPECT_EQ(contents->notes.empty(), ends_with_line) << n;
+    // Only the last number of an unterminated line can be cut, and then a note says so.
+    const Index sure = values.rows() - (ends_with_line ? 0 : 1);
+    EXPECT_EQ(values.topRows(std::max<Index>(sure, 0)), all.topRows(std::max<Index>(sure, 0))) << n;
+  }
+}
+
+TEST(DecodeCsv, KeepsEpochTimestamps) {
+  const Matrix values = values_of("1700000000.123456,1\n1700000000.124456,2\n");
+  EXPECT_EQ(values(0, 0), 1700000000.123456);
+  EXPECT_NEAR(values(1, 0) - values(0, 0), 0.001, 3e-7);
+}
+
+}  // namespace
+}  // namespace mbk::recording

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::recording {
+
+// A recording as the bytes of a file. `write` has made sure that there are samples, that all channels have as many, and
+// that texts are single lines of UTF-8. Equal recordings give equal bytes: there is no date in them.
+
+/// A MAT file of level 5 whose variables (mat_variables.h) are compressed. (MathWorks, "MAT-File Format", R2023b.)
+/// @fails  as mat_variables does; more than 2³¹ bytes of matrix.
+[[nodiscard]] Result<std::string> encode_mat_level5(const Recording& recording);
+
+/// The same variables as MATLAB keeps them in HDF5, v7.3: dimensions in reverse order, texts as numbers of UTF-16,
+/// cells as references into `#refs#`, classes as attributes.
+/// @fails  as mat_variables does.
+[[nodiscard]] Result<std::string> encode_mat_hdf5(const Recording& recording);
+
+/// /time and `/channels/<name>`, one-dimensional, with the attributes `unit` and `frame`; /events/time, value and name;
+/// metadata, `format` and `software` as attributes of the root.
+/// @fails  a name that HDF5 cannot hold; metadata called `format`.
+[[nodiscard]] Result<std::string> encode_hdf5(const Recording& recording);
+
+/// A header like "time_s,hand_x_m,force_x_N", and every digit that the numbers need. Metadata and events are comments
+/// before it: "# key: value", "# event TIME VALUE NAME".
+/// @fails  a name or key that would not be found again.
+[[nodiscard]] Result<std::string> encode_csv(const Recording& recording);
+
+/// What `format` and the first line of a CSV file say.
+inline constexpr std::string_view kLayout = "mbk.recording/1";
+
+}  // namespace mbk::recording

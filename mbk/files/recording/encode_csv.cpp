@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "mbk/base/core/version.h"
+#include "mbk/files/recording/encode.h"
+
+namespace mbk::recording {
+namespace {
+
+/// The shortest digits that give the number back.
+void append(std::string& text, double value) {
+  if (!std::isfinite(value)) {
+    text += std::isnan(value) ? "NaN" : value > 0.0 ? "Inf" : "-Inf";
+    return;
+  }
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+Result<void> append_comments(std::string& text, const Recording& recording) {
+  text = fmt::format("# {}, written by mbk {}\n", kLayout, version());
+  for (const auto& [key, value] : recording.metadata) {
+    if (key.empty() || key.find_first_of(" :\t") != key.npos) {
+      return bad_data(fmt::format("metadata '{}' cannot be written as a comment", key),
+                      "use a name without spaces and colons");
+    }
+    text += fmt::format("# {}: {}\n", key, value);
+  }
+  for (const Event& event : recording.events) {
+    text += "# event ";
+    append(text, event.time);
+    text += ' ';
+    append(text, event.value);
+    text += fmt::format(" {}\n", event.name);
+  }
+  return {};
+}
+
+Result<void> append_header(std::string& text, const Recording& recording) {
+  text += "time_s";
+  for (const Channel& channel : recording.channels) {
+    std::string name = channel.name;
+    if (!channel.unit.empty()) name += "_" + channel.unit;
+    if (name.find_first_of(",;\t\" #%\n\r") != name.npos) {
+      return bad_data(fmt::format("'{}' cannot be the name of a column", name), "use letters, digits and _");
+    }
+    text += ',' + name;
+  }
+  text += '\n';
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> encode_csv(const Recording& recording) {
+  std::string text;
+  if (auto ok = append_comments(text, recording); !ok) return tl::unexpected(ok.error());
+  if (auto ok = append_header(text, recording); !ok) return tl::unexpected(ok.error());
+  for (Index k = 0; k < recording.samples(); ++k) {
+    append(text, recording.time[k]);
+    for (const Channel& channel : recording.channels) {
+      text += ',';
+      append(text, channel.values[k]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include "mbk/base/core/version.h"
+#include "mbk/files/hdf5/write_hdf5.h"
+#include "mbk/files/recording/encode.h"
+
+namespace mbk::recording {
+namespace {
+
+hdf5::Value one_text(std::string_view text) {
+  return {{}, hdf5::Texts{std::string(text)}};
+}
+
+hdf5::Dataset series(const Vector& values) {
+  return {{{static_cast<std::uint64_t>(values.size())}, hdf5::Numbers{values, hdf5::Stored::float64}}, {}};
+}
+
+hdf5::Dataset time_series(const Vector& values) {
+  hdf5::Dataset dataset = series(values);
+  dataset.attributes["unit"] = one_text("s");
+  return dataset;
+}
+
+hdf5::Group group_of(const std::vector<Event>& events) {
+  Vector times(std::ssize(events)), values(std::ssize(events));
+  hdf5::Texts names;
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    times[static_cast<Index>(k)] = events[k].time;
+    values[static_cast<Index>(k)] = events[k].value;
+    names.push_back(events[k].name);
+  }
+  hdf5::Group group;
+  group.datasets["time"] = time_series(times);
+  group.datasets["value"] = series(values);
+  group.datasets["name"] = {{{names.size()}, std::move(names)}, {}};
+  return group;
+}
+
+}  // namespace
+
+Result<std::string> encode_hdf5(const Recording& recording) {
+  hdf5::Group root;
+  root.attributes["software"] = one_text(fmt::format("mbk {}", version()));
+  for (const auto& [key, value] : recording.metadata) {
+    if (key == "format") {
+      return bad_data("metadata 'format' cannot be written: this attribute names the layout of the file",
+                      "rename that entry");
+    }
+    root.attributes[key] = one_text(value);
+  }
+  root.attributes["format"] = one_text(kLayout);
+  root.datasets["time"] = time_series(recording.time);
+  hdf5::Group& channels = root.groups["channels"];
+  for (const Channel& channel : recording.channels) {
+    hdf5::Dataset& dataset = channels.datasets[channel.name] = series(channel.values);
+    dataset.attributes["unit"] = one_text(channel.unit);
+    dataset.attributes["frame"] = one_text(channel.frame);
+  }
+  if (!recording.events.empty()) root.groups["events"] = group_of(recording.events);
+  return hdf5::serialise(root);
+}
+
+}  // namespace mbk::recording

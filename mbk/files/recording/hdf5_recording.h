@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/hdf5/tree.h"
+#include "mbk/files/recording/contents.h"
+
+namespace mbk::recording {
+
+/// Decodes an HDF5 file: one of MATLAB (v7.3) by MATLAB's conventions, any other as it stands.
+/// @fails  what hdf5::read refuses.
+[[nodiscard]] Result<Contents> decode_hdf5(std::span<const std::byte> file);
+
+/// The contents of an HDF5 file that is not MATLAB's. Numbers of one or two dimensions come out under their paths
+/// ("trial/force"), the first dimension as rows, with the attribute `unit` or `units`; everything else is named in a
+/// note. In the layout that mbk writes
+///   /channels/NAME   come out as NAME;
+///   /events/time, /events/value, /events/name   as `events.time`, …, for `take_annotations`;
+/// and attributes of the root that are numbers or texts are metadata; but not `format` and mbk's own `software`.
+[[nodiscard]] Contents contents_of_hdf5(hdf5::Group root);
+
+}  // namespace mbk::recording

@@ -1,0 +1,56 @@
+#include "mbk/files/recording/hdf5_tree.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "mbk/files/recording/byte_view.h"
+
+namespace mbk::recording {
+namespace {
+
+/// A side of a matrix. Beside a side of 0 a damaged file can state one that no number of ours can hold.
+Index side(std::uint64_t length) {
+  return static_cast<Index>(std::min<std::uint64_t>(length, std::numeric_limits<Index>::max()));
+}
+
+}  // namespace
+
+Matrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
+  Matrix matrix = numbers.values.reshaped(side(rows), side(columns));
+  numbers.values.resize(0);
+  return matrix;
+}
+
+Matrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
+  Matrix matrix = numbers.values.reshaped<Eigen::RowMajor>(side(rows), side(columns));
+  numbers.values.resize(0);
+  return matrix;
+}
+
+std::string text_attribute(const hdf5::Attributes& attributes, std::string_view name) {
+  const auto found = attributes.find(std::string(name));
+  if (found == attributes.end()) return {};
+  const auto* const texts = std::get_if<hdf5::Texts>(&found->second.data);
+  return texts != nullptr && texts->size() == 1 ? printable(texts->front()) : std::string();
+}
+
+const hdf5::Dataset* find_dataset(const hdf5::Group& root, std::string_view path) {
+  const hdf5::Group* group = &root;
+  while (path.starts_with('/')) {
+    path.remove_prefix(1);
+    const std::size_t end = path.find('/');
+    const std::string name(path.substr(0, end));
+    if (end == path.npos) {
+      const auto dataset = group->datasets.find(name);
+      return dataset == group->datasets.end() ? nullptr : &dataset->second;
+    }
+    const auto inner = group->groups.find(name);
+    if (inner == group->groups.end()) return nullptr;
+    group = &inner->second;
+    path.remove_prefix(end);
+  }
+  return nullptr;
+}
+
+}  // namespace mbk::recording

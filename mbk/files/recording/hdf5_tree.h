@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "mbk/files/hdf5/tree.h"
+#include "mbk/files/recording/contents.h"
+
+namespace mbk::recording {
+
+/// Calls use(name, member) for every dataset and group of a group, in the order of their names.
+template <class Group, class Use>
+void for_each_member(Group& group, const Use& use) {
+  auto dataset = group.datasets.begin();
+  auto inner = group.groups.begin();
+  while (dataset != group.datasets.end() || inner != group.groups.end()) {
+    if (inner == group.groups.end() || (dataset != group.datasets.end() && dataset->first < inner->first)) {
+      use(dataset->first, dataset->second);
+      ++dataset;
+    } else {
+      use(inner->first, inner->second);
+      ++inner;
+    }
+  }
+}
+
+/// Moves numbers out of the tree into a matrix of that many rows and columns, column by column: the tree keeps none, so
+/// that a large recording is not in memory twice.
+[[nodiscard]] Matrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
+
+/// The same, row by row.
+[[nodiscard]] Matrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
+
+/// The text of an attribute that holds one, in UTF-8 without control characters; "" where there is none.
+[[nodiscard]] std::string text_attribute(const hdf5::Attributes& attributes, std::string_view name);
+
+/// The dataset at a path as references give it ("/#refs#/a"), or nullptr.
+[[nodiscard]] const hdf5::Dataset* find_dataset(const hdf5::Group& root, std::string_view path);
+
+}  // namespace mbk::recording

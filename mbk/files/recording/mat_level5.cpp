@@ -1,0 +1,373 @@
+#include "mbk/files/recording/mat_level5.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <optional>
+
+#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/recording/inflate.h"
+#include "mbk/files/recording/utf16.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::size_t kHeaderSize = 128;
+constexpr int kDeepest = 16;                 ///< structures within structures
+constexpr std::size_t kMostElements = 64;    ///< of a structure array that is still read
+constexpr std::size_t kMostLines = 100'000;  ///< of text in one variable
+
+// Types of data elements.
+constexpr std::uint32_t kInt8 = 1, kUint8 = 2, kInt16 = 3, kUint16 = 4, kInt32 = 5, kUint32 = 6, kSingle = 7,
+                        kDouble = 9, kInt64 = 12, kUint64 = 13, kMatrix = 14, kCompressed = 15, kUtf8 = 16, kUtf16 = 17;
+// Classes of arrays.
+constexpr std::uint32_t kCellClass = 1, kStructClass = 2, kObjectClass = 3, kCharClass = 4, kSparseClass = 5,
+                        kDoubleClass = 6, kUint64Class = 15, kFunctionClass = 16, kOpaqueClass = 17;
+
+tl::unexpected<Error> damaged(std::string what) {
+  return bad_data(std::move(what), "the file is damaged or cut short: copy it again from where it was recorded");
+}
+
+struct Element {
+  std::uint32_t type = 0;
+  ByteView data;
+};
+
+/// The elements that follow each other in a stretch of bytes.
+struct Elements {
+  ByteView bytes;
+  std::size_t offset = 0;
+
+  [[nodiscard]] bool at_end() const { return offset >= bytes.size(); }
+
+  Result<Element> next(std::string_view what) {
+    if (!bytes.holds(offset, 8)) return damaged(fmt::format("{} is missing at byte {}", what, offset));
+    const auto word = bytes.at<std::uint32_t>(offset);
+    Element element;
+    if (const std::uint32_t small = word >> 16; small != 0) {  // a tag of 4 bytes with up to 4 bytes of data
+      if (small > 4) return damaged(fmt::format("{} has a broken tag", what));
+      element = {word & 0xFFFF, bytes.part(offset + 4, small)};
+      offset += 8;
+      return element;
+    }
+    const std::uint64_t size = bytes.at<std::uint32_t>(offset + 4);
+    if (!bytes.holds(offset + 8, size)) {
+      return damaged(fmt::format("{} claims {} bytes where {} are left", what, size, bytes.size() - offset - 8));
+    }
+    element = {word, bytes.part(offset + 8, static_cast<std::size_t>(size))};
+    const std::size_t padded = element.type == kCompressed ? size : (size + 7) / 8 * 8;
+    offset = std::min(offset + 8 + padded, bytes.size());
+    return element;
+  }
+};
+
+std::size_t size_of(std::uint32_t type) {
+  switch (type) {
+    case kInt8:
+    case kUint8:
+      return 1;
+    case kInt16:
+    case kUint16:
+      return 2;
+    case kInt32:
+    case kUint32:
+    case kSingle:
+      return 4;
+    case kDouble:
+    case kInt64:
+    case kUint64:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+void copy_doubles(const Element& element, std::size_t count, double* out) {
+  switch (element.type) {
+    case kInt8:
+      return element.data.copy_doubles<std::int8_t>(count, out);
+    case kUint8:
+      return element.data.copy_doubles<std::uint8_t>(count, out);
+    case kInt16:
+      return element.data.copy_doubles<std::int16_t>(count, out);
+    case kUint16:
+      return element.data.copy_doubles<std::uint16_t>(count, out);
+    case kInt32:
+      return element.data.copy_doubles<std::int32_t>(count, out);
+    case kUint32:
+      return element.data.copy_doubles<std::uint32_t>(count, out);
+    case kSingle:
+      return element.data.copy_doubles<float>(count, out);
+    case kInt64:
+      return element.data.copy_doubles<std::int64_t>(count, out);
+    case kUint64:
+      return element.data.copy_doubles<std::uint64_t>(count, out);
+    default:
+      return element.data.copy_doubles<double>(count, out);
+  }
+}
+
+/// The part of a matrix element before its data.
+struct Header {
+  std::uint32_t array_class = 0;
+  bool complex = false;
+  std::vector<std::uint64_t> dimensions;
+  std::string name;
+
+  /// Number of entries, or nothing where it overflows.
+  [[nodiscard]] std::optional<std::uint64_t> count() const {
+    std::uint64_t product = 1;
+    for (const std::uint64_t d : dimensions) {
+      if (__builtin_mul_overflow(product, d, &product)) return std::nullopt;
+    }
+    return product;
+  }
+};
+
+class Decoder {
+ public:
+  Contents contents;
+
+  Result<void> top_level(Elements elements) {
+    while (!elements.at_end()) {
+      const std::size_t offset = elements.offset;
+      const auto element = elements.next(fmt::format("the variable at byte {}", offset));
+      if (!element) return tl::unexpected(element.error());
+      if (auto done = variable(*element); !done) {
+        return tl::unexpected(done.error().in(name_.empty() ? fmt::format("variable at byte {}", offset)
+                                                            : fmt::format("variable '{}'", name_)));
+      }
+    }
+    return {};
+  }
+
+ private:
+  Result<void> variable(const Element& element) {
+    name_.clear();
+    if (element.type == kMatrix) return matrix(element.data, "", 0);
+    if (element.type != kCompressed) return damaged(fmt::format("element type {} is not a variable", element.type));
+    contents.format = "MAT v7";
+    const bool swapped = element.data.swapped;
+    const auto inflated =
+        inflate_exactly(element.data.bytes, [swapped](std::span<const std::byte, 8> tag) -> Result<std::uint64_t> {
+          const ByteView view{tag, swapped};
+          if (view.at<std::uint32_t>(0) != kMatrix) return damaged("compressed data does not hold a variable");
+          return std::uint64_t{view.at<std::uint32_t>(4)} + 8;
+        });
+    if (!inflated) return tl::unexpected(inflated.error());
+    return matrix({inflated->bytes().subspan(8), swapped}, "", 0);
+  }
+
+  /// One matrix element; `outer` is the name of a field, or empty for a variable.
+  Result<void> matrix(ByteView body, const std::string& outer, int depth) {
+    if (body.size() == 0) return {};  // an empty field
+    if (depth > kDeepest) return damaged("structures are nested too deeply");
+    Elements elements{body};
+    const auto header = read_header(elements, outer);
+    if (!header) return tl::unexpected(header.error());
+    if (depth == 0) name_ = header->name;
+    if (header->name.empty()) return {};  // where MATLAB keeps the insides of its objects
+    return data(*header, elements, depth);
+  }
+
+  static Result<Header> read_header(Elements& elements, const std::string& outer) {
+    const auto flags = elements.next("its array flags");
+    if (!flags) return tl::unexpected(flags.error());
+    if (flags->type != kUint32 || flags->data.size() != 8) return damaged("its array flags are broken");
+    Header header;
+    header.array_class = flags->data.at<std::uint32_t>(0) & 0xFF;
+    header.complex = (flags->data.at<std::uint32_t>(0) & 0x0800) != 0;
+
+    if (header.array_class != kOpaqueClass) {
+      const auto dimensions = elements.next("its dimensions");
+      if (!dimensions) return tl::unexpected(dimensions.error());
+      if (dimensions->type != kInt32 || dimensions->data.size() < 8 || dimensions->data.size() % 4 != 0) {
+        return damaged("its dimensions are broken");
+      }
+      for (std::size_t i = 0; i < dimensions->data.size(); i += 4) {
+        const auto d = dimensions->data.at<std::int32_t>(i);
+        if (d < 0) return damaged(fmt::format("dimension {} is negative", d));
+        header.dimensions.push_back(static_cast<std::uint64_t>(d));
+      }
+    }
+    const auto name = elements.next("its name");
+    if (!name) return tl::unexpected(name.error());
+    if (size_of(name->type) != 1 && name->type != kUtf8) return damaged("its name is broken");
+    header.name = outer.empty() ? printable(name->data.padded_text()) : outer;
+    return header;
+  }
+
+  Result<void> data(const Header& header, Elements& elements, int depth) {
+    switch (header.array_class) {
+      case kStructClass:
+        return structure(header, elements, depth);
+      case kOpaqueClass: {
+        const auto system = elements.next("its type system");
+        const auto type = system ? elements.next("its class name") : system;
+        if (!type) return tl::unexpected(type.error());
+        return object(header, printable(type->data.padded_text()));
+      }
+      case kObjectClass: {
+        const auto type = elements.next("its class name");
+        if (!type) return tl::unexpected(type.error());
+        return object(header, printable(type->data.padded_text()));
+      }
+      case kCellClass:
+        return cells(header, elements);
+      case kCharClass: {
+        auto lines = lines_of_text(header, elements);
+        if (!lines) return tl::unexpected(lines.error());
+        return text(header, std::move(*lines), "text in a way that is not read");
+      }
+      case kSparseClass:
+        return aside(header, "a sparse matrix");
+      case kFunctionClass:
+        return aside(header, "a function handle");
+      default:
+        if (header.array_class < kDoubleClass || header.array_class > kUint64Class) {
+          return damaged(fmt::format("array class {} is unknown", header.array_class));
+        }
+        return numbers(header, elements);
+    }
+  }
+
+  Result<void> aside(const Header& header, std::string_view what) {
+    contents.notes.push_back(fmt::format("variable '{}' is {}; left aside", header.name, what));
+    return {};
+  }
+
+  Result<void> object(const Header& header, std::string_view type) {
+    return aside(header, fmt::format("an object of MATLAB class '{}', which only MATLAB can read", type));
+  }
+
+  Result<void> text(const Header& header, std::optional<std::vector<std::string>> lines, std::string_view otherwise) {
+    if (!lines) return aside(header, otherwise);
+    contents.texts.push_back({header.name, std::move(*lines)});
+    return {};
+  }
+
+  /// The rows of a char array, without the blanks that make them equally long; nothing where they are not read.
+  static Result<std::optional<std::vector<std::string>>> lines_of_text(const Header& header, Elements& elements) {
+    using Lines = std::optional<std::vector<std::string>>;
+    const auto units = elements.next("its text");
+    if (!units) return tl::unexpected(units.error());
+    const bool wide = units->type == kUint16 || units->type == kUtf16;
+    const std::size_t each = wide ? 2 : 1;
+    const std::size_t stored = units->data.size() / each;
+    const auto count = header.count();
+    if (!wide && units->type != kInt8 && units->type != kUint8 && units->type != kUtf8) return Lines();
+    if (header.dimensions.size() != 2 || header.dimensions[0] > kMostLines) return Lines();
+    // In UTF-8 a character may have several bytes, and only a single row says where it ends.
+    const bool fits = units->data.size() % each == 0 && count == stored;
+    if (!fits && !(units->type == kUtf8 && header.dimensions[0] == 1 && count < stored)) {
+      return damaged(fmt::format("dimensions {} do not match {} stored bytes of text",
+                                 fmt::join(header.dimensions, "×"), units->data.size()));
+    }
+    if (stored == 0) return Lines({std::string()});
+    const auto rows = static_cast<std::size_t>(header.dimensions[0]);
+    std::vector<std::string> lines;
+    for (std::size_t row = 0; row < rows; ++row) {
+      std::u16string line16;
+      std::string line8;
+      for (std::size_t i = row; i < stored; i += rows) {
+        if (wide) {
+          line16 += units->data.at<char16_t>(2 * i);
+        } else {
+          line8 += units->data.at<char>(i);
+        }
+      }
+      std::string line = printable(wide ? utf8_from_utf16(line16) : std::move(line8));
+      if (rows > 1) line.resize(line.find_last_not_of(' ') + 1);
+      lines.push_back(std::move(line));
+    }
+    return Lines(std::move(lines));
+  }
+
+  /// A cell array is read where each cell is one line of text.
+  Result<void> cells(const Header& header, Elements& elements) {
+    constexpr std::string_view kAside = "a cell array";
+    const auto count = header.count();
+    if (!count || *count > kMostLines) return aside(header, kAside);
+    std::vector<std::string> lines;
+    for (std::uint64_t k = 0; k < *count; ++k) {
+      const auto cell = elements.next("a cell");
+      if (!cell) return tl::unexpected(cell.error());
+      if (cell->type != kMatrix || cell->data.size() == 0) return aside(header, kAside);
+      Elements inner{cell->data};
+      const auto inner_header = read_header(inner, header.name);
+      if (!inner_header) return tl::unexpected(inner_header.error());
+      if (inner_header->array_class != kCharClass) return aside(header, kAside);
+      auto line = lines_of_text(*inner_header, inner);
+      if (!line) return tl::unexpected(line.error());
+      if (!*line || (*line)->size() != 1) return aside(header, kAside);
+      lines.push_back(std::move((*line)->front()));
+    }
+    return text(header, lines.empty() ? std::nullopt : std::optional(std::move(lines)), kAside);
+  }
+
+  Result<void> numbers(const Header& header, Elements& elements) {
+    const auto real = elements.next("its data");
+    if (!real) return tl::unexpected(real.error());
+    const std::size_t each = size_of(real->type);
+    const auto count = header.count();
+    if (each == 0) return damaged(fmt::format("data type {} is not numeric", real->type));
+    if (!count || real->data.size() % each != 0 || real->data.size() / each != *count) {
+      return damaged(fmt::format("dimensions {} do not match {} stored bytes of {} each",
+                                 fmt::join(header.dimensions, "×"), real->data.size(), each));
+    }
+    if (header.complex) return aside(header, "complex");
+    if (header.dimensions.size() != 2) return aside(header, "an array of more than two dimensions");
+    Array& array = contents.arrays.emplace_back();
+    array.name = header.name;
+    array.values.resize(static_cast<Index>(header.dimensions[0]), static_cast<Index>(header.dimensions[1]));
+    copy_doubles(*real, static_cast<std::size_t>(*count), array.values.data());
+    return {};
+  }
+
+  Result<void> structure(const Header& header, Elements& elements, int depth) {
+    const auto width_element = elements.next("its field name length");
+    const auto names = width_element ? elements.next("its field names") : width_element;
+    if (!names) return tl::unexpected(names.error());
+    if (width_element->data.size() != 4) return damaged("its field name length is broken");
+    const auto width = width_element->data.at<std::int32_t>(0);
+    if (width <= 0 || names->data.size() % static_cast<std::size_t>(width) != 0) {
+      return damaged("its field names are broken");
+    }
+    std::vector<std::string> fields;
+    for (std::size_t i = 0; i < names->data.size(); i += static_cast<std::size_t>(width)) {
+      fields.push_back(printable(names->data.part(i, static_cast<std::size_t>(width)).padded_text()));
+    }
+    const auto count = header.count();
+    if (!count || *count > kMostElements) return aside(header, "a large structure array");
+    for (std::uint64_t k = 0; k < *count; ++k) {
+      for (const std::string& field : fields) {
+        const auto element = elements.next("a field");
+        if (!element) return tl::unexpected(element.error());
+        if (element->type != kMatrix) return damaged(fmt::format("field '{}' is not an array", field));
+        const std::string full = *count == 1 ? fmt::format("{}.{}", header.name, field)
+                                             : fmt::format("{}({}).{}", header.name, k + 1, field);
+        if (auto done = matrix(element->data, full, depth + 1); !done) return done;
+      }
+    }
+    return {};
+  }
+
+  std::string name_;  ///< of the variable at hand, for messages
+};
+
+}  // namespace
+
+Result<Contents> decode_mat_level5(std::span<const std::byte> file) {
+  if (file.size() < kHeaderSize) {
+    return damaged(fmt::format("the MAT header has {} of {} bytes", file.size(), kHeaderSize));
+  }
+  const bool little = file[126] == std::byte{'I'};
+  const ByteView view{file, little != (std::endian::native == std::endian::little)};
+  Decoder decoder;
+  decoder.contents.format = "MAT v5";
+  if (auto done = decoder.top_level({view, kHeaderSize}); !done) return tl::unexpected(done.error());
+  return std::move(decoder.contents);
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/recording/contents.h"
+
+namespace mbk::recording {
+
+/// Decodes a MAT file of level 5 (v5 and v6 uncompressed, v7 by zlib), in either byte order.
+/// (MathWorks, "MAT-File Format", R2023b.) Every claim is checked against the bytes before it is believed: matio reads
+/// a truncated file as zeros with success, so that it is only an oracle of the tests. Real numeric matrices of two
+/// dimensions, texts and cell arrays of texts come out, also from structures; everything else is named in a note.
+/// @fails  a tag, checksum, size or dimension contradicts the bytes; the file ends within an element.
+[[nodiscard]] Result<Contents> decode_mat_level5(std::span<const std::byte> file);
+
+}  // namespace mbk::recording

@@ -1,0 +1,223 @@
+#include "mbk/files/recording/mat_level5.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mbk/files/recording/test_files.h"
+
+namespace mbk::recording {
+namespace {
+
+using test::compressed5;
+using test::double5;
+using test::element5;
+using test::header5;
+using test::matrix5;
+using test::raw;
+using test::struct5;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const Matrix kValues = (Matrix(2, 3) << 1, 2, 3, 4, 5, 6.5).finished();
+
+Result<Contents> decode(std::string_view bytes) {
+  return decode_mat_level5(std::as_bytes(std::span(bytes)));
+}
+
+std::string error_of(std::string_view bytes) {
+  const auto contents = decode(bytes);
+  EXPECT_FALSE(contents);
+  return contents ? "" : contents.error().line();
+}
+
+TEST(DecodeMatLevel5, ReadsUncompressedMatrices) {
+  const auto contents = decode(header5() + double5("z", kValues) + double5("name_longer_than_four", kValues));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->format, "MAT v5");
+  ASSERT_EQ(contents->arrays.size(), 2u);
+  EXPECT_EQ(contents->arrays[0].name, "z");
+  EXPECT_EQ(contents->arrays[0].values, kValues);
+  EXPECT_EQ(contents->arrays[1].values, kValues);
+}
+
+TEST(DecodeMatLevel5, ReadsCompressedMatrices) {
+  const auto contents = decode(header5() + compressed5(double5("z", kValues)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->format, "MAT v7");
+  EXPECT_EQ(contents->arrays[0].values, kValues);
+}
+
+TEST(DecodeMatLevel5, ReadsBigEndianFiles) {
+  const auto contents = decode(header5(true) + double5("z", kValues, true));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays[0].values, kValues);
+}
+
+TEST(DecodeMatLevel5, ReadsEveryNumberFormat) {
+  const std::pair<std::uint32_t, std::string> stored[] = {{1, raw(std::int8_t{-7}) + raw(std::int8_t{8})},
+                                                          {2, raw(std::uint8_t{200}) + raw(std::uint8_t{8})},
+                                                          {3, raw(std::int16_t{-300}) + raw(std::int16_t{8})},
+                                                          {4, raw(std::uint16_t{60000}) + raw(std::uint16_t{8})},
+                                                          {5, raw(std::int32_t{-70000}) + raw(std::int32_t{8})},
+                                                          {6, raw(std::uint32_t{70000}) + raw(std::uint32_t{8})},
+                                                          {7, raw(0.5f) + raw(8.0f)},
+                                                          {12, raw(std::int64_t{-9}) + raw(std::int64_t{8})},
+                                                          {13, raw(std::uint64_t{9}) + raw(std::uint64_t{8})}};
+  const double first[] = {-7, 200, -300, 60000, -70000, 70000, 0.5, -9, 9};
+  for (std::size_t i = 0; i < std::size(stored); ++i) {
+    const auto contents = decode(header5() + matrix5("z", {1, 2}, element5(stored[i].first, stored[i].second)));
+    ASSERT_TRUE(contents) << contents.error().line();
+    EXPECT_EQ(contents->arrays[0].values(0, 0), first[i]);
+    EXPECT_EQ(contents->arrays[0].values(0, 1), 8);
+  }
+}
+
+TEST(DecodeMatLevel5, ReadsNumbersWithinStructures) {
+  const std::string inner = struct5("", {{"values", double5("", kValues)}});
+  const auto contents = decode(header5() + struct5("log", {{"time", double5("", kValues)}, {"signals", inner}}));
+  ASSERT_TRUE(contents) << contents.error().line();
+  ASSERT_EQ(contents->arrays.size(), 2u);
+  EXPECT_EQ(contents->arrays[0].name, "log.time");
+  EXPECT_EQ(contents->arrays[1].name, "log.signals.values");
+  EXPECT_EQ(contents->arrays[1].values, kValues);
+}
+
+TEST(DecodeMatLevel5, LeavesAsideWhatIsNotARealMatrixAndSaysSo) {
+  const std::string opaque =
+      element5(14, element5(6, raw(std::uint32_t{17}) + raw(std::uint32_t{0})) + element5(1, "nlid") +
+                       element5(1, "MCOS") + element5(1, "nldat") + double5("", kValues));
+  const auto contents = decode(header5() + opaque + matrix5("text", {1, 1}, element5(18, raw(U'a')), 4) +
+                               matrix5("cells", {1, 1}, double5("", kValues), 1) + matrix5("sparse", {9, 9}, "", 5) +
+                               matrix5("z", {1, 1}, element5(9, raw(1.0)) + element5(9, raw(1.0)), 0x0806) +
+                               matrix5("cube", {1, 1, 1}, element5(9, raw(1.0))));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_TRUE(contents->arrays.empty());
+  EXPECT_THAT(
+      contents->notes,
+      ElementsAre("variable 'nlid' is an object of MATLAB class 'nldat', which only MATLAB can read; left aside",
+                  "variable 'text' is text in a way that is not read; left aside",
+                  "variable 'cells' is a cell array; left aside", "variable 'sparse' is a sparse matrix; left aside",
+                  "variable 'z' is complex; left aside",
+                  "variable 'cube' is an array of more than two dimensions; left aside"));
+}
+
+std::string utf16(std::u16string_view text) {
+  std::string bytes;
+  for (const char16_t unit : text) bytes += raw(unit);
+  return bytes;
+}
+
+std::vector<std::string> lines_of(const std::string& variable) {
+  const auto contents = decode(header5() + variable);
+  EXPECT_TRUE(contents) << contents.error().line();
+  if (!contents || contents->texts.size() != 1) return {"not one text"};
+  EXPECT_TRUE(contents->notes.empty());
+  return contents->texts[0].lines;
+}
+
+TEST(DecodeMatLevel5, ReadsTextInEachEncoding) {
+  EXPECT_THAT(lines_of(matrix5("t", {1, 4}, element5(4, utf16(u"é😀a")), 4)), ElementsAre("é😀a"));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(17, utf16(u"né")), 4)), ElementsAre("né"));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(16, "né"), 4)), ElementsAre("né"));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(1, "n\xe9"), 4)), ElementsAre("né"));
+  EXPECT_THAT(lines_of(matrix5("t", {0, 0}, element5(4, ""), 4)), ElementsAre(""));
+  EXPECT_THAT(lines_of(matrix5("t", {1, 2}, element5(4, utf16({u"\xD800\x1B", 2})), 4)), ElementsAre("\uFFFD?"));
+  const auto big = decode(header5(true) + matrix5("t", {1, 2}, element5(4, std::string("\0a\0b", 4), true), 4, true));
+  ASSERT_TRUE(big) << big.error().line();
+  EXPECT_THAT(big->texts.at(0).lines, ElementsAre("ab"));
+}
+
+TEST(DecodeMatLevel5, ReadsCharMatricesByRowAndCellsOfText) {
+  EXPECT_THAT(lines_of(matrix5("t", {2, 3}, element5(4, utf16(u"adb c ")), 4)), ElementsAre("abc", "d"));
+  const std::string cells = matrix5("", {1, 2}, element5(4, utf16(u"on")), 4) + matrix5("", {0, 0}, element5(4, ""), 4);
+  EXPECT_THAT(lines_of(matrix5("t", {2, 1}, cells, 1)), ElementsAre("on", ""));
+}
+
+TEST(DecodeMatLevel5, RefusesTextThatDoesNotMatchItsDimensions) {
+  EXPECT_THAT(error_of(header5() + matrix5("t", {1, 3}, element5(4, utf16(u"ab")), 4)),
+              HasSubstr("variable 't': dimensions 1×3 do not match 4 stored bytes of text"));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {1, 1}, element5(4, "abc"), 4)), HasSubstr("do not match"));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {2, 1}, element5(16, "abc"), 4)), HasSubstr("do not match"));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {3, 1}, matrix5("", {1, 1}, element5(1, "a"), 4), 1)),
+              HasSubstr("a cell is missing"));
+  const auto many = decode(header5() + matrix5("t", {2147483647, 0}, element5(1, ""), 4));
+  ASSERT_TRUE(many);
+  EXPECT_THAT(many->notes, ElementsAre(HasSubstr("text in a way that is not read")));
+}
+
+TEST(DecodeMatLevel5, RefusesDimensionsThatDoNotMatchTheData) {
+  EXPECT_THAT(error_of(header5() + matrix5("z", {2, 3}, element5(9, raw(1.0)))),
+              HasSubstr("variable 'z': dimensions 2×3 do not match 8 stored bytes"));
+  EXPECT_THAT(error_of(header5() + matrix5("z", {2147483647, 2147483647, 2147483647}, element5(9, raw(1.0)))),
+              HasSubstr("do not match"));
+  EXPECT_THAT(error_of(header5() + matrix5("z", {-1, 1}, element5(9, raw(1.0)))),
+              HasSubstr("dimension -1 is negative"));
+}
+
+TEST(DecodeMatLevel5, RefusesStructuresNestedTooDeeply) {
+  std::string inner = double5("", kValues);
+  for (int i = 0; i < 40; ++i) inner = struct5("", {{"f", inner}});
+  EXPECT_THAT(error_of(header5() + struct5("s", {{"f", inner}})), HasSubstr("nested too deeply"));
+}
+
+TEST(DecodeMatLevel5, RefusesCompressedDataWhoseChecksumIsWrong) {
+  std::string file = header5() + compressed5(double5("z", kValues));
+  file.back() = static_cast<char>(file.back() ^ 1);
+  EXPECT_THAT(error_of(file), HasSubstr("compressed data is damaged (its stream or its checksum is broken)"));
+}
+
+TEST(DecodeMatLevel5, RefusesCompressedDataThatHoldsMoreOrLessThanClaimed) {
+  const std::string matrix = double5("z", kValues);
+  EXPECT_THAT(error_of(header5() + compressed5(matrix + "12345678")), HasSubstr("more than"));
+  EXPECT_THAT(error_of(header5() + compressed5(matrix.substr(0, matrix.size() - 8))), HasSubstr("fewer than"));
+}
+
+TEST(DecodeMatLevel5, DoesNotBelieveAnAbsurdClaim) {
+  std::string matrix = double5("z", kValues);
+  matrix.replace(4, 4, raw(std::uint32_t{0xFFFFFFF0}));
+  EXPECT_THAT(error_of(header5() + compressed5(matrix)), HasSubstr("claim to hold 4294967288 bytes"));
+}
+
+TEST(DecodeMatLevel5, RefusesAFileCutAnywhere) {
+  for (const std::string& variable :
+       {double5("logs", kValues), compressed5(double5("logs", kValues)), struct5("s", {{"a", double5("", kValues)}})}) {
+    const std::string whole = header5() + variable;
+    for (std::size_t n = 0; n < whole.size(); ++n) {
+      const auto contents = decode(std::string_view(whole).substr(0, n));
+      if (n == 128) {  // a header and no variable
+        ASSERT_TRUE(contents && contents->arrays.empty());
+      } else {
+        ASSERT_FALSE(contents) << "cut to " << n << " of " << whole.size();
+      }
+    }
+  }
+}
+
+TEST(DecodeMatLevel5, SurvivesFlippedBytes) {
+  const std::string plain =
+      header5() + double5("logs", kValues) +
+      struct5("s", {{"a", double5("", kValues)}, {"b", struct5("", {{"c", double5("", kValues)}})}}) +
+      matrix5("cells", {1, 1}, double5("", kValues), 1) +
+      struct5("events", {{"name", matrix5("", {2, 1},
+                                          matrix5("", {1, 2}, element5(4, utf16(u"on")), 4) +
+                                              matrix5("", {2, 2}, element5(16, "o fé"), 4),
+                                          1)},
+                         {"text", matrix5("", {2, 3}, element5(17, utf16(u"adb c ")), 4)}});
+  const std::string packed = header5() + compressed5(double5("logs", test::logs(20)));
+  std::mt19937 random(20130601);
+  for (int i = 0; i < 20000; ++i) {
+    std::string file = i % 2 == 0 ? plain : packed;
+    const std::size_t at = random() % file.size();
+    file[at] = static_cast<char>(random());
+    const auto contents = decode(file);
+    if (contents) {
+      for (const Array& array : contents->arrays) ASSERT_LE(array.values.size(), 19 * 20) << "byte " << at;
+      for (const Text& text : contents->texts) ASSERT_LE(text.lines.size(), 100'000u) << "byte " << at;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mbk::recording

@@ -1,0 +1,37 @@
+#include "mbk/files/recording/memory.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+namespace mbk::recording {
+namespace {
+
+TEST(Memory, OfTheMachineIsMoreThanNothingAndLessThanAll) {
+  EXPECT_GT(available_memory(), std::uint64_t{1} << 20);
+  EXPECT_TRUE(check_memory(1000));
+  EXPECT_FALSE(check_memory(std::uint64_t{1} << 60));
+}
+
+TEST(Memory, ThatIsNotThereIsRefusedWithBothSizes) {
+  const auto refused = check_memory(std::uint64_t{1} << 50);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("1048576.00 GiB of memory are needed"), std::string::npos)
+      << refused.error().message;
+  EXPECT_NE(refused.error().message.find("GiB are available"), std::string::npos);
+}
+
+TEST(Memory, KeepsToTheLimitOfTheAddressSpace) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the sanitizer's shadow takes the whole address space";
+#endif
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  const rlimit small{std::uint64_t{1} << 30, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
+  EXPECT_LE(available_memory(), std::uint64_t{1} << 30);
+  EXPECT_FALSE(check_memory(std::uint64_t{2} << 30));
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+}
+
+}  // namespace
+}  // namespace mbk::recording

@@ -1,0 +1,115 @@
+#include "mbk/files/recording/read.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <string_view>
+
+#include "mbk/files/hdf5/read_hdf5.h"
+#include "mbk/files/recording/annotations.h"
+#include "mbk/files/recording/assemble.h"
+#include "mbk/files/recording/c3d.h"
+#include "mbk/files/recording/csv.h"
+#include "mbk/files/recording/file_bytes.h"
+#include "mbk/files/recording/hdf5_recording.h"
+#include "mbk/files/recording/mat_level4.h"
+#include "mbk/files/recording/mat_level5.h"
+#include "mbk/files/recording/sha256.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV and C3D are read";
+
+bool is_text(std::string_view bytes) {
+  return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
+    const auto code = static_cast<unsigned char>(c);
+    return code < 0x20 && c != '\t' && c != '\n' && c != '\r';
+  });
+}
+
+Result<Contents> decode(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const bool mat_header = bytes.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
+  if (hdf5::looks_like_hdf5(bytes)) return decode_hdf5(bytes);
+  if (text.starts_with("MATLAB 7.3")) {
+    return bad_data("the MAT v7.3 header is not followed by HDF5 data",
+                    "copy the file again from where it was recorded");
+  }
+  if (mat_header || text.starts_with("MATLAB 5.0")) return decode_mat_level5(bytes);
+  if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
+  if (is_text(text)) return decode_csv(bytes);
+  if (looks_like_c3d(bytes)) return decode_c3d(bytes);
+  return bad_data("the content is of no known format", std::string(kFormats));
+}
+
+/// A file, decoded, and where it came from.
+struct Decoded {
+  Contents contents;
+  SourceFile source;
+};
+
+Result<Decoded> decode_file(const std::filesystem::path& file) {
+  const auto bytes = read_file(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto contents = decode(bytes->bytes());
+  if (!contents) return tl::unexpected(contents.error());
+  take_annotations(*contents);
+  SourceFile source{file.string(), contents->format, sha256(bytes->bytes())};
+  return Decoded{std::move(*contents), std::move(source)};
+}
+
+Result<Recording> assemble_file(Decoded decoded, const ReadOptions& options) {
+  auto recording = assemble(decoded.contents, options);
+  if (recording) recording->sources = {std::move(decoded.source)};
+  return recording;
+}
+
+FileContents listed(Decoded decoded) {
+  FileContents listing{std::move(decoded.source), decoded.contents.table, {}, std::move(decoded.contents.notes)};
+  for (const Array& array : decoded.contents.arrays) {
+    StoredArray stored{array.name,   array.values.rows(), array.values.cols(), std::nan(""),
+                       std::nan(""), array.unit,          array.rate_hz};
+    for (const double value : array.values.reshaped()) {
+      if (!std::isfinite(value)) continue;
+      stored.minimum = std::fmin(stored.minimum, value);
+      stored.maximum = std::fmax(stored.maximum, value);
+    }
+    listing.arrays.push_back(std::move(stored));
+  }
+  if (!decoded.contents.metadata.empty()) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : decoded.contents.metadata) keys.push_back(key);
+    listing.notes.push_back(fmt::format("it holds metadata: {}", fmt::join(keys, ", ")));
+  }
+  return listing;
+}
+
+/// Decodes the file and hands it on; every failure names the file.
+template <class Use>
+auto with_decoded(const std::filesystem::path& file, const Use& use) -> decltype(use(Decoded{})) {
+  try {
+    auto decoded = decode_file(file);
+    if (!decoded) return tl::unexpected(decoded.error().in(file.string()));
+    auto result = use(std::move(*decoded));
+    if (!result) return tl::unexpected(result.error().in(file.string()));
+    return result;
+  } catch (const std::bad_alloc&) {
+    return bad_data("there is not enough memory to read it", "close other programs or split the recording",
+                    file.string());
+  }
+}
+
+}  // namespace
+
+Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options) {
+  return with_decoded(file, [&](Decoded decoded) { return assemble_file(std::move(decoded), options); });
+}
+
+Result<FileContents> list_contents(const std::filesystem::path& file) {
+  return with_decoded(file, [](Decoded decoded) { return Result<FileContents>(listed(std::move(decoded))); });
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,73 @@
+#include "mbk/files/recording/si_units.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+namespace mbk::recording {
+namespace {
+
+using enum Dimension;
+constexpr double kPi = std::numbers::pi;
+
+/// The first unit of each dimension is its SI unit.
+constexpr auto kUnits = std::to_array<Unit>({
+    {"s", time, 1, 1},
+    {"ms", time, 1, 1e3},
+    {"us", time, 1, 1e6},
+    {"m", length, 1, 1},
+    {"cm", length, 1, 1e2},
+    {"mm", length, 1, 1e3},
+    {"um", length, 1, 1e6},
+    {"in", length, 0.0254, 1},
+    {"rad", angle, 1, 1},
+    {"mrad", angle, 1, 1e3},
+    {"deg", angle, kPi, 180},
+    {"°", angle, kPi, 180},
+    {"N", force, 1, 1},
+    {"kN", force, 1e3, 1},
+    {"mN", force, 1, 1e3},
+    {"lbf", force, 4.4482216152605, 1},
+    {"kgf", force, 9.80665, 1},
+    {"N.m", torque, 1, 1},
+    {"Nm", torque, 1, 1},
+    {"N*m", torque, 1, 1},
+    {"N.mm", torque, 1, 1e3},
+    {"Nmm", torque, 1, 1e3},
+    {"mNm", torque, 1, 1e3},
+    {"m/s2", acceleration, 1, 1},
+    {"m/s^2", acceleration, 1, 1},
+    {"mm/s2", acceleration, 1, 1e3},
+    {"mm/s^2", acceleration, 1, 1e3},
+    {"g", acceleration, 9.80665, 1},
+    {"rad/s2", angular_acceleration, 1, 1},
+    {"rad/s^2", angular_acceleration, 1, 1},
+    {"deg/s2", angular_acceleration, kPi, 180},
+    {"deg/s^2", angular_acceleration, kPi, 180},
+    {"V", voltage, 1, 1},
+    {"mV", voltage, 1, 1e3},
+    {"uV", voltage, 1, 1e6},
+});
+
+}  // namespace
+
+const Unit* find_unit(std::string_view name) {
+  const auto unit = std::ranges::find(kUnits, name, &Unit::name);
+  return unit == kUnits.end() ? nullptr : &*unit;
+}
+
+std::string_view si_unit(Dimension dimension) {
+  return std::ranges::find(kUnits, dimension, &Unit::dimension)->name;
+}
+
+std::string unit_names(std::span<const Dimension> dimensions) {
+  std::string names;
+  for (const Unit& unit : kUnits) {
+    if (std::ranges::find(dimensions, unit.dimension) == dimensions.end()) continue;
+    if (!names.empty()) names += ", ";
+    names += unit.name;
+  }
+  return names;
+}
+
+}  // namespace mbk::recording

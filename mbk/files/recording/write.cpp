@@ -1,0 +1,128 @@
+#include "mbk/files/recording/write.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/recording/channel_table.h"
+#include "mbk/files/recording/encode.h"
+#include "mbk/files/recording/write_file.h"
+
+namespace mbk::recording {
+namespace {
+
+struct Named {
+  std::string_view name;
+  Format format;
+};
+
+constexpr auto kNames = std::to_array<Named>({
+    {"mat", Format::mat5},
+    {"mat5", Format::mat5},
+    {"mat73", Format::mat73},
+    {"hdf5", Format::hdf5},
+    {"csv", Format::csv},
+});
+
+constexpr auto kExtensions = std::to_array<Named>({
+    {".mat", Format::mat5},
+    {".h5", Format::hdf5},
+    {".hdf5", Format::hdf5},
+    {".csv", Format::csv},
+});
+
+Result<void> check(const Recording& recording) {
+  if (recording.samples() == 0) return bad_data("a recording without samples is not written");
+  if (recording.channels.empty()) return bad_data("a recording without channels is not written");
+  std::set<std::string_view> names;
+  for (const Channel& channel : recording.channels) {
+    if (!names.insert(channel.name).second || channel.name == "time") {
+      return bad_data(fmt::format("channel '{}' is there twice", channel.name));
+    }
+    if (channel.values.size() == recording.samples()) continue;
+    return bad_data(fmt::format("channel '{}' has {} samples, time has {}", channel.name, channel.values.size(),
+                                recording.samples()));
+  }
+  for (const auto& [key, value] : recording.metadata) {
+    if (printable(value) == value) continue;
+    return bad_data(fmt::format("metadata '{}' is not one line of UTF-8", printable(key)),
+                    "write it without control characters");
+  }
+  for (const Event& event : recording.events) {
+    if (printable(event.name) == event.name) continue;
+    return bad_data(fmt::format("the event name '{}' is not one line of UTF-8", printable(event.name)),
+                    "write it without control characters");
+  }
+  return {};
+}
+
+Result<std::string> encode(const Recording& recording, Format format) {
+  switch (format) {
+    case Format::mat5:
+      return encode_mat_level5(recording);
+    case Format::mat73:
+      return encode_mat_hdf5(recording);
+    case Format::hdf5:
+      return encode_hdf5(recording);
+    case Format::csv:
+      break;
+  }
+  return encode_csv(recording);
+}
+
+}  // namespace
+
+std::string_view text(Format format) {
+  switch (format) {
+    case Format::mat5:
+      return "MAT v5";
+    case Format::mat73:
+      return "MAT v7.3";
+    case Format::hdf5:
+      return "HDF5";
+    case Format::csv:
+      break;
+  }
+  return "CSV";
+}
+
+Result<Format> format_of(const std::filesystem::path& file, std::string_view name) {
+  const std::string extension = file.extension().string();
+  const auto by_name = std::ranges::find(kNames, name, &Named::name);
+  if (by_name != kNames.end()) return by_name->format;
+  if (!name.empty()) {
+    return bad_usage(fmt::format("'{}' is not a format that is written", printable(std::string(name))),
+                     "choose mat5, mat73, hdf5 or csv");
+  }
+  const auto by_extension = std::ranges::find(kExtensions, extension, &Named::name);
+  if (by_extension != kExtensions.end()) return by_extension->format;
+  return fail(ErrorKind::usage,
+              extension.empty() ? "the name does not say a format"
+                                : fmt::format("'{}' is not a format that is written", printable(extension)),
+              "let it end with .h5, .mat or .csv", file.string());
+}
+
+std::vector<std::string> lost_in(const Recording& recording, Format format) {
+  std::vector<std::string> lost;
+  if (format == Format::hdf5) return lost;
+  for (const Channel& channel : recording.channels) {
+    const auto kind = std::ranges::find(channel_kinds(), channel.name, &ChannelKind::name);
+    if (channel.frame == (kind == channel_kinds().end() ? "" : kind->frame)) continue;
+    lost.push_back(fmt::format("the frame of {} ('{}'): {} files have no place for it", channel.name, channel.frame,
+                               text(format)));
+  }
+  return lost;
+}
+
+Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format, bool overwrite,
+                   Readers readers) {
+  if (auto ok = check(recording); !ok) return tl::unexpected(ok.error().in(file.string()));
+  const auto bytes = encode(recording, format);
+  if (!bytes) return tl::unexpected(bytes.error().in(file.string()));
+  return write_file(file, overwrite, *bytes, readers);
+}
+
+}  // namespace mbk::recording

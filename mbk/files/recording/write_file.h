@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/readers.h"
+
+namespace mbk::recording {
+
+/// Makes a file that appears whole or not at all: it is written under a temporary name in the same folder, flushed to
+/// the disk and renamed. What fails leaves nothing behind; only where the folder cannot be flushed the file is there.
+/// @param readers  who may read it; where absent, what the umask leaves
+/// @fails  usage: the file is there and `overwrite` is false. data: the folder cannot be written, the disk is full.
+[[nodiscard]] Result<void> write_file(const std::filesystem::path& file, bool overwrite, std::string_view text,
+                                      std::optional<Readers> readers = std::nullopt);
+
+/// Who may read a file that is there; its owner alone where nobody can say.
+[[nodiscard]] Readers readers_of(const std::filesystem::path& file);
+
+}  // namespace mbk::recording

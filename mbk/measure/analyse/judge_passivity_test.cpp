@@ -1,0 +1,312 @@
+#include "mbk/measure/analyse/judge_passivity.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/model/impedance/passivity_index.h"
+
+namespace mbk::analyse {
+namespace {
+
+using numeric::Random;
+using testing::HasSubstr;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kOneSided = 1.6448536269514722;  // Φ⁻¹(0.95)
+const PassivityBand kBand{Hertz(0.3), Hertz(3.0), "as asked"};
+
+/// P1 of Dyck 2013 with antisymmetric stiffness k_a, and independent errors that are a share of each matrix.
+Identification arm(double k_a = 2.0, double share = 0.01) {
+  Identification id;
+  id.model.M = Matrix{{1.326, -0.935}, {-0.935, 1.883}};
+  id.model.B = Matrix{{5.76, -2.14}, {-2.14, 10.56}};
+  id.model.K = Matrix{{42.4, -28.6 + k_a}, {-28.6 - k_a, 125.3}};
+  id.model.x0 = Vector::Zero(2);
+  Vector errors(14);
+  errors << Vector::Constant(4, 2.0), Vector::Constant(4, 10.0), Vector::Constant(4, 100.0), 0.1, 0.1;
+  id.covariance = (share * errors).cwiseAbs2().asDiagonal();
+  return id;
+}
+
+ModelPassivity judged(const Identification& id, const PassivityBand& band = kBand) {
+  auto result = model_passivity(id, band);
+  EXPECT_TRUE(result) << result.error().line();
+  return result ? *result : ModelPassivity{};
+}
+
+TEST(ModelPassivity, OfASureArmIsPassive) {
+  const ModelPassivity model = judged(arm());
+  EXPECT_EQ(model.verdict, Verdict::passive);
+  EXPECT_EQ(model.symmetric_verdict, Verdict::passive);
+  EXPECT_TRUE(model.published_rule);
+  ASSERT_EQ(model.conditions.size(), 7U);
+  EXPECT_EQ(model.conditions[1].unit, "N·s/m");
+  EXPECT_NEAR(model.excess->corrected, 4.95, 0.01);
+  EXPECT_NEAR(model.excess->published, 5.69, 0.01);
+}
+
+TEST(ModelPassivity, HasThreeOutcomesAndSaysPassiveExactlyWhereEveryLowerBoundIsPositive) {
+  Random random(1);
+  std::array<int, 3> count{};
+  for (int i = 0; i < 600; ++i) {
+    Identification id = arm(random.uniform(-25.0, 25.0), random.uniform(0.001, 0.08));
+    id.model.B -= random.uniform(0.0, 7.0) * Matrix::Identity(2, 2);
+    const ModelPassivity model = judged(id);
+    bool passive = true, active = false;
+    const double z = numeric::normal_quantile(1.0 - 0.05 / 7.0);
+    for (const PassivityCondition& c : model.conditions) {
+      passive = passive && c.value - kOneSided * c.standard_error > 0.0;  // NaN is not
+      active = active || c.value + z * c.standard_error < 0.0;
+      if (std::isnan(c.value)) continue;
+      EXPECT_NEAR(c.upper, c.value + z * c.standard_error, 1e-5 * c.standard_error);
+      EXPECT_NEAR(c.lower95, c.value - kOneSided * c.standard_error, 1e-12);
+    }
+    EXPECT_EQ(model.verdict, passive ? Verdict::passive : active ? Verdict::active : Verdict::undecided);
+    ++count[static_cast<std::size_t>(model.verdict)];
+  }
+  EXPECT_GT(*std::ranges::min_element(count), 30);
+}
+
+TEST(ModelPassivity, IsUndecidedWhereOneConditionAloneIsUnsure) {
+  Identification id = arm();
+  id.covariance(8, 8) = 100.0 * 100.0;  // k_xx
+  const ModelPassivity model = judged(id);
+  EXPECT_EQ(model.verdict, Verdict::undecided);
+  EXPECT_EQ(model.conditions[2].verdict, Verdict::undecided);
+  EXPECT_EQ(std::ranges::count(model.conditions, Verdict::passive, &PassivityCondition::verdict), 6);
+}
+
+// Too much for √det B below 0.36 Hz: the band decides, and the symmetric part says nothing of it.
+TEST(ModelPassivity, HangsOnTheBandWhereTheStiffnessIsNotSymmetric) {
+  const Identification id = arm(17.0);
+  EXPECT_EQ(judged(id, {Hertz(0.1), Hertz(3.0), ""}).verdict, Verdict::active);
+  const ModelPassivity above = judged(id, {Hertz(0.6), Hertz(3.0), ""});
+  EXPECT_EQ(above.verdict, Verdict::passive);
+  EXPECT_NEAR(*above.nonpassive_below_hz, 17.0 / (2.0 * std::numbers::pi * std::sqrt(5.76 * 10.56 - 2.14 * 2.14)),
+              1e-12);
+  const ModelPassivity below = judged(id, {Hertz(0.1), Hertz(3.0), ""});
+  EXPECT_EQ(below.symmetric_verdict, Verdict::passive);
+  EXPECT_TRUE(below.published_rule);
+  EXPECT_EQ(below.smallest_at.value, 0.1);
+  EXPECT_NEAR(below.smallest_index, impedance::passivity_index(id.model, 0.2 * std::numbers::pi).value, 1e-12);
+}
+
+// Either by itself leaves room, both together do not.
+TEST(ModelPassivity, AddsAntisymmetricInertiaAndStiffness) {
+  const auto with = [](double m_a, double k_a) {
+    Identification id = arm(k_a, 0.001);
+    id.model.M(0, 1) += m_a;
+    id.model.M(1, 0) -= m_a;
+    return judged(id, {Hertz(0.5), Hertz(0.6), ""}).verdict;
+  };
+  EXPECT_EQ(with(1.5, 0.0), Verdict::passive);
+  EXPECT_EQ(with(0.0, 15.0), Verdict::passive);
+  EXPECT_EQ(with(-1.5, 15.0), Verdict::active);
+  EXPECT_EQ(with(1.5, 15.0), Verdict::passive);
+}
+
+TEST(ModelPassivity, PropagatesTheCovarianceAsManyDrawsDo) {
+  Identification id = arm(7.7, 0.02);
+  Matrix mixing = Matrix::Identity(14, 14);
+  mixing(4, 7) = 0.6;
+  mixing(9, 10) = -0.8;
+  mixing(5, 9) = 0.02;
+  id.covariance = (mixing * id.covariance * mixing.transpose()).eval();
+  const ModelPassivity model = judged(id, {Hertz(0.2), Hertz(3.0), ""});
+  const Matrix root = id.covariance.llt().matrixL();
+  Random random(2);
+  constexpr int kDraws = 20'000;
+  const double omega = 2.0 * std::numbers::pi * model.smallest_at.value;
+  Vector index(kDraws), damping(kDraws);
+  for (int k = 0; k < kDraws; ++k) {
+    Vector noise(14);
+    for (double& value : noise) value = random.normal();
+    const impedance::Model drawn = impedance::unstacked(impedance::stacked(id.model) + root * noise, 2);
+    index[k] = impedance::passivity_index(drawn, omega).value;
+    damping[k] = impedance::smallest_eigenvalue(drawn, 1).value;
+  }
+  // The second order bends what the delta method takes as straight; 20000 draws give a deviation to 0.5 %.
+  const double error = (model.smallest_index95.second - model.smallest_index95.first) / (2.0 * numeric::kNormal95);
+  EXPECT_NEAR(error, std::sqrt(numeric::variance(index)), 0.05 * error);
+  EXPECT_NEAR(index.mean(), model.smallest_index, 0.15 * error);
+  EXPECT_NEAR(model.conditions[1].standard_error, std::sqrt(numeric::variance(damping)),
+              0.05 * model.conditions[1].standard_error);
+}
+
+TEST(ModelPassivity, OfOneAxisHasThreeConditions) {
+  Identification id;
+  id.axes = 1;
+  id.model = impedance::unstacked((Vector(4) << 1.0, 5.0, 100.0, 0.0).finished(), 1);
+  id.covariance = Matrix(Vector{{0.01, 0.1, 10.0, 1e-4}}.asDiagonal());
+  const ModelPassivity model = judged(id);
+  EXPECT_EQ(model.conditions.size(), 3U);
+  EXPECT_EQ(model.verdict, Verdict::passive);
+  EXPECT_EQ(model.smallest_index, 5.0);
+  EXPECT_EQ(model.nonpassive_below_hz, 0.0);
+  id.model.K(0, 0) = -100.0;
+  const ModelPassivity active = judged(id);
+  EXPECT_EQ(active.verdict, Verdict::active);
+  EXPECT_FALSE(active.published_rule);
+  EXPECT_FALSE(active.excess.has_value());
+}
+
+TEST(ModelPassivity, WithoutErrorsIsUndecided) {
+  Identification id = arm();
+  id.covariance.setConstant(kNaN);
+  EXPECT_EQ(judged(id).verdict, Verdict::undecided);
+}
+
+TEST(ModelPassivity, RefusesWhatIsNoModelAndWhatIsNoBand) {
+  Identification id = arm();
+  for (const auto& [low, high] : {std::pair{0.0, 1.0},
+                                  {2.0, 1.0},
+                                  {-1.0, 1.0},
+                                  {kNaN, 1.0},
+                                  {1.0, kNaN},
+                                  {1.0, std::numeric_limits<double>::infinity()}}) {
+    EXPECT_FALSE(model_passivity(id, {Hertz(low), Hertz(high), ""})) << low << ":" << high;
+  }
+  EXPECT_TRUE(model_passivity(id, {Hertz(1.0), Hertz(1.0), ""}));
+  id.model.B(0, 1) = kNaN;
+  EXPECT_FALSE(model_passivity(id, kBand));
+  EXPECT_FALSE(model_passivity(Identification{}, kBand));
+}
+
+TEST(Instruments, SpeakOnlyWhereTheyAreStrongAndDiffer) {
+  Identification id = arm();
+  const Disagreement yes{"k_xx", 10.0, 1.0, true}, no{"k_xx", 1.0, 1.0, false};
+  EXPECT_FALSE(instruments_speak(id, yes));
+  id.instrument = InstrumentCheck{ReferenceQuantity::force, Vector::Constant(6, 10.1), {}};
+  EXPECT_TRUE(instruments_speak(id, yes));
+  EXPECT_FALSE(instruments_speak(id, no));
+  EXPECT_FALSE(instruments_speak(id, std::nullopt));
+  id.instrument->strength[4] = 9.9;
+  EXPECT_FALSE(instruments_speak(id, yes));
+  id.instrument->strength[4] = kNaN;
+  EXPECT_FALSE(instruments_speak(id, yes));
+}
+
+EnergyAccount energy(Verdict verdict) {
+  EnergyAccount account;
+  account.verdict = verdict;
+  return account;
+}
+
+TEST(Decide, FollowsTheModelThatExplainsHalfOfTheForce) {
+  const Passivity by_model = decide({judged(arm())}, 50.0, energy(Verdict::active));
+  EXPECT_TRUE(by_model.by_model);
+  EXPECT_EQ(by_model.verdict, Verdict::passive);
+  const Passivity by_energy = decide({judged(arm())}, 49.9, energy(Verdict::active));
+  EXPECT_FALSE(by_energy.by_model);
+  EXPECT_EQ(by_energy.verdict, Verdict::active);
+  EXPECT_THAT(by_energy.reason, HasSubstr("The model would say passive"));
+}
+
+TEST(Decide, LeavesItOpenWhereTheModelExplainsLittleAndNoEnergyIsKnown) {
+  const Passivity result = decide({judged(arm())}, 10.0, std::nullopt);
+  EXPECT_EQ(result.verdict, Verdict::undecided);
+  EXPECT_THAT(result.reason, HasSubstr("10 %"));
+  EXPECT_EQ(decide({judged(arm())}, kNaN, std::nullopt).verdict, Verdict::undecided);
+}
+
+TEST(Decide, HasAWordForEveryLack) {
+  const Passivity nothing = decide({}, 99.0, std::nullopt);
+  EXPECT_EQ(nothing.verdict, Verdict::undecided);
+  EXPECT_FALSE(nothing.reason.empty());
+  const Passivity no_model = decide({}, 99.0, energy(Verdict::passive));
+  EXPECT_EQ(no_model.verdict, Verdict::passive);
+  EXPECT_FALSE(no_model.by_model);
+  EXPECT_EQ(decide({judged(arm())}, kNaN, energy(Verdict::active)).verdict, Verdict::active);
+}
+
+TEST(Decide, NamesTheConditionsThatDecided) {
+  const Passivity active = decide({judged(arm(40.0))}, 99.0, std::nullopt);
+  EXPECT_EQ(active.verdict, Verdict::active);
+  EXPECT_THAT(active.reason, HasSubstr("at 0.3 Hz"));
+  EXPECT_THAT(active.reason, testing::Not(HasSubstr("eigenvalue of B")));
+  Identification unsure = arm();
+  unsure.covariance(8, 8) = 1e4;
+  const Passivity undecided = decide({judged(unsure)}, 99.0, std::nullopt);
+  EXPECT_THAT(undecided.reason, HasSubstr("smallest eigenvalue of K"));
+}
+
+/// Noise between two frequencies: many sines of random frequency and phase, of standard deviation 1.
+Vector noise_between(Random& random, const Vector& time, double low, double high) {
+  constexpr int kSines = 200;
+  Vector sum = Vector::Zero(time.size());
+  for (int k = 0; k < kSines; ++k) {
+    const double f = random.uniform(low, high), phase = random.uniform(0.0, 2.0 * std::numbers::pi);
+    sum.array() += (2.0 * std::numbers::pi * f * time.array() + phase).sin();
+  }
+  return sum * std::sqrt(2.0 / kSines);
+}
+
+/// Reference, position and force are alike from 0.1 to 6 Hz; noise comes to the force between two frequencies.
+PreparedTrial noisy_trial(double noise_low, double noise_high) {
+  constexpr Index kRows = 10'000;
+  PreparedTrial trial;
+  trial.sample_time = 0.02;
+  trial.time = Vector::LinSpaced(kRows, 0.0, 0.02 * (kRows - 1));
+  Random random(3);
+  trial.reference_motion = Matrix::Zero(kRows, 6);
+  trial.force_hand_on_robot.resize(kRows, 2);
+  for (Index j = 0; j < 2; ++j) {
+    trial.reference_motion.col(4 + j) = noise_between(random, trial.time, 0.1, 6.0);
+    trial.force_hand_on_robot.col(j) =
+        -trial.reference_motion.col(4 + j) + 3.0 * noise_between(random, trial.time, noise_low, noise_high);
+  }
+  trial.position = trial.reference_motion.rightCols(2);
+  trial.preparation.band_low = Hertz(0.2);
+  trial.preparation.band_high = Hertz(5.0);
+  trial.stretches = {{0, kRows, Purpose::identification, 0}};
+  return trial;
+}
+
+TEST(PassivityBand, IsWhereThePerturbationExplainsPositionAndForce) {
+  constexpr double kLines = 0.5;  // of the coherence, which a window smears over two or three
+  const PassivityBand above = passivity_band({noisy_trial(0.05, 1.5)});
+  EXPECT_NEAR(above.low.value, 1.5, kLines);
+  EXPECT_EQ(above.high.value, 5.0);
+  const PassivityBand below = passivity_band({noisy_trial(3.0, 6.0)});
+  EXPECT_EQ(below.low.value, 0.2);
+  EXPECT_NEAR(below.high.value, 3.0, kLines);
+  EXPECT_THAT(below.rule, HasSubstr("0.8"));
+}
+
+TEST(PassivityBand, IsTheExcitedBandWhereThereIsNoCoherence) {
+  const PassivityBand drowned = passivity_band({noisy_trial(0.05, 8.0)});
+  EXPECT_EQ(drowned.low.value, 0.2);
+  EXPECT_EQ(drowned.high.value, 5.0);
+  EXPECT_THAT(drowned.rule, HasSubstr("nowhere"));
+  PreparedTrial trial = noisy_trial(0.05, 1.5);
+  trial.reference_motion.resize(0, 0);
+  const PassivityBand unknown = passivity_band({trial});
+  EXPECT_EQ(unknown.low.value, 0.2);
+  EXPECT_EQ(unknown.high.value, 5.0);
+  EXPECT_EQ(unknown.rule, "the excited band");
+}
+
+TEST(PassivityBand, HoldsForEveryTrialAndNotBelowOnePeriod) {
+  PreparedTrial one = noisy_trial(3.0, 6.0), other = one;
+  other.preparation.band_low = Hertz(0.4);
+  other.preparation.band_high = Hertz(2.0);
+  const PassivityBand both = passivity_band({one, other});
+  EXPECT_EQ(both.low.value, 0.4);
+  EXPECT_EQ(both.high.value, 2.0);
+  one.reference_motion.resize(0, 0);
+  one.stretches = {{0, 100, Purpose::identification, 0}, {200, 300, Purpose::validation, 200}};
+  EXPECT_EQ(passivity_band({one}).low.value, 0.5);  // 100 rows of 20 ms
+}
+
+}  // namespace
+}  // namespace mbk::analyse

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/trial/prepared_trial.h"
+
+namespace mbk::analyse {
+
+/// Rows [begin, end) that follow each other in time without a break.
+struct Rows {
+  Index begin = 0, end = 0;
+  Index first_sample = 0;  ///< of the recording, behind row `begin`
+  [[nodiscard]] Index size() const { return end - begin; }
+};
+
+/// The stretches of one purpose, or all; those that follow each other without a break are one.
+[[nodiscard]] std::vector<Rows> rows_of(const PreparedTrial& trial, std::optional<Purpose> purpose = std::nullopt);
+
+/// The pieces of a recording between the gaps of its clock that can be seen in a plot: at most five hundred.
+[[nodiscard]] std::vector<Rows> pieces_between_gaps(const Vector& time);
+
+/// What is drawn: some rows of a series; a row of NaN stands between two pieces.
+struct Series {
+  Vector time;
+  Matrix values;
+};
+
+/// How a series is thinned.
+enum class Thinning {
+  every,     ///< every so many rows: true to a signal that was low-passed far enough
+  extremes,  ///< two rows for each so many, with the extremes of each column in the order in which they came; their
+             ///< times are those of the first and the middle row. No spike is lost.
+};
+
+/// About kDrawnRows rows of a series, or all where it has no more. Values that are no numbers are passed over where
+/// there are others.
+/// @param values as many rows as `time`; each column by itself
+[[nodiscard]] Series thinned(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces, Thinning how);
+inline constexpr Index kDrawnRows = 2000;
+
+/// Which thinning is true to the signals of a trial: every so many rows where at least four are left in each period of
+/// the low-pass's cutoff (at twice the cutoff it passes 1/1000), otherwise the extremes.
+[[nodiscard]] Thinning thinning_of(const PreparedTrial& trial, const std::vector<Rows>& pieces);
+
+}  // namespace mbk::analyse

@@ -1,0 +1,73 @@
+#include "mbk/measure/identify/autoregression.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace mbk::identify {
+
+namespace {
+
+/// h of s_t = Σ_k h_k r_{t−k}, by least squares on the correlations of signals without a mean.
+Vector finite_impulse_response(const Eigen::Ref<const Vector>& r, const Eigen::Ref<const Vector>& s, Index lags) {
+  Vector own(lags), cross(lags);
+  for (Index k = 0; k < lags; ++k) {
+    own[k] = r.head(r.size() - k).dot(r.tail(r.size() - k));
+    cross[k] = r.head(r.size() - k).dot(s.tail(r.size() - k));
+  }
+  constexpr double kRidge = 1e-9;
+  Matrix gram(lags, lags);
+  for (Index i = 0; i < lags; ++i) {
+    for (Index j = 0; j < lags; ++j) gram(i, j) = own[std::abs(i - j)] * (i == j ? 1.0 + kRidge : 1.0);
+  }
+  return gram.ldlt().solve(cross);
+}
+
+}  // namespace
+
+Vector autoregression(const std::vector<Vector>& pieces, Index most) {
+  Vector r = Vector::Zero(most + 1);
+  Index samples = 0;
+  for (const Vector& e : pieces) {
+    samples += e.size();
+    for (Index lag = 0; lag <= std::min(most, e.size() - 1); ++lag) {
+      r[lag] += e.head(e.size() - lag).dot(e.tail(e.size() - lag));
+    }
+  }
+  Vector c = Vector::Ones(1), best = c;
+  if (!(r[0] > 0.0)) return best;
+  const auto count = static_cast<double>(samples);
+  double variance = r[0], least = count * std::log(variance);
+  for (Index p = 1; p <= most; ++p) {
+    const double reflection = -c.dot(r.segment(1, p).reverse()) / variance;
+    Vector longer(p + 1);
+    longer << c, 0.0;
+    longer += reflection * longer.reverse().eval();
+    c = longer;
+    variance *= 1.0 - reflection * reflection;
+    if (!(variance > 0.0)) break;
+    const double bic = count * std::log(variance) + static_cast<double>(p) * std::log(count);
+    if (bic < least) {
+      least = bic;
+      best = c;
+    }
+  }
+  return best;
+}
+
+Vector explained_by_past(const Vector& reference, const Vector& signal) {
+  constexpr Index kMostLags = 300;
+  const Index total = signal.size(), lags = std::clamp<Index>(total / 20, 1, kMostLags), half = total / 2;
+  const double mean = signal.mean();
+  const Vector r = reference.array() - reference.mean(), s = signal.array() - mean;
+  const Vector of_first = finite_impulse_response(r.head(half), s.head(half), lags);
+  const Vector of_second = finite_impulse_response(r.tail(total - half), s.tail(total - half), lags);
+  Vector explained = Vector::Constant(total, mean);
+  for (Index k = 0; k < lags; ++k) {
+    explained.segment(k, half - k) += of_second[k] * r.head(half - k);
+    explained.tail(total - half) += of_first[k] * r.segment(half - k, total - half);
+  }
+  return explained;
+}
+
+}  // namespace mbk::identify

@@ -1,0 +1,224 @@
+#include "mbk/measure/identify/fit_checks.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/model/impedance/ellipse.h"
+
+namespace mbk::identify {
+namespace {
+
+/// Thresholds of the warnings, each with its reason.
+constexpr double kLargestCondition = 1e3;      // two digits of a 16-bit sensor are left
+constexpr double kSmallestMotionRatio = 0.05;  // across the line of motion the limb moved a twentieth as far
+constexpr double kVafDrop = 10.0;              // points between in-sample and held-back
+constexpr double kPoorVaf = 70.0;              // relaxed arms give 92 % and more, ankles under tonic contraction 87
+constexpr double kShortestDuration = 12.0;     // s; a dozen reaches of the residual's correlation
+constexpr double kCutIntoBand = 0.5;           // a filter below half of the excited band hides the inertia
+constexpr double kDecimationChange = 0.05;
+
+/// Collects the warnings of one identification, subject by subject.
+class Checker {
+ public:
+  explicit Checker(Identification& identification) : id_(identification) {}
+
+  void check_excitation() {
+    const Excitation& excitation = id_.excitation;
+    const Index wanted = 3 * axes() + 1;
+    if (excitation.rank < wanted) {
+      warn(WarningCode::poorly_conditioned,
+           fmt::format("position, velocity and acceleration cannot be told apart (rank {} of {})", excitation.rank,
+                       wanted),
+           "perturb at several frequencies and in both directions");
+      id_.usable = false;
+    } else if (excitation.condition > kLargestCondition) {
+      warn(WarningCode::poorly_conditioned,
+           fmt::format("the regressors are nearly dependent (condition {:.2g})", excitation.condition),
+           "perturb at several frequencies and in both directions");
+    }
+    if (axes() == 2 && excitation.motion_ratio < kSmallestMotionRatio) {
+      warn(
+          WarningCode::motion_on_one_line,
+          fmt::format("the hand moved along one line: across it only {:.1f} % as far", 100.0 * excitation.motion_ratio),
+          "perturb both axes independently, or measure the one axis with --axes 1");
+    }
+    if (excitation.duration < kShortestDuration) {
+      warn(WarningCode::too_little_data,
+           fmt::format("{:.1f} s of data stand behind the parameters, too few for the standard errors to be trusted",
+                       excitation.duration),
+           fmt::format("record at least {:g} s, or pool several trials with --pool", kShortestDuration));
+    }
+  }
+
+  /// Inertia and stiffness of a limb are positive; its damping too, unless it acts.
+  void check_signs() {
+    const Eigenvalues inertia = eigenvalues(id_.model.M, 0), damping = eigenvalues(id_.model.B, 1),
+                      stiffness = eigenvalues(id_.model.K, 2);
+    const bool damped = id_.structure != Structure::mass_spring;
+    if (inertia.largest < 0.0 && stiffness.largest < 0.0 && (!damped || damping.largest < 0.0)) {
+      warn(WarningCode::force_sign_reversed,
+           "inertia, damping and stiffness are all negative: the force has the other sign",
+           "F is what the limb exerts on the machine: put a minus before its columns in a map of all channels, as in "
+           "--channels x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13");
+      id_.usable = false;
+      return;
+    }
+    if (!(inertia.smallest > 0.0)) {
+      warn(WarningCode::inertia_not_positive,
+           fmt::format("the inertia is {}: no limb has that", stated(inertia, units_.inertia)),
+           "raise the filter's --cutoff so that the inertia can be seen, and perturb at higher frequencies");
+      id_.usable = false;
+    }
+    if (!(stiffness.smallest > 0.0)) {
+      warn(WarningCode::stiffness_not_positive, fmt::format("the stiffness is {}", stated(stiffness, units_.stiffness)),
+           "perturb at lower frequencies and for longer");
+      id_.usable = false;
+    }
+    if (damped && !(damping.smallest > 0.0)) {
+      warn(WarningCode::damping_not_positive,
+           fmt::format("the damping is {}: the limb feeds in energy, or force and position are not simultaneous",
+                       stated(damping, units_.damping)),
+           "check for delays between the channels; a voluntary or reflex response also does this");
+    }
+  }
+
+  void check_band() {
+    // Of pooled trials, the one whose filter leaves least of its band.
+    const auto passed = [](const Preparation& how) {
+      return how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
+    };
+    const Preparation& how =
+        *std::ranges::min_element(id_.preparations, [&](const Preparation& a, const Preparation& b) {
+          return passed(a) * b.band_high.value < passed(b) * a.band_high.value;
+        });
+    const double top = passed(how);
+    const Eigenvalues inertia = eigenvalues(id_.model.M, 0);
+    if (top < kCutIntoBand * how.band_high.value) {
+      warn(WarningCode::band_too_narrow,
+           fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left may not "
+                       "show the inertia",
+                       top, how.band_high.value),
+           "leave --cutoff to the default, or raise it");
+    } else if (inertia.smallest > 0.0 && inertia.smallest < numeric::kNormal95 * inertia.standard_error) {
+      warn(WarningCode::band_too_narrow,
+           fmt::format("in the band up to {:.3g} Hz the inertia cannot be told from zero: {}", top,
+                       stated(inertia, units_.inertia)),
+           "perturb at higher frequencies");
+    }
+  }
+
+  void check_fit() {
+    const Fit& fit = id_.fit;
+    const char* const what = axes() == 1 ? "reaction" : "force in one axis";
+    if (!fit.held_back) {
+      warn(WarningCode::no_held_back_data, "no data were held back, so the fit is judged on the data that made it",
+           "record more, or set --split");
+    } else if ((fit.vaf_in_sample - fit.vaf).maxCoeff() > kVafDrop) {
+      warn(
+          WarningCode::held_back_fit_poor,
+          fmt::format("the model explains {:.1f} % of the force that made it, and only {:.1f} % of the force held back",
+                      fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
+          "the limb changed during the recording, or there is too little data: look at the parts with --from and "
+          "--to");
+    }
+    if (!fit.vaf.array().isFinite().all()) {
+      warn(WarningCode::fit_poor, fmt::format("the {} never changes, so that nothing of it can be explained", what),
+           "check the force sensor and its channel");
+      id_.usable = false;
+    } else if (fit.vaf.minCoeff() < kPoorVaf) {
+      warn(WarningCode::fit_poor,
+           fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}", fit.vaf.minCoeff(), what),
+           "the limb may have acted or reflexes may be strong; do not read M, B and K as a passive limb's");
+      if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;
+    }
+  }
+
+  void check_decimation() {
+    if (!id_.decimation || !(id_.decimation->largest_change > kDecimationChange)) return;
+    warn(WarningCode::decimation_changes_model,
+         fmt::format("at {:g} Hz the model differs by {:.1f} %", id_.decimation->rate_hz,
+                     100.0 * id_.decimation->largest_change),
+         "the signals hold something above 50 Hz; lower --cutoff");
+  }
+
+ private:
+  /// Of a symmetric part, with the standard error of the smallest by the delta method, dλ = vᵀ dZ v.
+  struct Eigenvalues {
+    double smallest, largest, standard_error;
+  };
+
+  [[nodiscard]] Index axes() const { return id_.axes; }
+
+  void warn(WarningCode code, std::string message, std::string remedy) {
+    id_.warnings.push_back({code, std::move(message), std::move(remedy)});
+  }
+
+  /// @param part 0, 1, 2 for M, B, K: where the matrix stands in the covariance
+  [[nodiscard]] Eigenvalues eigenvalues(const Matrix& Z, Index part) const {
+    const Index n = axes();
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(impedance::symmetric_part(Z));
+    const Vector v = solver.eigenvectors().col(0);
+    const Vector gradient = (v * v.transpose()).reshaped();
+    const double variance = gradient.dot(id_.covariance.block(part * n * n, part * n * n, n * n, n * n) * gradient);
+    return {solver.eigenvalues()[0], solver.eigenvalues()[n - 1], std::sqrt(std::max(0.0, variance))};
+  }
+
+  [[nodiscard]] std::string stated(const Eigenvalues& value, const char* unit) const {
+    return fmt::format("{:.3g} ± {:.2g} {}{}", value.smallest, numeric::kNormal95 * value.standard_error, unit,
+                       axes() == 1 ? "" : " in its weakest direction");
+  }
+
+  Identification& id_;
+  Units units_ = units_of(id_.motion);
+};
+
+}  // namespace
+
+Excitation measure_excitation(const Matrix& Z, const Matrix& Y, const impedance::Model& model, int rank) {
+  const Index n = model.axes();
+  Excitation result;
+  result.rank = rank;
+  const Matrix centred = Z.leftCols(3 * n).rowwise() - Z.leftCols(3 * n).colwise().mean();
+  const Matrix cov = centred.transpose() * centred / static_cast<double>(std::max<Index>(Z.rows() - 1, 1));
+
+  const Eigen::SelfAdjointEigenSolver<Matrix> motion(cov.block(2 * n, 2 * n, n, n));
+  result.motion = std::sqrt(std::max(0.0, motion.eigenvalues()[n - 1]));
+  result.motion_ratio = result.motion > 0.0 ? std::sqrt(std::max(0.0, motion.eigenvalues()[0])) / result.motion : 0.0;
+
+  Vector scale = cov.diagonal().cwiseSqrt();
+  scale = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Matrix> all(scale.asDiagonal() * cov * scale.asDiagonal());
+  const double smallest = all.eigenvalues()[0], largest = all.eigenvalues()[3 * n - 1];
+  result.condition = smallest > 0.0 ? std::sqrt(largest / smallest) : std::numeric_limits<double>::infinity();
+
+  // What of ẍ velocity and position cannot imitate: the Schur complement of their covariance.
+  const Eigen::CompleteOrthogonalDecomposition<Matrix> others(cov.bottomRightCorner(2 * n, 2 * n));
+  const Matrix own =
+      cov.topLeftCorner(n, n) - cov.topRightCorner(n, 2 * n) * others.solve(Matrix(cov.bottomLeftCorner(2 * n, n)));
+  result.inertia_share = std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < n; ++j) {
+    const double force = numeric::variance(Y.col(j));
+    const double inertial = model.M.row(j) * own * model.M.row(j).transpose();
+    result.inertia_share = std::min(result.inertia_share, force > 0.0 ? std::max(0.0, inertial) / force : 0.0);
+  }
+  return result;
+}
+
+void add_warnings(Identification& identification) {
+  Checker checker(identification);
+  checker.check_excitation();
+  if (identification.excitation.rank == 3 * identification.axes + 1) {  // otherwise there is no model to speak of
+    checker.check_signs();
+    checker.check_band();
+  }
+  checker.check_fit();
+  checker.check_decimation();
+}
+
+}  // namespace mbk::identify

@@ -1,0 +1,328 @@
+#include "mbk/measure/identify/impedance_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "mbk/base/numeric/block_bootstrap.h"
+#include "mbk/base/numeric/instrumental_variables.h"
+#include "mbk/base/numeric/least_squares.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/fit_checks.h"
+#include "mbk/measure/identify/instruments.h"
+#include "mbk/measure/identify/regression.h"
+
+namespace mbk::identify {
+namespace {
+
+double largest_relative_change(const impedance::Model& a, const impedance::Model& b) {
+  double largest = 0.0;
+  for (const auto& [x, y] : {std::pair{&a.M, &b.M}, std::pair{&a.B, &b.B}, std::pair{&a.K, &b.K}}) {
+    const double scale = x->cwiseAbs().maxCoeff();
+    if (scale > 0.0) largest = std::max(largest, (*y - *x).cwiseAbs().maxCoeff() / scale);
+  }
+  return largest;
+}
+
+/// Coefficients by either method, with what their uncertainty is made of: φ − φ₀ ≈ A Σ_t Sᵀ(e_t ⊗ r_t).
+struct Estimate {
+  Matrix coefficients;  ///< p×n
+  Matrix structure;     ///< S
+  Matrix bread;         ///< A, k×k
+  int rank = 0;
+};
+
+/// What is fitted, and from which rows.
+class Fitter {
+ public:
+  Fitter(const std::vector<PreparedTrial>& trials, const Options& options)
+      : trials_(trials), options_(options), r_(stack(trials)) {}
+
+  Result<void> prepare();
+  Result<Identification> identify(Method method);
+  [[nodiscard]] Disagreement compare() const;
+
+ private:
+  [[nodiscard]] Result<Estimate> estimate(Method method, const std::vector<RowRange>& ranges, Index step = 1) const;
+  [[nodiscard]] const Matrix& instruments(Method method) const {
+    return method == Method::least_squares ? r_.Z : instruments_->R;
+  }
+  [[nodiscard]] bool is_full(const Estimate& estimate) const { return estimate.rank == r_.Z.cols(); }
+  [[nodiscard]] impedance::Model model_from(const Estimate& estimate) const;
+  [[nodiscard]] Result<Replicates> resample(Method method) const;
+  [[nodiscard]] Matrix covariance_of_robot(Method method, const Estimate& estimate) const;
+  [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
+  void describe(Identification& result) const;
+
+  const std::vector<PreparedTrial>& trials_;
+  const Options& options_;
+  Regression r_;
+  Matrix S_;
+  std::vector<RowRange> ranges_;  ///< behind the parameters
+  Index samples_ = 0, lags_ = 0;
+  double widening_ = 1.0;
+  bool all_ = false;
+  std::optional<Instruments> instruments_;
+  std::array<std::optional<Estimate>, 2> estimates_;  ///< by method
+};
+
+Result<void> check_options(const std::vector<PreparedTrial>& trials, const Options& options) {
+  if (trials.empty()) return bad_usage("no trial to identify from");
+  if (!(options.hac_lag_s >= 0.0 && std::isfinite(options.hac_lag_s))) {
+    return bad_usage(
+        fmt::format("a reach of the residual's correlation of {:g} s is not 0 or more", options.hac_lag_s));
+  }
+  if (!std::isfinite(options.handle_mass)) {
+    return bad_usage(fmt::format("a handle mass of {:g} kg is none", options.handle_mass));
+  }
+  const PreparedTrial& first = trials.front();
+  for (const PreparedTrial& trial : trials) {
+    if (trial.axes != first.axes || trial.motion != first.motion) {
+      return bad_data("its axes or units are not those of the first file, so they cannot be pooled",
+                      "measure it by itself", trial.sources.empty() ? "" : trial.sources.front().path);
+    }
+    if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
+      return bad_data(
+          fmt::format("trials of {:g} Hz and {:g} Hz cannot be pooled", first.recording_rate, trial.recording_rate),
+          "put them on one clock with --resample HZ");
+    }
+  }
+  return {};
+}
+
+Result<void> Fitter::prepare() {
+  if (r_.identification.empty()) return bad_data("no data to identify from", "move --split to a later time");
+  S_ = structure_matrix(options_.structure, r_.axes());
+  const Preparation& how = trials_.front().preparation;
+  const bool pulses_by_default = how.mode == Mode::improved && how.protocol == Protocol::underdamped;
+  const ParametersFrom from =
+      options_.parameters_from.value_or(pulses_by_default ? ParametersFrom::all : ParametersFrom::identification);
+  all_ = from == ParametersFrom::all;
+  ranges_ = all_ ? joined(r_.identification, r_.validation) : joined(r_.identification, {});
+  for (const RowRange& range : ranges_) samples_ += range.size();
+  const double data_s = static_cast<double>(samples_) * r_.sample_time;
+  if (options_.hac_lag_s > std::max(data_s, Options{}.hac_lag_s)) {
+    return bad_usage(fmt::format("--hac-lag {:g} s reaches beyond the {:.3g} s of data", options_.hac_lag_s, data_s),
+                     "choose a shorter one; the residual's correlation seldom lasts for a second");
+  }
+  lags_ = static_cast<Index>(std::llround(options_.hac_lag_s / r_.sample_time));
+  const double coefficients = static_cast<double>(r_.Z.cols());
+  double independent = static_cast<double>(samples_);
+  if (how.cutoff) independent = std::min(independent, 2.0 * how.cutoff->value * data_s);
+  widening_ = numeric::newey_west_widening(static_cast<double>(lags_) / static_cast<double>(samples_)) *
+              numeric::fitted_widening(independent, coefficients);
+  return {};
+}
+
+Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ranges, Index step) const {
+  const Matrix Z = rows_of(r_.Z, ranges, step), Y = rows_of(r_.Y, ranges, step);
+  if (method == Method::least_squares) {
+    auto fit = numeric::fit_least_squares(Z, Y, S_);
+    if (!fit) return tl::unexpected(fit.error());
+    return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse_gram), fit->rank};
+  }
+  auto fit = numeric::fit_instrumental_variables(Z, rows_of(instruments_->R, ranges, step), Y, S_);
+  if (!fit) return tl::unexpected(fit.error());
+  return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse), fit->rank};
+}
+
+/// The coefficients of smallest norm explain the force too where the rank is short, but they are not the limb's.
+impedance::Model Fitter::model_from(const Estimate& estimate) const {
+  const Index n = r_.axes();
+  const Vector undefined = Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN());
+  return is_full(estimate) ? model_of(estimate.coefficients, r_.centre, options_.handle_mass)
+                           : impedance::unstacked(undefined, n);
+}
+
+Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& range) const {
+  const Matrix residual =
+      r_.Y.middleRows(range.begin, range.size()) - r_.Z.middleRows(range.begin, range.size()) * estimate.coefficients;
+  const Matrix R = instruments(method).middleRows(range.begin, range.size());
+  return estimate.bread * numeric::regression_scores(R, residual, estimate.structure, {0, range.size()});
+}
+
+/// What the coefficients of the robot, on which the force rests, leave open of φ: D V Dᵀ with D = ∂φ/∂θ, found by the
+/// same regression from ∂(−F_h)/∂θ, since φ is linear in the force.
+Matrix Fitter::covariance_of_robot(Method method, const Estimate& estimate) const {
+  const Index p = r_.robot_covariance.rows(), n = r_.axes();
+  Matrix D = Matrix::Zero(estimate.bread.rows(), p);
+  for (const RowRange& range : ranges_) {
+    const Matrix R = instruments(method).middleRows(range.begin, range.size());
+    for (Index k = 0; k < p; ++k) {
+      Matrix change(range.size(), n);
+      for (Index axis = 0; axis < n; ++axis) {
+        change.col(axis) = -r_.force_sensitivity.col(axis * p + k).segment(range.begin, range.size());
+      }
+      D.col(k) += numeric::regression_scores(R, change, estimate.structure, {0, range.size()}).rowwise().sum();
+    }
+  }
+  D = estimate.bread * D;
+  return D * r_.robot_covariance * D.transpose();
+}
+
+/// What both methods have in common.
+void Fitter::describe(Identification& result) const {
+  const PreparedTrial& first = trials_.front();
+  result.axes = first.axes;
+  result.motion = first.motion;
+  result.structure = options_.structure;
+  result.handle_mass = options_.handle_mass;
+  result.parameters_from = all_ ? "all" : "identification";
+  result.parameters = parameter_names(first.axes);
+  result.samples = samples_;
+  result.hac_lag_s = static_cast<double>(lags_) * r_.sample_time;
+  for (const PreparedTrial& trial : trials_) {
+    result.preparations.push_back(trial.preparation);
+    result.sources.insert(result.sources.end(), trial.sources.begin(), trial.sources.end());
+    result.durations.insert(result.durations.end(), trial.sources.size(), trial.recording_duration);
+    result.rates.insert(result.rates.end(), trial.sources.size(), trial.recording_rate);
+    result.notes.insert(result.notes.end(), trial.notes.begin(), trial.notes.end());
+    result.warnings.insert(result.warnings.end(), trial.warnings.begin(), trial.warnings.end());
+  }
+}
+
+Result<Identification> Fitter::identify(Method method) {
+  const Index n = r_.axes();
+  if (method == Method::instrumental_variables && !instruments_) {
+    auto made = make_instruments(r_, trials_.front().reference_quantity, ranges_, lags_);
+    if (!made) return tl::unexpected(made.error());
+    instruments_ = std::move(*made);
+  }
+  const auto check = estimate(method, r_.identification);
+  if (!check) return tl::unexpected(check.error());
+  const auto fit = all_ && !r_.validation.empty() ? estimate(method, ranges_) : check;
+  if (!fit) return tl::unexpected(fit.error());
+  estimates_[static_cast<std::size_t>(method)] = *fit;
+
+  Identification result;
+  describe(result);
+  result.method = method;
+  result.model = model_from(*fit);
+  result.judged = model_from(*check);
+  result.fit = judge(r_, check->coefficients);
+  const auto count = static_cast<Index>(result.parameters.size());
+  result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
+  if (is_full(*fit)) {
+    const Matrix V = numeric::long_run_covariance(fit->bread.rows(), ranges_, lags_,
+                                                  [&](const RowRange& range) { return scores(method, *fit, range); });
+    result.covariance = model_covariance(fit->structure, widening_ * widening_ * V, result.model, r_.centre);
+    if (r_.robot_covariance.size() > 0) {
+      const Matrix of_robot =
+          model_covariance(fit->structure, covariance_of_robot(method, *fit), result.model, r_.centre);
+      result.covariance += of_robot;
+      result.standard_error_of_robot = impedance::unstacked(of_robot.diagonal().cwiseMax(0.0).cwiseSqrt(), n);
+    }
+  }
+  result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
+  if (method == Method::instrumental_variables) {
+    result.instrument = InstrumentCheck{instruments_->from, instruments_->strength, Vector::Constant(n, std::nan(""))};
+    if (is_full(*fit)) {
+      result.instrument->answered = answered_share(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
+    }
+  }
+  if (options_.bootstrap > 0 && is_full(*fit)) {
+    auto replicates = resample(method);
+    if (!replicates) return tl::unexpected(replicates.error());
+    result.replicates = std::move(*replicates);
+  }
+  result.excitation = measure_excitation(rows_of(r_.Z, ranges_), rows_of(r_.Y, ranges_), result.model, fit->rank);
+  result.excitation.duration = static_cast<double>(samples_) * r_.sample_time;
+
+  if (options_.decimate_check) {
+    // At least every other one: the rows may be thinned already.
+    const auto step = std::max<Index>(2, static_cast<Index>(std::llround(1.0 / (100.0 * r_.sample_time))));
+    const auto coarse = estimate(method, ranges_, step);
+    if (!coarse) return tl::unexpected(coarse.error());
+    DecimationCheck decimation;
+    decimation.rate_hz = 1.0 / (static_cast<double>(step) * r_.sample_time);
+    decimation.model = model_of(coarse->coefficients, r_.centre, options_.handle_mass);
+    decimation.largest_change = largest_relative_change(result.model, decimation.model);
+    result.decimation = decimation;
+  }
+  add_warnings(result);
+  return result;
+}
+
+Result<Replicates> Fitter::resample(Method method) const {
+  const Index n = r_.axes(), p = r_.Z.cols();
+  numeric::BlockBootstrapOptions how;
+  how.block_rows = std::max<Index>(1, std::llround(options_.block_s / r_.sample_time));
+  how.replicates = options_.bootstrap;
+  how.seed = options_.seed;
+  how.threads = options_.threads;
+  const auto drawn = numeric::block_bootstrap(r_.Z, instruments(method), r_.Y, S_, ranges_, how);
+  if (!drawn) return tl::unexpected(drawn.error());
+  Replicates result{Matrix(3 * n * n + n, drawn->coefficients.cols()), options_.block_s, drawn->blocks, how.seed};
+  for (Index k = 0; k < drawn->coefficients.cols(); ++k) {
+    const Matrix coefficients = Vector(S_ * drawn->coefficients.col(k)).reshaped(p, n);
+    result.models.col(k) = impedance::stacked(model_of(coefficients, r_.centre, options_.handle_mass));
+  }
+  return result;
+}
+
+Disagreement Fitter::compare() const {
+  constexpr auto kLs = Method::least_squares, kIv = Method::instrumental_variables;
+  const auto &ls = estimates_[0], &iv = estimates_[1];
+  Disagreement result;
+  if (!ls || !iv || !is_full(*ls) || !is_full(*iv)) return result;
+  const Index n = r_.axes(), p = 3 * n + 1;
+  const Matrix V = numeric::long_run_covariance(iv->bread.rows(), ranges_, lags_, [&](const RowRange& range) {
+    return Matrix(scores(kIv, *iv, range) - scores(kLs, *ls, range));
+  });
+  const Vector variance = (iv->structure * V * iv->structure.transpose()).diagonal();
+  const std::vector<std::string> names = parameter_names(static_cast<int>(n));
+  double largest = 0.0;
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < 3 * n; ++i) {
+      const double difference = iv->coefficients(i, j) - ls->coefficients(i, j);
+      const double error = widening_ * std::sqrt(std::max(0.0, variance[j * p + i]));
+      if (!(error > 0.0) || !(std::abs(difference) / error > largest)) continue;
+      largest = std::abs(difference) / error;
+      const Index part = i / n, column = i % n;
+      result.parameter = names[static_cast<std::size_t>(part * n * n + j * n + column)];
+      result.difference = difference;
+      result.standard_error = error;
+    }
+  }
+  // Bonferroni: 1 % over 3n² parameters.
+  constexpr double kOneAxis = 2.935, kTwoAxes = 3.341;  // two-sided normal quantiles of 0.01/3 and 0.01/12
+  result.significant = largest > (n == 1 ? kOneAxis : kTwoAxes);
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> parameter_names(int axes) {
+  if (axes == 1) return {"m", "b", "k", "x0"};
+  std::vector<std::string> names;
+  for (const char matrix : {'m', 'b', 'k'}) {
+    for (const char* entry : {"xx", "xy", "yx", "yy"}) names.push_back(fmt::format("{}_{}", matrix, entry));
+  }
+  names.insert(names.end(), {"x0", "y0"});
+  return names;
+}
+
+Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials, const Options& options) {
+  if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
+  Fitter fitter(trials, options);
+  if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
+  return fitter.identify(options.method);
+}
+
+Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, const Options& options) {
+  if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
+  Fitter fitter(trials, options);
+  if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
+  auto ls = fitter.identify(Method::least_squares);
+  if (!ls) return tl::unexpected(ls.error());
+  auto iv = fitter.identify(Method::instrumental_variables);
+  if (!iv) return tl::unexpected(iv.error());
+  return Comparison{std::move(*ls), std::move(*iv), fitter.compare()};
+}
+
+}  // namespace mbk::identify

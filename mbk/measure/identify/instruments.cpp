@@ -1,0 +1,192 @@
+#include "mbk/measure/identify/instruments.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
+
+#include "mbk/base/numeric/instrumental_variables.h"
+#include "mbk/model/impedance/ellipse.h"
+
+namespace mbk::identify {
+namespace {
+
+constexpr double kStrong = 10.0;  ///< first-stage F
+constexpr int kPasses = 2;        ///< refinements of the nominal impedance
+constexpr double kFloor = 0.02;   ///< of the nominal impedance's eigenvalues, of the largest: it must be stable
+constexpr double kReach = 0.5;    ///< of an answer to the perturbation [s]
+constexpr Index kLagsOfAnswer = 5;
+
+/// The ranges of rows that were put under each other.
+std::vector<RowRange> packed(const std::vector<RowRange>& ranges) {
+  std::vector<RowRange> result;
+  Index row = 0;
+  for (const RowRange& range : ranges) {
+    result.push_back({row, row + range.size()});
+    row += range.size();
+  }
+  return result;
+}
+
+/// The symmetric part with eigenvalues of at least `floor`.
+Matrix lifted(const Matrix& Z, double floor) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(impedance::symmetric_part(Z));
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(floor).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+double largest_eigenvalue(const Matrix& Z) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(impedance::symmetric_part(Z), Eigen::EigenvaluesOnly);
+  return std::max(solver.eigenvalues().maxCoeff(), 0.0);
+}
+
+/// A second-order system that is stable, near the one that was found; `coefficients` are of [ẍ ẋ x].
+impedance::Model stable(const Matrix& coefficients, double fastest) {
+  const Index n = coefficients.cols();
+  const auto part = [&](Index k) { return Matrix(coefficients.middleRows(k * n, n).transpose()); };
+  impedance::Model model;
+  const double stiffness = largest_eigenvalue(part(2)), damping = largest_eigenvalue(part(1));
+  model.K = lifted(part(2), kFloor * stiffness);
+  // Inertia that cannot be found is as small as the motion's band allows.
+  const double inertia = std::max(largest_eigenvalue(part(0)), stiffness / (fastest * fastest));
+  model.M = lifted(part(0), kFloor * inertia);
+  model.B = lifted(part(1), std::max(kFloor * damping, 0.1 * std::sqrt(kFloor * inertia * std::max(stiffness, 1e-12))));
+  model.x0 = Vector::Zero(n);
+  return model;
+}
+
+/// [x̂'' x̂' x̂] of M x'' + B x' + K x = u, u straight between samples. Each range begins at rest at 0, so that a step
+/// which the range begins with moves it.
+Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_time,
+                const std::vector<RowRange>& ranges) {
+  const Index n = u.cols();
+  const Eigen::LDLT<Matrix> M(model.M);
+  const Matrix by_position = -M.solve(model.K), by_velocity = -M.solve(model.B);
+  const Matrix by_force = M.solve(Matrix::Identity(n, n));
+  Matrix generator = Matrix::Zero(4 * n, 4 * n);
+  generator.block(0, n, n, n).setIdentity();
+  generator.block(n, 0, n, n) = by_position;
+  generator.block(n, n, n, n) = by_velocity;
+  generator.block(n, 2 * n, n, n) = by_force;
+  generator.block(2 * n, 3 * n, n, n).setIdentity();
+  const Matrix step = (generator * sample_time).exp();
+  const Matrix state = step.topLeftCorner(2 * n, 2 * n);
+  const Matrix slope = step.block(0, 3 * n, 2 * n, n) / sample_time, level = step.block(0, 2 * n, 2 * n, n) - slope;
+  Matrix motion = Matrix::Zero(u.rows(), 3 * n);
+  for (const RowRange& range : ranges) {
+    Vector z = Vector::Zero(2 * n);
+    for (Index i = range.begin; i < range.end; ++i) {
+      const Vector now = u.row(i).transpose();
+      motion.row(i).segment(2 * n, n) = z.head(n);
+      motion.row(i).segment(n, n) = z.tail(n);
+      motion.row(i).head(n) = by_position * z.head(n) + by_velocity * z.tail(n) + by_force * now;
+      if (i + 1 < range.end) z = state * z + level * now + slope * u.row(i + 1).transpose();
+    }
+  }
+  return motion;
+}
+
+/// [motion 1] with the means of the rows that count taken off.
+Matrix with_constant(const Matrix& motion, const std::vector<RowRange>& ranges) {
+  Matrix R(motion.rows(), motion.cols() + 1);
+  const Vector mean = rows_of(motion, ranges).colwise().mean();
+  R << motion.rowwise() - mean.transpose(), Vector::Ones(motion.rows());
+  return R;
+}
+
+Vector strength_of(const Regression& r, const Matrix& R, const std::vector<RowRange>& ranges, Index lags) {
+  return numeric::first_stage_strength(rows_of(r.Z, ranges), rows_of(R, ranges), packed(ranges), lags);
+}
+
+/// The reference as a force, and what it makes of a nominal limb on the robot.
+Instruments from_force(const Regression& r, const std::vector<RowRange>& ranges, Index lags) {
+  const Index n = r.axes();
+  const Matrix force = with_constant(r.reference.rightCols(n), ranges).leftCols(n);
+  const std::vector<RowRange> whole = joined(r.identification, r.validation);
+  const Matrix Z = rows_of(r.Z, ranges), target = rows_of(force, ranges);
+  Instruments result;
+  result.from = ReferenceQuantity::force;
+  const double fastest = 0.5 / r.sample_time;  // [rad/s] about the top of the band that the rows carry
+  Matrix total = Z.colPivHouseholderQr().solve(target);
+  for (int pass = 0; pass <= kPasses; ++pass) {
+    result.R = with_constant(simulate(stable(total, fastest), force, r.sample_time, whole), ranges);
+    if (pass == kPasses) break;
+    const auto fit = numeric::fit_instrumental_variables(Z, rows_of(result.R, ranges), target);
+    if (!fit || !fit->coefficients.allFinite()) break;
+    total = fit->coefficients;
+  }
+  result.strength = strength_of(r, result.R, ranges, lags);
+  return result;
+}
+
+Instruments from_position(const Regression& r, const std::vector<RowRange>& ranges, Index lags) {
+  Instruments result{with_constant(r.reference, ranges), ReferenceQuantity::position, {}};
+  result.strength = strength_of(r, result.R, ranges, lags);
+  return result;
+}
+
+}  // namespace
+
+Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity,
+                                     const std::vector<RowRange>& ranges, Index lags) {
+  const Index n = r.axes();
+  if (r.reference.size() == 0) {
+    return bad_data("there is no reference, so that nothing is known that could serve as an instrument",
+                    "record the perturbation as channel reference (xr, yr), or use --method ls");
+  }
+  const Matrix moves = rows_of(r.reference.rightCols(n), ranges);
+  for (Index j = 0; j < n; ++j) {
+    if (moves.col(j).maxCoeff() > moves.col(j).minCoeff()) continue;
+    return bad_data("the reference never changes in one axis, so that it cannot serve as an instrument",
+                    "perturb in every axis, or use --method ls");
+  }
+  if (quantity == ReferenceQuantity::force) return from_force(r, ranges, lags);
+  Instruments position = from_position(r, ranges, lags);
+  if (position.strength.minCoeff() > kStrong) return position;
+  // A reference of steps has no derivatives, and one without a unit may be a force: what a system makes of it remains.
+  Instruments response = from_force(r, ranges, lags);
+  if (quantity == ReferenceQuantity::position) response.from = ReferenceQuantity::position;
+  return response.strength.minCoeff() > position.strength.minCoeff() ? std::move(response) : std::move(position);
+}
+
+Vector answered_share(const Regression& r, const Instruments& instruments, const Matrix& residual,
+                      const std::vector<RowRange>& ranges) {
+  const Index n = r.axes(), p = instruments.R.cols();
+  const Index every = std::max<Index>(1, std::llround(kReach / (r.sample_time * static_cast<double>(kLagsOfAnswer))));
+  const Index reach = every * kLagsOfAnswer;
+  std::vector<Index> rows;
+  for (const RowRange& range : ranges) {
+    for (Index i = range.begin + reach; i < range.end; ++i) rows.push_back(i);
+  }
+  const Index columns = p + n * kLagsOfAnswer;
+  if (static_cast<Index>(rows.size()) < 2 * columns) return Vector::Constant(n, std::nan(""));
+  Matrix X(static_cast<Index>(rows.size()), columns), Y(X.rows(), n);
+  for (Index k = 0; k < X.rows(); ++k) {
+    const Index i = rows[static_cast<std::size_t>(k)];
+    X.row(k).head(p) = instruments.R.row(i);
+    for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) {
+      X.row(k).segment(p + (lag - 1) * n, n) = r.reference.row(i - lag * every).tail(n);
+    }
+    Y.row(k) = residual.row(i);
+  }
+  Y.rowwise() -= Y.colwise().mean().eval();
+  const Matrix left = Y - X * X.colPivHouseholderQr().solve(Y);
+  // Independent samples: those of the residual's own correlation.
+  Vector share(n);
+  for (Index j = 0; j < n; ++j) {
+    const double power = Y.col(j).squaredNorm();
+    double memory = 1.0;
+    for (Index lag = 1; lag < Y.rows() / 4; ++lag) {
+      const double one = Y.col(j).head(Y.rows() - lag).dot(Y.col(j).tail(Y.rows() - lag)) / power;
+      if (one < 0.1) break;
+      memory += 2.0 * one;
+    }
+    const double chance = static_cast<double>(columns - 1) * memory / static_cast<double>(Y.rows());
+    const double explained = power > 0.0 ? 1.0 - left.col(j).squaredNorm() / power : 0.0;
+    share[j] = chance < 1.0 ? std::clamp((explained - chance) / (1.0 - chance), 0.0, 1.0) : std::nan("");
+  }
+  return share;
+}
+
+}  // namespace mbk::identify

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/measure/identify/regression.h"
+
+namespace mbk::identify {
+
+/// What the known perturbation alone makes the limb do: the instruments of the regression, N×(3n+1), row by row beside
+/// its regressors [ẍ ẋ x 1].
+struct Instruments {
+  Matrix R;
+  ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
+  Vector strength;                                      ///< 3n, conditional first-stage F of ẍ, ẋ, x
+};
+
+/// From a position reference: [r̈ ṙ r 1], filtered as the motion is. From a force: the derivatives of
+///   x̂ = (M_t s² + B_t s + K_t)⁻¹ F*,
+/// with M_t, B_t, K_t of robot and limb together, found from F* itself by least squares and then twice by the
+/// instruments of the pass before. What is instrumental about them is that they are made from F* alone: a nominal
+/// impedance that is wrong costs strength, not truth (Söderström & Stoica 1983). Where its unit does not say what the
+/// reference is, the stronger of both is taken.
+/// @param ranges rows that count    @param lags of the residuals' covariance, rows
+/// @fails the trials hold no filtered reference; it never changes.
+[[nodiscard]] Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity,
+                                                   const std::vector<RowRange>& ranges, Index lags);
+
+/// How much of what a model leaves is a linear answer to the known perturbation that no inertia, damping and stiffness
+/// gives: the residual on the instruments and on the reference as it was up to half a second before.
+/// @returns share of the residual's power, n; what chance would give is taken off
+[[nodiscard]] Vector answered_share(const Regression& r, const Instruments& instruments, const Matrix& residual,
+                                    const std::vector<RowRange>& ranges);
+
+}  // namespace mbk::identify

@@ -1,0 +1,587 @@
+#include "mbk/measure/identify/prediction_error.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mbk/base/dsp/difference_equation.h"
+#include "mbk/base/numeric/least_squares.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/base/numeric/polynomial_roots.h"
+#include "mbk/measure/identify/autoregression.h"
+#include "mbk/measure/identify/srivc.h"
+
+namespace mbk::identify {
+namespace {
+
+using dsp::difference_equation;
+
+const Vector kOne = Vector::Ones(1);
+
+/// 1, c₁ … c_n.
+Vector monic(const Vector& c) {
+  Vector whole(c.size() + 1);
+  whole << 1.0, c;
+  return whole;
+}
+
+/// Whether 1 + c₁ q⁻¹ + … has its roots inside the unit circle, by Levinson's recursion backwards (Schur & Cohn).
+bool is_stable(Vector c) {
+  for (Index n = c.size(); n > 0; --n) {
+    const double reflection = c[n - 1];
+    if (!(std::abs(reflection) < 1.0)) return false;
+    c = ((c.head(n - 1) - reflection * c.head(n - 1).reverse()) / (1.0 - reflection * reflection)).eval();
+  }
+  return true;
+}
+
+Vector from_roots(const Eigen::VectorXcd& roots) {
+  return numeric::monic_from_roots(roots).reverse();
+}
+
+/// Roots outside the unit circle are reflected into it.
+Vector stabilised(const Vector& c) {
+  if (!c.allFinite()) return Vector::Zero(c.size());
+  if (is_stable(c)) return c;
+  constexpr double kInside = 0.9999;
+  Eigen::VectorXcd roots = numeric::polynomial_roots(monic(c).reverse());
+  for (auto& root : roots) {
+    if (std::abs(root) > kInside) root /= std::max(std::norm(root), std::abs(root) / kInside);
+  }
+  return from_roots(roots);
+}
+
+/// x[t − lag], from rest.
+template <class Column>
+void put_shifted(const Vector& x, Index lag, double sign, Column&& to) {
+  to.head(lag).setZero();
+  to.tail(x.size() - lag) = sign * x.head(x.size() - lag);
+}
+
+/// Impulse responses of 1/F from the first samples on, and a constant: what an initial state and an offset can do.
+Matrix free_motion(const Vector& F, Index impulses, Index samples) {
+  Matrix free(samples, impulses + 1);
+  const Vector response = difference_equation(kOne, F, Vector::Unit(samples, 0));
+  for (Index j = 0; j < impulses; ++j) put_shifted(response, j, 1.0, free.col(j));
+  free.col(impulses).setOnes();
+  return free;
+}
+
+/// Takes out of other columns what some columns explain.
+class Projection {
+ public:
+  explicit Projection(const Matrix& columns) {
+    if (columns.cols() > 0) qr_.emplace(columns);
+  }
+  [[nodiscard]] Vector coefficients(const Vector& of) const { return qr_ ? Vector(qr_->solve(of)) : Vector(); }
+  [[nodiscard]] Matrix rest(Matrix of) const {
+    if (!qr_ || of.cols() == 0) return of;
+    of.applyOnTheLeft(qr_->householderQ().adjoint());
+    of.topRows(qr_->rank()).setZero();
+    of.applyOnTheLeft(qr_->householderQ());
+    return of;
+  }
+
+ private:
+  std::optional<Eigen::ColPivHouseholderQR<Matrix>> qr_;
+};
+
+struct Model {
+  Vector f, b, c, d;
+};
+
+bool is_stable(const Model& model) {
+  return is_stable(model.f) && is_stable(model.c) && is_stable(model.d);
+}
+
+/// Coefficients that a search moves, in the order f, b, c, d.
+struct Parts {
+  bool denominator = false, numerator = false, noise = false;
+};
+constexpr Parts kDynamics{.denominator = true, .numerator = true};
+constexpr Parts kNumerator{.numerator = true};
+constexpr Parts kNoise{.noise = true};
+constexpr Parts kAll{.denominator = true, .numerator = true, .noise = true};
+
+/// One experiment at a model, free of its initial state and offset.
+struct Local {
+  Matrix slopes;  ///< ∂ε/∂θ
+  Vector residual, innovation;
+};
+
+/// Σε² to first order, |R δ + r|² + rest.
+struct Linear {
+  Matrix R;
+  Vector r;
+  double squares = std::numeric_limits<double>::infinity();
+
+  /// The least of it and of damping·|s δ|², s the lengths of R's columns.
+  [[nodiscard]] Vector step(double damping) const {
+    const Index p = R.cols();
+    Vector scale = R.colwise().norm();
+    for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
+    Matrix scaled(2 * p, p);
+    scaled << R * scale.asDiagonal(), std::sqrt(damping) * Matrix::Identity(p, p);
+    Vector right = Vector::Zero(2 * p);
+    right.head(p) = -r;
+    return scale.cwiseProduct(scaled.colPivHouseholderQr().solve(right));
+  }
+  /// (RᵀR)⁻¹
+  [[nodiscard]] Matrix inverse() const {
+    const Vector scale = R.colwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
+    const Matrix half = scale.asDiagonal() * (R * scale.asDiagonal()).colPivHouseholderQr().inverse();
+    return half * half.transpose();
+  }
+};
+
+/// The triangle that stands for all rows so far and these.
+void add_rows(const Matrix& rows, Matrix& triangle) {
+  Matrix all(triangle.rows() + rows.rows(), rows.cols());
+  if (triangle.rows() > 0) all.topRows(triangle.rows()) = triangle;
+  all.bottomRows(rows.rows()) = rows;
+  const Eigen::HouseholderQR<Matrix> qr(all);
+  const Index p = std::min(all.rows(), all.cols());
+  triangle = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
+}
+
+class Fitter {
+ public:
+  Fitter(const std::vector<SignalPair>& experiments, const PredictionErrorOptions& options)
+      : experiments_(experiments), options_(options), n_(options.poles), q_(options.zeros + 1) {}
+
+  Result<PredictionErrorFit> run();
+
+ private:
+  struct Search {
+    SearchStart start;
+    Model at;
+    double squares = std::numeric_limits<double>::infinity();
+  };
+  using Signals = std::vector<Vector>;
+
+  [[nodiscard]] Local local(const Model& at, std::size_t experiment, std::optional<Parts> slopes) const;
+  [[nodiscard]] Linear linear(const Model& at, Parts parts) const;
+  [[nodiscard]] double squares(const Model& at) const;
+  [[nodiscard]] Model moved(Model at, Parts parts, const Vector& step) const;
+  [[nodiscard]] Vector coefficients(const Model& at, Parts parts) const;
+  void descend(Search& search, Parts parts) const;
+
+  [[nodiscard]] Vector regress(const Vector& filter, const Signals& outputs, const Signals* instruments, Index poles,
+                               Index zeros) const;
+  [[nodiscard]] Signals responses(const Vector& theta, Index poles) const;
+  [[nodiscard]] Model with_best_numerator(const Vector& f) const;
+  [[nodiscard]] Search sharpened(std::string made_by, const Vector& f) const;
+  [[nodiscard]] std::vector<std::pair<std::string, Vector>> starts(const ContinuousFit& continuous,
+                                                                   const Vector& rich) const;
+  void model_noise(Model& at) const;
+  void take_covariance(const Model& at, PredictionErrorFit& made) const;
+  [[nodiscard]] double fit_of(const Model& at) const;
+
+  const std::vector<SignalPair>& experiments_;
+  const PredictionErrorOptions& options_;
+  Index n_, q_, samples_ = 0;
+  double step_ = 0, output_squares_ = 0;
+  Signals outputs_;
+};
+
+Local Fitter::local(const Model& at, std::size_t experiment, std::optional<Parts> slopes) const {
+  const SignalPair& pair = experiments_[experiment];
+  const Index total = pair.output.size();
+  const Vector F = monic(at.f), C = monic(at.c), D = monic(at.d);
+  const auto whitened = [&](const Vector& x) {
+    return at.c.size() + at.d.size() == 0 ? x : difference_equation(C, D, x);
+  };
+  Vector response = difference_equation(at.b, F, pair.input);
+  Local made;
+  made.residual = pair.output - response;
+  const Matrix free = options_.free_start ? free_motion(F, n_, total) : Matrix(total, 0);
+  Matrix filtered = free;
+  for (auto column : filtered.colwise()) column = whitened(column);
+  const Projection projection(filtered);
+  if (free.cols() > 0) {
+    const Vector motion = projection.coefficients(whitened(made.residual));
+    response += free.leftCols(n_) * motion.head(n_);
+    made.residual -= free * motion;
+  }
+  made.innovation = whitened(made.residual);
+  if (!slopes) return made;
+  const Index f = slopes->denominator ? n_ : 0, b = slopes->numerator ? q_ : 0;
+  const Index c = slopes->noise ? at.c.size() : 0, d = slopes->noise ? at.d.size() : 0;
+  made.slopes.resize(total, f + b + c + d);
+  if (f > 0) response = whitened(difference_equation(kOne, F, response));
+  for (Index k = 0; k < f; ++k) put_shifted(response, k + 1, 1.0, made.slopes.col(k));
+  const Vector input = b > 0 ? whitened(difference_equation(kOne, F, pair.input)) : Vector();
+  for (Index k = 0; k < b; ++k) put_shifted(input, k, -1.0, made.slopes.col(f + k));
+  const Vector v = c > 0 ? difference_equation(kOne, D, made.residual) : Vector();
+  const Vector e = d > 0 ? difference_equation(kOne, D, made.innovation) : Vector();
+  for (Index k = 0; k < c; ++k) put_shifted(v, k + 1, 1.0, made.slopes.col(f + b + k));
+  for (Index k = 0; k < d; ++k) put_shifted(e, k + 1, -1.0, made.slopes.col(f + b + c + k));
+  made.slopes = projection.rest(std::move(made.slopes));
+  return made;
+}
+
+Linear Fitter::linear(const Model& at, Parts parts) const {
+  Matrix triangle;
+  Linear made;
+  made.squares = 0.0;
+  for (std::size_t k = 0; k < experiments_.size(); ++k) {
+    Local one = local(at, k, parts);
+    made.squares += one.innovation.squaredNorm();
+    Matrix rows(one.slopes.rows(), one.slopes.cols() + 1);
+    rows << one.slopes, one.innovation;
+    add_rows(rows, triangle);
+  }
+  const Index p = triangle.cols() - 1;
+  made.R = triangle.topLeftCorner(p, p);
+  made.r = triangle.col(p).head(p);
+  return made;
+}
+
+double Fitter::squares(const Model& at) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < experiments_.size(); ++k) sum += local(at, k, std::nullopt).innovation.squaredNorm();
+  return sum;
+}
+
+Model Fitter::moved(Model at, Parts parts, const Vector& step) const {
+  Index begin = 0;
+  const auto move = [&](Vector& some, bool moves) {
+    if (!moves) return;
+    some += step.segment(begin, some.size());
+    begin += some.size();
+  };
+  move(at.f, parts.denominator);
+  move(at.b, parts.numerator);
+  move(at.c, parts.noise);
+  move(at.d, parts.noise);
+  return at;
+}
+
+Vector Fitter::coefficients(const Model& at, Parts parts) const {
+  const Vector none;
+  const Vector &f = parts.denominator ? at.f : none, &b = parts.numerator ? at.b : none;
+  const Vector &c = parts.noise ? at.c : none, &d = parts.noise ? at.d : none;
+  Vector theta(f.size() + b.size() + c.size() + d.size());
+  theta << f, b, c, d;
+  return theta;
+}
+
+/// Levenberg (1944) & Marquardt (1963), until a full step of Gauss & Newton would hardly move a coefficient, and then
+/// on to rounding.
+void Fitter::descend(Search& search, Parts parts) const {
+  constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e12, kLess = 0.1, kMore = 3.0;
+  constexpr double kRounding = 1e-11;
+  constexpr double kExact = 1e-22;  // of the output's squares: nothing is left but rounding
+  constexpr int kRefinements = 8;
+  double damping = kFirstDamping;
+  SearchStart& start = search.start;
+  start.converged = false;
+  start.stable = true;
+  int refinements = 0;
+  Linear now = linear(search.at, parts);
+  search.squares = now.squares;
+  for (int pass = 0; pass < options_.most_iterations; ++pass, ++start.iterations) {
+    const Vector full = now.step(0.0), theta = coefficients(search.at, parts);
+    const double variance = now.squares / static_cast<double>(std::max<Index>(samples_ - theta.size(), 1));
+    const Vector error = (variance * now.inverse().diagonal()).cwiseSqrt();
+    const double change = (full.array().abs() / theta.array().abs().max(error.array())).maxCoeff();
+    const bool exact = now.squares < kExact * output_squares_;
+    if (!exact && !std::isfinite(change)) return;
+    start.converged = exact || change < options_.tolerance;
+    start.stable = start.converged || is_stable(moved(search.at, parts, full));
+    if (start.converged) {
+      if (change < kRounding || refinements++ == kRefinements) return;
+      damping = 0.0;
+    }
+    bool moves = false;
+    while (!moves && damping < kMostDamping) {
+      const Model trial = moved(search.at, parts, now.step(damping));
+      const double reached = is_stable(trial) ? squares(trial) : std::numeric_limits<double>::infinity();
+      moves = reached < now.squares;
+      if (moves) {
+        search.at = trial;
+        damping = damping < kLeastDamping ? 0.0 : kLess * damping;
+      } else {
+        if (start.converged) return;  // what is left is rounding
+        damping = std::max(kMore * damping, kLeastDamping);
+      }
+    }
+    if (!moves) return;
+    now = linear(search.at, parts);
+    search.squares = now.squares;
+  }
+}
+
+/// f and b of an equation-error model of the outputs through 1/filter, by least squares or by instruments.
+Vector Fitter::regress(const Vector& filter, const Signals& outputs, const Signals* instruments, Index poles,
+                       Index zeros) const {
+  const Index p = poles + zeros + 1;
+  const Vector F = monic(filter);
+  Matrix triangle, ZX = Matrix::Zero(p, p);
+  Vector Zy = Vector::Zero(p);
+  for (std::size_t k = 0; k < experiments_.size(); ++k) {
+    const Index total = outputs[k].size();
+    const auto filtered = [&](const Vector& x) { return difference_equation(kOne, F, x); };
+    const Vector y = filtered(outputs[k]), u = filtered(experiments_[k].input);
+    const Vector x = instruments != nullptr ? filtered((*instruments)[k]) : Vector();
+    Matrix columns(total, instruments != nullptr ? p + poles + 1 : p + 1);
+    for (Index j = 0; j < poles; ++j) put_shifted(y, j + 1, -1.0, columns.col(j));
+    for (Index j = 0; j <= zeros; ++j) put_shifted(u, j, 1.0, columns.col(poles + j));
+    columns.col(p) = y;
+    for (Index j = 0; j < poles && instruments != nullptr; ++j) put_shifted(x, j + 1, -1.0, columns.col(p + 1 + j));
+    if (options_.free_start) columns = Projection(free_motion(F, poles, total)).rest(std::move(columns));
+    if (instruments == nullptr) {
+      add_rows(columns, triangle);
+      continue;
+    }
+    Matrix Z(total, p);
+    Z << columns.rightCols(poles), columns.middleCols(poles, zeros + 1);
+    ZX += Z.transpose() * columns.leftCols(p);
+    Zy += Z.transpose() * columns.col(p);
+  }
+  if (instruments != nullptr) return ZX.colPivHouseholderQr().solve(Zy);
+  return Linear{triangle.topLeftCorner(p, p), -triangle.col(p).head(p)}.step(0.0);
+}
+
+/// Of an equation-error model, from rest and stable.
+Fitter::Signals Fitter::responses(const Vector& theta, Index poles) const {
+  Signals all;
+  const Vector F = monic(stabilised(theta.head(poles)));
+  for (const SignalPair& pair : experiments_) {
+    all.push_back(difference_equation(theta.tail(theta.size() - poles), F, pair.input));
+  }
+  return all;
+}
+
+Model Fitter::with_best_numerator(const Vector& f) const {
+  Model at{f, Vector::Zero(q_), {}, {}};
+  return moved(at, kNumerator, linear(at, kNumerator).step(0.0));
+}
+
+/// Steiglitz & McBride (1965): least squares behind 1/F of the last pass; the best of the passes is kept.
+Fitter::Search Fitter::sharpened(std::string made_by, const Vector& f) const {
+  constexpr int kPasses = 12;
+  Search search;
+  search.start.made_by = std::move(made_by);
+  double modulus = 0.0;
+  for (const auto& z : numeric::polynomial_roots(monic(f).reverse()))
+    modulus += std::log(std::abs(std::log(z)) / step_);
+  search.start.pole = std::exp(modulus / static_cast<double>(n_));
+  Vector now = f;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    Model at = with_best_numerator(now);
+    const double sum = at.b.allFinite() ? squares(at) : std::numeric_limits<double>::infinity();
+    if (sum < search.squares || pass == 0) {
+      search.at = std::move(at);
+      search.squares = sum;
+    }
+    const Vector theta = regress(now, outputs_, nullptr, n_, options_.zeros);
+    now = stabilised(theta.head(n_));
+  }
+  return search;
+}
+
+std::vector<std::pair<std::string, Vector>> Fitter::starts(const ContinuousFit& continuous, const Vector& rich) const {
+  std::vector<std::pair<std::string, Vector>> all;
+  const auto add = [&](std::string made_by, const Vector& f) {
+    if (f.allFinite()) all.emplace_back(std::move(made_by), stabilised(f));
+  };
+  if (continuous.a.size() == n_ && continuous.a.allFinite()) {
+    Vector A(n_ + 1);
+    A << continuous.a, 1.0;
+    add("continuous time", from_roots((numeric::polynomial_roots(A) * step_).array().exp()));
+  }
+  const Vector none;
+  add("reduced", regress(none, responses(rich, rich.size() / 2), nullptr, n_, options_.zeros).head(n_));
+  const Vector plain = regress(none, outputs_, nullptr, n_, options_.zeros);
+  if (plain.allFinite()) {
+    add("equation error", plain.head(n_));
+    const Signals clean = responses(plain, n_);
+    add("instruments", regress(stabilised(plain.head(n_)), outputs_, &clean, n_, options_.zeros).head(n_));
+  }
+  std::vector<double> poles = options_.start_poles;
+  constexpr double kNyquistShares[] = {0.3, 0.05, 0.008};
+  for (const double share : kNyquistShares) poles.push_back(share * std::numbers::pi / step_);
+  for (const double pole : poles) {
+    add("real poles", from_roots(Eigen::VectorXcd::Constant(n_, std::exp(-pole * step_))));
+  }
+  return all;
+}
+
+/// As many c as d, by the BIC of what the dynamics leave. The first values are those of Hannan & Rissanen (1982): least
+/// squares on the innovations of a long autoregression.
+void Fitter::model_noise(Model& at) const {
+  at.c = at.d = Vector();
+  Signals left;
+  for (std::size_t k = 0; k < experiments_.size(); ++k) left.push_back(local(at, k, std::nullopt).residual);
+  const auto count = static_cast<double>(samples_);
+  constexpr Index kLong = 50;
+  const Vector longest = autoregression(left, std::min(kLong, samples_ / 20));
+  double least = count * std::log(squares(at));
+  Model best = at;
+  constexpr int kPatience = 2;
+  for (Index order = 1, rises = 0; order <= options_.most_noise_order && rises < kPatience; ++order, ++rises) {
+    Matrix triangle;
+    for (const Vector& v : left) {
+      const Vector e = difference_equation(longest, kOne, v);
+      Matrix columns(v.size(), 2 * order + 1);
+      for (Index j = 0; j < order; ++j) {
+        put_shifted(v, j + 1, -1.0, columns.col(j));
+        put_shifted(e, j + 1, 1.0, columns.col(order + j));
+      }
+      columns.col(2 * order) = v;
+      add_rows(columns, triangle);
+    }
+    const Vector theta =
+        Linear{triangle.topLeftCorner(2 * order, 2 * order), -triangle.col(2 * order).head(2 * order)}.step(0.0);
+    Search search;
+    search.at = {at.f, at.b, stabilised(theta.head(order)), stabilised(theta.tail(order))};
+    descend(search, kNoise);
+    const double bic = count * std::log(search.squares) + 2.0 * static_cast<double>(order) * std::log(count);
+    if (!(bic < least)) continue;
+    least = bic;
+    best = search.at;
+    rises = -1;
+  }
+  at = std::move(best);
+}
+
+double Fitter::fit_of(const Model& at) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < experiments_.size(); ++k) sum += local(at, k, std::nullopt).residual.squaredNorm();
+  return 1.0 - sum / output_squares_;
+}
+
+void Fitter::take_covariance(const Model& at, PredictionErrorFit& made) const {
+  const Matrix bread = linear(at, kAll).inverse();
+  Matrix covariance = made.variance * bread;
+  const Index p = n_ + q_, all = bread.rows();
+  made.white_covariance = covariance.topLeftCorner(p, p);
+  if (options_.hac_lag_s > 0.0) {
+    Matrix scores(all, samples_);
+    std::vector<numeric::RowRange> ranges;
+    Index begin = 0;
+    for (std::size_t k = 0; k < experiments_.size(); ++k) {
+      const Local one = local(at, k, kAll);
+      const Index count = one.innovation.size();
+      scores.middleCols(begin, count) = one.slopes.transpose() * one.innovation.asDiagonal();
+      ranges.push_back({begin, begin + count});
+      begin += count;
+    }
+    const Index lags = std::min(static_cast<Index>(std::llround(options_.hac_lag_s / step_)), samples_ / 10);
+    const Matrix middle = numeric::long_run_covariance(all, ranges, lags, [&](const numeric::RowRange& range) {
+      return Matrix(scores.middleCols(range.begin, range.size()));
+    });
+    const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(samples_));
+    covariance = widening * widening * bread * middle * bread.transpose();
+  }
+  made.covariance = covariance.topLeftCorner(p, p);
+}
+
+Result<PredictionErrorFit> Fitter::run() {
+  const auto step = common_step(experiments_);
+  if (!step) return tl::unexpected(step.error());
+  step_ = *step;
+  for (const SignalPair& pair : experiments_) samples_ += pair.output.size();
+  ContinuousFitOptions continuous_options;
+  continuous_options.poles = n_;
+  continuous_options.zeros = options_.zeros;
+  continuous_options.start_poles = options_.start_poles;
+  continuous_options.free_start = options_.free_start;
+  continuous_options.threads = options_.threads;
+  const auto continuous = fit_continuous(experiments_, continuous_options);  // it also looks at the data
+  if (!continuous) return tl::unexpected(continuous.error());
+  for (const SignalPair& pair : experiments_) {
+    output_squares_ += (pair.output.array() - pair.output.mean()).square().sum();
+    outputs_.push_back(pair.output);
+  }
+  constexpr Index kRich = 40, kSamplesEach = 30;
+  const Index high = std::clamp(samples_ / kSamplesEach / std::ssize(experiments_), n_, kRich);
+  Vector rich = regress(Vector(), outputs_, nullptr, high, high);
+  if (!rich.allFinite()) rich.setZero();
+  const auto first = starts(*continuous, rich);
+  std::vector<Search> searches(first.size());
+  const auto each = [&](auto&& work) {
+    return numeric::parallel_for(static_cast<int>(searches.size()), options_.threads, [&](int i) -> Result<void> {
+      work(static_cast<std::size_t>(i));
+      return {};
+    });
+  };
+  auto ran = each([&](std::size_t k) {
+    searches[k] = sharpened(first[k].first, first[k].second);
+    if (!std::isfinite(searches[k].squares)) return;
+    if (options_.noise_model) searches[k].at.c = stabilised(rich.head(high));
+    descend(searches[k], kDynamics);
+  });
+  if (ran && options_.noise_model) {
+    ran = each([&](std::size_t k) {
+      if (!std::isfinite(searches[k].squares)) return;
+      model_noise(searches[k].at);
+      descend(searches[k], kAll);
+    });
+  }
+  if (!ran) return tl::unexpected(ran.error());
+  for (Search& one : searches) one.start.fit = fit_of(one.at);
+  const Search& best = *std::ranges::min_element(searches, [](const Search& a, const Search& b) {
+    return a.start.converged != b.start.converged ? a.start.converged : a.squares < b.squares;
+  });
+  PredictionErrorFit made;
+  made.samples = samples_;
+  for (const Search& one : searches) made.starts.push_back(one.start);
+  made.converged = best.start.converged;
+  made.stable = best.start.stable;
+  made.fit = best.start.fit;
+  made.f = best.at.f;
+  made.b = best.at.b;
+  made.noise_denominator = monic(best.at.c);
+  made.noise_numerator = monic(best.at.d);
+  const Index parameters = coefficients(best.at, kAll).size();
+  made.variance = best.squares / static_cast<double>(std::max<Index>(samples_ - parameters, 1));
+  if (!std::isfinite(made.variance)) return made;
+  take_covariance(best.at, made);
+  for (std::size_t k = 0; k < experiments_.size(); ++k) {
+    Local one = local(best.at, k, std::nullopt);
+    made.residuals.push_back(std::move(one.residual));
+    made.innovations.push_back(std::move(one.innovation));
+  }
+  return made;
+}
+
+}  // namespace
+
+Result<PredictionErrorFit> fit_prediction_error(const std::vector<SignalPair>& experiments,
+                                                const PredictionErrorOptions& options) {
+  return Fitter(experiments, options).run();
+}
+
+Result<double> common_step(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_back) {
+  double step = 0.0;
+  constexpr double kSame = 1e-4;
+  for (const auto* pairs : {&experiments, &held_back}) {
+    for (const SignalPair& pair : *pairs) {
+      if (!pair.step) {
+        return bad_usage("a discrete-time model needs an even clock",
+                         "take --method srivc, or put the clock right by --resample");
+      }
+      if (step == 0.0) step = *pair.step;
+      if (std::abs(*pair.step - step) <= kSame * step) continue;
+      return bad_usage(fmt::format("samples every {:.6g} ms and every {:.6g} ms are no one discrete-time model",
+                                   1e3 * step, 1e3 * *pair.step),
+                       "take --method srivc, or one clock for all by --resample");
+    }
+  }
+  return step;
+}
+
+Vector without_discrete_free_motion(const Vector& f, const Vector& residual) {
+  return Projection(free_motion(monic(f), f.size(), residual.size())).rest(residual);
+}
+
+}  // namespace mbk::identify

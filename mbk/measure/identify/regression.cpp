@@ -1,0 +1,185 @@
+#include "mbk/measure/identify/regression.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "mbk/base/numeric/statistics.h"
+
+namespace mbk::identify {
+namespace {
+
+Vector vaf(const Matrix& Y, const Matrix& residual) {
+  Vector result(Y.cols());
+  for (Index j = 0; j < Y.cols(); ++j) result[j] = numeric::variance_accounted_for(Y.col(j), residual.col(j));
+  return result;
+}
+
+}  // namespace
+
+std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b) {
+  std::vector<RowRange> all = a;
+  all.insert(all.end(), b.begin(), b.end());
+  std::sort(all.begin(), all.end(), [](const RowRange& x, const RowRange& y) { return x.begin < y.begin; });
+  std::vector<RowRange> merged;
+  for (const RowRange& range : all) {
+    if (!merged.empty() && merged.back().end == range.begin) {
+      merged.back().end = range.end;
+    } else {
+      merged.push_back(range);
+    }
+  }
+  return merged;
+}
+
+Regression stack(const std::vector<PreparedTrial>& trials) {
+  const Index n = trials.front().axes;
+  Index rows = 0;
+  for (const PreparedTrial& trial : trials) {
+    for (const Stretch& stretch : trial.stretches) rows += stretch.size() + 1;
+  }
+  Regression r;
+  r.sample_time = trials.front().sample_time;
+  r.Z.setZero(rows, 3 * n + 1);
+  r.Y.setZero(rows, n);
+  const bool known = std::ranges::all_of(trials, [](const auto& trial) { return trial.reference_motion.size() > 0; });
+  if (known) r.reference.setZero(rows, 3 * n);
+  const bool computed =
+      std::ranges::all_of(trials, [](const auto& trial) { return trial.force_sensitivity.size() > 0; });
+  if (computed) {
+    r.robot_covariance = trials.front().robot_covariance;
+    r.force_sensitivity.setZero(rows, trials.front().force_sensitivity.cols());
+  }
+  Index row = 0;
+  for (const PreparedTrial& trial : trials) {
+    Index last_end = -1;
+    for (const Stretch& stretch : trial.stretches) {
+      const Index size = stretch.size();
+      const bool broken = stretch.begin != last_end ||
+                          trial.time[stretch.begin] - trial.time[stretch.begin - 1] > 1.5 * trial.sample_time;
+      if (row > 0 && broken) ++row;  // an empty row keeps the ranges apart; it belongs to none
+      last_end = stretch.end;
+      r.Z.block(row, 0, size, n) = trial.acceleration.middleRows(stretch.begin, size);
+      r.Z.block(row, n, size, n) = trial.velocity.middleRows(stretch.begin, size);
+      r.Z.block(row, 2 * n, size, n) = trial.position.middleRows(stretch.begin, size);
+      r.Z.block(row, 3 * n, size, 1).setOnes();
+      r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(stretch.begin, size);
+      if (known) r.reference.middleRows(row, size) = trial.reference_motion.middleRows(stretch.begin, size);
+      if (computed) {
+        r.force_sensitivity.middleRows(row, size) = trial.force_sensitivity.middleRows(stretch.begin, size);
+      }
+      (stretch.purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
+      row += size;
+    }
+  }
+  r.Z.conservativeResize(row, Eigen::NoChange);
+  r.Y.conservativeResize(row, Eigen::NoChange);
+  if (known) r.reference.conservativeResize(row, Eigen::NoChange);
+  if (computed) r.force_sensitivity.conservativeResize(row, Eigen::NoChange);
+  r.centre = Vector::Zero(n);
+  Index count = 0;
+  for (const RowRange& range : r.identification.empty() ? r.validation : r.identification) {
+    r.centre += r.Z.block(range.begin, 2 * n, range.size(), n).colwise().sum().transpose();
+    count += range.size();
+  }
+  r.centre /= static_cast<double>(std::max<Index>(count, 1));
+  for (const RowRange& range : joined(r.identification, r.validation)) {
+    r.Z.block(range.begin, 2 * n, range.size(), n).rowwise() -= r.centre.transpose();
+  }
+  return r;
+}
+
+Matrix rows_of(const Matrix& all, const std::vector<RowRange>& ranges, Index step) {
+  Index count = 0;
+  for (const RowRange& range : ranges) count += (range.size() + step - 1) / step;
+  Matrix rows(count, all.cols());
+  Index row = 0;
+  for (const RowRange& range : ranges) {
+    for (Index i = range.begin; i < range.end; i += step) rows.row(row++) = all.row(i);
+  }
+  return rows;
+}
+
+Matrix structure_matrix(Structure structure, Index n) {
+  const Index p = 3 * n + 1;
+  if (structure == Structure::full || (structure == Structure::symmetric && n == 1)) {
+    return Matrix::Identity(n * p, n * p);
+  }
+  std::vector<Vector> columns;
+  const auto add = [&](std::initializer_list<std::pair<Index, Index>> entries) {
+    Vector column = Vector::Zero(n * p);
+    for (const auto& [output, regressor] : entries) column[output * p + regressor] = 1.0;
+    columns.push_back(std::move(column));
+  };
+  const auto add_symmetric = [&](Index first) {  // a symmetric matrix on regressors first … first + n − 1
+    for (Index j = 0; j < n; ++j) {
+      add({{j, first + j}});
+      for (Index i = j + 1; i < n; ++i) add({{j, first + i}, {i, first + j}});
+    }
+  };
+  if (structure == Structure::symmetric) {
+    add_symmetric(0);
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i < n; ++i) add({{j, n + i}});
+    }
+  } else {  // M = m I, no damping
+    if (n == 1) {
+      add({{0, 0}});
+    } else {
+      add({{0, 0}, {1, 1}});
+    }
+  }
+  add_symmetric(2 * n);
+  for (Index j = 0; j < n; ++j) add({{j, 3 * n}});
+  Matrix S(n * p, static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) S.col(static_cast<Index>(k)) = columns[k];
+  return S;
+}
+
+impedance::Model model_of(const Matrix& coefficients, const Vector& centre, double handle_mass) {
+  const Index n = coefficients.cols();
+  impedance::Model model;
+  model.M = coefficients.topRows(n).transpose() - handle_mass * Matrix::Identity(n, n);
+  model.B = coefficients.middleRows(n, n).transpose();
+  model.K = coefficients.middleRows(2 * n, n).transpose();
+  const Eigen::FullPivLU<Matrix> lu(model.K);
+  model.x0 = lu.isInvertible() ? Vector(centre - lu.solve(coefficients.row(3 * n).transpose()))
+                               : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  return model;
+}
+
+Matrix model_covariance(const Matrix& structure, const Matrix& V, const impedance::Model& model, const Vector& centre) {
+  const Index n = model.axes(), p = 3 * n + 1;
+  Matrix J = Matrix::Zero(3 * n * n + n, n * p);
+  for (Index part = 0; part < 3; ++part) {
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i < n; ++i) J(part * n * n + j * n + i, j * p + part * n + i) = 1.0;
+    }
+  }
+  const Matrix inverse = model.K.inverse();
+  const Vector offset = centre - model.x0;
+  for (Index j = 0; j < n; ++j) {
+    J.block(3 * n * n, j * p + 3 * n, n, 1) = -inverse.col(j);
+    for (Index i = 0; i < n; ++i) J.block(3 * n * n, j * p + 2 * n + i, n, 1) = inverse.col(j) * offset[i];
+  }
+  const Matrix JS = J * structure;
+  return JS * V * JS.transpose();
+}
+
+Fit judge(const Regression& r, const Matrix& coefficients) {
+  const auto residual = [&](const std::vector<RowRange>& ranges) {
+    return Matrix(rows_of(r.Y, ranges) - rows_of(r.Z, ranges) * coefficients);
+  };
+  Fit fit;
+  const Matrix in_sample = residual(r.identification);
+  fit.vaf_in_sample = vaf(rows_of(r.Y, r.identification), in_sample);
+  fit.held_back = !r.validation.empty();
+  const Matrix judged = fit.held_back ? residual(r.validation) : in_sample;
+  fit.vaf = fit.held_back ? vaf(rows_of(r.Y, r.validation), judged) : fit.vaf_in_sample;
+  fit.rmse.resize(r.axes());
+  for (Index j = 0; j < r.axes(); ++j) fit.rmse[j] = numeric::root_mean_square(judged.col(j));
+  return fit;
+}
+
+}  // namespace mbk::identify

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/numeric/least_squares.h"
+#include "mbk/model/impedance/model.h"
+#include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/prepared_trial.h"
+
+namespace mbk::identify {
+
+using numeric::RowRange;
+
+/// −F on [ẍ ẋ x−x̄ 1]; positions are measured from their mean, which costs no digits and changes nothing else.
+struct Regression {
+  Matrix Z;          ///< N×(3n+1)
+  Matrix Y;          ///< N×n, −F_h
+  Matrix reference;  ///< N×3n, [r̈ ṙ r] of the known perturbation, filtered like the motion; empty where it is not known
+  Vector centre;             ///< x̄, n
+  Matrix force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ of a force that rests on a robot's coefficients; empty otherwise
+  Matrix robot_covariance;  ///< p×p, of those; all trials rest on the same
+  std::vector<RowRange> identification, validation;
+  double sample_time = 0;
+
+  [[nodiscard]] Index axes() const { return Y.cols(); }
+};
+
+/// The stretches of all trials under each other; rows that do not count are left out. A break in time always starts a
+/// new range, and where two stretches follow each other without one, `joined` may merge them.
+[[nodiscard]] Regression stack(const std::vector<PreparedTrial>& trials);
+
+/// Both lists in order; neighbours without a break in between are one range: the residual's correlation does not stop
+/// at the split.
+[[nodiscard]] std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b);
+
+/// Every `step`-th row of the ranges, under each other.
+[[nodiscard]] Matrix rows_of(const Matrix& all, const std::vector<RowRange>& ranges, Index step = 1);
+
+/// θ = S φ with θ_j = [row j of M, row j of B, row j of K, c_j] stacked over the outputs j.
+[[nodiscard]] Matrix structure_matrix(Structure structure, Index n);
+
+/// The model whose coefficients these are, x₀ = x̄ − K⁻¹c.
+/// @param coefficients (3n+1)×n    @param handle_mass [kg], taken off the diagonal of M
+[[nodiscard]] impedance::Model model_of(const Matrix& coefficients, const Vector& centre, double handle_mass);
+
+/// Covariance of [M B K (row by row) x₀] from that of the free coefficients φ, by the delta method:
+///   dx₀ = −K⁻¹ (dc − dK (x̄ − x₀))
+[[nodiscard]] Matrix model_covariance(const Matrix& structure, const Matrix& V, const impedance::Model& model,
+                                      const Vector& centre);
+
+/// How well the coefficients explain the force: on what was held back, or in sample where nothing was.
+[[nodiscard]] Fit judge(const Regression& r, const Matrix& coefficients);
+
+}  // namespace mbk::identify

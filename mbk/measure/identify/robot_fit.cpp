@@ -1,0 +1,486 @@
+#include "mbk/measure/identify/robot_fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mbk/base/numeric/instrumental_variables.h"
+#include "mbk/base/numeric/least_squares.h"
+#include "mbk/base/numeric/random.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/regression.h"
+
+namespace mbk::identify {
+namespace {
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+/// Rows of all trials under each other, joint by joint.
+struct Stack {
+  std::vector<Matrix> W, R, S;  ///< N×p for each joint; R of the instruments, S of the smoothed motion, or empty
+  Matrix torque, torque_rate;
+  std::vector<RowRange> ranges;
+
+  [[nodiscard]] Index rows() const { return torque.rows(); }
+};
+
+/// The rows of one purpose, or of both where none is named.
+Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purpose> purpose) {
+  Stack stack;
+  Index total = 0;
+  for (const PreparedDynamics& trial : trials) {
+    for (const Stretch& stretch : trial.stretches) {
+      if (!purpose || stretch.purpose == *purpose) total += stretch.size();
+    }
+  }
+  const Index n = trials.front().torque.cols(), p = trials.front().regressors.front().cols();
+  const bool with_instruments = !trials.front().instruments.empty();
+  stack.W.assign(static_cast<std::size_t>(n), Matrix(total, p));
+  const bool with_smoothed = !trials.front().smoothed.empty();
+  if (with_instruments) stack.R = stack.W;
+  if (with_smoothed) stack.S = stack.W;
+  stack.torque.resize(total, n);
+  stack.torque_rate.resize(total, n);
+  Index row = 0;
+  for (const PreparedDynamics& trial : trials) {
+    for (const Stretch& stretch : trial.stretches) {
+      if (purpose && stretch.purpose != *purpose) continue;
+      const Index rows = stretch.size();
+      for (std::size_t joint = 0; joint < stack.W.size(); ++joint) {
+        stack.W[joint].middleRows(row, rows) = trial.regressors[joint].middleRows(stretch.begin, rows);
+        if (with_instruments) {
+          stack.R[joint].middleRows(row, rows) = trial.instruments[joint].middleRows(stretch.begin, rows);
+        }
+        if (with_smoothed) stack.S[joint].middleRows(row, rows) = trial.smoothed[joint].middleRows(stretch.begin, rows);
+      }
+      stack.torque.middleRows(row, rows) = trial.torque.middleRows(stretch.begin, rows);
+      stack.torque_rate.middleRows(row, rows) = trial.torque_rate.middleRows(stretch.begin, rows);
+      stack.ranges.push_back({row, row + rows});
+      row += rows;
+    }
+  }
+  return stack;
+}
+
+/// The rows that judge: recordings that are there for it, or else what was held back of the others.
+Stack judging_rows(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_back) {
+  return held_back.empty() ? stack_rows(trials, Purpose::validation) : stack_rows(held_back, std::nullopt);
+}
+
+/// All joints under each other, each divided by its σ; the columns that are kept and, where wanted, τ̇.
+Matrix stacked(const std::vector<Matrix>& of_joint, const std::vector<Index>& kept, const Matrix* torque_rate,
+               const Vector& sigma) {
+  const Index rows = of_joint.front().rows(), p = static_cast<Index>(kept.size());
+  Matrix all(rows * sigma.size(), p + (torque_rate != nullptr ? 1 : 0));
+  for (Index joint = 0; joint < sigma.size(); ++joint) {
+    auto block = all.middleRows(joint * rows, rows);
+    block.leftCols(p) = of_joint[static_cast<std::size_t>(joint)](Eigen::all, kept) / sigma[joint];
+    if (torque_rate != nullptr) block.col(p) = torque_rate->col(joint) / sigma[joint];
+  }
+  return all;
+}
+
+/// "0.25·link_2.mass + …": what a column that stays holds of those that do not.
+std::string holds(const numeric::IndependentColumns& columns, Index row, const std::vector<robot::Coefficient>& names) {
+  constexpr double kNothing = 1e-9;
+  std::string text;
+  for (Index j = 0; j < columns.combination.cols(); ++j) {
+    const double share = columns.combination(row, j);
+    if (j == columns.kept[static_cast<std::size_t>(row)] || !(std::abs(share) > kNothing)) continue;
+    text += fmt::format("{} {:.4g}·{}", share < 0.0 ? " −" : (text.empty() ? "+" : " +"), std::abs(share),
+                        names[static_cast<std::size_t>(j)].name);
+  }
+  return text;
+}
+
+class RobotFitter {
+ public:
+  RobotFitter(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_back,
+              const robot::DynamicModel& model, const RobotFitOptions& options)
+      : trials_(trials), held_back_(held_back), model_(model), options_(options) {}
+
+  Result<RobotFit> fit();
+
+ private:
+  Result<void> prepare();
+  Result<void> solve();
+  void take_covariance();
+  void judge(RobotIdentification& found) const;
+  void describe(RobotIdentification& found) const;
+  void check_inertia(RobotIdentification& found) const;
+  [[nodiscard]] bool is_fixed(Index k) const { return std::ranges::find(options_.fixed, k) != options_.fixed.end(); }
+  /// What any motion could tell apart of the coefficients that are not fixed.
+  [[nodiscard]] int structural_rank() const {
+    const std::vector<Index> kept = structural_columns(model_, options_.fixed).kept;
+    return static_cast<int>(kept.size());
+  }
+  [[nodiscard]] bool by_instruments() const { return options_.method == RobotMethod::instrumental_variables; }
+  /// Residuals of the rows, N×n.
+  [[nodiscard]] Matrix residuals(const Stack& rows) const {
+    Matrix e(rows.rows(), rows.torque.cols());
+    for (Index joint = 0; joint < e.cols(); ++joint) {
+      e.col(joint) = rows.torque.col(joint) - rows.W[static_cast<std::size_t>(joint)] * theta_ -
+                     delay_correction_ * rows.torque_rate.col(joint);
+    }
+    return e;
+  }
+
+  const std::vector<PreparedDynamics>& trials_;
+  const std::vector<PreparedDynamics>& held_back_;
+  const robot::DynamicModel& model_;
+  const RobotFitOptions& options_;
+  Stack rows_;
+  Index n_ = 0, p_ = 0, lags_ = 0;
+  Vector sigma_, theta_;
+  Matrix bread_, covariance_;  ///< of the columns that are kept, and of the delay's where it is estimated
+  Matrix residuals_;
+  double delay_correction_ = 0;
+  Vector fixed_;                                ///< p, the values that are known, 0 elsewhere
+  std::vector<robot::Coefficient> free_names_;  ///< of those that are not
+  numeric::IndependentColumns columns_;         ///< of those that are not
+  std::vector<Index> kept_;                     ///< coefficients that are found
+};
+
+Result<void> RobotFitter::prepare() {
+  if (trials_.empty()) return bad_data("no recording to identify from");
+  const PreparedDynamics& first = trials_.front();
+  n_ = first.torque.cols();
+  p_ = first.regressors.front().cols();
+  for (const Index k : options_.fixed) {
+    if (k < 0 || k >= p_ || model_.parameters.size() != p_ || !std::isfinite(model_.parameters[k])) {
+      return bad_usage("a coefficient that is fixed has no value", "state it in the robot's description");
+    }
+  }
+  if (p_ == 0) return bad_usage("a robot without coefficients has nothing to be identified");
+  for (const auto* list : {&trials_, &held_back_}) {
+    for (const PreparedDynamics& trial : *list) {
+      if (trial.torque.cols() != n_ || trial.regressors.front().cols() != p_) {
+        return bad_data("the recordings are of different robots", "identify each robot by itself");
+      }
+      constexpr double kSameClock = 1e-3;
+      if (list == &trials_ && std::abs(trial.sample_time / first.sample_time - 1.0) > kSameClock) {
+        return bad_data(fmt::format("rows {:.4g} and {:.4g} s apart cannot be fitted together", first.sample_time,
+                                    trial.sample_time),
+                        "give one --every and one --cutoff for all, or put them on one clock with --resample");
+      }
+    }
+  }
+  if (!(options_.hac_lag_s >= 0.0 && std::isfinite(options_.hac_lag_s))) {
+    return bad_usage(fmt::format("a reach of the autocovariance of {:g} s", options_.hac_lag_s));
+  }
+  rows_ = stack_rows(trials_, held_back_.empty() ? std::optional(Purpose::identification) : std::nullopt);
+  if (rows_.rows() * n_ < 3 * p_) {
+    return bad_data(fmt::format("{} rows cannot determine {} coefficients", rows_.rows(), p_), "record longer");
+  }
+  lags_ = static_cast<Index>(std::llround(options_.hac_lag_s / first.sample_time));
+  sigma_ = Vector::Ones(n_);
+  fixed_ = Vector::Zero(p_);
+  std::vector<Index> all;
+  for (Index k = 0; k < p_; ++k) {
+    if (is_fixed(k)) {
+      fixed_[k] = model_.parameters[k];
+    } else {
+      all.push_back(k);
+    }
+  }
+  free_names_.clear();
+  const std::vector<robot::Coefficient> names = model_.coefficients();
+  for (const Index k : all) free_names_.push_back(names[static_cast<std::size_t>(k)]);
+  constexpr double kApart = 1e-6;
+  columns_ = numeric::independent_columns(stacked(rows_.W, all, nullptr, sigma_), kApart);
+  kept_.clear();
+  for (const Index k : columns_.kept) kept_.push_back(all[static_cast<std::size_t>(k)]);
+  if (kept_.empty()) {
+    return bad_data("no joint moved: nothing of the robot's dynamics was excited", "move every joint");
+  }
+  return {};
+}
+
+Result<void> RobotFitter::solve() {
+  const Matrix* rate = options_.delay ? &rows_.torque_rate : nullptr;
+  const int passes = options_.method == RobotMethod::least_squares ? 1 : 6;
+  for (int pass = 0; pass < passes; ++pass) {
+    const Matrix Z = stacked(rows_.W, kept_, rate, sigma_);
+    Matrix Y(Z.rows(), 1);
+    for (Index joint = 0; joint < n_; ++joint) {
+      Y.block(joint * rows_.rows(), 0, rows_.rows(), 1) =
+          (rows_.torque.col(joint) - rows_.W[static_cast<std::size_t>(joint)] * fixed_) / sigma_[joint];
+    }
+    Vector free;
+    if (by_instruments()) {
+      auto fit = numeric::fit_instrumental_variables(Z, stacked(rows_.R, kept_, rate, sigma_), Y);
+      if (!fit) return tl::unexpected(fit.error());
+      if (fit->rank < Z.cols()) {
+        return bad_data("the instruments cannot tell the coefficients apart",
+                        "use --method wls, or another --motion-cutoff");
+      }
+      free = fit->free;
+      bread_ = fit->inverse;
+    } else {
+      auto fit = numeric::fit_least_squares(Z, Y);
+      if (!fit) return tl::unexpected(fit.error());
+      free = fit->free;
+      bread_ = fit->inverse_gram;
+    }
+    theta_ = fixed_;
+    for (std::size_t k = 0; k < kept_.size(); ++k) theta_[kept_[k]] = free[static_cast<Index>(k)];
+    delay_correction_ = options_.delay ? free[free.size() - 1] : 0.0;
+    residuals_ = residuals(rows_);
+    if (pass + 1 == passes) break;
+    const Vector spread = residuals_.colwise().norm() / std::sqrt(static_cast<double>(rows_.rows()));
+    // A joint that the model explains to rounding must not drown the others.
+    const double least = 1e-9 * rows_.torque.cwiseAbs().maxCoeff();
+    const Vector next = spread.cwiseMax(std::max(least, 1e-6 * spread.maxCoeff()));
+    if (!(next.minCoeff() > 0.0)) break;
+    const bool settled = ((next - sigma_).cwiseAbs().array() < 1e-4 * next.array()).all();
+    sigma_ = next;
+    if (settled && pass > 0) break;
+  }
+  return {};
+}
+
+void RobotFitter::take_covariance() {
+  const Matrix* rate = options_.delay ? &rows_.torque_rate : nullptr;
+  const Index k = bread_.rows();
+  const std::vector<Matrix>& of_scores = by_instruments() ? rows_.R : rows_.W;
+  const Matrix omega = numeric::long_run_covariance(k, rows_.ranges, lags_, [&](const RowRange& range) {
+    Matrix scores = Matrix::Zero(k, range.size());
+    for (Index joint = 0; joint < n_; ++joint) {
+      const Vector e = residuals_.col(joint).segment(range.begin, range.size()) / (sigma_[joint] * sigma_[joint]);
+      const Matrix& W = of_scores[static_cast<std::size_t>(joint)];
+      for (std::size_t c = 0; c < kept_.size(); ++c) {
+        scores.row(static_cast<Index>(c)) +=
+            W.col(kept_[c]).segment(range.begin, range.size()).cwiseProduct(e).transpose();
+      }
+      if (rate != nullptr) {
+        scores.row(k - 1) += rate->col(joint).segment(range.begin, range.size()).cwiseProduct(e).transpose();
+      }
+    }
+    return scores;
+  });
+  const double widening =
+      numeric::newey_west_widening(std::min(1.0, static_cast<double>(lags_) / static_cast<double>(rows_.rows())));
+  covariance_ = widening * widening * (bread_ * omega * bread_.transpose());
+}
+
+void RobotFitter::judge(RobotIdentification& found) const {
+  const Stack other = judging_rows(trials_, held_back_);
+  for (const PreparedDynamics& trial : held_back_) {
+    for (const SourceFile& source : trial.sources) found.held_back_files.push_back(source.path);
+  }
+  found.held_back = other.rows() > 0;
+  const Stack& judged = found.held_back ? other : rows_;
+  const Matrix e = residuals(judged);
+  for (Index joint = 0; joint < n_; ++joint) {
+    TorqueFit fit;
+    fit.vaf = numeric::variance_accounted_for(judged.torque.col(joint), e.col(joint));
+    fit.rmse = numeric::root_mean_square(e.col(joint));
+    fit.vaf_in_sample = numeric::variance_accounted_for(rows_.torque.col(joint), residuals_.col(joint));
+    fit.rmse_in_sample = numeric::root_mean_square(residuals_.col(joint));
+    if (!judged.S.empty()) {
+      const Vector left = judged.torque.col(joint) - judged.S[static_cast<std::size_t>(joint)] * theta_;
+      fit.vaf_smoothed = numeric::variance_accounted_for(judged.torque.col(joint), left);
+    }
+    found.fit.push_back(fit);
+  }
+}
+
+void RobotFitter::describe(RobotIdentification& found) const {
+  const std::vector<robot::Coefficient> names = model_.coefficients();
+  found.coefficients.clear();
+  for (Index k = 0; k < p_; ++k) {
+    found.coefficients.push_back({names[static_cast<std::size_t>(k)], fixed_[k], kUndefined, false, is_fixed(k), ""});
+  }
+  found.model.covariance = Matrix::Zero(p_, p_);
+  const auto kept = static_cast<Index>(kept_.size());
+  for (Index k = 0; k < kept; ++k) {
+    const Index at = kept_[static_cast<std::size_t>(k)];
+    RobotCoefficient& one = found.coefficients[static_cast<std::size_t>(at)];
+    one.value = theta_[at];
+    one.standard_error = std::sqrt(std::max(0.0, covariance_(k, k)));
+    one.identified = true;
+    one.together_with = holds(columns_, k, free_names_);
+  }
+  found.model.covariance(kept_, kept_) = covariance_.topLeftCorner(kept, kept);
+  found.rank = static_cast<int>(kept);
+  found.structural_rank = structural_rank();
+
+  const Matrix Z = stacked(rows_.W, kept_, nullptr, sigma_);
+  const Vector length = Z.colwise().norm();
+  const Matrix scaled = Z * length.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled.transpose() * scaled);
+  found.condition = std::sqrt(eigen.eigenvalues()[kept - 1] / std::max(eigen.eigenvalues()[0], 1e-300));
+  for (Index k = 0; k < kept; ++k) {
+    constexpr double kShare = 0.3;
+    const double share = eigen.eigenvectors()(k, 0);
+    if (std::abs(share) >= kShare) {
+      found.weakest.emplace_back(names[static_cast<std::size_t>(kept_[static_cast<std::size_t>(k)])].name, share);
+    }
+  }
+}
+
+void RobotFitter::check_inertia(RobotIdentification& found) const {
+  constexpr int kPostures = 15;
+  const robot::Mechanism& mechanism = *model_.mechanism;
+  const Vector phi = theta_.head(static_cast<Index>(mechanism.coefficients().size()));
+  std::vector<double> motors(static_cast<std::size_t>(n_), 0.0);
+  if (model_.drive.motor_inertia) {
+    for (Index joint = 0; joint < n_; ++joint) {
+      motors[static_cast<std::size_t>(joint)] = theta_[phi.size() + joint * model_.drive.per_joint()];
+    }
+  }
+  found.inertia.smallest = std::numeric_limits<double>::infinity();
+  const int per_joint = n_ <= 2 ? kPostures : (n_ <= 4 ? 5 : 3);
+  const std::vector<robot::JointVector> postures = mechanism.postures(per_joint);
+  const auto inertia_at = [&](const robot::JointVector& q) {
+    robot::JointMatrix I = mechanism.terms(q, robot::JointVector::Zero(n_), phi).inertia;
+    for (Index joint = 0; joint < n_; ++joint) I(joint, joint) += motors[static_cast<std::size_t>(joint)];
+    return Matrix(0.5 * (I + I.transpose()));
+  };
+  for (const robot::JointVector& q : postures) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(inertia_at(q), Eigen::EigenvaluesOnly);
+    if (eigen.eigenvalues()[0] >= found.inertia.smallest) continue;
+    found.inertia.smallest = eigen.eigenvalues()[0];
+    found.inertia.where.assign(q.data(), q.data() + q.size());
+  }
+  // The middle of the motion: what the hand feels there tells units apart.
+  for (const robot::JointVector& q : postures) {
+    const auto back = robot::hand_from_joints(mechanism, q);
+    if (!back) continue;
+    const Matrix at_hand = Matrix(*back) * inertia_at(q) * Matrix(*back).transpose();
+    const double mass = at_hand.diagonal().minCoeff();
+    found.inertia.largest_mass = found.inertia.largest_mass == 0.0 ? mass : std::min(found.inertia.largest_mass, mass);
+  }
+}
+
+void warn(RobotIdentification& found) {
+  std::vector<Warning>& warnings = found.warnings;
+  if (!(found.inertia.smallest > 0.0)) {
+    std::string where;
+    for (const double q : found.inertia.where) where += fmt::format("{}{:.3g}", where.empty() ? "" : ", ", q);
+    warnings.push_back({WarningCode::inertia_not_positive,
+                        fmt::format("the inertia matrix is not positive definite with the joints at [{}] (smallest "
+                                    "eigenvalue {:.3g})",
+                                    where, found.inertia.smallest),
+                        "move faster and over more of the workspace; check order and signs of the torques"});
+    found.usable = false;
+  }
+  constexpr double kHeaviest = 300.0, kLightest = 1e-3;  // [kg] of a robot that a person can hold
+  if (found.model.mechanism->hand_axes() == 2 && found.inertia.smallest > 0.0 &&
+      (found.inertia.largest_mass > kHeaviest || found.inertia.largest_mass < kLightest)) {
+    const bool heavy = found.inertia.largest_mass > kHeaviest;
+    warnings.push_back({WarningCode::torque_unit,
+                        fmt::format("moved at its hand, this robot would weigh at least {:.3g} kg: its torques are "
+                                    "probably not in N·m but in {}",
+                                    found.inertia.largest_mass, heavy ? "N·mm" : "kN·m"),
+                        heavy ? "say so in --channels, as in tau1=14:N.mm,tau2=15:N.mm" : "check the torques' unit"});
+    found.usable = false;
+  }
+  if (found.rank < found.structural_rank) {
+    std::string missing;
+    for (const RobotCoefficient& one : found.coefficients) {
+      if (!one.identified && !one.fixed) missing += (missing.empty() ? "" : ", ") + one.coefficient.name;
+    }
+    warnings.push_back({WarningCode::poorly_conditioned,
+                        fmt::format("{} of the {} combinations that a motion can show were excited; nothing by itself "
+                                    "is known of {}",
+                                    found.rank, found.structural_rank, missing),
+                        "add a recording in which every joint moves, several files in one fit"});
+  }
+  constexpr double kLargestCondition = 300.0;
+  if (found.condition > kLargestCondition) {
+    std::string which;
+    for (const auto& [name, share] : found.weakest) which += (which.empty() ? "" : ", ") + name;
+    warnings.push_back({WarningCode::poorly_conditioned,
+                        fmt::format("the motion hardly tells apart {} (condition {:.3g})", which, found.condition),
+                        "move more, and differently; leave terms out with --terms"});
+  }
+  for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
+    constexpr double kPoor = 80.0;
+    if (!(found.fit[joint].vaf < kPoor)) continue;  // nor where there was no torque to explain
+    warnings.push_back({found.held_back ? WarningCode::held_back_fit_poor : WarningCode::fit_poor,
+                        fmt::format("only {:.1f} % of the torque of joint {} is explained{}", found.fit[joint].vaf,
+                                    joint + 1, found.held_back ? " on held-back data" : ""),
+                        "look for terms that are missing (--terms), a delay (--motor-delay auto), a lower --cutoff, or "
+                        "noise of the motion (--method iv)"});
+  }
+  for (const RobotCoefficient& one : found.coefficients) {
+    const bool positive = one.coefficient.name.starts_with("viscous") || one.coefficient.name.starts_with("coulomb");
+    if (!one.identified || !positive || one.value + numeric::kNormal95 * one.standard_error >= 0.0) continue;
+    warnings.push_back({WarningCode::damping_not_positive,
+                        fmt::format("{} is negative: friction would drive the joint", one.coefficient.name),
+                        "check the sign of the torque, and --motor-delay auto"});
+  }
+}
+
+Result<RobotFit> RobotFitter::fit() {
+  if (auto ok = prepare(); !ok) return tl::unexpected(ok.error());
+  if (auto ok = solve(); !ok) return tl::unexpected(ok.error());
+  take_covariance();
+  RobotFit made;
+  made.delay_correction = delay_correction_;
+  RobotIdentification& found = made.identification;
+  found.model = model_;
+  found.model.parameters = theta_;
+  found.method = options_.method;
+  found.samples = rows_.rows();
+  found.hac_lag_s = static_cast<double>(lags_) * trials_.front().sample_time;
+  if (options_.delay) {
+    found.delay_standard_error = std::sqrt(std::max(0.0, covariance_(covariance_.rows() - 1, covariance_.cols() - 1)));
+  }
+  if (by_instruments()) {
+    found.instrument_motion = trials_.front().instrument_motion;
+    found.motion_cutoff = trials_.front().motion_cutoff;
+    found.smoothed_cutoff = (held_back_.empty() ? trials_ : held_back_).front().smoothed_cutoff;
+  }
+  for (const PreparedDynamics& trial : trials_) {
+    found.preparations.push_back(trial.preparation);
+    found.sources.insert(found.sources.end(), trial.sources.begin(), trial.sources.end());
+    found.durations.push_back(trial.recording_duration);
+    found.rates.push_back(trial.recording_rate);
+    found.notes.insert(found.notes.end(), trial.notes.begin(), trial.notes.end());
+    found.warnings.insert(found.warnings.end(), trial.warnings.begin(), trial.warnings.end());
+  }
+  judge(found);
+  describe(found);
+  check_inertia(found);
+  warn(found);
+  return made;
+}
+
+}  // namespace
+
+numeric::IndependentColumns structural_columns(const robot::DynamicModel& model, const std::vector<Index>& fixed) {
+  const Index n = model.mechanism->joints();
+  const std::vector<robot::JointVector> postures = model.mechanism->postures(5);
+  const auto p = static_cast<Index>(model.coefficients().size());
+  const auto places = static_cast<Index>(postures.size());
+  const Index samples = std::max<Index>(20 * p, 100);
+  numeric::Random random(1);
+  robot::JointMotion motion{Matrix(samples, n), Matrix(samples, n), Matrix(samples, n)};
+  for (Index i = 0; i < samples; ++i) {
+    const robot::JointVector& at = postures[static_cast<std::size_t>((i * places) / samples)];
+    for (Index joint = 0; joint < n; ++joint) {
+      motion.position(i, joint) = at[joint] + random.uniform(-0.1, 0.1);
+      motion.velocity(i, joint) = random.uniform(-2.0, 2.0);
+      motion.acceleration(i, joint) = random.uniform(-10.0, 10.0);
+    }
+  }
+  std::vector<Index> all;
+  for (Index k = 0; k < p; ++k) {
+    if (std::ranges::find(fixed, k) == fixed.end()) all.push_back(k);
+  }
+  constexpr double kApart = 1e-8;
+  return numeric::independent_columns(stacked(model.regressors(motion), all, nullptr, Vector::Ones(n)), kApart);
+}
+
+Result<RobotFit> fit_robot(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_back,
+                           const robot::DynamicModel& model, const RobotFitOptions& options) {
+  return RobotFitter(trials, held_back, model, options).fit();
+}
+
+}  // namespace mbk::identify

@@ -1,0 +1,787 @@
+#include "mbk/measure/identify/srivc.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "mbk/base/dsp/derivative_filter.h"
+#include "mbk/base/dsp/stretches.h"
+#include "mbk/base/numeric/least_squares.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/base/numeric/polynomial_roots.h"
+#include "mbk/measure/identify/autoregression.h"
+
+namespace mbk::identify {
+namespace {
+
+constexpr Index kSteps = 16;  // of all stretches in a block: what fits the nearest cache
+constexpr Index kBlock = kSteps * dsp::kStretches;
+constexpr Index kMostPoles = 20;
+
+double step_of(const SignalPair& pair, Index i) {
+  return pair.step ? *pair.step : pair.time[i] - pair.time[i - 1];
+}
+
+/// The states of a filter over samples [begin, begin + count) of an experiment.
+class Pass {
+ public:
+  Pass(const Vector& a, const SignalPair& pair, double scale, const Vector& start, double sign = 1.0)
+      : filter_(a), pair_(pair), scale_(scale), sign_(sign) {
+    filter_.set_state(start);
+  }
+
+  /// @param input the next `count` samples    @param states n rows, count columns
+  void run(const double* input, Index count, Eigen::Ref<Matrix, 0, Eigen::OuterStride<>> states) {
+    Index i = 0;
+    if (next_ == 0) {
+      states.col(0) = filter_.state();
+      filter_.begin(input[0]);
+      i = 1;
+    }
+    if (pair_.step) {
+      if (count > i) filter_.run(scale_ * *pair_.step, input + i, count - i, states.middleCols(i, count - i));
+    } else {
+      for (; i < count; ++i) filter_.run(scale_ * step_of(pair_, next_ + i), input + i, 1, states.middleCols(i, 1));
+    }
+    next_ += count;
+  }
+  void run(const double* input, Index count, dsp::Rows to) {
+    Matrix states(filter_.order(), count);
+    run(input, count, states);
+    for (Index r = 0; r < states.rows(); ++r) Eigen::Map<Eigen::RowVectorXd>(to.row(r), count) = sign_ * states.row(r);
+  }
+
+ private:
+  dsp::DerivativeFilter filter_;
+  const SignalPair& pair_;
+  double scale_, sign_;
+  Index next_ = 0;
+};
+
+/// The model in time scaled by `scale`, t′ = scale·t.
+struct Iterate {
+  double scale = 1.0;
+  Vector a, b;
+  std::vector<Vector> free;  ///< C and the offset, of each experiment
+
+  void rescale() {
+    const auto n = static_cast<double>(a.size());
+    const double factor = std::pow(std::abs(a[0]), 1.0 / n);
+    if (!(factor > 0.0) || !std::isfinite(factor)) return;
+    for (Index k = 0; k < a.size(); ++k) a[k] /= std::pow(factor, n - static_cast<double>(k));
+    for (Index k = 0; k < b.size(); ++k) b[k] /= std::pow(factor, n - static_cast<double>(k));
+    for (Vector& c : free) {
+      for (Index k = 0; k < a.size(); ++k) c[k] /= std::pow(factor, n - 1.0 - static_cast<double>(k));
+    }
+    scale *= factor;
+  }
+  [[nodiscard]] Vector theta() const {
+    Vector both(a.size() + b.size());
+    both << a, b;
+    return both;
+  }
+  /// What the coefficients are to be multiplied with for time in seconds.
+  [[nodiscard]] Vector to_seconds() const {
+    const auto n = static_cast<double>(a.size());
+    Vector factors(a.size() + b.size());
+    for (Index k = 0; k < a.size(); ++k) factors[k] = std::pow(scale, n - static_cast<double>(k));
+    for (Index k = 0; k < b.size(); ++k) factors[a.size() + k] = std::pow(scale, n - static_cast<double>(k));
+    return factors;
+  }
+  [[nodiscard]] Vector physical() const { return theta().cwiseProduct(to_seconds()); }
+};
+
+/// Where the rows of a block stand: [those of Z that X has not | u | e | free motion | −y].
+struct Layout {
+  Index n, q;                         ///< poles; coefficients of the numerator
+  bool instruments, reference, free;  ///< present
+  Index input = 0;                    ///< which signal is taken for u: kInput or kCleanInput
+  [[nodiscard]] Index z_size() const { return !instruments ? 0 : (reference ? n + q : n); }
+  [[nodiscard]] Index u() const { return z_size(); }
+  [[nodiscard]] Index e() const { return u() + q; }
+  [[nodiscard]] Index free_at() const { return e() + 1; }
+  [[nodiscard]] Index free_size() const { return free ? n + 1 : 0; }
+  [[nodiscard]] Index y() const { return free_at() + free_size(); }
+  [[nodiscard]] Index rows() const { return y() + n; }
+  /// Rows that are X, in the order of [a, b].
+  [[nodiscard]] std::vector<Index> x_rows() const {
+    std::vector<Index> rows_of;
+    for (Index k = 0; k < n + q; ++k) rows_of.push_back(k < n ? y() + k : u() + k - n);
+    return rows_of;
+  }
+  [[nodiscard]] std::vector<Index> z_rows() const {
+    std::vector<Index> rows_of = x_rows();
+    for (Index k = 0; instruments && k < (reference ? n + q : n); ++k) rows_of[static_cast<std::size_t>(k)] = k;
+    return rows_of;
+  }
+};
+
+/// Rows of doubles that inner loops can take.
+class Table {
+ public:
+  Table(Index rows, Index columns)
+      : stride_(columns + dsp::kStretches),  // not a power of two, for the cache's sake
+        values_(static_cast<std::size_t>(rows * stride_ / dsp::kStretches)) {}
+  [[nodiscard]] dsp::Rows from(Index column) { return {values_.data()->values.data() + column, stride_}; }
+
+ private:
+  Index stride_;
+  std::vector<dsp::Abreast> values_;
+};
+
+dsp::Rows rows_from(dsp::Rows rows, Index first) {
+  return {rows.row(first), rows.stride};
+}
+
+/// Columns of a block: samples that follow each other, or those of all stretches at one step after another.
+struct Block {
+  dsp::Rows rows;
+  Index columns;            ///< a multiple of 16
+  Index first;              ///< step, of each stretch
+  Index stretches, length;  ///< length: from one stretch to the next
+  Index samples;            ///< in the record
+
+  /// Not below `samples`: none.
+  [[nodiscard]] Index sample(Index column) const { return column % stretches * length + first + column / stretches; }
+  void skip(Index steps) {
+    rows.data += steps * stretches;
+    columns -= steps * stretches;
+    first += steps;
+  }
+  [[nodiscard]] auto matrix(Index row_count) const {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    return Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>(rows.data, row_count, columns,
+                                                               Eigen::OuterStride<>(rows.stride));
+  }
+  /// One row, sample by sample, to where it belongs.
+  void scatter(Index row, Vector& to) const {
+    const double* const from = rows.row(row);
+    for (Index l = 0; l < stretches; ++l) {
+      const Index begin = l * length + first, count = std::min(columns / stretches, samples - begin);
+      for (Index i = 0; i < count; ++i) to[begin + i] = from[i * stretches + l];
+    }
+  }
+  /// Columns that are no samples become zero.
+  void clear_beyond(Index row_count) const {
+    if (sample(columns - 1) < samples) return;
+    for (Index c = 0; c < columns; ++c) {
+      if (sample(c) < samples) continue;
+      for (Index r = 0; r < row_count; ++r) rows.row(r)[c] = 0.0;
+    }
+  }
+};
+
+/// Which signal of a record's stretches is which.
+constexpr Index kInput = 0, kOutput = 1, kCleanInput = 2;
+
+/// One experiment's rows with the free motion projected out.
+struct Reduced {
+  Matrix M, S;                  ///< ZᵀX, ZᵀZ (of which a step of the search needs the diagonal only)
+  Vector g;                     ///< Zᵀe
+  double ee = 0;                ///< eᵀe
+  Matrix free_of_x, free_of_z;  ///< (NᵀN)⁺NᵀX, (NᵀN)⁺NᵀZ
+  Vector free_of_e;             ///< (NᵀN)⁺Nᵀe
+};
+
+/// Pseudo-inverse of a Gram matrix, columns scaled to unit length.
+Matrix pseudo_inverse(const Matrix& gram) {
+  constexpr double kSmall = 1e-13;
+  Vector scale = gram.diagonal().cwiseSqrt();
+  for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  const double least = kSmall * std::max(eigen.eigenvalues().maxCoeff(), 0.0);
+  Vector inverse = eigen.eigenvalues();
+  for (double& value : inverse) value = value > least ? 1.0 / value : 0.0;
+  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose() *
+         scale.asDiagonal();
+}
+
+Reduced reduce(const Matrix& gram, const Layout& at) {
+  const Index f = at.free_size();
+  const std::vector<Index> x = at.x_rows(), z = at.z_rows();
+  Reduced r;
+  r.M = gram(z, x);
+  r.S = gram(z, z);
+  r.g = gram(z, at.e());
+  r.ee = gram(at.e(), at.e());
+  if (f == 0) return r;
+  const auto free = Eigen::seqN(at.free_at(), f);
+  const Matrix inverse = pseudo_inverse(gram(free, free));
+  const Matrix NZ = gram(free, z), NX = gram(free, x);
+  const Vector Ne = gram(free, at.e());
+  r.free_of_x = inverse * NX;
+  r.free_of_z = inverse * NZ;
+  r.free_of_e = inverse * Ne;
+  r.M -= NZ.transpose() * r.free_of_x;
+  r.S -= NZ.transpose() * r.free_of_z;
+  r.g -= NZ.transpose() * r.free_of_e;
+  r.ee -= Ne.dot(r.free_of_e);
+  return r;
+}
+
+/// Everything that a pass over the data adds up.
+struct Sums {
+  Matrix M, S;
+  Vector g;
+  double ee = 0;
+  Index samples = 0;
+  std::vector<Reduced> each;
+};
+
+/// n + 1 rows: the motions that a state at the first sample leaves, and an offset.
+Matrix free_motion(const Iterate& at, const SignalPair& pair) {
+  const Index n = at.a.size(), total = pair.time.size();
+  Pass pass(at.a, pair, at.scale, Vector::Unit(n, n - 1));
+  Matrix free(n + 1, total);
+  const Vector none = Vector::Zero(total);
+  pass.run(none.data(), total, free.topRows(n));
+  free.row(n).setOnes();
+  return free;
+}
+
+class Fitter {
+ public:
+  Fitter(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options)
+      : experiments_(experiments), options_(options), n_(options.poles), q_(options.zeros + 1) {}
+
+  Result<ContinuousFit> run();
+
+ private:
+  struct Search {
+    SearchStart start;
+    Iterate at;
+    Vector noise = Vector::Ones(1);
+    int unstable_in_a_row = 0;      ///< passes
+    bool from_clean_input = false;  ///< û is taken for u
+    double variance = std::numeric_limits<double>::infinity(), rank = variance;
+    Sums last;                      ///< at the end
+    std::vector<Vector> residuals;  ///< y − x̂ of each experiment
+  };
+
+  [[nodiscard]] Result<void> check() const;
+  [[nodiscard]] std::vector<double> start_poles() const;
+  [[nodiscard]] Search search(double pole) const;
+  void iterate(Search& found) const;
+  bool step(Search& found, double& change) const;
+
+  template <class Filter>
+  struct Filters {
+    Filter y, u;
+    std::optional<Filter> clean_u, free, x;
+  };
+  /// The samples of a block.
+  struct Inputs {
+    const double *input, *output, *clean_input;
+  };
+  /// Fills the rows of a block.   @param free_weights of the free motion in x̂, or nullptr
+  template <class Filter>
+  void fill(Filters<Filter>& filters, const Inputs& from, Index count, Index columns, const Iterate& at,
+            const Layout& layout, const Vector* free_weights, dsp::Rows now) const;
+  /// Calls use(block) for the blocks of one experiment.
+  template <class Use>
+  void blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise, Use&& use) const;
+  template <class Use>
+  void blocks_of_stretches(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                           Use&& use) const;
+  template <class Use>
+  void blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const;
+  [[nodiscard]] static const Vector* free_weights(const Iterate& at, const Layout& layout, std::size_t experiment) {
+    return layout.free && experiment < at.free.size() ? &at.free[experiment] : nullptr;
+  }
+  /// @param residuals  y − x̂ of each experiment, where it is not nullptr; without a noise model only
+  [[nodiscard]] Sums sums(const Iterate& at, const Layout& layout, const Vector& noise,
+                          std::vector<Vector>* residuals = nullptr) const;
+  [[nodiscard]] std::vector<Vector> residuals(const Iterate& at) const {
+    std::vector<Vector> all;
+    static_cast<void>(sums(at, layout(false), Vector::Ones(1), &all));
+    return all;
+  }
+  [[nodiscard]] Layout layout(bool instruments) const {
+    return {n_, q_, instruments, instruments && options_.reference_instruments, options_.free_start};
+  }
+  [[nodiscard]] Layout layout_of_clean_input(bool instruments) const {
+    return {n_, q_, instruments, false, options_.free_start, kCleanInput};
+  }
+  void take_covariance(const Search& best, ContinuousFit& made) const;
+
+  const std::vector<SignalPair>& experiments_;
+  const ContinuousFitOptions& options_;
+  Index n_, q_;
+  std::vector<dsp::Stretches> stretched_;
+  double output_squares_ = 0;  ///< Σ(y − ȳ)²
+  Index samples_ = 0;
+};
+
+template <class Filter>
+void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Index columns, const Iterate& at,
+                  const Layout& layout, const Vector* free_weights, dsp::Rows now) const {
+  static const std::vector<dsp::Abreast> kNone(kSteps);
+  const double* const none = kNone.data()->values.data();
+  /// sᵏ/A, k = 0 … q − 1, of which the n-th is the signal itself less the others. Where q is less than n, rows that
+  /// follow are written, too, and only then get what belongs there.
+  const auto take_input = [&](Filter& filter, const double* signal, dsp::Rows to) {
+    filter.run(signal, count, to);
+    if (q_ > n_) dsp::combine(-at.a, to, signal, columns, to.row(n_));
+  };
+  const dsp::Rows u = rows_from(now, layout.u()), free = rows_from(now, layout.free_at());
+  if (filters.clean_u) take_input(*filters.clean_u, from.clean_input, rows_from(now, n_));
+  take_input(filters.u, from.input, u);
+  filters.y.run(from.output, count, rows_from(now, layout.y()));
+  if (filters.free) {
+    filters.free->run(none, count, free);
+    std::fill_n(free.row(n_), columns, 1.0);
+  }
+  dsp::combine(-at.b, u, from.output, columns, now.row(layout.e()));
+  if (!filters.x) return;
+  alignas(64) std::array<double, kBlock> clean;
+  dsp::combine(at.b, layout.reference ? rows_from(now, n_) : u, none, columns, clean.data());
+  if (free_weights != nullptr) dsp::combine(free_weights->head(n_), free, clean.data(), columns, clean.data());
+  filters.x->run(clean.data(), count, now);
+}
+
+template <class Use>
+void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                                 Use&& use) const {
+  const SignalPair& pair = experiments_[experiment];
+  const dsp::Stretches& signals = stretched_[experiment];
+  const Vector* const c = layout.reference ? nullptr : free_weights(at, layout, experiment);
+  const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kStretches;
+  const dsp::HeldStep filter = dsp::held_step(at.a, at.scale * *pair.step);
+  const dsp::HeldStep negative{filter.transition, -filter.from_last, -filter.from_next};
+  const auto from_rest = [&](const dsp::HeldStep& step, Index signal) {
+    return dsp::StretchFilter(step, dsp::states_at_starts(step, signals, signal));
+  };
+  const Index source = layout.reference ? kCleanInput : layout.input;  // of x̂
+  // States at the starts: of the source and, below them, what x̂ has of it; the same of the free motion.
+  dsp::HeldStep to_x = filter, free_to_x = filter;
+  if (layout.instruments) {
+    const double through = q_ > n_ ? at.b[n_] : 0.0;
+    Vector weights = -through * at.a;
+    weights.head(std::min(q_, n_)) += at.b.head(std::min(q_, n_));
+    to_x = dsp::cascaded(filter, weights, through);
+    if (c != nullptr) free_to_x = dsp::cascaded(filter, c->head(n_), 0.0);
+  }
+  const Matrix of_source = dsp::states_at_starts(to_x, signals, source);
+  Matrix of_free;
+  if (layout.free) {
+    of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
+  }
+  const dsp::StretchFilter source_filter(filter, of_source.topRows(n_));
+  Filters<dsp::StretchFilter> filters{
+      from_rest(negative, kOutput), layout.reference ? from_rest(filter, kInput) : source_filter, {}, {}, {}};
+  if (layout.reference) filters.clean_u = source_filter;
+  if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
+  if (layout.instruments) {
+    Matrix starts = -of_source.bottomRows(n_);
+    if (c != nullptr) starts -= of_free.bottomRows(n_);
+    filters.x.emplace(negative, starts);
+  }
+  Table table(layout.rows(), past + kBlock), filtered(layout.rows(), kBlock);
+  const dsp::Rows now = table.from(past);
+  for (Index begin = 0; begin < length + order; begin += kSteps) {
+    const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kStretches;
+    const Inputs from{signals.row(layout.input, begin), signals.row(kOutput, begin),
+                      layout.reference ? signals.row(kCleanInput, begin) : nullptr};
+    fill(filters, from, steps, columns, at, layout, c, now);
+    Block block{now, columns, begin, dsp::kStretches, length, pair.time.size()};
+    if (order > 0) {
+      block.rows = filtered.from(0);
+      for (Index r = 0; r < layout.rows(); ++r) {
+        double* const row = now.row(r);
+        dsp::combine(noise.tail(order), {row - dsp::kStretches, -dsp::kStretches}, row, columns, block.rows.row(r));
+        std::copy_n(row + columns - past, past, row - past);
+      }
+      // Before there is a past; in all stretches but the first these samples are the last of the one before.
+      block.skip(std::clamp<Index>(order - begin, 0, steps));
+    }
+    if (block.columns == 0) continue;
+    block.clear_beyond(layout.rows());
+    use(block);
+  }
+}
+
+template <class Use>
+void Fitter::blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const {
+  const SignalPair& pair = experiments_[experiment];
+  const Vector rest = Vector::Zero(n_);
+  Filters<Pass> filters{Pass(at.a, pair, at.scale, rest, -1.0), Pass(at.a, pair, at.scale, rest), {}, {}, {}};
+  if (layout.free) filters.free.emplace(at.a, pair, at.scale, Vector::Unit(n_, n_ - 1));
+  if (layout.instruments) filters.x.emplace(at.a, pair, at.scale, rest, -1.0);
+  Table table(layout.rows(), kBlock), signals(2, kBlock);
+  double* const input = signals.from(0).row(0);
+  double* const output = signals.from(0).row(1);
+  for (Index begin = 0; begin < pair.time.size(); begin += kBlock) {
+    const Index count = std::min(kBlock, pair.time.size() - begin);
+    const Index columns = (count + dsp::kStretches - 1) / dsp::kStretches * dsp::kStretches;
+    std::copy_n(pair.input.data() + begin, count, input);
+    std::copy_n(pair.output.data() + begin, count, output);
+    fill(filters, {input, output, nullptr}, count, columns, at, layout, free_weights(at, layout, experiment),
+         table.from(0));
+    const Block block{table.from(0), columns, begin, 1, 0, pair.time.size()};
+    block.clear_beyond(layout.rows());
+    use(block);
+  }
+}
+
+template <class Use>
+void Fitter::blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                    Use&& use) const {
+  if (experiments_[experiment].step) {
+    blocks_of_stretches(experiment, at, layout, noise, use);
+  } else {
+    blocks_of_uneven(experiment, at, layout, use);
+  }
+}
+
+Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, std::vector<Vector>* residuals) const {
+  const Index p = n_ + q_, u = layout.u(), y = layout.y(), rows = layout.rows();
+  const Index own = layout.instruments ? 0 : y, own_size = layout.instruments ? layout.z_size() : n_;
+  Sums all{Matrix::Zero(p, p), Matrix::Zero(p, p), Vector::Zero(p), 0.0, 0, {}};
+  for (std::size_t k = 0; k < experiments_.size(); ++k) {
+    // [Z u e free]ᵀ[u e free −y], and ZᵀZ of what is not in u.
+    dsp::Products across(y, rows - u), within(own_size, own_size);
+    Vector e(residuals == nullptr ? 0 : experiments_[k].time.size());
+    blocks(k, at, layout, noise, [&](const Block& block) {
+      across.add(block.rows, rows_from(block.rows, u), block.columns);
+      within.add(rows_from(block.rows, own), rows_from(block.rows, own), block.columns);
+      if (residuals != nullptr) block.scatter(layout.e(), e);
+    });
+    Matrix gram = Matrix::Zero(rows, rows);
+    gram.block(0, u, y, rows - u) = across.total();
+    gram.block(u, 0, rows - u, y) = across.total().transpose();
+    gram.block(own, own, own_size, own_size) = within.total();
+    Reduced one = reduce(gram, layout);
+    if (residuals != nullptr) {
+      if (layout.free) e -= free_motion(at, experiments_[k]).transpose() * one.free_of_e;
+      residuals->push_back(std::move(e));
+    }
+    all.M += one.M;
+    all.S += one.S;
+    all.g += one.g;
+    all.ee += one.ee;
+    all.samples += std::max<Index>(experiments_[k].time.size() - noise.size() + 1, 0);
+    all.each.push_back(std::move(one));
+  }
+  return all;
+}
+
+/// (ZᵀX)⁻¹Zᵀe, rows and columns scaled to unit length; not finite where it is singular.
+Vector solved(const Sums& sums) {
+  const Vector z = sums.S.diagonal().cwiseSqrt().cwiseInverse();
+  Matrix scaled = z.asDiagonal() * sums.M;
+  const Vector x = scaled.colwise().norm().cwiseInverse();
+  scaled = scaled * x.asDiagonal();
+  return x.asDiagonal() * scaled.colPivHouseholderQr().solve(z.asDiagonal() * sums.g);
+}
+
+/// Roots on the right half plane are reflected, to no less than a damping ratio; false where there was one.
+bool stabilise(Vector& a, double least_damping) {
+  if (!a.allFinite()) return false;
+  Vector monic(a.size() + 1);
+  monic << a, 1.0;
+  Eigen::VectorXcd roots = numeric::polynomial_roots(monic);
+  bool stable = true;
+  for (auto& root : roots) {
+    if (root.real() < 0.0) continue;
+    stable = false;
+    root.real(-std::max(root.real(), least_damping * std::abs(root)));
+  }
+  if (!stable) a = numeric::monic_from_roots(roots);
+  return stable;
+}
+
+bool Fitter::step(Search& found, double& change) const {
+  const bool first = found.at.b.size() == 0;
+  const Layout rows = found.from_clean_input ? layout_of_clean_input(!first) : layout(!first);
+  const Sums now = sums(found.at, rows, found.noise);
+  const Vector delta = solved(now);
+  if (!delta.allFinite()) return false;
+  const Vector old = first ? Vector(Vector::Zero(n_ + q_)) : found.at.theta();
+  for (std::size_t k = 0; k < experiments_.size() && options_.free_start; ++k) {
+    found.at.free.resize(experiments_.size());
+    found.at.free[k] = now.each[k].free_of_e - now.each[k].free_of_x * delta;
+  }
+  found.at.a += delta.head(n_);
+  found.at.b = (first ? Vector(Vector::Zero(q_)) : found.at.b) + delta.tail(q_);
+  // A root that keeps coming back from the right half plane would be put to the same place for ever: the error has its
+  // least on the axis there. Far from it the search finds another way.
+  constexpr int kPatience = 8;
+  constexpr double kReflected = 1e-7, kMovedAway = 0.1;
+  const bool stuck = found.unstable_in_a_row > 0 && found.unstable_in_a_row % kPatience == 0;
+  found.start.stable = stabilise(found.at.a, stuck ? kMovedAway : kReflected);
+  found.unstable_in_a_row = found.start.stable ? 0 : found.unstable_in_a_row + 1;
+  if (!found.at.a.allFinite() || !found.at.b.allFinite()) return false;
+  // A coefficient that noise leaves undecided is not asked to stand still beyond its own error.
+  const double variance = now.ee / static_cast<double>(std::max<Index>(now.samples - n_ - q_, 1));
+  const Vector least = now.S.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse().cwiseSqrt() *
+                       std::sqrt(std::max(variance, 0.0));
+  change = ((found.at.theta() - old).array().abs() / found.at.theta().array().abs().max(least.array())).maxCoeff();
+  found.at.rescale();
+  return std::isfinite(change);
+}
+
+/// Until the coefficients stand still.
+void Fitter::iterate(Search& found) const {
+  constexpr double kRounding = 1e-11;
+  double change = std::numeric_limits<double>::infinity(), least = change;
+  bool settled = false;
+  found.start.converged = false;
+  for (int pass = 0; pass < options_.most_iterations; ++pass) {
+    ++found.start.iterations;
+    if (!step(found, change)) return;
+    if (settled && change >= 0.5 * least && change < options_.tolerance) break;
+    settled = settled || (change < options_.tolerance && found.start.stable);
+    least = std::min(least, change);
+    if (settled && (!options_.refine || change < kRounding)) break;
+  }
+  found.start.converged = settled && found.start.stable && change < options_.tolerance;
+}
+
+Fitter::Search Fitter::search(double pole) const {
+  Search found;
+  found.start.pole = pole;
+  found.from_clean_input = options_.reference_instruments;
+  // Filters so slow that they leave nothing but a free motion of the record determine nothing; faster ones do.
+  constexpr int kMostDoublings = 20;
+  bool begun = false;
+  for (int k = 0; !begun && k < kMostDoublings; ++k) {
+    found.at = {std::ldexp(pole, k), numeric::monic_from_roots(Eigen::VectorXcd::Constant(n_, -1.0)), {}, {}};
+    double change = 0.0;
+    ++found.start.iterations;
+    begun = step(found, change);
+  }
+  if (!begun) return found;
+  // In a closed loop first with û for u (two stages, Van den Hof & Schrama 1993): that is a fit without any loop, whose
+  // error has one least. The equations of the instruments have other solutions, too, where the noise is strong.
+  if (found.from_clean_input) {
+    iterate(found);
+    found.from_clean_input = false;
+    if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
+  }
+  iterate(found);
+  if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
+  // With a noise model: what is left is modelled, and the fit repeated, until neither changes.
+  constexpr int kMostNoisePasses = 30;
+  for (int pass = 0; options_.most_noise_order > 0 && found.start.converged && pass < kMostNoisePasses; ++pass) {
+    const Vector before = found.at.physical();
+    found.noise = autoregression(residuals(found.at), options_.most_noise_order);
+    iterate(found);
+    const Vector after = found.at.physical();
+    if (((after - before).array().abs() <= options_.tolerance * after.array().abs()).all()) break;
+  }
+  const bool white = found.noise.size() == 1;
+  found.last = sums(found.at, layout(true), found.noise, white ? &found.residuals : nullptr);
+  found.variance = found.last.ee / static_cast<double>(std::max<Index>(found.last.samples - n_ - q_, 1));
+  found.rank = found.variance;
+  // With the loop's noise in u the least error is not the truth's.
+  if (options_.reference_instruments) found.rank = sums(found.at, layout_of_clean_input(false), Vector::Ones(1)).ee;
+  double squares = found.last.ee;
+  if (!white) {
+    found.residuals = residuals(found.at);
+    squares = 0.0;
+    for (const Vector& e : found.residuals) squares += e.squaredNorm();
+  }
+  found.start.fit = 1.0 - squares / output_squares_;
+  return found;
+}
+
+Result<void> Fitter::check() const {
+  if (n_ < 1 || n_ > kMostPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMostPoles));
+  if (q_ < 1 || q_ > n_ + 1) {
+    return bad_usage(
+        fmt::format("{} zeros beside {} poles: a model may have as many zeros as poles, not more", q_ - 1, n_));
+  }
+  if (experiments_.empty()) return bad_usage("no experiment to fit");
+  for (const double pole : options_.start_poles) {
+    if (!(pole > 0.0) || !std::isfinite(pole))
+      return bad_usage(fmt::format("start pole {} rad/s is not above 0", pole));
+  }
+  Index samples = 0;
+  for (const SignalPair& pair : experiments_) {
+    samples += pair.time.size();
+    for (const Vector* signal : {&pair.time, &pair.input, &pair.output}) {
+      if (signal->size() != pair.time.size()) return bad_usage("time, input and output differ in length");
+      if (std::isfinite(signal->sum())) continue;
+      if (const Index bad = first_non_finite(*signal); bad >= 0) {
+        return bad_data(fmt::format("sample {} of a signal is not a finite number", bad + 1),
+                        "cut it out by --from and --to");
+      }
+    }
+    if (!pair.step && (options_.most_noise_order > 0 || options_.reference_instruments)) {
+      return bad_usage("a noise model and the closed-loop variant need an even clock", "take --method srivc");
+    }
+    if (options_.reference_instruments && pair.reference.size() != pair.time.size()) {
+      return bad_usage("the closed-loop variant needs the reference", "name it: --reference NAME");
+    }
+  }
+  const Index unknown = n_ + q_ + (options_.free_start ? (n_ + 1) * static_cast<Index>(experiments_.size()) : 0);
+  if (samples < 2 * unknown + 10) {
+    return bad_data(fmt::format("{} samples are too few for {} unknowns", samples, unknown),
+                    "record longer, or take fewer poles");
+  }
+  return {};
+}
+
+/// From a few periods in the record to a third of the Nyquist frequency, evenly in the logarithm.
+std::vector<double> Fitter::start_poles() const {
+  std::vector<double> poles = options_.start_poles;
+  if (options_.only_given_starts && !poles.empty()) return poles;
+  double step = 0.0, duration = 0.0;
+  for (const SignalPair& pair : experiments_) {
+    const double length = pair.time[pair.time.size() - 1] - pair.time[0];
+    duration = std::max(duration, length);
+    step = std::max(step, length / static_cast<double>(pair.time.size() - 1));
+  }
+  constexpr int kStarts = 6;
+  constexpr double kReach = 300.0;
+  const double high = std::numbers::pi / step / 3.0, low = std::max(8.0 * std::numbers::pi / duration, high / kReach);
+  for (int k = 0; k < kStarts; ++k) {
+    poles.push_back(high * std::pow(std::min(low / high, 1.0), static_cast<double>(k) / (kStarts - 1)));
+  }
+  return poles;
+}
+
+void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
+  const Layout rows = layout(true);
+  const Sums& last = best.last;
+  const Index p = n_ + q_;
+  const Matrix bread =
+      options_.reference_instruments ? Matrix(last.M.inverse()) : Matrix(last.S.ldlt().solve(Matrix::Identity(p, p)));
+  made.white_covariance = made.variance * bread * last.S * bread.transpose();
+  made.covariance = made.white_covariance;
+  if (options_.hac_lag_s > 0.0) {
+    const std::vector<Index> z = rows.z_rows();
+    std::vector<numeric::RowRange> ranges;
+    Matrix scores(p, last.samples);
+    Index at = 0;
+    double step = 0.0;
+    for (std::size_t k = 0; k < experiments_.size(); ++k) {
+      const Reduced& one = last.each[k];
+      const Index begin = at;
+      const Vector& time = experiments_[k].time;
+      step = std::max(step, (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1));
+      const Index order = best.noise.size() - 1;
+      blocks(k, best.at, rows, best.noise, [&](const Block& block) {
+        const auto all = block.matrix(rows.rows());
+        Eigen::RowVectorXd e = all.row(rows.e());
+        Matrix instruments = all(z, Eigen::all);
+        if (rows.free) {
+          const auto free = all.middleRows(rows.free_at(), rows.free_size());
+          e -= one.free_of_e.transpose() * free;
+          instruments -= one.free_of_z.transpose() * free;
+        }
+        instruments = instruments * e.asDiagonal();
+        for (Index c = 0; c < block.columns; ++c) {
+          if (block.sample(c) < block.samples) scores.col(begin + block.sample(c) - order) = instruments.col(c);
+        }
+      });
+      at += std::max<Index>(time.size() - order, 0);
+      ranges.push_back({begin, at});
+    }
+    const Index lags = std::min(static_cast<Index>(std::llround(options_.hac_lag_s / step)), last.samples / 10);
+    const Matrix middle = numeric::long_run_covariance(p, ranges, lags, [&](const numeric::RowRange& range) {
+      return Matrix(scores.middleCols(range.begin, range.size()));
+    });
+    const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(last.samples));
+    made.covariance = widening * widening * bread * middle * bread.transpose();
+  }
+  const Vector physical = best.at.to_seconds();
+  made.a = best.at.a.cwiseProduct(physical.head(n_));
+  made.b = best.at.b.cwiseProduct(physical.tail(q_));
+  made.covariance = physical.asDiagonal() * made.covariance * physical.asDiagonal();
+  made.white_covariance = physical.asDiagonal() * made.white_covariance * physical.asDiagonal();
+}
+
+Result<ContinuousFit> Fitter::run() {
+  if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+  double input_squares = 0.0;
+  for (const SignalPair& pair : experiments_) {
+    output_squares_ += (pair.output.array() - pair.output.mean()).square().sum();
+    input_squares += (pair.input.array() - pair.input.mean()).square().sum();
+    samples_ += pair.time.size();
+    if (!pair.step) {
+      stretched_.emplace_back();
+      continue;
+    }
+    std::vector<const Vector*> signals = {&pair.input, &pair.output};
+    Vector clean;  // û
+    if (options_.reference_instruments) {
+      clean = explained_by_past(pair.reference, pair.input);
+      signals.push_back(&clean);
+    }
+    stretched_.emplace_back(signals, options_.most_noise_order);
+  }
+  if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
+  if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");
+
+  const std::vector<double> poles = start_poles();
+  std::vector<Search> searches(poles.size());
+  const auto ran = numeric::parallel_for(static_cast<int>(poles.size()), options_.threads, [&](int i) -> Result<void> {
+    const auto k = static_cast<std::size_t>(i);
+    searches[k] = search(poles[k]);
+    return {};
+  });
+  if (!ran) return tl::unexpected(ran.error());
+  const auto better = [](const Search& a, const Search& b) {
+    if (a.start.converged != b.start.converged) return a.start.converged;
+    return a.rank < b.rank;
+  };
+  Search& best = *std::ranges::min_element(searches, better);
+  ContinuousFit made;
+  made.samples = samples_;
+  for (const Search& one : searches) made.starts.push_back(one.start);
+  made.converged = best.start.converged;
+  made.stable = best.start.stable;
+  made.variance = best.variance;
+  made.fit = best.start.fit;
+  made.noise = best.noise;
+  if (std::isfinite(best.variance)) {
+    take_covariance(best, made);
+    made.residuals = std::move(best.residuals);
+  }
+  return made;
+}
+
+}  // namespace
+
+Result<ContinuousFit> fit_continuous(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options) {
+  return Fitter(experiments, options).run();
+}
+
+Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& experiment) {
+  const Index n = a.size(), total = experiment.time.size();
+  Iterate at{1.0, a, b, {}};
+  at.rescale();
+  Pass pass(at.a, experiment, at.scale, Vector::Zero(n));
+  Matrix states(n, kBlock);
+  Vector response(total);
+  for (Index begin = 0; begin < total; begin += kBlock) {
+    const Index count = std::min(kBlock, total - begin);
+    pass.run(experiment.input.data() + begin, count, states.leftCols(count));
+    auto now = response.segment(begin, count);
+    const Index q = std::min(at.b.size(), n);
+    now = states.leftCols(count).topRows(q).transpose() * at.b.head(q);
+    if (at.b.size() > n) {
+      now += at.b[n] * (experiment.input.segment(begin, count) - states.leftCols(count).transpose() * at.a);
+    }
+  }
+  return response;
+}
+
+Vector without_free_motion(const Vector& a, const SignalPair& experiment, const Vector& residual) {
+  Iterate at{1.0, a, Vector::Zero(1), {}};
+  at.rescale();
+  const Matrix free = free_motion(at, experiment);
+  const Matrix gram = free * free.transpose();
+  return residual - free.transpose() * (pseudo_inverse(gram) * (free * residual));
+}
+
+}  // namespace mbk::identify

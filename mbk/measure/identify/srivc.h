@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/transfer_function.h"
+
+namespace mbk::identify {
+
+struct ContinuousFitOptions {
+  Index poles = 2, zeros = 0;          ///< n ≥ 1 and 0 ≤ m ≤ n
+  std::vector<double> start_poles;     ///< [rad/s] of the first filter; empty: a few over the band of the samples
+  bool only_given_starts = false;      ///< otherwise those over the band are tried beside them
+  bool free_start = true;              ///< an initial state and an offset of the output for each experiment
+  Index most_noise_order = 0;          ///< RIVC: autoregressive noise model up to this order, by BIC; 0: SRIVC
+  bool reference_instruments = false;  ///< closed loop: instruments from the reference alone
+  double hac_lag_s = 0.0;              ///< reach of the residual's correlation in the covariance [s]; 0: white
+  double tolerance = 1e-4;             ///< largest relative change of a coefficient at which the search has settled
+  int most_iterations = 100;
+  bool refine = true;    ///< go on to rounding once it has settled
+  unsigned threads = 0;  ///< for the starts; 0: as many as there are cores
+};
+
+/// What a search found, from the best start that settled on a stable model, or from the best one where none did.
+struct ContinuousFit {
+  Vector a, b;             ///< a₀ … a_{n−1} and b₀ … b_m, physical time
+  bool converged = false;  ///< settled, and the solution itself is stable
+  bool stable = true;
+  Matrix covariance;              ///< of [a; b]
+  Matrix white_covariance;        ///< the same as if what is left were white
+  double variance = 0;            ///< of what is left (with a noise model: of its innovations)
+  double fit = 0;                 ///< R_T² = 1 − Σe²/Σ(y − ȳ)²
+  Vector noise;                   ///< 1, c₁ … of the noise model; [1] without one
+  std::vector<Vector> residuals;  ///< y − x̂ of each experiment
+  std::vector<SearchStart> starts;
+  Index samples = 0;
+};
+
+/// Simplified refined instrumental variables for continuous-time models (Young & Jakeman 1980; Garnier & Young 2008):
+///   y = B(s)/A(s) u + C(s)/A(s) δ + c + e,
+/// fitted to sampled signals without any difference quotient. The signals and the model's own noise-free output x̂ are
+/// filtered by sᵏ/A(s) exactly for a first-order hold (dsp::DerivativeFilter); X = [−y_f, u_f], Z = [−x̂_f, u_f] and
+///   θ ← θ + (ZᵀX)⁻¹ Zᵀ(y − x̂),
+/// with A of the last pass, whose roots are reflected into the left half plane, until no coefficient changes by more
+/// than the tolerance. The fixed point is a stationary point of Σe² (output error). C and c, an initial state and an
+/// offset, are projected out for each experiment. Time is scaled by the geometric mean of the poles.
+///   First pass: least squares on filters (s + λ)⁻ⁿ, for several λ, as one alone can end in a local minimum.
+///   A λ that determines nothing is doubled.
+///   RIVC: X, Z and e also pass an autoregressive model of e, found anew until both settle.
+///   Closed loop: Z = [−x̂_f, û_f], where û is what a finite impulse response makes of the reference. It begins with û
+///   for u, and of several starts takes that whose model leaves least of y from û.
+/// @param experiments  each [1 … N] samples; their clocks may be uneven, but not with a noise model or closed loop
+/// @fails  usage: orders out of range; no experiment; a noise model or closed loop on an uneven clock; no reference.
+///         data: too few samples; a value is not finite; input or output is constant.
+[[nodiscard]] Result<ContinuousFit> fit_continuous(const std::vector<SignalPair>& experiments,
+                                                   const ContinuousFitOptions& options);
+
+/// Response of a continuous-time model from rest to the experiment's input (without its delay), exactly for a
+/// first-order hold.   @param a a₀ … a_{n−1}    @param b b₀ … b_m    @returns as many values as there are samples
+[[nodiscard]] Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& experiment);
+
+/// What the best initial state and offset leave of `residual`, and so does the simulation's error of a record that did
+/// not begin at rest.
+[[nodiscard]] Vector without_free_motion(const Vector& a, const SignalPair& experiment, const Vector& residual);
+
+}  // namespace mbk::identify

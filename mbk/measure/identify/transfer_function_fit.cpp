@@ -1,0 +1,566 @@
+#include "mbk/measure/identify/transfer_function_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mbk/base/dsp/difference_equation.h"
+#include "mbk/base/dsp/spectrum.h"
+#include "mbk/base/numeric/polynomial_roots.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/prediction_error.h"
+#include "mbk/measure/identify/srivc.h"
+
+namespace mbk::identify {
+namespace {
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+/// The samples that count, with the input as it was `delay` before, by straight lines; before the record its first
+/// value.
+SignalPair delayed(const SignalPair& pair, double delay) {
+  const Index n = pair.samples();
+  SignalPair shifted = pair;
+  shifted.first = 0;
+  shifted.time = pair.time.tail(n);
+  shifted.output = pair.output.tail(n);
+  const auto moved = [&](const Vector& signal) {
+    if (signal.size() == 0) return signal;
+    if (delay == 0.0) return Vector(signal.tail(n));
+    Vector values(n);
+    Index left = 0;
+    constexpr double kRounding = 1e-9;  // of an interval
+    for (Index i = 0; i < n; ++i) {
+      const double t = shifted.time[i] - delay;
+      while (left + 1 < pair.time.size() - 1 && pair.time[left + 1] <= t) ++left;
+      double weight = std::clamp((t - pair.time[left]) / (pair.time[left + 1] - pair.time[left]), 0.0, 1.0);
+      if (weight < kRounding || weight > 1.0 - kRounding) weight = std::round(weight);
+      values[i] = (1.0 - weight) * signal[left] + weight * signal[left + 1];
+    }
+    return values;
+  };
+  shifted.input = moved(pair.input);
+  shifted.reference = moved(pair.reference);
+  return shifted;
+}
+
+std::vector<SignalPair> delayed(const std::vector<SignalPair>& pairs, double delay) {
+  std::vector<SignalPair> all;
+  for (const SignalPair& pair : pairs) all.push_back(delayed(pair, delay));
+  return all;
+}
+
+/// P(χ² > q) by the cube root of Wilson & Hilferty (1931).
+double chi_squared_beyond(double q, double degrees_of_freedom) {
+  const double spread = 2.0 / (9.0 * degrees_of_freedom);
+  return numeric::normal_probability(-(std::cbrt(q / degrees_of_freedom) - (1.0 - spread)) / std::sqrt(spread));
+}
+
+/// What every method gives.
+struct Fit {
+  Vector denominator, numerator;  ///< as in TransferFunction, without the 1
+  bool converged = false;
+  Matrix covariance, white_covariance;  ///< of [denominator; numerator]
+  double variance = 0, fit = 0;
+  Vector noise_denominator, noise_numerator;
+  std::vector<Vector> residuals, innovations;
+  std::vector<SearchStart> starts;
+  Index samples = 0;
+};
+
+Fit fit_of(ContinuousFit&& made) {
+  Fit fit{.denominator = std::move(made.a),
+          .numerator = std::move(made.b),
+          .converged = made.converged,
+          .covariance = std::move(made.covariance),
+          .white_covariance = std::move(made.white_covariance),
+          .variance = made.variance,
+          .fit = made.fit,
+          .noise_denominator = std::move(made.noise),
+          .noise_numerator = Vector::Ones(1),
+          .residuals = std::move(made.residuals),
+          .starts = std::move(made.starts),
+          .samples = made.samples};
+  const Index order = fit.noise_denominator.size() - 1;
+  for (const Vector& e : fit.residuals) {
+    const Vector innovation = dsp::difference_equation(fit.noise_denominator, Vector::Ones(1), e);
+    fit.innovations.push_back(innovation.tail(e.size() - order));
+  }
+  return fit;
+}
+
+Fit fit_of(PredictionErrorFit&& made) {
+  return {.denominator = std::move(made.f),
+          .numerator = std::move(made.b),
+          .converged = made.converged,
+          .covariance = std::move(made.covariance),
+          .white_covariance = std::move(made.white_covariance),
+          .variance = made.variance,
+          .fit = made.fit,
+          .noise_denominator = std::move(made.noise_denominator),
+          .noise_numerator = std::move(made.noise_numerator),
+          .residuals = std::move(made.residuals),
+          .innovations = std::move(made.innovations),
+          .starts = std::move(made.starts),
+          .samples = made.samples};
+}
+
+class Identifier {
+ public:
+  Identifier(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_back,
+             const TransferFunctionOptions& options)
+      : experiments_(experiments), held_back_(held_back), options_(options), delay_(options.delay) {}
+
+  Result<TransferFunctionIdentification> run();
+
+ private:
+  [[nodiscard]] bool discrete() const { return is_discrete(options_.method); }
+  [[nodiscard]] ContinuousFitOptions continuous_options(Index poles, Index zeros) const;
+  [[nodiscard]] PredictionErrorOptions discrete_options(Index poles, Index zeros) const;
+  [[nodiscard]] Result<Fit> fit(Index poles, Index zeros, double delay) const;
+  Result<Fit> choose_delay(Index poles, Index zeros);
+  [[nodiscard]] OrderChoice criteria(const Fit& fit, Index poles, Index zeros) const;
+  Result<Fit> choose_order();
+  void describe(const Fit& fit);
+  void describe_roots(const Fit& fit);
+  void test(const Fit& fit);
+  [[nodiscard]] Vector simulation_error(const SignalPair& pair) const;
+  [[nodiscard]] Result<void> check_clock() const;
+  void simulate(const Fit& fit);
+  void warn();
+  [[nodiscard]] double median_step() const;
+
+  const std::vector<SignalPair>& experiments_;
+  const std::vector<SignalPair>& held_back_;
+  const TransferFunctionOptions& options_;
+  double delay_;
+  TransferFunctionIdentification found_;
+};
+
+double Identifier::median_step() const {
+  std::vector<double> steps;
+  for (const SignalPair& pair : experiments_) {
+    for (Index i = 1; i < pair.time.size(); ++i) steps.push_back(pair.time[i] - pair.time[i - 1]);
+  }
+  if (steps.empty()) return kUndefined;
+  const auto middle = steps.begin() + std::ssize(steps) / 2;
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+ContinuousFitOptions Identifier::continuous_options(Index poles, Index zeros) const {
+  ContinuousFitOptions options;
+  options.poles = poles;
+  options.zeros = zeros;
+  options.start_poles = options_.start_poles;
+  options.free_start = options_.free_start;
+  options.hac_lag_s = options_.hac_lag_s;
+  options.threads = options_.threads;
+  options.reference_instruments = options_.method == TransferFunctionMethod::closed_loop;
+  options.most_noise_order = options_.method == TransferFunctionMethod::rivc ? options_.most_noise_order : 0;
+  return options;
+}
+
+PredictionErrorOptions Identifier::discrete_options(Index poles, Index zeros) const {
+  PredictionErrorOptions options;
+  options.poles = poles;
+  options.zeros = zeros;
+  options.start_poles = options_.start_poles;
+  options.free_start = options_.free_start;
+  options.noise_model = options_.method == TransferFunctionMethod::box_jenkins;
+  options.most_noise_order = options_.most_noise_order;
+  options.hac_lag_s = options_.hac_lag_s;
+  options.threads = options_.threads;
+  return options;
+}
+
+Result<Fit> Identifier::fit(Index poles, Index zeros, double delay) const {
+  const std::vector<SignalPair> moved = delayed(experiments_, delay);
+  const auto made = [](auto&& result) -> Result<Fit> {
+    if (!result) return tl::unexpected(result.error());
+    return fit_of(std::move(*result));
+  };
+  if (discrete()) return made(fit_prediction_error(moved, discrete_options(poles, zeros)));
+  return made(fit_continuous(moved, continuous_options(poles, zeros)));
+}
+
+Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
+  const double step = median_step();
+  if (!options_.find_delay) return fit(poles, zeros, delay_);
+  const auto left = [](const Result<Fit>& made) {
+    return made->converged ? made->variance : std::numeric_limits<double>::infinity();
+  };
+  constexpr Index kMost = 25;
+  const auto samples = static_cast<Index>(std::floor(options_.most_delay / step + 1e-9));
+  const Index every = discrete() ? 1 : std::max<Index>(1, (samples + kMost - 1) / kMost);
+  double best = 0.0, least = std::numeric_limits<double>::infinity();
+  const auto look = [&](double delay) -> Result<double> {
+    const auto made = fit(poles, zeros, delay);
+    if (!made) return tl::unexpected(made.error());
+    const double variance = left(made);
+    if (variance < least) {
+      least = variance;
+      best = delay;
+    }
+    return variance;
+  };
+  for (Index k = 0; k <= samples; k += every) {
+    if (auto ok = look(static_cast<double>(k) * step); !ok) return tl::unexpected(ok.error());
+  }
+  found_.delay_found = true;
+  if (discrete()) {
+    delay_ = best;
+    return fit(poles, zeros, delay_);
+  }
+  constexpr double kGolden = 0.6180339887498949, kNear = 0.01;  // of a sample
+  const double whole = best, reach = static_cast<double>(every) * step;
+  double a = std::max(whole - reach, 0.0), b = std::min(whole + reach, options_.most_delay);
+  double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
+  auto at_c = look(c), at_d = look(d);
+  while (at_c && at_d && b - a > kNear * step) {
+    if (*at_c < *at_d) {
+      b = d;
+      d = c;
+      at_d = at_c;
+      c = b - kGolden * (b - a);
+      at_c = look(c);
+    } else {
+      a = c;
+      c = d;
+      at_c = at_d;
+      d = a + kGolden * (b - a);
+      at_d = look(d);
+    }
+  }
+  if (!at_c) return tl::unexpected(at_c.error());
+  if (!at_d) return tl::unexpected(at_d.error());
+  delay_ = best;
+  return fit(poles, zeros, delay_);
+}
+
+OrderChoice Identifier::criteria(const Fit& fit, Index poles, Index zeros) const {
+  OrderChoice choice{.poles = poles, .zeros = zeros, .usable = fit.converged, .fit = fit.fit};
+  choice.yic = choice.aic = choice.bic = kUndefined;
+  if (!std::isfinite(fit.variance) || fit.denominator.size() == 0) return choice;
+  Vector theta(fit.denominator.size() + fit.numerator.size());
+  theta << fit.denominator, fit.numerator;
+  double squares = 0.0, output = 0.0;
+  for (const Vector& e : fit.residuals) squares += e.squaredNorm();
+  for (const SignalPair& pair : experiments_) {
+    const auto y = pair.output.tail(pair.samples());
+    output += (y.array() - y.mean()).square().sum();
+  }
+  const auto count = static_cast<double>(fit.samples);
+  const auto parameters = static_cast<double>(theta.size());
+  const double spread =
+      (fit.white_covariance.diagonal().array() / theta.array().square()).sum() / parameters;  // σ² p_jj/θ_j²
+  choice.yic = std::log(squares / output) + std::log(spread);
+  choice.aic = count * std::log(fit.variance) + 2.0 * parameters;
+  choice.bic = count * std::log(fit.variance) + parameters * std::log(count);
+  return choice;
+}
+
+Result<Fit> Identifier::choose_order() {
+  std::vector<std::pair<Index, Index>> orders = options_.orders;
+  const bool several = !orders.empty();
+  if (!several) orders.emplace_back(options_.poles, options_.zeros);
+  std::vector<Fit> fits;
+  std::vector<double> delays;
+  for (const auto& [poles, zeros] : orders) {
+    auto made = choose_delay(poles, zeros);
+    if (!made) return tl::unexpected(made.error());
+    found_.orders.push_back(criteria(*made, poles, zeros));
+    fits.push_back(std::move(*made));
+    delays.push_back(delay_);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const OrderChoice& one : found_.orders) {
+    if (one.usable) least = std::min(least, 1.0 - one.fit);
+  }
+  constexpr double kMore = 1.02, kRounding = 1e-12;
+  std::size_t chosen = fits.size();
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const OrderChoice& one = found_.orders[k];
+    if (!one.usable || 1.0 - one.fit > kMore * least + kRounding) continue;
+    if (chosen == fits.size() || one.yic < found_.orders[chosen].yic) chosen = k;
+  }
+  if (chosen == fits.size()) {
+    const auto& starts = fits.back().starts;
+    const auto unstable = std::ranges::count(starts, false, &SearchStart::stable);
+    return fail(ErrorKind::not_usable,
+                fmt::format("no model of {} was found: of {} starts, {} ended on an unstable one and {} did not settle",
+                            several ? "these orders"
+                                    : fmt::format("{} poles and {} zeros", orders.front().first, orders.front().second),
+                            starts.size(), unstable, std::ssize(starts) - unstable),
+                "take fewer poles, exchange input and output if the cause was taken for the effect, or name a start "
+                "near the slowest pole by --start-pole");
+  }
+  found_.orders[chosen].chosen = true;
+  delay_ = delays[chosen];
+  return std::move(fits[chosen]);
+}
+
+void Identifier::describe(const Fit& fit) {
+  found_.method = options_.method;
+  found_.model.numerator = fit.numerator;
+  found_.model.denominator.resize(fit.denominator.size() + 1);
+  if (discrete()) {
+    found_.model.denominator << 1.0, fit.denominator;
+    found_.model.sample_time = median_step();
+  } else {
+    found_.model.denominator << fit.denominator, 1.0;
+  }
+  found_.model.delay = delay_;
+  found_.covariance = fit.covariance;
+  found_.hac_lag_s = options_.hac_lag_s;
+  found_.fit = fit.fit;
+  found_.noise_standard_deviation = std::sqrt(fit.variance);
+  if (fit.noise_denominator.size() > 1) found_.noise_denominator = fit.noise_denominator;
+  if (fit.noise_numerator.size() > 1) found_.noise_numerator = fit.noise_numerator;
+  const OrderChoice& chosen = *std::ranges::find(found_.orders, true, &OrderChoice::chosen);
+  found_.yic = chosen.yic;
+  found_.aic = chosen.aic;
+  found_.bic = chosen.bic;
+  if (found_.orders.size() == 1) found_.orders.clear();
+  found_.starts = fit.starts;
+  found_.samples = fit.samples;
+  found_.experiments = std::ssize(experiments_);
+  found_.even = std::ranges::all_of(experiments_, [](const SignalPair& pair) { return pair.step.has_value(); });
+  found_.sample_time = median_step();
+  describe_roots(fit);
+  if (!found_.even) return;
+  // Where 96 % of the input's power lies: beyond it, what is said rests on the form of the model.
+  const SignalPair& longest = *std::ranges::max_element(experiments_, {}, &SignalPair::samples);
+  const Hertz rate(1.0 / *longest.step);
+  const auto spectrum = dsp::welch(longest.input.tail(longest.samples()), rate,
+                                   Hertz(8.0 * rate.value / static_cast<double>(longest.samples())));
+  if (!spectrum) return;
+  constexpr double kBelow = 0.02;
+  found_.band_low = dsp::power_quantile(*spectrum, kBelow, Hertz(0.5 * rate.value)).value;
+  found_.band_high = dsp::power_quantile(*spectrum, 1.0 - kBelow, Hertz(0.5 * rate.value)).value;
+  for (auto* roots : {&found_.poles, &found_.zeros}) {
+    for (Root& root : *roots) root.outside_band = root.frequency > found_.band_high;
+  }
+}
+
+void Identifier::describe_roots(const Fit& fit) {
+  const Vector &below = fit.denominator, &above = fit.numerator;
+  const Index n = below.size(), q = above.size();
+  const Matrix of_below = fit.covariance.topLeftCorner(n, n), of_above = fit.covariance.bottomRightCorner(q, q);
+  Vector gradient(n + q);
+  if (discrete()) {
+    const double T = found_.model.sample_time, sum = 1.0 + below.sum();
+    found_.poles = roots_with_intervals(found_.model.denominator.reverse(), of_below.reverse(), T);
+    found_.zeros = roots_with_intervals(above.reverse(), of_above.reverse(), T);
+    found_.gain = above.sum() / sum;
+    gradient << Vector::Constant(n, -found_.gain / sum), Vector::Constant(q, 1.0 / sum);
+  } else {
+    found_.poles = roots_with_intervals(found_.model.denominator, of_below);
+    found_.zeros = roots_with_intervals(above, of_above);
+    found_.gain = above[0] / below[0];
+    gradient << -found_.gain / below[0] * Vector::Unit(n, 0), Vector::Unit(q, 0) / below[0];
+  }
+  found_.gain_standard_error = std::sqrt(std::max(0.0, gradient.dot(fit.covariance * gradient)));
+}
+
+void Identifier::test(const Fit& fit) {
+  std::vector<Vector> inputs;
+  const std::vector<SignalPair> moved = delayed(experiments_, delay_);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    inputs.emplace_back(moved[k].input.tail(fit.innovations[k].size()).array() - moved[k].input.mean());
+  }
+  double slowest = 0.0;  // [s]
+  for (const Root& pole : found_.poles) slowest = std::max(slowest, 1.0 / std::abs(pole.value.real()));
+  constexpr double kLeastLags = 25, kMostLags = 400;
+  const double most = static_cast<double>(std::ranges::min(inputs, {}, &Vector::size).size()) / 5.0;
+  const double lags = std::min(std::clamp(3.0 * slowest / found_.sample_time, kLeastLags, kMostLags), most);
+  found_.residuals = test_residuals(fit.innovations, inputs, std::max<Index>(1, static_cast<Index>(lags)));
+}
+
+/// Less what the best initial state and offset explain.
+Vector Identifier::simulation_error(const SignalPair& pair) const {
+  const TransferFunction& model = found_.model;
+  const Index n = model.poles();
+  if (discrete()) {
+    const Vector response = dsp::difference_equation(model.numerator, model.denominator, pair.input);
+    return without_discrete_free_motion(model.denominator.tail(n), pair.output - response);
+  }
+  const Vector a = model.denominator.head(n);
+  return without_free_motion(a, pair, pair.output - simulate_continuous(a, model.numerator, pair));
+}
+
+void Identifier::simulate(const Fit& fit) {
+  if (held_back_.empty()) {
+    for (std::size_t k = 0; k < experiments_.size(); ++k) {
+      const SignalPair& pair = experiments_[k];
+      const Vector output = pair.output.tail(pair.samples());
+      found_.simulated.push_back({pair.time.tail(pair.samples()), output, output - fit.residuals[k]});
+    }
+    return;
+  }
+  double squares = 0.0, output = 0.0;
+  Index count = 0;
+  for (const SignalPair& pair : delayed(held_back_, delay_)) {
+    const Vector left = simulation_error(pair);
+    squares += left.squaredNorm();
+    found_.simulated.push_back({pair.time, pair.output, pair.output - left});
+    output += (pair.output.array() - pair.output.mean()).square().sum();
+    count += pair.output.size();
+  }
+  found_.held_back_fit = 1.0 - squares / output;
+  found_.held_back_rmse = std::sqrt(squares / static_cast<double>(count));
+}
+
+void Identifier::warn() {
+  auto& warnings = found_.warnings;
+  constexpr double kPoor = 0.8;
+  if (found_.held_back_fit && *found_.held_back_fit < kPoor) {
+    warnings.push_back(
+        {WarningCode::held_back_fit_poor,
+         fmt::format("only {:.1f} % of the held-back output is explained", 100.0 * *found_.held_back_fit),
+         "try more poles (--orders), a delay (--delay auto), or look whether the system changes"});
+  } else if (found_.fit < kPoor) {
+    warnings.push_back({WarningCode::fit_poor,
+                        fmt::format("only {:.1f} % of the output is explained", 100.0 * found_.fit),
+                        "try more poles (--orders) and a delay (--delay auto); noise may be the rest"});
+  }
+  if (held_back_.empty()) {
+    warnings.push_back({WarningCode::no_held_back_data, "no data were held back: the fit is in sample",
+                        "hold some back by --split or --held-back"});
+  }
+  if (!found_.residuals.white() && options_.hac_lag_s == 0.0) {
+    warnings.push_back({WarningCode::residual_not_white,
+                        "what is left is not white noise, and the intervals take it as that: they are too narrow",
+                        "leave --hac-lag at 1 s, or model the noise with --method rivc"});
+  }
+  if (!found_.residuals.independent()) {
+    warnings.push_back({WarningCode::input_explains_residual,
+                        "the input still explains something of what is left: the model misses a part",
+                        "try more poles or zeros (--orders), or a delay (--delay auto); in a loop --method clsrivc"});
+  }
+  std::string outside;
+  for (const Root& pole : found_.poles) {
+    if (pole.outside_band) outside += fmt::format("{}{:.4g} Hz", outside.empty() ? "" : ", ", pole.frequency);
+  }
+  if (!outside.empty()) {
+    warnings.push_back({WarningCode::pole_outside_band,
+                        fmt::format("poles at {} lie beyond {:.4g} Hz, up to which 98 % of the input's power is: they "
+                                    "rest on the form of the model",
+                                    outside, found_.band_high),
+                        "excite the system there, or do not use them"});
+  }
+  if (!found_.even) {
+    warnings.push_back({WarningCode::uneven_clock, "the samples are unevenly spaced, which is taken into account",
+                        "the tests of what is left count samples, not seconds"});
+  }
+}
+
+/// In discrete time everything counts in samples of one clock.
+Result<void> Identifier::check_clock() const {
+  if (!discrete()) return {};
+  const auto step = common_step(experiments_, held_back_);
+  if (!step) return tl::unexpected(step.error());
+  const double samples = delay_ / *step;
+  constexpr double kWhole = 1e-3;
+  if (options_.find_delay || std::abs(samples - std::round(samples)) <= kWhole) return {};
+  return bad_usage(fmt::format("a delay of {:g} s is no whole number of samples of {:.6g} ms", delay_, 1e3 * *step),
+                   fmt::format("give {:.6g} or {:.6g} s, or take --method srivc", std::floor(samples) * *step,
+                               std::ceil(samples) * *step));
+}
+
+Result<TransferFunctionIdentification> Identifier::run() {
+  if (!(options_.delay >= 0.0) || !std::isfinite(options_.delay)) {
+    return bad_usage(fmt::format("a delay of {} s is not possible", options_.delay), "give 0 or more seconds");
+  }
+  if (auto ok = check_clock(); !ok) return tl::unexpected(ok.error());
+  auto fit = choose_order();
+  if (!fit) return tl::unexpected(fit.error());
+  describe(*fit);
+  test(*fit);
+  simulate(*fit);
+  warn();
+  return std::move(found_);
+}
+
+}  // namespace
+
+std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& covariance, double sample_time) {
+  std::vector<Root> all;
+  const bool discrete = sample_time > 0.0;
+  const Index degree = ascending.size() - 1, known = covariance.rows();
+  Vector derivative(std::max<Index>(degree, 1));
+  derivative.setZero();
+  for (Index k = 1; k <= degree; ++k) derivative[k - 1] = static_cast<double>(k) * ascending[k];
+  for (const std::complex<double>& r : numeric::polynomial_roots(ascending)) {
+    if (r.imag() < 0.0 || (discrete && r == 0.0)) continue;  // 0 only delays
+    const std::complex<double> p = discrete ? std::log(r) / sample_time : r;
+    Root root{.value = p, .frequency = std::abs(p) / (2.0 * std::numbers::pi), .pair = r.imag() > 0.0};
+    root.damping = -p.real() / std::abs(p);
+    const std::complex<double> slope = numeric::polynomial_at(derivative, r) * (discrete ? sample_time * r : 1.0);
+    Vector modulus(known), damping(known);
+    std::complex<double> power = 1.0;
+    for (Index k = 0; k < known; ++k, power *= r) {
+      const std::complex<double> dp = -power / slope;
+      modulus[k] = (std::conj(p) * dp).real() / std::abs(p);
+      damping[k] = -(dp.real() + root.damping * modulus[k]) / std::abs(p);
+    }
+    root.frequency_standard_error =
+        std::sqrt(std::max(0.0, modulus.dot(covariance * modulus))) / (2.0 * std::numbers::pi);
+    if (root.pair) root.damping_standard_error = std::sqrt(std::max(0.0, damping.dot(covariance * damping)));
+    all.push_back(root);
+  }
+  if (discrete) std::ranges::stable_sort(all, {}, &Root::frequency);
+  return all;
+}
+
+ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
+  ResidualTests tests;
+  tests.lags = lags;
+  Vector own = Vector::Zero(lags + 1), of_input = own, cross = own, pairs = own;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const Vector &e = residuals[k], &u = inputs[k];
+    const Index n = e.size();
+    for (Index lag = 0; lag <= std::min(lags, n - 1); ++lag) {
+      own[lag] += e.head(n - lag).dot(e.tail(n - lag));
+      of_input[lag] += u.head(n - lag).dot(u.tail(n - lag));
+      cross[lag] += u.head(n - lag).dot(e.tail(n - lag));
+      pairs[lag] += static_cast<double>(n - lag);
+    }
+  }
+  const double n = pairs[0];
+  const double limit = numeric::kNormal99;
+  double sum = 0.0;
+  Index outside = 0;
+  for (Index lag = 1; lag <= lags; ++lag) {
+    const double r = own[lag] / own[0];
+    sum += r * r / std::max(pairs[lag], 1.0);
+    outside += std::abs(r) * std::sqrt(n) > limit ? 1 : 0;
+  }
+  tests.autocorrelation_outside = static_cast<double>(outside) / static_cast<double>(lags);
+  tests.whiteness_p = chi_squared_beyond(n * (n + 2.0) * sum, static_cast<double>(lags));
+  // Of two signals without relation the variance of Σ u e is Σ_k R_u(k) R_e(k) (Bartlett).
+  double variance = own[0] * of_input[0] / n;
+  for (Index lag = 1; lag <= lags; ++lag) variance += 2.0 * own[lag] * of_input[lag] / n;
+  const double deviation = std::sqrt(std::max(variance, 0.05 * own[0] * of_input[0] / n));
+  outside = 0;
+  double largest = 0.0;
+  for (Index lag = 0; lag <= lags; ++lag) {
+    const double z = std::abs(cross[lag]) / deviation;
+    outside += z > limit ? 1 : 0;
+    largest = std::max(largest, z);
+  }
+  tests.cross_correlation_outside = static_cast<double>(outside) / static_cast<double>(lags + 1);
+  tests.cross_p = std::min(1.0, 2.0 * static_cast<double>(lags + 1) * numeric::normal_probability(-largest));
+  return tests;
+}
+
+Result<TransferFunctionIdentification> identify_transfer_function(const std::vector<SignalPair>& experiments,
+                                                                  const std::vector<SignalPair>& held_back,
+                                                                  const TransferFunctionOptions& options) {
+  return Identifier(experiments, held_back, options).run();
+}
+
+}  // namespace mbk::identify

@@ -1,0 +1,204 @@
+#include "mbk/measure/identify/transfer_function_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/measure/identify/srivc.h"
+
+namespace mbk::identify {
+namespace {
+
+/// A pair of poles at 2 Hz with ζ = 0.1, gain 3, behind a random binary input and a delay of whole samples.
+SignalPair oscillator(Index delay, double noise, std::uint64_t seed) {
+  constexpr Index kSamples = 4000;
+  const double w = 2.0 * std::numbers::pi * 2.0;
+  SignalPair pair;
+  pair.step = 0.01;
+  pair.time = Vector::LinSpaced(kSamples, 0.0, static_cast<double>(kSamples - 1)) * 0.01;
+  pair.input.resize(kSamples);
+  pair.output = pair.input;
+  numeric::Random random(seed);
+  for (Index i = 0; i < kSamples; ++i) {
+    pair.input[i] = i % 10 == 0 ? (random.uniform() < 0.5 ? -1.0 : 1.0) : pair.input[i - 1];
+  }
+  SignalPair late = pair;
+  late.input.tail(kSamples - delay) = pair.input.head(kSamples - delay);
+  late.input.head(delay).setConstant(pair.input[0]);
+  pair.output = simulate_continuous(Vector{{w * w, 0.2 * w}}, Vector{{3.0 * w * w}}, late);
+  for (double& y : pair.output) y += noise * random.normal();
+  return pair;
+}
+
+TransferFunctionOptions two_poles() {
+  TransferFunctionOptions options;
+  options.poles = 2;
+  options.zeros = 0;
+  return options;
+}
+
+TEST(TransferFunctionFit, GivesFrequencyAndDampingWithIntervals) {
+  const auto found = identify_transfer_function({oscillator(0, 0.5, 1)}, {oscillator(0, 0.0, 2)}, two_poles());
+  ASSERT_TRUE(found.has_value());
+  ASSERT_EQ(found->poles.size(), 1U);
+  const Root& pole = found->poles[0];
+  EXPECT_TRUE(pole.pair);
+  EXPECT_NEAR(pole.frequency, 2.0, 4.0 * pole.frequency_standard_error);
+  EXPECT_NEAR(pole.damping, 0.1, 4.0 * pole.damping_standard_error);
+  EXPECT_LT(pole.frequency_standard_error, 0.01);
+  EXPECT_NEAR(found->gain, 3.0, 4.0 * found->gain_standard_error);
+  EXPECT_GT(found->held_back_fit.value(), 0.999);
+  EXPECT_TRUE(found->residuals.white());
+  EXPECT_TRUE(found->residuals.independent());
+  EXPECT_FALSE(pole.outside_band);
+}
+
+TEST(TransferFunctionFit, FindsADelay) {
+  TransferFunctionOptions options = two_poles();
+  options.find_delay = true;
+  const auto found = identify_transfer_function({oscillator(4, 0.2, 1)}, {}, options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->model.delay, 0.04, 0.002);
+  EXPECT_TRUE(found->delay_found);
+}
+
+TEST(TransferFunctionFit, WithoutThatDelaySaysThatTheInputExplainsWhatIsLeft) {
+  const auto found = identify_transfer_function({oscillator(6, 0.2, 1)}, {}, two_poles());
+  ASSERT_TRUE(found.has_value());
+  EXPECT_FALSE(found->residuals.independent());
+}
+
+TEST(TransferFunctionFit, ChoosesTheTrueOrder) {
+  TransferFunctionOptions options;
+  options.orders = {{1, 0}, {2, 0}, {2, 1}, {3, 0}, {3, 1}, {3, 2}, {4, 1}};
+  const auto found = identify_transfer_function({oscillator(0, 0.5, 1)}, {}, options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->model.poles(), 2);
+  EXPECT_EQ(found->model.zeros(), 0);
+  EXPECT_EQ(found->orders.size(), options.orders.size());
+}
+
+TEST(TransferFunctionFit, ChoosesRaoAndGarniersOrder) {
+  SignalPair pair = oscillator(0, 0.0, 9);
+  const Vector a{{1600.0, 416.0, 408.0, 5.0}}, b{{1600.0, -6400.0}};
+  pair.output = simulate_continuous(a, b, pair);
+  const double level = std::sqrt((pair.output.array() - pair.output.mean()).square().mean() / 10.0);
+  numeric::Random random(4);
+  for (double& y : pair.output) y += level * random.normal();
+  TransferFunctionOptions options;
+  options.orders = {{2, 0}, {2, 1}, {3, 0}, {3, 1}, {3, 2}, {4, 0}, {4, 1}, {4, 2}, {4, 3}, {5, 1}, {5, 2}};
+  const auto found = identify_transfer_function({pair}, {}, options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->model.poles(), 4);
+  EXPECT_EQ(found->model.zeros(), 1);
+}
+
+TEST(TransferFunctionFit, RefusesWhatDidNotSettle) {
+  SignalPair pair = oscillator(0, 0.0, 1);
+  numeric::Random random(2);
+  for (double& y : pair.output) y = random.normal();  // nothing of the input
+  TransferFunctionOptions options;
+  options.poles = 6;
+  options.zeros = 5;
+  const auto found = identify_transfer_function({pair}, {}, options);
+  if (found) {
+    EXPECT_LT(found->fit, 0.1);
+    EXPECT_FALSE(found->warnings.empty());
+    for (const Root& pole : found->poles) EXPECT_LT(pole.value.real(), 0.0);
+  } else {
+    EXPECT_EQ(found.error().kind, ErrorKind::not_usable);
+  }
+}
+
+TransferFunctionOptions discrete(TransferFunctionMethod method) {
+  TransferFunctionOptions options;
+  options.method = method;
+  options.poles = options.zeros = 2;  // an input of straight lines makes as many zeros as poles
+  return options;
+}
+
+TEST(TransferFunctionFit, GivesADiscreteModelInHertzToo) {
+  for (const auto method : {TransferFunctionMethod::output_error, TransferFunctionMethod::box_jenkins}) {
+    const auto found = identify_transfer_function({oscillator(0, 0.5, 1)}, {oscillator(0, 0.0, 2)}, discrete(method));
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_NEAR(found->model.sample_time, 0.01, 1e-12);
+    EXPECT_EQ(found->model.denominator[0], 1.0);
+    ASSERT_EQ(found->poles.size(), 1U);
+    const Root& pole = found->poles[0];
+    EXPECT_TRUE(pole.pair);
+    EXPECT_NEAR(pole.frequency, 2.0, 4.0 * pole.frequency_standard_error);
+    EXPECT_NEAR(pole.damping, 0.1, 4.0 * pole.damping_standard_error);
+    EXPECT_LT(pole.frequency_standard_error, 0.01);
+    EXPECT_NEAR(found->gain, 3.0, 4.0 * found->gain_standard_error);
+    EXPECT_GT(found->held_back_fit.value(), 0.999);
+    EXPECT_TRUE(found->residuals.white());
+    EXPECT_TRUE(found->residuals.independent());
+  }
+}
+
+TEST(TransferFunctionFit, FindsADelayOfWholeSamplesInDiscreteTime) {
+  TransferFunctionOptions options = discrete(TransferFunctionMethod::output_error);
+  options.find_delay = true;
+  options.most_delay = 0.08;
+  const auto found = identify_transfer_function({oscillator(4, 0.05, 1)}, {}, options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->model.delay, 0.04, 1e-12);
+  options.find_delay = false;
+  options.delay = 0.043;
+  const auto between = identify_transfer_function({oscillator(4, 0.05, 1)}, {}, options);
+  ASSERT_FALSE(between.has_value());
+  EXPECT_EQ(between.error().kind, ErrorKind::usage);
+  EXPECT_NE(between.error().remedy.find("0.04 or 0.05"), std::string::npos) << between.error().remedy;
+}
+
+TEST(TransferFunctionFit, ChoosesTheTrueOrderInDiscreteTime) {
+  TransferFunctionOptions options = discrete(TransferFunctionMethod::output_error);
+  options.orders = {{1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}, {3, 2}, {4, 3}};
+  const auto found = identify_transfer_function({oscillator(0, 0.02, 1)}, {}, options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->model.poles(), 2);
+  EXPECT_EQ(found->orders.size(), options.orders.size());
+}
+
+TEST(RootsWithIntervals, AgreeWithMovedCoefficientsInDiscreteTime) {
+  const Vector c{{0.7, -1.9, 2.6, -2.3, 1.0}};  // of z⁰ … z⁴
+  constexpr double T = 0.02;
+  for (Index k = 0; k < 4; ++k) {
+    Matrix covariance = Matrix::Zero(4, 4);
+    const double h = 1e-6 * c[k];
+    covariance(k, k) = h * h;
+    Vector moved = c;
+    moved[k] += h;
+    const auto roots = roots_with_intervals(c, covariance, T), at = roots_with_intervals(moved, covariance, T);
+    ASSERT_EQ(roots.size(), at.size());
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      const auto z = std::exp(roots[i].value * T);
+      EXPECT_LT(std::abs((((z + c[3]) * z + c[2]) * z + c[1]) * z + c[0]), 1e-12);
+      EXPECT_NEAR(std::abs(at[i].frequency - roots[i].frequency), roots[i].frequency_standard_error, 1e-8);
+      if (!roots[i].pair) continue;
+      EXPECT_NEAR(std::abs(at[i].damping - roots[i].damping), roots[i].damping_standard_error, 1e-8);
+    }
+  }
+}
+
+TEST(RootsWithIntervals, AgreeWithMovedCoefficients) {
+  const Vector c{{1600.0, 416.0, 408.0, 5.0, 1.0}};
+  for (Index k = 0; k < 4; ++k) {
+    Matrix covariance = Matrix::Zero(4, 4);
+    const double h = 1e-6 * c[k];
+    covariance(k, k) = h * h;
+    Vector moved = c;
+    moved[k] += h;
+    const auto roots = roots_with_intervals(c, covariance), at = roots_with_intervals(moved, covariance);
+    ASSERT_EQ(roots.size(), 2U);
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      EXPECT_NEAR(std::abs(at[i].frequency - roots[i].frequency), roots[i].frequency_standard_error, 1e-9);
+      EXPECT_NEAR(std::abs(at[i].damping - roots[i].damping), roots[i].damping_standard_error, 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mbk::identify

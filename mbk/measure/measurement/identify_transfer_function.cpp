@@ -1,0 +1,233 @@
+#include "mbk/measure/measurement/identify_transfer_function.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mbk/base/dsp/decimate.h"
+#include "mbk/files/recording/channel_table.h"
+
+namespace mbk::measurement {
+namespace {
+
+constexpr double kGap = 1.5;      // median intervals
+constexpr double kUneven = 0.05;  // of an interval, by which a sample of an even clock may be off
+
+/// Samples [begin, end) of a recording.
+struct Piece {
+  Index begin = 0, end = 0;
+};
+
+/// Whether every sample of the piece is where an even clock has it.
+bool is_even(const Vector& time, Piece piece) {
+  const Index n = piece.end - piece.begin;
+  if (n < 2) return true;
+  const double step = (time[piece.end - 1] - time[piece.begin]) / static_cast<double>(n - 1);
+  for (Index i = 0; i < n; ++i) {
+    if (std::abs(time[piece.begin + i] - time[piece.begin] - step * static_cast<double>(i)) > kUneven * step)
+      return false;
+  }
+  return true;
+}
+
+/// Stretches without a gap, and whether their clock is even; an uneven clock has no gaps.
+std::pair<std::vector<Piece>, bool> pieces_of(const Vector& time) {
+  const Index n = time.size();
+  std::vector<double> steps;
+  for (Index i = 1; i < n; ++i) steps.push_back(time[i] - time[i - 1]);
+  std::ranges::sort(steps);
+  const double median = steps[steps.size() / 2];
+  std::vector<Piece> pieces = {{0, n}};
+  for (Index i = 1; i < n; ++i) {
+    if (time[i] - time[i - 1] <= kGap * median) continue;
+    pieces.back().end = i;
+    pieces.push_back({i, n});
+  }
+  if (std::ranges::all_of(pieces, [&](Piece piece) { return is_even(time, piece); })) return {pieces, true};
+  return {{{0, n}}, false};
+}
+
+Result<const Channel*> channel_of(const Recording& recording, const std::string& name) {
+  if (const Channel* const channel = recording.find(name)) return channel;
+  for (const auto* const kind : recording::kinds_called(name)) {
+    if (const Channel* const channel = recording.find(kind->name)) return channel;
+  }
+  std::vector<std::string> names;
+  for (const Channel& channel : recording.channels) names.push_back(channel.name);
+  return bad_data(fmt::format("there is no channel '{}'; there are {}", name, fmt::join(names, ", ")),
+                  "name a channel, a column's number or name, or a variable");
+}
+
+class Preparer {
+ public:
+  explicit Preparer(const TransferFunctionMeasurement& options) : options_(options) {}
+
+  /// @param whole  held back altogether
+  Result<void> add(const Recording& recording, bool whole, bool hold_back);
+
+  std::vector<SignalPair> experiments, held_back;
+  std::string input_unit, output_unit;
+  double recorded_rate_hz = 0.0;  ///< where samples were left out
+
+ private:
+  [[nodiscard]] Result<Index> every(const SignalPair& pair) const;
+  Result<void> thin_out(SignalPair& pair);
+  Result<void> cut(const Recording& recording, Piece piece, bool even, double from, double to,
+                   std::vector<SignalPair>& into);
+
+  const TransferFunctionMeasurement& options_;
+};
+
+/// One of how many samples is kept.
+Result<Index> Preparer::every(const SignalPair& pair) const {
+  const auto& wanted = options_.sample_rate_hz;
+  const bool discrete = is_discrete(options_.fit.method);
+  if (wanted ? *wanted == 0.0 : !discrete) return 1;
+  if (!pair.step) {
+    if (!wanted) return 1;  // the fit says what is wrong
+    return bad_usage("an uneven clock has no rate to leave samples out of", "put it right by --resample");
+  }
+  const double rate = 1.0 / *pair.step;
+  constexpr double kRounding = 1e-6;
+  if (!wanted) return static_cast<Index>(std::ceil(rate / kMostDiscreteRate.value * (1.0 - kRounding)));
+  if (*wanted <= rate * (1.0 + kRounding)) return static_cast<Index>(std::llround(rate / *wanted));
+  return bad_usage(fmt::format("samples come at {:.6g} Hz, and not at {:g} Hz", rate, *wanted),
+                   "choose a lower --sample-rate, or --resample");
+}
+
+Result<void> Preparer::thin_out(SignalPair& pair) {
+  const auto every_one = every(pair);
+  if (!every_one) return tl::unexpected(every_one.error());
+  if (*every_one == 1) return {};
+  const Hertz rate(1.0 / *pair.step);
+  const Index begin = pair.first % *every_one;
+  Matrix signals(pair.time.size(), pair.reference.size() > 0 ? 3 : 2);
+  signals.leftCols(2) << pair.input, pair.output;
+  if (pair.reference.size() > 0) signals.col(2) = pair.reference;
+  const auto thin = dsp::decimate(signals, rate, *every_one, begin);
+  if (!thin) return tl::unexpected(thin.error());
+  pair.time = Vector(pair.time(Eigen::seqN(begin, thin->rows(), *every_one)));
+  pair.input = thin->col(0);
+  pair.output = thin->col(1);
+  if (pair.reference.size() > 0) pair.reference = thin->col(2);
+  pair.first /= *every_one;
+  *pair.step *= static_cast<double>(*every_one);
+  recorded_rate_hz = rate.value;
+  return {};
+}
+
+Result<void> Preparer::cut(const Recording& recording, Piece piece, bool even, double from, double to,
+                           std::vector<SignalPair>& into) {
+  const double start = recording.time[0];
+  constexpr double kRounding = 1e-9;
+  Index begin = piece.begin, end = piece.end;
+  while (begin < end && recording.time[begin] - start < from - kRounding) ++begin;
+  while (end > begin && recording.time[end - 1] - start >= to - kRounding) --end;
+  constexpr Index kLeast = 8;
+  if (end - begin < kLeast) return {};
+  const double reach = options_.fit.find_delay ? options_.fit.most_delay : options_.fit.delay;
+  Index past = begin;
+  while (past > piece.begin && recording.time[past] > recording.time[begin] - reach) --past;
+  for (const std::string& name : {options_.input, options_.output, options_.reference}) {
+    if (name.empty()) continue;
+    const Channel& channel = *channel_of(recording, name).value();
+    const Index bad = first_non_finite(channel.values.segment(past, end - past));
+    if (bad < 0) continue;
+    return bad_data(fmt::format("channel '{}' is not a finite number at sample {} ({:.6f} s)", channel.name,
+                                past + bad + 1, recording.time[past + bad] - start),
+                    "choose a window without it with --from and --to; 'mbk info' names missing samples");
+  }
+  SignalPair pair;
+  const auto taken = [&](const std::string& name) {
+    return Vector(channel_of(recording, name).value()->values.segment(past, end - past));
+  };
+  pair.time = recording.time.segment(past, end - past);
+  pair.input = options_.input_sign * taken(options_.input);
+  pair.output = options_.output_sign * taken(options_.output);
+  if (!options_.reference.empty()) pair.reference = taken(options_.reference);
+  pair.first = begin - past;
+  if (even) pair.step = (pair.time[pair.time.size() - 1] - pair.time[0]) / static_cast<double>(pair.time.size() - 1);
+  if (auto ok = thin_out(pair); !ok) return ok;
+  into.push_back(std::move(pair));
+  return {};
+}
+
+Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_back) {
+  const Index n = recording.samples();
+  if (n < 2) return bad_data("a recording of fewer than 2 samples shows nothing");
+  for (Index i = 1; i < n; ++i) {
+    if (recording.time[i] > recording.time[i - 1]) continue;
+    return bad_data(fmt::format("time does not increase at sample {}", i + 1), "cut the file there");
+  }
+  const auto input = channel_of(recording, options_.input), output = channel_of(recording, options_.output);
+  if (!input) return tl::unexpected(input.error());
+  if (!output) return tl::unexpected(output.error());
+  if (!options_.reference.empty()) {
+    if (auto reference = channel_of(recording, options_.reference); !reference) {
+      return tl::unexpected(reference.error());
+    }
+  }
+  input_unit = (*input)->unit;
+  output_unit = (*output)->unit;
+  const auto [pieces, even] = pieces_of(recording.time);
+  const double last = recording.time[n - 1] - recording.time[0];
+  const double behind = last + last / static_cast<double>(n - 1);
+  const double from = whole ? 0.0 : options_.window.from_s.value_or(0.0);
+  const double to = whole ? behind : options_.window.to_s.value_or(behind);
+  constexpr double kIdentify = 0.8;
+  double split = options_.window.split_s.value_or(hold_back ? from + kIdentify * (to - from) : to);
+  if (whole) split = from;
+  if (!(from < last) || !(split <= behind) || !(to > from)) {
+    return bad_data(fmt::format("the recording lasts {:.6g} s, the window is {:g} to {:g} s, split at {:g} s", last,
+                                from, to, split),
+                    "choose --from, --split and --to within it");
+  }
+  for (const Piece piece : pieces) {
+    if (split > from) {
+      if (auto ok = cut(recording, piece, even, from, split, experiments); !ok) return ok;
+    }
+    if (split < to) {
+      if (auto ok = cut(recording, piece, even, split, to, held_back); !ok) return ok;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<TransferFunctionIdentification> identify_transfer_function(std::span<const Recording> recordings,
+                                                                  std::span<const Recording> held_back,
+                                                                  const TransferFunctionMeasurement& options) {
+  Preparer prepared(options);
+  const auto add = [&](const Recording& recording, bool whole) -> Result<void> {
+    auto added = prepared.add(recording, whole, held_back.empty());
+    if (!added && !recording.sources.empty()) return tl::unexpected(added.error().in(recording.sources[0].path));
+    return added;
+  };
+  for (const Recording& recording : recordings) {
+    if (auto ok = add(recording, false); !ok) return tl::unexpected(ok.error());
+  }
+  for (const Recording& recording : held_back) {
+    if (auto ok = add(recording, true); !ok) return tl::unexpected(ok.error());
+  }
+  if (prepared.experiments.empty()) {
+    return bad_data("no stretch of at least 8 samples without a gap is left to identify", "choose a longer window");
+  }
+  auto found = identify::identify_transfer_function(prepared.experiments, prepared.held_back, options.fit);
+  if (!found) return found;
+  found->input = options.input;
+  found->output = options.output;
+  found->reference = options.reference;
+  found->input_unit = prepared.input_unit;
+  found->output_unit = prepared.output_unit;
+  found->recorded_rate_hz = prepared.recorded_rate_hz;
+  for (const Recording& recording : recordings) {
+    found->sources.insert(found->sources.end(), recording.sources.begin(), recording.sources.end());
+    found->notes.insert(found->notes.end(), recording.notes.begin(), recording.notes.end());
+  }
+  return found;
+}
+
+}  // namespace mbk::measurement

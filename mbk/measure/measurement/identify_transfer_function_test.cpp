@@ -1,0 +1,202 @@
+#include "mbk/measure/measurement/identify_transfer_function.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/measure/identify/srivc.h"
+
+namespace mbk::measurement {
+namespace {
+
+Recording part(const Recording& whole, Index begin, Index count) {
+  Recording cut = whole;
+  cut.time = whole.time.segment(begin, count);
+  for (std::size_t k = 0; k < cut.channels.size(); ++k) {
+    cut.channels[k].values = whole.channels[k].values.segment(begin, count);
+  }
+  return cut;
+}
+
+/// A real flexible robot arm, torque to acceleration, periods of 4096 samples (Kollár, Pintelon & Schoukens 1994).
+constexpr Index kPeriod = 4096;
+Result<Recording> flexible_arm(const char* folder) {
+  recording::ReadOptions reading;
+  reading.channels = recording::parse_channel_map("input=Input,output=Output").value();
+  reading.rate = Hertz(500.0);
+  return recording::read(std::string(folder) + "/flexible_arm/contsid_robotarm.mat", reading);
+}
+
+TEST(TransferFunction, OfARealFlexibleArmIsReachedByEachStartAlone) {
+  const char* const folder = std::getenv("MBK_DATA_DIR");
+  if (folder == nullptr) GTEST_SKIP() << "MBK_DATA_DIR is not set";
+  const auto whole = flexible_arm(folder);
+  ASSERT_TRUE(whole.has_value()) << whole.error().line();
+  const auto period = [&](Index number) {
+    SignalPair pair;
+    pair.step = 1.0 / 500.0;
+    const Index begin = (number - 1) * kPeriod;
+    pair.time = whole->time.segment(begin, kPeriod);
+    pair.input = whole->channels[0].values.segment(begin, kPeriod);
+    pair.output = whole->channels[1].values.segment(begin, kPeriod);
+    return pair;
+  };
+  const SignalPair held_back = period(8);
+  const double power = (held_back.output.array() - held_back.output.mean()).square().sum();
+  constexpr int kStarts = 40;
+  for (int k = 0; k < kStarts; ++k) {
+    identify::ContinuousFitOptions options;
+    options.poles = 6;
+    options.zeros = 5;
+    options.start_poles = {0.1 * std::pow(15000.0, static_cast<double>(k) / (kStarts - 1))};  // to 1500 rad/s
+    options.only_given_starts = true;
+    const auto fit = identify::fit_continuous({period(3)}, options);
+    ASSERT_TRUE(fit.has_value() && fit->converged) << options.start_poles[0];
+    const Vector error = held_back.output - identify::simulate_continuous(fit->a, fit->b, held_back);
+    const double left = identify::without_free_motion(fit->a, held_back, error).squaredNorm();
+    EXPECT_GE(1.0 - left / power, 0.975) << options.start_poles[0];
+  }
+}
+
+class FlexibleArm : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("MBK_DATA_DIR");
+    if (folder == nullptr) GTEST_SKIP() << "MBK_DATA_DIR is not set";
+    const auto whole = flexible_arm(folder);
+    ASSERT_TRUE(whole.has_value()) << whole.error().line();
+    third_ = part(*whole, 2 * kPeriod, kPeriod);
+    eighth_ = part(*whole, 7 * kPeriod, kPeriod);
+    options_.fit.poles = 6;
+    options_.fit.zeros = 5;
+  }
+
+  [[nodiscard]] Result<TransferFunctionIdentification> identified() const {
+    return identify_transfer_function({&third_, 1}, {&eighth_, 1}, options_);
+  }
+
+  Recording third_, eighth_;
+  TransferFunctionMeasurement options_;
+};
+
+void expect_modes(const TransferFunctionIdentification& found) {
+  ASSERT_EQ(found.poles.size(), 3U);
+  EXPECT_NEAR(found.poles[0].frequency, 7.29, 0.01 * 7.29);
+  EXPECT_NEAR(found.poles[1].frequency, 15.84, 0.01 * 15.84);
+  EXPECT_NEAR(found.poles[2].frequency, 42.45, 0.02 * 42.45);
+  EXPECT_FALSE(found.poles[1].outside_band);
+  EXPECT_TRUE(found.poles[2].outside_band);
+}
+
+TEST_F(FlexibleArm, HoldsFromAnyStart) {
+  for (const double start : {0.1, 2.0, 30.0, 400.0, 1500.0}) {  // rad/s
+    options_.fit.start_poles = {start};
+    const auto found = identified();
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_GE(found->held_back_fit.value(), 0.975) << start;
+    expect_modes(*found);
+    EXPECT_EQ(found->recorded_rate_hz, 0.0);
+  }
+}
+
+TEST_F(FlexibleArm, HoldsAsOutputErrorAtAHundredHertz) {
+  options_.fit.method = TransferFunctionMethod::output_error;
+  const auto found = identified();
+  ASSERT_TRUE(found.has_value()) << found.error().line();
+  EXPECT_NEAR(found->recorded_rate_hz, 500.0, 1e-9);
+  EXPECT_NEAR(found->model.sample_time, 0.01, 1e-9);
+  EXPECT_GE(found->held_back_fit.value(), 0.975);
+  expect_modes(*found);
+}
+
+Recording ramp(Index samples) {
+  Recording recording;
+  recording.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) * 0.01;
+  recording.channels = {{"input", "N", "", recording.time.array().sin()},
+                        {"output", "m", "", recording.time.array().cos()}};
+  return recording;
+}
+
+/// 2/(s + 1) behind a random binary force, at 400 Hz.
+Recording slow_lag() {
+  Recording recording;
+  constexpr Index kSamples = 24000;
+  constexpr double kStep = 0.0025;
+  recording.time = Vector::LinSpaced(kSamples, 0.0, static_cast<double>(kSamples - 1)) * kStep;
+  Vector u(kSamples), y = Vector::Zero(kSamples);
+  numeric::Random random(1);
+  for (Index i = 0; i < kSamples; ++i) {
+    u[i] = i % 200 == 0 ? (random.uniform() < 0.5 ? -1.0 : 1.0) : u[i - 1];
+    if (i > 0) y[i] = std::exp(-kStep) * y[i - 1] + 2.0 * (1.0 - std::exp(-kStep)) * u[i - 1];
+  }
+  recording.channels = {{"input", "N", "", u}, {"output", "m", "", y}};
+  return recording;
+}
+
+TEST(TransferFunction, InDiscreteTimeIsOfAHundredHertzUnlessAskedOtherwise) {
+  const Recording recording = slow_lag();
+  TransferFunctionMeasurement options;
+  options.fit.poles = options.fit.zeros = 1;
+  options.fit.method = TransferFunctionMethod::output_error;
+  const auto step = [&](std::optional<double> rate) {
+    options.sample_rate_hz = rate;
+    const auto found = identify_transfer_function({&recording, 1}, {}, options);
+    EXPECT_TRUE(found.has_value());
+    if (!found) return 0.0;
+    EXPECT_NEAR(found->poles[0].frequency, 1.0 / (2.0 * std::numbers::pi), 1e-3);
+    EXPECT_NEAR(found->gain, 2.0, 0.01);
+    EXPECT_EQ(found->recorded_rate_hz > 0.0, found->model.sample_time > 0.003);
+    return found->model.sample_time;
+  };
+  EXPECT_NEAR(step(std::nullopt), 0.01, 1e-9);
+  EXPECT_NEAR(step(50.0), 0.02, 1e-9);
+  EXPECT_NEAR(step(0.0), 0.0025, 1e-9);
+  options.sample_rate_hz = 500.0;
+  const auto faster = identify_transfer_function({&recording, 1}, {}, options);
+  ASSERT_FALSE(faster.has_value());
+  EXPECT_EQ(faster.error().kind, ErrorKind::usage);
+}
+
+TEST(TransferFunction, KeepsTheSamplesOfADelayWhenItLeavesSomeOut) {
+  Recording recording = slow_lag();
+  const Index late = 40;  // 0.1 s
+  Vector& y = recording.channels[1].values;
+  const Vector prompt = y;
+  y.tail(y.size() - late) = prompt.head(y.size() - late);
+  y.head(late).setZero();
+  TransferFunctionMeasurement options;
+  options.window.from_s = 1.0;
+  options.fit.poles = options.fit.zeros = 1;
+  options.fit.method = TransferFunctionMethod::output_error;
+  options.fit.delay = 0.1;
+  const auto found = identify_transfer_function({&recording, 1}, {}, options);
+  ASSERT_TRUE(found.has_value()) << found.error().line();
+  EXPECT_GT(found->held_back_fit.value(), 0.99999);
+}
+
+TEST(TransferFunction, SaysWhichChannelIsMissing) {
+  const Recording recording = ramp(100);
+  TransferFunctionMeasurement options;
+  options.output = "position";
+  const auto found = identify_transfer_function({&recording, 1}, {}, options);
+  ASSERT_FALSE(found.has_value());
+  EXPECT_NE(found.error().line().find("'position'; there are input, output"), std::string::npos);
+}
+
+TEST(TransferFunction, RefusesTimeThatStandsStillAndWindowsOutside) {
+  Recording recording = ramp(100);
+  recording.time[50] = recording.time[49];
+  EXPECT_FALSE(identify_transfer_function({&recording, 1}, {}, {}).has_value());
+  recording = ramp(100);
+  TransferFunctionMeasurement options;
+  options.window.from_s = 5.0;
+  EXPECT_FALSE(identify_transfer_function({&recording, 1}, {}, options).has_value());
+}
+
+}  // namespace
+}  // namespace mbk::measurement

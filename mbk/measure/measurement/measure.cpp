@@ -1,0 +1,362 @@
+#include "mbk/measure/measurement/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "mbk/files/recording/inspect.h"
+#include "mbk/measure/analyse/absorbed_energy.h"
+#include "mbk/measure/analyse/analyse_joint_domain.h"
+#include "mbk/measure/analyse/bootstrap.h"
+#include "mbk/measure/analyse/compare_forces.h"
+#include "mbk/measure/analyse/diagnose.h"
+#include "mbk/measure/analyse/ellipses.h"
+#include "mbk/measure/analyse/judge_passivity.h"
+#include "mbk/measure/analyse/posture.h"
+#include "mbk/measure/identify/consistent_model.h"
+#include "mbk/measure/preprocess/resample.h"
+#include "mbk/measure/preprocess/signals.h"
+
+namespace mbk::measurement {
+namespace {
+
+void warn_of_clipping(const Inspection& inspection, PreparedTrial& trial) {
+  for (const ChannelFacts& facts : inspection.channels) {
+    if (!facts.clipped) continue;
+    trial.warnings.push_back({WarningCode::clipping,
+                              fmt::format("channel '{}' rests at its extreme again and again ({:g} to {:g} {}): the "
+                                          "sensor or converter was at its limit",
+                                          facts.name, facts.min, facts.max, facts.unit),
+                              "perturb less, or raise the sensor's range; choose a window without it"});
+  }
+}
+
+/// Straight lines across a gap are an invention, and are said to be one.
+void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& trial) {
+  std::string message =
+      fmt::format("the samples were put on an even clock of {:g} Hz by straight lines between them", rate.value);
+  if (!recorded.gaps.empty()) {
+    const Gap& longest = *std::ranges::max_element(recorded.gaps, {}, &Gap::length);
+    message +=
+        fmt::format(", and {} gap{} bridged by a line that nobody measured, the longest of {:.3g} s at {:.3f} s",
+                    recorded.gaps.size(), recorded.gaps.size() == 1 ? " was" : "s were", longest.length, longest.time);
+  }
+  trial.warnings.push_back({WarningCode::resampled, std::move(message),
+                            recorded.gaps.empty() ? "record with a steady clock"
+                                                  : "choose a window without long gaps with --from and --to"});
+}
+
+/// A recording as it is analysed: on an even clock and with a computed force, where that was asked.
+struct Source {
+  const Recording* given = nullptr;
+  Inspection recorded;  ///< of `given`
+  std::optional<Recording> even;
+  std::optional<preprocess::VirtualForce> computed;
+
+  [[nodiscard]] const Recording& recording() const {
+    if (computed) return computed->recording;
+    return even ? *even : *given;
+  }
+  /// An error, with the file in which it is.
+  [[nodiscard]] tl::unexpected<Error> in_file(const Error& error) const {
+    return tl::unexpected<Error>(given->sources.empty() ? error : error.in(given->sources[0].path));
+  }
+};
+
+Result<Source> make_ready(const Recording& recording, const Options& options) {
+  Source source{&recording, recording::inspect(recording), {}, {}};
+  if (options.resample) {
+    auto even = preprocess::resample(recording, *options.resample);
+    if (!even) return tl::unexpected(even.error());
+    source.even = std::move(*even);
+  }
+  if (options.preprocess.force_source == ForceSource::sensor) return source;
+  if (!options.preprocess.robot) return bad_usage("a computed force needs a robot", "name it with --robot");
+  const Inspection inspection = source.even ? recording::inspect(*source.even) : source.recorded;
+  auto computed =
+      preprocess::virtual_force(source.recording(), inspection, *options.preprocess.robot, options.preprocess);
+  if (!computed) return tl::unexpected(computed.error());
+  source.computed = std::move(*computed);
+  return source;
+}
+
+Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, const Options& options) {
+  std::vector<Source> sources;
+  for (const Recording& recording : recordings) {
+    auto source = make_ready(recording, options);
+    if (!source)
+      return tl::unexpected(recording.sources.empty() ? source.error() : source.error().in(recording.sources[0].path));
+    sources.push_back(std::move(*source));
+  }
+  return sources;
+}
+
+Result<PreparedTrial> prepare_one(const Source& source, const Options& options) {
+  const Recording& recording = source.recording();
+  const bool same = &recording == source.given;
+  auto trial = preprocess::prepare(recording, same ? source.recorded : recording::inspect(recording),
+                                   options.preprocess, source.computed ? &*source.computed : nullptr);
+  if (!trial) return trial;
+  warn_of_clipping(source.recorded, *trial);
+  if (options.resample) warn_of_resampling(source.recorded, *options.resample, *trial);
+  return trial;
+}
+
+/// The computed force beside the sensor's, on one stretch that counts: both filtered alike.
+analyse::ForcePair force_pair(const Source& source, const PreparedTrial& computed, const PreparedTrial& sensed,
+                              const Stretch& stretch) {
+  analyse::ForcePair pair{computed.force_hand_on_robot.middleRows(stretch.begin, stretch.size()),
+                          sensed.force_hand_on_robot.middleRows(stretch.begin, stretch.size()),
+                          Matrix(stretch.size(), source.computed->joint_velocity.cols())};
+  for (Index i = 0; i < stretch.size(); ++i) {
+    pair.joint_velocity.row(i) =
+        source.computed->joint_velocity.row(stretch.first_sample + i * computed.preparation.every);
+  }
+  return pair;
+}
+
+/// Each recording prepared, its reference too; where several are pooled, their rows weigh alike.
+Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& sources, Options options) {
+  options.preprocess.instruments = true;
+  std::vector<PreparedTrial> trials;
+  for (const Source& source : sources) {
+    auto trial = prepare_one(source, options);
+    if (!trial) return source.in_file(trial.error());
+    trials.push_back(std::move(*trial));
+  }
+  // Where each trial by itself would be thinned differently, the finest will do for all.
+  Index finest = std::numeric_limits<Index>::max();
+  for (const PreparedTrial& trial : trials) finest = std::min(finest, trial.preparation.every);
+  options.preprocess.every = finest;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (trials[k].preparation.every == finest) continue;
+    auto trial = prepare_one(sources[k], options);
+    if (!trial) return tl::unexpected(trial.error());
+    trials[k] = std::move(*trial);
+  }
+  return trials;
+}
+
+/// By the method that was asked for and, where a reference was recorded, by the other one too.
+Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, const identify::Options& options) {
+  const bool by_instruments = options.method == Method::instrumental_variables;
+  const bool known =
+      std::ranges::all_of(trials, [](const PreparedTrial& trial) { return trial.reference_motion.size() > 0; });
+  if (known || by_instruments) {
+    auto both = identify::compare_methods(trials, options);
+    if (both) {
+      auto &ls = both->least_squares, &iv = both->instrumental_variables;
+      if (by_instruments) std::swap(ls, iv);
+      Measurement measured;
+      measured.identification = std::move(ls);
+      measured.alternative = std::move(iv);
+      measured.disagreement = both->disagreement;
+      return measured;
+    }
+    if (by_instruments) return tl::unexpected(both.error());
+  }
+  auto alone = identify::identify_impedance(trials, options);
+  if (!alone) return tl::unexpected(alone.error());
+  Measurement measured;
+  measured.identification = std::move(*alone);
+  return measured;
+}
+
+/// The energy of each recording, and of all together.
+Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                                         Measurement& measured) {
+  const impedance::Model& model = measured.identification.model;
+  const bool known = model.axes() == 2 && model.K.allFinite();
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    auto energy = analyse::absorbed_energy(sources[k].recording(), trials[k], {}, known ? &model : nullptr);
+    if (!energy) return tl::unexpected(energy.error());
+    measured.energies.push_back(std::move(*energy));
+  }
+  if (sources.size() == 1) return measured.energies.front().account;
+  std::vector<const Recording*> recordings;
+  for (const Source& source : sources) recordings.push_back(&source.recording());
+  return analyse::pooled_energy(recordings, trials);
+}
+
+/// Is the limb passive, by its model and by what it absorbed?
+Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                                  const Options& options, Measurement& measured) {
+  auto energy = account_for_energy(sources, trials, measured);
+  if (!energy) return tl::unexpected(energy.error());
+  const PassivityBand band = options.band.value_or(analyse::passivity_band(trials));
+  const Identification* first = &measured.identification;
+  const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
+  const bool by_instruments = first->method == Method::instrumental_variables;
+  const Identification* instrumental = by_instruments ? first : other;
+  if (instrumental != nullptr && other != nullptr &&
+      (instrumental == other) == analyse::instruments_speak(*instrumental, measured.disagreement)) {
+    std::swap(first, other);
+  }
+  if (first->model.M.allFinite() && first->model.x0.allFinite()) {
+    auto consistent = identify::consistent_model(trials, *first);
+    if (!consistent) return tl::unexpected(consistent.error());
+    measured.consistent = std::move(*consistent);
+  }
+  std::vector<ModelPassivity> models;
+  for (const Identification* id : {first, other}) {
+    // A model without damping was not asked whether the limb has any.
+    if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
+    auto model = analyse::model_passivity(*id, band);
+    if (!model) return tl::unexpected(model.error());
+    models.push_back(std::move(*model));
+  }
+  const Identification& least_squares =
+      by_instruments && measured.alternative ? *measured.alternative : measured.identification;
+  return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
+}
+
+/// Where a sensor recorded the force that was computed: how far both are apart, and what the sensor's force gives.
+Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                                 Options options, Measurement& measured) {
+  const auto both = [](const Source& source) { return source.computed && source.computed->sensor_force.size() > 0; };
+  if (!std::ranges::all_of(sources, both)) return {};
+  options.preprocess.every = trials.front().preparation.every;
+  std::vector<PreparedTrial> by_sensor;
+  std::vector<analyse::ForcePair> pairs;
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const Source& source = sources[k];
+    Recording sensed = source.computed->recording;
+    for (Index axis = 0; axis < trials[k].axes; ++axis) {
+      const char* const name = preprocess::channel_name(preprocess::Quantity::force, trials[k].axes, axis);
+      for (Channel& channel : sensed.channels) {
+        if (channel.name == name) channel.values = source.computed->sensor_force.col(axis);
+      }
+    }
+    preprocess::Options how = options.preprocess;
+    how.force_source = ForceSource::sensor;
+    how.instruments = true;
+    auto trial = preprocess::prepare(sensed, recording::inspect(sensed), how);
+    if (!trial || trial->time.size() != trials[k].time.size()) return {};  // a sensor that did not work
+    for (const Stretch& stretch : trial->stretches) pairs.push_back(force_pair(source, trials[k], *trial, stretch));
+    by_sensor.push_back(std::move(*trial));
+  }
+  auto comparison = analyse::compare_forces(pairs, trials.front().sample_time);
+  if (!comparison) return tl::unexpected(comparison.error());
+  measured.force_comparison = std::move(*comparison);
+  identify::Options how = options.identify;
+  how.bootstrap = 0;
+  auto identified = identify::identify_impedance(by_sensor, how);
+  if (!identified) return tl::unexpected(identified.error());
+  measured.by_sensor = std::move(*identified);
+  return {};
+}
+
+/// The result at the joints of the posture in which it was measured.
+Result<JointDomain> at_joints(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                              const Identification& identification) {
+  constexpr double kSamePosture = 0.01;  // [m]: within it J changes by a few percent
+  const auto posture_of = [&](std::size_t k) {
+    const Preparation& how = trials[k].preparation;
+    return analyse::posture(sources[k].recording(), how.from_s, how.to_s).value_or(ArmPosture{});
+  };
+  const ArmPosture first = posture_of(0);
+  for (std::size_t k = 1; k < sources.size(); ++k) {
+    const ArmPosture other = posture_of(k);
+    double apart = other.of == first.of && other.points.size() == first.points.size()
+                       ? 0.0
+                       : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < std::min(first.points.size(), other.points.size()); ++i) {
+      apart = std::max(apart, (first.points[i] - other.points[i]).norm());
+    }
+    if (!(apart <= kSamePosture)) {
+      return sources[k].in_file({ErrorKind::data,
+                                 fmt::format("the pooled recordings were made in different postures, {:.3g} m apart "
+                                             "(at most {:g} m share one J)",
+                                             apart, kSamePosture),
+                                 "measure them one by one", ""});
+    }
+  }
+  auto found = analyse::analyse_joint_domain(identification, first);
+  if (!found) return sources[0].in_file(found.error());
+  return found;
+}
+
+Result<Measurement> measure_prepared(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                                          const Options& options) {
+  auto identified = identify_by_both(trials, options.identify);
+  if (!identified) {
+    return sources.size() == 1 ? sources[0].in_file(identified.error()) : tl::unexpected(identified.error());
+  }
+  Measurement measured = std::move(*identified);
+  if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
+    auto findings = analyse::analyse_ellipses(measured.identification);
+    if (!findings) return tl::unexpected(findings.error());
+    measured.findings = std::move(*findings);
+  }
+  if (measured.identification.replicates) {
+    auto bootstrap = analyse::bootstrap_findings(measured.identification);
+    if (!bootstrap) return tl::unexpected(bootstrap.error());
+    measured.bootstrap = std::move(*bootstrap);
+  }
+  if (auto ok = compare_with_sensor(sources, trials, options, measured); !ok) return tl::unexpected(ok.error());
+  if (options.joint_domain) {
+    auto joints = at_joints(sources, trials, measured.identification);
+    if (!joints) return tl::unexpected(joints.error());
+    measured.joints = std::move(*joints);
+  }
+  if (options.passivity) {
+    auto passivity = judge_passivity(sources, trials, options, measured);
+    if (!passivity) {
+      return sources[0].in_file(passivity.error());
+    }
+    measured.passivity = std::move(*passivity);
+  }
+  return measured;
+}
+
+/// The same trial with ẍ from the other source; absent where the recording holds no accelerometer that could be used.
+std::optional<PreparedTrial> with_other_acceleration(const Source& source, const PreparedTrial& trial,
+                                                     Options options) {
+  using preprocess::AccelerationSource;
+  const bool sensor = trial.preparation.acceleration_from_sensor;
+  if (!sensor && source.recording().find(trial.axes == 1 ? "acceleration" : "acceleration_x") == nullptr) {
+    return std::nullopt;
+  }
+  options.preprocess.acceleration = sensor ? AccelerationSource::derivative : AccelerationSource::sensor;
+  options.preprocess.every = trial.preparation.every;
+  auto other = prepare_one(source, options);
+  if (!other || other->time.size() != trial.time.size()) return std::nullopt;
+  return std::move(*other);
+}
+
+Result<Diagnostics> diagnose(const Source& source, const PreparedTrial& trial, const Identification& identification,
+                             const Options& options) {
+  const auto other = with_other_acceleration(source, trial, options);
+  return analyse::diagnose(source.recording(), trial, identification, other ? &*other : nullptr);
+}
+
+}  // namespace
+
+Result<Measurement> measure(std::span<const Recording> recordings, const Options& options) {
+  const auto sources = make_ready(recordings, options);
+  if (!sources) return tl::unexpected(sources.error());
+  const auto trials = prepare_all(*sources, options);
+  if (!trials) return tl::unexpected(trials.error());
+  return measure_prepared(*sources, *trials, options);
+}
+
+Result<Examined> examine(std::span<const Recording> recordings, const Options& options) {
+  const auto sources = make_ready(recordings, options);
+  if (!sources) return tl::unexpected(sources.error());
+  const auto trials = prepare_all(*sources, options);
+  if (!trials) return tl::unexpected(trials.error());
+  auto measured = measure_prepared(*sources, *trials, options);
+  if (!measured) return tl::unexpected(measured.error());
+  Examined examined{std::move(*measured), {}};
+  for (std::size_t k = 0; k < sources->size(); ++k) {
+    auto diagnostics = diagnose((*sources)[k], (*trials)[k], examined.measured.identification, options);
+    if (!diagnostics) return (*sources)[k].in_file(diagnostics.error());
+    examined.diagnostics.push_back(std::move(*diagnostics));
+  }
+  return examined;
+}
+
+}  // namespace mbk::measurement

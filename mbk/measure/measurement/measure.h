@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/base/core/units.h"
+#include "mbk/measure/identify/impedance_fit.h"
+#include "mbk/measure/preprocess/prepare.h"
+#include "mbk/model/trial/diagnostics.h"
+#include "mbk/model/trial/recording.h"
+#include "mbk/present/result/json.h"
+
+namespace mbk::measurement {
+
+/// Everything that may be chosen on the way from a recording to a result.
+struct Options {
+  preprocess::Options preprocess;
+  identify::Options identify;
+  std::optional<Hertz> resample;      ///< put the samples on an even clock first
+  bool passivity = true;              ///< judge it too
+  bool joint_domain = false;          ///< the result at the joints too
+  std::optional<PassivityBand> band;  ///< in which a model is judged; absent: analyse::passivity_band
+};
+
+/// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
+/// @fails as its steps; where the joint domain is asked for and pooled recordings were made in different postures;
+/// where a recording has a source, the message names its file.
+[[nodiscard]] Result<Measurement> measure(std::span<const Recording> recordings, const Options& options);
+
+/// A result, and what shows how good it is.
+struct Examined {
+  Measurement measured;
+  std::vector<Diagnostics> diagnostics;  ///< one for each recording; where they were pooled, against the common model
+};
+
+/// `measure` with the diagnostics, from the same prepared trials. Where a recording holds an accelerometer, it is
+/// prepared a second time, with ẍ from the source that was not used; an accelerometer that cannot be (values that are
+/// no numbers) is left out.
+/// @fails as measure and analyse::diagnose
+[[nodiscard]] Result<Examined> examine(std::span<const Recording> recordings, const Options& options);
+
+}  // namespace mbk::measurement

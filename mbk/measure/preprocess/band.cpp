@@ -1,0 +1,76 @@
+#include "mbk/measure/preprocess/band.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "mbk/base/dsp/spectrum.h"
+
+namespace mbk::preprocess {
+namespace {
+
+/// Mean of the spectra of all columns and cuts, but for a factor.
+Result<dsp::Spectrum> spectrum_of(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate,
+                                  double finest = 0.1) {
+  Index shortest = signals.rows();
+  for (const Cut& cut : cuts) shortest = std::min(shortest, cut.end - cut.begin);
+  // Ten seconds resolve the lines of a multisine; shorter pieces give what they can.
+  const Hertz resolution(std::max(finest, sample_rate.value / static_cast<double>(std::max<Index>(shortest, 1))));
+  dsp::Spectrum sum;
+  for (const Cut& cut : cuts) {
+    for (Index axis = 0; axis < signals.cols(); ++axis) {
+      auto spectrum = dsp::welch(signals.col(axis).segment(cut.begin, cut.end - cut.begin), sample_rate, resolution);
+      if (!spectrum) return tl::unexpected(spectrum.error());
+      if (sum.density.size() == 0) {
+        sum = std::move(*spectrum);
+      } else {
+        sum.density += spectrum->density;
+      }
+    }
+  }
+  return sum;
+}
+
+Hertz limit_of(Hertz sample_rate) {
+  return Hertz(0.1 * sample_rate.value);
+}
+
+}  // namespace
+
+Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, Hertz sample_rate) {
+  const auto position = spectrum_of(motion, cuts, sample_rate);
+  if (!position) return tl::unexpected(position.error());
+  dsp::Spectrum velocity = *position;
+  velocity.density.array() *= (2.0 * std::numbers::pi * velocity.frequency.array()).square();
+  const Hertz limit = limit_of(sample_rate);
+  return Band{dsp::power_quantile(*position, 0.05, limit), dsp::power_quantile(velocity, 0.95, limit)};
+}
+
+Result<Hertz> band_top(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate) {
+  const auto spectrum = spectrum_of(signals, cuts, sample_rate);
+  if (!spectrum) return tl::unexpected(spectrum.error());
+  return dsp::power_quantile(*spectrum, 0.95, limit_of(sample_rate));
+}
+
+Result<Hertz> motion_top(const Vector& position, const std::vector<Cut>& cuts, Hertz sample_rate, Hertz limit) {
+  const auto spectrum = spectrum_of(position, cuts, sample_rate, 1.0);
+  if (!spectrum) return tl::unexpected(spectrum.error());
+  const auto excited = excited_band(position, cuts, sample_rate);
+  if (!excited) return tl::unexpected(excited.error());
+  const Vector& f = spectrum->frequency;
+  const Vector density = spectrum->density.array() * f.array().pow(4);
+  const auto above = [&f](Hertz edge) { return std::ranges::upper_bound(f, edge.value) - f.begin(); };
+  const Index begin = above(excited->high), end = above(limit);
+  constexpr Index kFewest = 5;
+  if (end - begin < kFewest) return limit;
+  std::vector<double> sorted(density.begin() + begin, density.begin() + end);
+  const auto middle = sorted.begin() + (end - begin) / 2;
+  std::ranges::nth_element(sorted, middle);
+  for (Index i = begin; i < end; ++i) {
+    if (density[i] < 2.0 * *middle) return Hertz(f[i]);
+  }
+  return limit;
+}
+
+}  // namespace mbk::preprocess

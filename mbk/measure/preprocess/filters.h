@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/result.h"
+#include "mbk/base/core/units.h"
+#include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/base/dsp/zero_phase.h"
+#include "mbk/measure/preprocess/band.h"
+#include "mbk/measure/preprocess/options.h"
+#include "mbk/measure/preprocess/signals.h"
+#include "mbk/measure/preprocess/windows.h"
+
+namespace mbk::preprocess {
+
+/// Filter settings and the words that say where they come from. What the user chose goes before either plan.
+struct FilterPlan {
+  dsp::SavitzkyGolay smoothing;
+  std::optional<Hertz> cutoff;  ///< of the zero-phase Butterworth filter of order five; none: it is not applied
+  std::string rule;
+  Index every = 1;  ///< of the filtered samples, the first of so many is kept
+};
+
+/// Those of the published procedure: (6, 101) and 5 Hz, or in chapter 5 (6, 151) and 4.5 Hz.
+[[nodiscard]] FilterPlan reference_filters(const Options& options);
+
+/// mbk's own: the cutoff lies where the filter passes the top of the excited band with a gain of 0.994, and the
+/// smoothing window is as long as it can be without reaching down to that.
+/// @param shortest_cut [samples]; the window takes at most a quarter of it
+[[nodiscard]] FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut);
+
+/// One cut through both filters: [x ẋ ẍ F], each n columns, then [r̈ ṙ r] of the reference where it is wanted and what a
+/// computed force's sensitivity has; row i
+/// belongs to sample cut.begin + half window + trim + i·every.
+/// @fails the cut is shorter than the filters need; the settings are none that a filter can have.
+[[nodiscard]] Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,
+                                        Hertz rate, const dsp::Padding& padding, bool with_reference);
+
+/// Signals through both filters, sample by sample, without their derivatives: row i belongs to sample half window + i.
+/// @fails  as filter_cut
+[[nodiscard]] Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,
+                                           const dsp::Padding& padding);
+
+}  // namespace mbk::preprocess

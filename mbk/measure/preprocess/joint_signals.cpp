@@ -1,0 +1,228 @@
+#include "mbk/measure/preprocess/joint_signals.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "mbk/model/robot/dynamic_model.h"
+
+namespace mbk::preprocess {
+namespace {
+
+std::string there(const Recording& recording) {
+  std::vector<std::string> names;
+  for (const Channel& channel : recording.channels) names.push_back(channel.name);
+  return names.empty() ? "there are no channels" : fmt::format("there are {}", fmt::join(names, ", "));
+}
+
+/// The channel of a joint, in the unit that the joint has.
+Result<const Channel*> require(const Recording& recording, const std::string& name, const char* unit) {
+  const Channel* channel = recording.find(name);
+  if (channel == nullptr) {
+    return bad_data(fmt::format("channel '{}' is missing; {}", name, there(recording)),
+                    fmt::format("name it with --channels, as in {}=6", name));
+  }
+  if (!channel->unit.empty() && channel->unit != unit) {
+    return bad_data(fmt::format("channel '{}' is in {}, but this joint needs {}", name, channel->unit, unit),
+                    fmt::format("give the unit that the file holds in --channels, as in {}=6:{}", name, unit));
+  }
+  return channel;
+}
+
+/// All of a kind side by side, or nothing where one is missing.
+Matrix gather(const Recording& recording, const std::vector<std::string>& names, std::string_view unit) {
+  Matrix columns(recording.samples(), static_cast<Index>(names.size()));
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const Channel* channel = recording.find(names[k]);
+    if (channel == nullptr || channel->unit != unit) return {};
+    columns.col(static_cast<Index>(k)) = channel->values;
+  }
+  return columns;
+}
+
+/// Row and fraction of a cubic between two samples whose slopes are known (Hermite).
+void shift(Matrix& values, const Matrix& slopes, double sample_time, double delay) {
+  const Index rows = values.rows();
+  if (delay == 0.0 || rows < 2) return;
+  const Matrix old = values;
+  for (Index i = 0; i < rows; ++i) {
+    const double at = static_cast<double>(i) - delay / sample_time;
+    const double low = std::clamp(std::floor(at), 0.0, static_cast<double>(rows - 2));
+    const auto k = static_cast<Index>(low);
+    const double u = at - low;
+    if (u < 0.0 || u > 1.0) {
+      const Index end = u < 0.0 ? 0 : rows - 1;
+      values.row(i) = old.row(end) + (at - static_cast<double>(end)) * sample_time * slopes.row(end);
+      continue;
+    }
+    const double a = u * u * (3.0 - 2.0 * u), b = u * (1.0 - u) * (1.0 - u), c = u * u * (u - 1.0);
+    values.row(i) =
+        (1.0 - a) * old.row(k) + a * old.row(k + 1) + sample_time * (b * slopes.row(k) + c * slopes.row(k + 1));
+  }
+}
+
+}  // namespace
+
+Result<JointSignals> select_joint_signals(const Recording& recording, const robot::Mechanism& mechanism,
+                                          bool hand_acceleration) {
+  const Index n = mechanism.joints(), axes = mechanism.hand_axes(), samples = recording.samples();
+  JointSignals signals;
+  signals.position.resize(samples, n);
+  signals.torque.resize(samples, n);
+  std::vector<std::string> joint_references;
+  for (int joint = 0; joint < n; ++joint) {
+    const bool slides = mechanism.slides(joint);
+    std::string name = fmt::format("joint_{}", joint + 1);
+    if (n == 1 && recording.find(name) == nullptr && recording.find("position") != nullptr) name = "position";
+    const auto position = require(recording, name, slides ? "m" : "rad");
+    if (!position) return tl::unexpected(position.error());
+    signals.position.col(joint) = (*position)->values;
+    const auto torque = require(recording, fmt::format("torque_{}", joint + 1), slides ? "N" : "N.m");
+    if (!torque) return tl::unexpected(torque.error());
+    signals.torque.col(joint) = (*torque)->values;
+    joint_references.push_back(fmt::format("reference_joint_{}", joint + 1));
+  }
+  const bool plane = axes == 2;
+  signals.joint_reference = gather(recording, joint_references, mechanism.slides(0) ? "m" : "rad");
+  if (plane) signals.hand_reference = gather(recording, {"reference_x", "reference_y"}, "m");
+  if (!plane) signals.hand_reference = gather(recording, {"reference"}, mechanism.slides(0) ? "m" : "rad");
+  if (hand_acceleration) {
+    using Names = std::vector<std::string>;
+    signals.hand_acceleration =
+        gather(recording, plane ? Names{"acceleration_x", "acceleration_y"} : Names{"acceleration"},
+               plane || mechanism.slides(0) ? "m/s2" : "rad/s2");
+    if (signals.hand_acceleration.size() == 0) {
+      return bad_data(
+          fmt::format("channel '{}' is missing; {}", plane ? "acceleration_x" : "acceleration", there(recording)),
+          "name it with --channels, or use --acceleration derivative");
+    }
+  }
+  return signals;
+}
+
+Result<void> check_joint_signals(const JointSignals& signals, const robot::Mechanism& mechanism, const Clock& clock,
+                                 const WindowPlan& plan) {
+  const auto at = [&](Index sample) { return fmt::format("sample {} ({:.6f} s)", sample + 1, clock.seconds(sample)); };
+  for (const Cut& cut : plan.cuts) {
+    const Index length = cut.end - cut.begin;
+    for (Index joint = 0; joint < signals.position.cols(); ++joint) {
+      const auto bad = [&](const Matrix& columns, const char* name) -> Result<void> {
+        const Index where = first_non_finite(columns.col(joint).segment(cut.begin, length));
+        if (where < 0) return {};
+        return bad_data(fmt::format("channel '{}_{}' is not a number at {}", name, joint + 1, at(cut.begin + where)),
+                        "choose a window without it with --from and --to, or mend the recording");
+      };
+      if (auto ok = bad(signals.position, "joint"); !ok) return ok;
+      if (auto ok = bad(signals.torque, "torque"); !ok) return ok;
+    }
+    for (Index i = cut.begin; i < cut.end; ++i) {
+      if (auto ok = mechanism.check_joints(signals.position.row(i).transpose()); !ok) {
+        Error error = ok.error();
+        error.kind = ErrorKind::data;
+        error.message = fmt::format("at {}: {}", at(i), error.message);
+        error.remedy =
+            "check unit, sign and order of the joints in --channels, choose a window with --from and --to, "
+            "or give the robot's own limits with --robot";
+        return tl::unexpected(std::move(error));
+      }
+    }
+  }
+  for (Index joint = 0; joint < signals.torque.cols(); ++joint) {
+    const auto torque = signals.torque.col(joint);
+    if (torque.minCoeff() == torque.maxCoeff() && torque[0] == 0.0) {
+      return bad_data(fmt::format("channel 'torque_{}' is zero throughout: the torque was not recorded", joint + 1),
+                      "name the column of the motor's torque with --channels");
+    }
+  }
+  return {};
+}
+
+Vector position_noise(const Matrix& position, const std::vector<Cut>& cuts) {
+  constexpr std::array kWeights = {1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0};
+  constexpr double kSquares = 924.0;  // of the weights
+  Vector sum = Vector::Zero(position.cols());
+  Index count = 0;
+  for (const Cut& cut : cuts) {
+    const Index rows = cut.end - cut.begin - static_cast<Index>(kWeights.size()) + 1;
+    if (rows < 1) continue;
+    Matrix difference = Matrix::Zero(rows, position.cols());
+    for (std::size_t k = 0; k < kWeights.size(); ++k) {
+      difference += kWeights[k] * position.middleRows(cut.begin + static_cast<Index>(k), rows);
+    }
+    sum += difference.colwise().squaredNorm().transpose();
+    count += rows;
+  }
+  return (sum / (kSquares * static_cast<double>(std::max<Index>(count, 1)))).cwiseSqrt();
+}
+
+std::vector<bool> standing_joints(const JointSignals& signals, const WindowPlan& plan) {
+  constexpr double kStepsEnough = 20.0;
+  const Vector noise = position_noise(signals.position, plan.cuts);
+  std::vector<bool> stands;
+  for (Index joint = 0; joint < signals.position.cols(); ++joint) {
+    double step = std::numeric_limits<double>::infinity(), motion = 0.0;
+    for (const Cut& cut : plan.cuts) {
+      const Vector q = signals.position.col(joint).segment(cut.begin, cut.end - cut.begin);
+      motion = std::max(motion, std::sqrt((q.array() - q.mean()).square().mean()));
+      for (Index i = 1; i < q.size(); ++i) {
+        const double change = std::abs(q[i] - q[i - 1]);
+        if (change > 0.0) step = std::min(step, change);
+      }
+    }
+    stands.push_back(motion < kStepsEnough * std::max(step, std::sqrt(12.0) * noise[joint]));
+  }
+  return stands;
+}
+
+Result<robot::JointMotion> smooth_motion(const Eigen::Ref<const Matrix>& position, const dsp::SavitzkyGolay& smoothing,
+                                         Hertz rate) {
+  robot::JointMotion motion;
+  int derivative = 0;
+  for (Matrix* part : {&motion.position, &motion.velocity, &motion.acceleration}) {
+    auto smoothed = dsp::savitzky_golay(smoothing, derivative++, position, rate);
+    if (!smoothed) return tl::unexpected(smoothed.error());
+    *part = std::move(*smoothed);
+  }
+  return motion;
+}
+
+Result<SmoothedJoints> smooth_joints(const JointSignals& signals, const robot::Mechanism& mechanism, const Cut& cut,
+                                     const dsp::SavitzkyGolay& smoothing, Hertz rate, double delay) {
+  const Index length = cut.end - cut.begin;
+  SmoothedJoints joints;
+  auto motion = smooth_motion(signals.position.middleRows(cut.begin, length), smoothing, rate);
+  if (!motion) return tl::unexpected(motion.error());
+  joints.motion = std::move(*motion);
+  const Matrix recorded = signals.torque.middleRows(cut.begin, length);
+  auto torque = dsp::savitzky_golay(smoothing, 0, recorded, rate);
+  if (!torque) return tl::unexpected(torque.error());
+  auto torque_rate = dsp::savitzky_golay(smoothing, 1, recorded, rate);
+  if (!torque_rate) return tl::unexpected(torque_rate.error());
+  joints.torque = std::move(*torque);
+  joints.torque_rate = std::move(*torque_rate);
+  shift(joints.torque, joints.torque_rate, 1.0 / rate.value, delay);
+
+  if (signals.hand_acceleration.size() > 0) {
+    auto hand = dsp::savitzky_golay(smoothing, 0, signals.hand_acceleration.middleRows(cut.begin, length), rate);
+    if (!hand) return tl::unexpected(hand.error());
+    for (Index i = 0; i < hand->rows(); ++i) {
+      const robot::JointVector q = joints.motion.position.row(i).transpose(),
+                               v = joints.motion.velocity.row(i).transpose();
+      const auto from_joints = robot::hand_from_joints(mechanism, q);
+      if (!from_joints) {
+        return tl::unexpected(
+            from_joints.error().in(fmt::format("sample {}", cut.begin + smoothing.half_window() + i)));
+      }
+      joints.motion.acceleration.row(i) =
+          (from_joints->transpose() * (hand->row(i).transpose() - mechanism.jacobian_rate(q, v) * v)).transpose();
+    }
+  }
+  return joints;
+}
+
+}  // namespace mbk::preprocess

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "mbk/base/core/units.h"
+#include "mbk/base/dsp/zero_phase.h"
+#include "mbk/model/robot/dynamic_model.h"
+#include "mbk/model/trial/prepared_trial.h"
+#include "mbk/model/trial/protocol.h"
+
+namespace mbk::preprocess {
+
+/// Where ẍ comes from.
+enum class AccelerationSource { derivative, sensor };
+
+/// Which samples the user asks for, in seconds from the recording's first sample.
+struct WindowLimits {
+  std::optional<double> from_s, split_s, to_s;
+};
+
+/// What the user may choose; absent = what the mode, the procedure and the recording say.
+struct Options {
+  Mode mode = Mode::improved;
+  Procedure procedure = Procedure::chapter3;
+  std::optional<Protocol> protocol;  ///< absent: detect_protocol
+  int axes = 0;                      ///< 1, 2, or 0 = by the channels that are there
+  std::optional<int> smoothing_order, smoothing_window;
+  std::optional<Hertz> cutoff;
+  bool no_lowpass = false;  ///< smoothing only, no Butterworth filter
+  std::optional<AccelerationSource> acceleration;
+  WindowLimits window;
+  dsp::Padding padding;      ///< of the zero-phase filter
+  bool instruments = false;  ///< filter the reference too: what instrumental variables need
+  ForceSource force_source = ForceSource::sensor;
+  std::shared_ptr<const robot::DynamicModel> robot;  ///< what a computed force rests on
+  std::optional<Index> every;  ///< rows that the fit takes; absent: all in reference mode, else what the cutoff needs
+};
+
+}  // namespace mbk::preprocess

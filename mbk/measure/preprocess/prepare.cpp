@@ -1,0 +1,145 @@
+#include "mbk/measure/preprocess/prepare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "mbk/measure/preprocess/band.h"
+#include "mbk/measure/preprocess/filters.h"
+#include "mbk/measure/preprocess/recording_checks.h"
+#include "mbk/measure/preprocess/signals.h"
+#include "mbk/measure/preprocess/trial_clock.h"
+#include "mbk/measure/preprocess/windows.h"
+
+namespace mbk::preprocess {
+
+Result<PreparedTrial> prepare(const Recording& recording, const Inspection& inspection, const Options& options,
+                              const VirtualForce* computed) {
+  if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
+  const bool published = options.mode == Mode::reference;
+  const Index samples = recording.samples();
+  constexpr Index kFewest = 20;  // about three for each parameter of one axis
+  if (samples < kFewest || !(inspection.rate_hz > 0.0)) {
+    return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
+  }
+  const Hertz rate(inspection.rate_hz);
+  const Clock clock(recording.time, rate);
+  if (auto ok = check_missing(clock, inspection.missing, options.window); !ok) return tl::unexpected(ok.error());
+
+  PreparedTrial trial;
+  trial.sources = recording.sources;
+  trial.notes = recording.notes;
+  trial.recording_duration = inspection.duration + inspection.interval_median;
+  Preparation& how = trial.preparation;
+  how.mode = options.mode;
+  how.procedure = options.procedure;
+  how.cut_before_filter = !published;
+  how.acceleration_from_sensor =
+      options.acceleration.value_or(published && options.procedure == Procedure::chapter5
+                                        ? AccelerationSource::sensor
+                                        : AccelerationSource::derivative) == AccelerationSource::sensor;
+
+  how.force_source = options.force_source;
+  auto signals = select_signals(recording, options.axes, how.acceleration_from_sensor);
+  if (!signals) return tl::unexpected(signals.error());
+  if (computed != nullptr && computed->sensitivity.size() > 0) {
+    signals->force_sensitivity = computed->sensitivity;
+    trial.robot_covariance = options.robot->covariance;
+  }
+  trial.axes = signals->axes;
+  trial.motion = signals->motion;
+
+  const ProtocolFinding found = detect_protocol(signals->reference);
+  how.protocol = options.protocol.value_or(found.protocol);
+  how.protocol_rule = options.protocol ? "given" : found.rule;
+  if (how.protocol != Protocol::free && signals->reference.size() == 0) {
+    return bad_data(fmt::format("protocol '{}' needs the reference, channel '{}', which is missing", text(how.protocol),
+                                channel_name(Quantity::reference, trial.axes, 0)),
+                    "name it with --channels, or use --protocol free");
+  }
+
+  if (how.protocol != Protocol::free) {
+    if (auto ok = check_reference(clock, *signals, options.window); !ok) return tl::unexpected(ok.error());
+  }
+
+  FilterPlan filters = reference_filters(options);
+  auto plan = published ? reference_windows(how.protocol, signals->reference, clock, options.window,
+                                            filters.smoothing.half_window())
+                        : improved_windows(how.protocol, signals->reference, clock, options.window);
+  if (!plan) return tl::unexpected(plan.error());
+  if (auto ok = check_clock(clock, inspection.interval_median, *plan, trial.warnings); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  if (auto ok = check_finite(clock, *signals, *plan); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_alive(*signals, *plan); !ok) return tl::unexpected(ok.error());
+  warn_of_small_motion(*signals, *plan, trial.warnings);
+
+  const bool by_reference = how.protocol == Protocol::sinusoidal;
+  const auto band = excited_band(by_reference ? signals->reference : signals->position, plan->cuts, rate);
+  if (!band) return tl::unexpected(band.error());
+  if (!published) {
+    Index shortest = samples;
+    for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
+    filters = improved_filters(options, *band, rate, shortest);
+  }
+
+  const bool with_reference = options.instruments && signals->reference.size() > 0;
+  Index total = 0;
+  std::vector<Matrix> filtered;
+  for (const Cut& cut : plan->cuts) {
+    auto piece = filter_cut(*signals, cut, filters, plan->trim, rate, options.padding, with_reference);
+    if (!piece) return tl::unexpected(piece.error());
+    total += piece->rows();
+    filtered.push_back(std::move(*piece));
+  }
+
+  const Index n = trial.axes, lost = filters.smoothing.half_window() + plan->trim;
+  const Index every = filters.every;
+  trial.recording_rate = rate.value;
+  trial.sample_time = static_cast<double>(every) / rate.value;
+  trial.time.resize(total);
+  for (Matrix* signal : {&trial.position, &trial.velocity, &trial.acceleration, &trial.force_hand_on_robot}) {
+    signal->resize(total, n);
+  }
+  if (signals->reference.size() > 0) trial.reference.resize(total, n);
+  if (with_reference) trial.reference_motion.resize(total, 3 * n);
+  trial.force_sensitivity.resize(signals->force_sensitivity.size() > 0 ? total : 0, signals->force_sensitivity.cols());
+  trial.reference_quantity = signals->reference_quantity;
+  Index row = 0;
+  for (std::size_t k = 0; k < filtered.size(); ++k) {
+    const Cut& cut = plan->cuts[k];
+    const Matrix& piece = filtered[k];
+    const Index rows = piece.rows(), first = cut.begin + lost;
+    const auto kept = Eigen::seqN(first, rows, every);
+    trial.time.segment(row, rows) = recording.time(kept).array() - recording.time[0];
+    trial.position.middleRows(row, rows) = piece.leftCols(n);
+    trial.velocity.middleRows(row, rows) = piece.middleCols(n, n);
+    trial.acceleration.middleRows(row, rows) = piece.middleCols(2 * n, n);
+    trial.force_hand_on_robot.middleRows(row, rows) = piece.middleCols(3 * n, n);
+    if (with_reference) trial.reference_motion.middleRows(row, rows) = piece.middleCols(4 * n, 3 * n);
+    if (trial.force_sensitivity.size() > 0) {
+      trial.force_sensitivity.middleRows(row, rows) = piece.rightCols(trial.force_sensitivity.cols());
+    }
+    if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference(kept, Eigen::all);
+    append_stretches(cut, first, every, row, rows, trial.stretches);
+    row += rows;
+  }
+  if (trial.stretches.empty()) return bad_data("no sample is left after filtering", "record longer");
+
+  how.window_rule = plan->rule;
+  how.from_s = trial.time[trial.stretches.front().begin];
+  how.to_s = trial.time[trial.stretches.back().end - 1];
+  how.split_s = plan->split_s;
+  how.perturbations = static_cast<int>(how.protocol == Protocol::underdamped ? trial.stretches.size() : 1);
+  how.smoothing_order = filters.smoothing.order;
+  how.smoothing_window = filters.smoothing.window;
+  how.cutoff = filters.cutoff;
+  how.cutoff_rule = filters.rule;
+  how.every = every;
+  how.band_low = band->low;
+  how.band_high = band->high;
+  return trial;
+}
+
+}  // namespace mbk::preprocess

@@ -1,0 +1,160 @@
+#include "mbk/measure/preprocess/recording_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace mbk::preprocess {
+
+Result<void> check_choices(const Options& options) {
+  constexpr int kLongestWindow = 1000000;
+  if (options.axes < 0 || options.axes > 2) return bad_usage(fmt::format("{} axes: 1 or 2 are possible", options.axes));
+  if (options.smoothing_window && (*options.smoothing_window < 1 || *options.smoothing_window > kLongestWindow)) {
+    return bad_usage(
+        fmt::format("a Savitzky–Golay window of {} samples is not in 1…{}", *options.smoothing_window, kLongestWindow));
+  }
+  if (options.smoothing_order && (*options.smoothing_order < 0 || *options.smoothing_order > kLongestWindow)) {
+    return bad_usage(
+        fmt::format("a Savitzky–Golay order of {} is not in 0…{}", *options.smoothing_order, kLongestWindow));
+  }
+  if (options.cutoff && !(options.cutoff->value > 0.0 && std::isfinite(options.cutoff->value))) {
+    return bad_usage(fmt::format("a cutoff of {:g} Hz is not above 0", options.cutoff->value));
+  }
+  if (options.every && *options.every < 1) {
+    return bad_usage(fmt::format("every {}-th sample is none", *options.every), "choose 1 or more for --every");
+  }
+  if (options.padding.samples < 0) return bad_usage(fmt::format("a padding of {} samples", options.padding.samples));
+  return {};
+}
+
+Result<void> check_clock(const Clock& clock, double median, const WindowPlan& plan, std::vector<Warning>& warnings) {
+  double sum = 0.0, largest = 0.0;
+  Index count = 0;
+  for (const Cut& cut : plan.cuts) {
+    for (Index i = cut.begin + 1; i < cut.end; ++i, ++count) {
+      const double interval = clock.seconds(i) - clock.seconds(i - 1);
+      const auto at = [&] { return fmt::format("at sample {} ({:.6f} s)", i + 1, clock.seconds(i)); };
+      if (!(interval > 0.0)) {
+        return bad_data(
+            interval == 0.0 ? fmt::format("time repeats {}", at()) : fmt::format("time runs backwards {}", at()),
+            "choose a window without it with --from and --to");
+      }
+      if (interval > 1.5 * median) {
+        return bad_data(
+            fmt::format("a gap of {:.4g} s in time {}, where samples are {:.4g} s apart", interval, at(), median),
+            "choose a window without it with --from and --to, or put the samples on an even clock with "
+            "--resample HZ");
+      }
+      sum += (interval - median) * (interval - median);
+      largest = std::max(largest, std::abs(interval - median));
+    }
+  }
+  const double jitter = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+  if (jitter > 0.01 * median) {
+    warnings.push_back({WarningCode::clock_jitter,
+                        fmt::format("the clock jitters by {:.2g} ms (standard deviation; at most {:.2g} ms) around "
+                                    "{:.4g} ms, and the samples are taken as even",
+                                    1e3 * jitter, 1e3 * largest, 1e3 * median),
+                        "compare with --resample HZ; record with a steadier clock"});
+  }
+  return {};
+}
+
+Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>& missing, const WindowLimits& limits) {
+  for (const MissingSamples& gap : missing) {
+    const double from = clock.seconds(gap.first), to = clock.seconds(gap.first + gap.count - 1);
+    if ((limits.from_s && to < *limits.from_s) || (limits.to_s && from >= *limits.to_s)) continue;
+    return bad_data(
+        fmt::format("{} missing from sample {} on ({:.6f} s to {:.6f} s; NaN in every channel)",
+                    gap.count == 1 ? "a sample is" : fmt::format("{} samples are", gap.count), gap.first + 1, from, to),
+        "choose a window without them with --from and --to; 'mbk info' names every gap");
+  }
+  return {};
+}
+
+Result<void> check_reference(const Clock& clock, const Signals& signals, const WindowLimits& limits) {
+  for (Index axis = 0; axis < signals.reference.cols(); ++axis) {
+    for (Index i = 0; i < signals.reference.rows(); ++i) {
+      const double at = clock.seconds(i);
+      const bool outside = (limits.from_s && at < *limits.from_s) || (limits.to_s && at >= *limits.to_s);
+      if (outside || std::isfinite(signals.reference(i, axis))) continue;
+      return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
+                                  channel_name(Quantity::reference, signals.axes, axis), i + 1, at),
+                      "choose a window without it with --from and --to, or use --protocol free");
+    }
+  }
+  return {};
+}
+
+Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan) {
+  const std::array<std::pair<Quantity, const Matrix*>, 3> quantities = {
+      {{Quantity::position, &signals.position},
+       {Quantity::force, &signals.force_hand_on_robot},
+       {Quantity::acceleration, &signals.acceleration}}};
+  for (const auto& [quantity, columns] : quantities) {
+    for (Index axis = 0; axis < columns->cols(); ++axis) {
+      for (const Cut& cut : plan.cuts) {
+        const Index bad = first_non_finite(columns->col(axis).segment(cut.begin, cut.end - cut.begin));
+        if (bad < 0) continue;
+        const Index sample = cut.begin + bad;
+        return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
+                                    channel_name(quantity, signals.axes, axis), sample + 1, clock.seconds(sample)),
+                        "choose a window without it with --from and --to, or mend the recording");
+      }
+    }
+  }
+  return {};
+}
+
+void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::vector<Warning>& warnings) {
+  constexpr double kStepsEnough = 20.0;  // standard deviations of the motion in steps: the rounding is then 1.4 % of it
+  double step = std::numeric_limits<double>::infinity(), motion = 0.0;
+  for (const Cut& cut : plan.cuts) {
+    const Matrix piece = signals.position.middleRows(cut.begin, cut.end - cut.begin);
+    const Matrix centred = piece.rowwise() - piece.colwise().mean();
+    motion = std::max(motion, std::sqrt(centred.cwiseAbs2().colwise().mean().maxCoeff()));
+    const Matrix changes = (piece.bottomRows(piece.rows() - 1) - piece.topRows(piece.rows() - 1)).cwiseAbs();
+    for (const double change : changes.reshaped()) {
+      if (change > 0.0) step = std::min(step, change);
+    }
+  }
+  if (motion < kStepsEnough * step) {
+    warnings.push_back({WarningCode::motion_too_small,
+                        std::isinf(step) ? std::string("the position does not move")
+                                         : fmt::format("the position moves by {:.2g} (standard deviation) and is "
+                                                       "recorded in steps of {:.2g}",
+                                                       motion, step),
+                        "perturb more, and check that the position channel and its unit are the right ones"});
+  }
+}
+
+Result<void> check_alive(const Signals& signals, const WindowPlan& plan) {
+  const auto constant = [&](const Matrix& columns, Index axis) {
+    const double value = columns(plan.cuts.front().begin, axis);
+    return std::ranges::all_of(plan.cuts, [&](const Cut& cut) {
+      return (columns.col(axis).segment(cut.begin, cut.end - cut.begin).array() == value).all();
+    });
+  };
+  const auto refusal = [&](Quantity quantity, const Matrix& columns, Index axis, const char* remedy) {
+    return bad_data(fmt::format("channel '{}' is {:g} throughout the window",
+                                channel_name(quantity, signals.axes, axis), columns(plan.cuts.front().begin, axis)),
+                    remedy);
+  };
+  Index resting = 0;
+  for (Index axis = 0; axis < signals.axes; ++axis) {
+    if (constant(signals.force_hand_on_robot, axis)) {
+      return refusal(Quantity::force, signals.force_hand_on_robot, axis,
+                     "check that the sensor was on, or name its channel with --channels");
+    }
+    resting += constant(signals.position, axis) ? 1 : 0;
+  }
+  if (resting < signals.axes) return {};
+  return refusal(Quantity::position, signals.position, 0,
+                 "choose a window in which the limb moves, with --from and --to");
+}
+
+}  // namespace mbk::preprocess

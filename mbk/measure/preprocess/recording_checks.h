@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/measure/preprocess/options.h"
+#include "mbk/measure/preprocess/signals.h"
+#include "mbk/measure/preprocess/trial_clock.h"
+#include "mbk/measure/preprocess/windows.h"
+#include "mbk/model/trial/inspection.h"
+#include "mbk/model/trial/warning.h"
+
+namespace mbk::preprocess {
+
+/// Settings that no filter can have are refused before anything is sized by them.
+[[nodiscard]] Result<void> check_choices(const Options& options);
+
+/// Time inside the cuts must be even enough to be called even: it neither repeats nor runs backwards nor leaves a gap
+/// of more than 1.5 median intervals. Lesser jitter is left as it is, and warned of from 1 % on.
+/// @param median interval [s]
+[[nodiscard]] Result<void> check_clock(const Clock& clock, double median, const WindowPlan& plan,
+                                       std::vector<Warning>& warnings);
+
+/// No sample may be missing (NaN in every channel) throughout the limits: what a session lost is not bridged.
+[[nodiscard]] Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>& missing,
+                                         const WindowLimits& limits);
+
+/// The windows are read off the reference, so that it must be finite throughout the limits.
+[[nodiscard]] Result<void> check_reference(const Clock& clock, const Signals& signals, const WindowLimits& limits);
+
+/// Position, force and acceleration must be finite inside the cuts; the first channel and sample that is not is named.
+[[nodiscard]] Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan);
+
+/// A force that never changes is a sensor that did not measure; a position that never changes shows no motion.
+[[nodiscard]] Result<void> check_alive(const Signals& signals, const WindowPlan& plan);
+
+/// The position must move well beyond the steps in which it is recorded.
+void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::vector<Warning>& warnings);
+
+}  // namespace mbk::preprocess

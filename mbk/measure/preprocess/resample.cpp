@@ -1,0 +1,48 @@
+#include "mbk/measure/preprocess/resample.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mbk::preprocess {
+
+Result<Recording> resample(const Recording& recording, Hertz rate) {
+  const Index n = recording.samples();
+  if (!(rate.value > 0.0 && rate.value <= 1e6))
+    return bad_usage(fmt::format("--resample {:g} is no rate in Hz", rate.value));
+  if (n < 2) return bad_data("a recording of fewer than 2 samples cannot be resampled");
+  for (Index i = 1; i < n; ++i) {
+    if (!(recording.time[i] > recording.time[i - 1])) {
+      return bad_data(fmt::format("time does not increase at sample {} ({:.6f} s after {:.6f} s)", i + 1,
+                                  recording.time[i], recording.time[i - 1]),
+                      "cut the recording there; resampling needs increasing time");
+    }
+  }
+  const double first = recording.time[0];
+  const double span = (recording.time[n - 1] - first) * rate.value;
+  constexpr double kMost = 100.0;  // times as many samples: more is a slip in the unit of time or rate
+  if (!(span <= kMost * static_cast<double>(n))) {
+    return bad_usage(fmt::format("--resample {:g} Hz would make {:.3g} samples of {}", rate.value, span, n),
+                     "give the rate in Hz, near that of the recording");
+  }
+  const auto count = static_cast<Index>(std::floor(span * (1.0 + 1e-12))) + 1;
+
+  Recording even = recording;
+  even.time.resize(count);
+  for (Channel& channel : even.channels) channel.values.resize(count);
+  Index left = 0;
+  for (Index i = 0; i < count; ++i) {
+    const double t = first + static_cast<double>(i) / rate.value;
+    while (left < n - 2 && recording.time[left + 1] <= t) ++left;
+    const double weight = (t - recording.time[left]) / (recording.time[left + 1] - recording.time[left]);
+    even.time[i] = t;
+    for (std::size_t c = 0; c < even.channels.size(); ++c) {
+      const Vector& values = recording.channels[c].values;
+      even.channels[c].values[i] =
+          weight == 0.0 ? values[left] : (1.0 - weight) * values[left] + weight * values[left + 1];
+    }
+  }
+  return even;
+}
+
+}  // namespace mbk::preprocess

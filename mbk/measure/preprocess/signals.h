@@ -1,0 +1,34 @@
+#pragma once
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/prepared_trial.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::preprocess {
+
+/// What a channel measures, whatever the number of axes.
+enum class Quantity { position, force, reference, acceleration };
+
+/// The channel's name: "hand_x", "force_y", …; with one axis "position", "reaction", "reference", "acceleration".
+[[nodiscard]] const char* channel_name(Quantity quantity, int axes, Index axis);
+
+/// The channels that a fit needs, side by side, as recorded.
+struct Signals {
+  int axes = 2;                ///< n
+  Matrix position;             ///< N×n [m or rad]
+  Matrix force_hand_on_robot;  ///< N×n [N or N·m]
+  Matrix force_sensitivity;    ///< N×(n·p) of a force that was computed, or empty
+  Matrix reference;            ///< N×n; empty where none was recorded
+  ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
+  Matrix acceleration;  ///< N×n [m/s² or rad/s²]; empty where it is not asked for
+  Motion motion = Motion::translation;
+};
+
+/// Takes them out of a recording.
+/// @param axes 1, 2, or 0 = by the channels that are there
+/// @fails a channel is missing (it is named, with those that are there); with one axis, position and reaction in units
+/// that do not belong together.
+[[nodiscard]] Result<Signals> select_signals(const Recording& recording, int axes, bool acceleration_from_sensor);
+
+}  // namespace mbk::preprocess

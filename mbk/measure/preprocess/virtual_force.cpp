@@ -1,0 +1,195 @@
+#include "mbk/measure/preprocess/virtual_force.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mbk/measure/preprocess/band.h"
+#include "mbk/measure/preprocess/filters.h"
+#include "mbk/measure/preprocess/joint_signals.h"
+#include "mbk/measure/preprocess/joint_smoothing.h"
+#include "mbk/measure/preprocess/recording_checks.h"
+#include "mbk/measure/preprocess/signals.h"
+#include "mbk/measure/preprocess/trial_clock.h"
+#include "mbk/measure/preprocess/windows.h"
+#include "mbk/model/robot/observed_force.h"
+
+namespace mbk::preprocess {
+namespace {
+
+double rms(const Matrix& values) {
+  return std::sqrt(values.cwiseAbs2().mean());
+}
+
+/// Torques that are a thousand times too large or too small give forces that no hand exerts.
+Result<void> check_torque_unit(const Matrix& force, const Matrix& torque, const Matrix& of_model, bool slides) {
+  constexpr double kStrongest = 1000.0;  // [N], rms, of a hand
+  constexpr double kLeastTorque = 0.02;  // of what the robot's own motion takes
+  const char* const unit = slides ? "N" : "N·m";
+  if (rms(force) > kStrongest) {
+    return bad_data(fmt::format("the force at the hand would be {:.3g} kN (rms): the torques (rms {:.3g}) are probably "
+                                "not in {}",
+                                1e-3 * rms(force), rms(torque), unit),
+                    "say their unit in --channels, as in tau1=14:N.mm,tau2=15:N.mm");
+  }
+  if (rms(torque) < kLeastTorque * rms(of_model)) {
+    return bad_data(
+        fmt::format("the torques (rms {:.3g} {unit}) are {:.2g} % of what the robot's own motion takes "
+                    "({:.3g} {unit}): they or the robot's parameters are in another unit",
+                    rms(torque), 100.0 * rms(torque) / rms(of_model), rms(of_model), fmt::arg("unit", unit)),
+        "say the torques' unit in --channels, or identify the robot from recordings in the same unit");
+  }
+  return {};
+}
+
+/// Rows before `first` and from `last` on take the value of the nearest that was computed.
+Matrix held(const Matrix& computed, Index first, Index samples) {
+  const Index last = first + computed.rows();
+  Matrix all(samples, computed.cols());
+  all.middleRows(first, computed.rows()) = computed;
+  all.topRows(first).rowwise() = computed.row(0);
+  all.bottomRows(samples - last).rowwise() = computed.row(computed.rows() - 1);
+  return all;
+}
+
+void put(Recording& recording, const std::string& name, const char* unit, const Vector& values) {
+  for (Channel& channel : recording.channels) {
+    if (channel.name != name) continue;
+    channel.values = values;
+    channel.unit = unit;
+    return;
+  }
+  recording.channels.push_back({name, unit, "base", values});
+}
+
+}  // namespace
+
+Result<VirtualForce> virtual_force(const Recording& recording, const Inspection& inspection,
+                                   const robot::DynamicModel& model, const Options& options) {
+  if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
+  const robot::Mechanism& mechanism = *model.mechanism;
+  const Index samples = recording.samples(), n = mechanism.joints(), axes = mechanism.hand_axes();
+  constexpr Index kFewest = 100;
+  if (samples < kFewest || !(inspection.rate_hz > 0.0)) {
+    return bad_data(fmt::format("{} samples cannot show a force", samples), "record longer");
+  }
+  const Hertz rate(inspection.rate_hz);
+  const Clock clock(recording.time, rate);
+  const bool published = options.mode == Mode::reference;
+  const bool accelerometer =
+      options.acceleration.value_or(published && options.procedure == Procedure::chapter5
+                                        ? AccelerationSource::sensor
+                                        : AccelerationSource::derivative) == AccelerationSource::sensor;
+  const auto signals = select_joint_signals(recording, mechanism, accelerometer);
+  if (!signals) return tl::unexpected(signals.error());
+  const WindowLimits limits =
+      published ? WindowLimits{} : WindowLimits{options.window.from_s, std::nullopt, options.window.to_s};
+  const auto plan = improved_windows(Protocol::free, {}, clock, limits);
+  if (!plan) return tl::unexpected(plan.error());
+  std::vector<Warning> warnings;
+  if (auto ok = check_missing(clock, inspection.missing, limits); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_clock(clock, inspection.interval_median, *plan, warnings); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  if (auto ok = check_joint_signals(*signals, mechanism, clock, *plan); !ok) return tl::unexpected(ok.error());
+  const Cut cut = plan->cuts.front();
+  FilterPlan filters = reference_filters(options);
+  if (!published) {
+    const auto band = excited_band(signals->position, plan->cuts, rate);
+    if (!band) return tl::unexpected(band.error());
+    filters = improved_filters(options, *band, rate, cut.end - cut.begin);
+  }
+  dsp::SavitzkyGolay smoothing = filters.smoothing;
+  if (filters.cutoff && !published && !options.smoothing_window) {
+    const auto shorter = smoothing_of_joints(filters.smoothing, signals->position, plan->cuts, model.drive, rate);
+    if (!shorter) return tl::unexpected(shorter.error());
+    smoothing = *shorter;
+  }
+  const auto joints = smooth_joints(*signals, mechanism, cut, smoothing, rate, model.delay);
+  if (!joints) return tl::unexpected(joints.error());
+
+  VirtualForce made;
+  made.first = cut.begin + smoothing.half_window();
+  const Index rows = joints->torque.rows();
+  made.last = made.first + rows;
+  made.filters = filters;
+  const bool observed = options.force_source == ForceSource::observer;
+  const bool sure = observed || model.covariance.size() == 0 || model.covariance.isZero(0.0);
+  const std::vector<Matrix> W = model.regressors(joints->motion);
+  const Index p = model.parameters.size();
+  Matrix of_model(rows, n);
+  for (Index joint = 0; joint < n; ++joint) of_model.col(joint) = W[static_cast<std::size_t>(joint)] * model.parameters;
+  const Matrix missing = of_model - joints->torque;
+  Matrix force(rows, axes), sensitivity(sure ? 0 : rows, axes * p), error(sure ? 0 : rows, axes);
+  Matrix of_sample(n, p);
+  for (Index i = 0; i < rows; ++i) {
+    const auto hand = robot::hand_from_joints(mechanism, joints->motion.position.row(i).transpose());
+    if (!hand) {
+      const Index sample = made.first + i;
+      return tl::unexpected(hand.error().in(fmt::format("sample {} ({:.6f} s)", sample + 1, clock.seconds(sample))));
+    }
+    force.row(i) = (*hand * missing.row(i).transpose()).transpose();
+    if (sure) continue;
+    for (Index joint = 0; joint < n; ++joint) of_sample.row(joint) = W[static_cast<std::size_t>(joint)].row(i);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> at_hand = *hand * of_sample;
+    sensitivity.row(i) = Eigen::Map<const Eigen::RowVectorXd>(at_hand.data(), at_hand.size());
+    error.row(i) = (at_hand * model.covariance * at_hand.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt().transpose();
+  }
+  if (observed) {
+    const Index length = cut.end - cut.begin;
+    const auto forces = robot::observe_force(model, signals->position.middleRows(cut.begin, length),
+                                             signals->torque.middleRows(cut.begin, length), {}, 1.0 / rate.value);
+    if (!forces) return tl::unexpected(forces.error());
+    made.lag = forces->lag;
+    force = forces->force_hand_on_robot.middleRows(smoothing.half_window(), rows);
+  }
+  if (auto ok = check_torque_unit(force, joints->torque, of_model, mechanism.slides(0)); !ok) {
+    return tl::unexpected(ok.error());
+  }
+
+  made.recording = recording;
+  const Matrix whole = held(force, made.first, samples);
+  made.joint_velocity = held(joints->motion.velocity, made.first, samples);
+  if (!sure) {
+    made.sensitivity = held(sensitivity, made.first, samples);
+    made.standard_error = held(error, made.first, samples);
+  }
+  const int kinds = static_cast<int>(axes);
+  std::vector<const Channel*> recorded;
+  for (Index axis = 0; axis < axes; ++axis)
+    recorded.push_back(recording.find(channel_name(Quantity::force, kinds, axis)));
+  if (std::ranges::find(recorded, nullptr) == recorded.end()) {
+    made.sensor_force.resize(samples, axes);
+    for (Index axis = 0; axis < axes; ++axis) {
+      made.sensor_force.col(axis) = recorded[static_cast<std::size_t>(axis)]->values;
+    }
+  }
+  const bool turns = axes == 1 && !mechanism.slides(0);
+  Matrix place;
+  for (Index axis = 0; axis < axes; ++axis) {
+    put(made.recording, channel_name(Quantity::force, kinds, axis), turns ? "N.m" : "N", whole.col(axis));
+    const char* const hand = channel_name(Quantity::position, kinds, axis);
+    if (recording.find(hand) != nullptr) continue;
+    if (place.size() == 0) {
+      place.resize(samples, axes);
+      for (Index i = 0; i < samples; ++i) {
+        place.row(i) = mechanism.hand_position(signals->position.row(i).transpose()).transpose();
+      }
+    }
+    put(made.recording, hand, turns ? "rad" : "m", place.col(axis));
+  }
+  made.recording.notes.push_back(
+      observed
+          ? fmt::format("the force is not measured: a momentum observer makes it of motion, torques and a model of "
+                        "the robot, {:.0f} ms late",
+                        1e3 * made.lag)
+          : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
+                        "(virtual sensor), q̈ {}",
+                        accelerometer ? "from the accelerometer" : "from the joints"));
+  return made;
+}
+
+}  // namespace mbk::preprocess

@@ -1,0 +1,224 @@
+#include "mbk/measure/preprocess/windows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mbk::preprocess {
+namespace {
+
+bool differs(const Matrix& reference, Index a, Index b) {
+  return (reference.row(a) != reference.row(b));
+}
+
+/// Maximal runs [begin, end) within [first, last) in which the reference differs from its value at `rest`.
+std::vector<Stretch> displacements(const Matrix& reference, Index rest, Index first, Index last) {
+  std::vector<Stretch> runs;
+  for (Index i = first; i < last; ++i) {
+    if (!differs(reference, i, rest)) continue;
+    if (runs.empty() || runs.back().end != i) runs.push_back({i, i, Purpose::identification});
+    runs.back().end = i + 1;
+  }
+  return runs;
+}
+
+/// A sample at which the reference rests: it has there the value that it keeps for the longest time. Between pulses it
+/// returns to that, whereas the first sample of a window may lie inside a pulse.
+Index longest_rest(const Matrix& reference, Index from, Index to) {
+  Index rest = from, longest = 0;
+  for (Index begin = from; begin < to;) {
+    Index end = begin + 1;
+    while (end < to && !differs(reference, end, begin)) ++end;
+    if (end - begin > longest) {
+      longest = end - begin;
+      rest = begin;
+    }
+    begin = end;
+  }
+  return rest;
+}
+
+/// Limits in samples, checked against the recording.
+struct SampleLimits {
+  Index from, to;
+  std::optional<Index> split;
+};
+
+tl::unexpected<Error> split_outside(double split_s, Index from, Index to, const Clock& clock) {
+  return bad_data(
+      fmt::format("--split {:g} s is not between {:g} s and {:g} s", split_s, clock.seconds(from), clock.seconds(to)),
+      "it divides the data to identify from the data held back");
+}
+
+Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to, const Clock& clock) {
+  const double from_s = limits.from_s.value_or(clock.seconds(from)), to_s = limits.to_s.value_or(clock.seconds(to));
+  const double duration = clock.duration(), tolerance = 1.5 / clock.rate().value;
+  // Written so that NaN is outside.
+  const bool inside = from_s >= 0.0 && from_s < duration && to_s > from_s && to_s <= duration + tolerance;
+  SampleLimits result{from, to, {}};
+  if (inside && limits.from_s) result.from = clock.sample(from_s);
+  if (inside && limits.to_s) result.to = std::min(clock.sample(to_s), clock.samples());
+  if (!inside || result.from >= result.to) {
+    return bad_data(fmt::format("the window from {:g} s to {:g} s does not lie in this recording of {:g} s", from_s,
+                                to_s, duration),
+                    "choose --from and --to inside it");
+  }
+  if (limits.split_s) {
+    const bool between = *limits.split_s > 0.0 && *limits.split_s <= duration + tolerance;
+    result.split = between ? clock.sample(*limits.split_s) : result.from;
+    if (*result.split <= result.from || *result.split > result.to) {
+      return split_outside(*limits.split_s, result.from, result.to, clock);
+    }
+  }
+  return result;
+}
+
+/// One cut, identified up to `split` and validated from there.
+Cut divided(Index begin, Index end, Index split) {
+  Cut cut{begin, end, {}};
+  cut.keep.push_back({begin, std::min(split, end), Purpose::identification});
+  if (split < end) cut.keep.push_back({split, end, Purpose::validation});
+  return cut;
+}
+
+/// Where a lasting perturbation begins and ends.
+std::pair<Index, Index> lasting_range(const Matrix& reference, Index from, Index to) {
+  Index last = to - 1;
+  while (last > from && !differs(reference, last, last - 1)) --last;
+  Index first = from;
+  while (first < last && !differs(reference, first, first + 1)) ++first;
+  // The second half tells what the perturbation looks like; the way to it (moving in) is left out.
+  const Index half = (first + last + 1) / 2;
+  const auto body = reference.middleRows(half, last + 1 - half);
+  const Vector low = body.colwise().minCoeff(), high = body.colwise().maxCoeff();
+  const Vector margin = 0.25 * (high - low);
+  for (Index i = half; i-- > first;) {
+    const auto row = reference.row(i).transpose().array();
+    if ((row < (low - margin).array()).any() || (row > (high + margin).array()).any()) {
+      first = i + 1;
+      break;
+    }
+  }
+  return {first, last + 1};
+}
+
+}  // namespace
+
+ProtocolFinding detect_protocol(const Matrix& reference) {
+  if (reference.rows() < 2) return {Protocol::free, "no reference was recorded"};
+  Index changes = 0;
+  for (Index i = 1; i < reference.rows(); ++i) changes += differs(reference, i, i - 1) ? 1 : 0;
+  if (changes == 0) return {Protocol::free, "the reference never changes"};
+  const double share = static_cast<double>(changes) / static_cast<double>(reference.rows() - 1);
+  if (share < 0.02) {
+    return {Protocol::underdamped, fmt::format("the reference is constant but for {} steps", changes)};
+  }
+  return {Protocol::sinusoidal, "the reference varies continuously"};
+}
+
+Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+                                     const WindowLimits& limits, Index half_window) {
+  constexpr Index kSinusoidalBegin = 11999, kSinusoidalEnd = 62000, kUnderdampedBegin = 15999;
+  constexpr Index kIdentificationSamples = 40000;
+  constexpr std::size_t kIdentificationPulses = 8;
+  constexpr double kPublishedRate = 1000.0;  // Hz
+
+  const Index samples = clock.samples();
+  if (std::abs(clock.rate().value - kPublishedRate) > 1e-3 * kPublishedRate) {
+    return bad_data(fmt::format("the published procedure counts samples at {:g} Hz, and this recording has {:g} Hz",
+                                kPublishedRate, clock.rate().value),
+                    "use --mode default");
+  }
+  const bool pulses = protocol == Protocol::underdamped;
+  const bool sines = protocol == Protocol::sinusoidal;
+  const Index begin = sines ? kSinusoidalBegin : (pulses ? kUnderdampedBegin : 0);
+  if (!limits.from_s && samples <= begin) {
+    return bad_data(fmt::format("the published {} window begins at {:g} s, and this recording lasts {:g} s",
+                                text(protocol), clock.seconds(begin), clock.seconds(samples)),
+                    "use --mode default, or name a window with --from and --to");
+  }
+  auto range = in_samples(limits, begin, sines ? std::min(kSinusoidalEnd, samples) : samples, clock);
+  if (!range) return tl::unexpected(range.error());
+  WindowPlan plan;
+  plan.trim = 1;
+  const Index first = range->from + half_window + plan.trim;
+  const Index last = range->to - half_window - plan.trim;
+  if (pulses) {
+    Cut cut{range->from, range->to, displacements(reference, range->from, first, last)};
+    // A run that is under way at the first centre is no onset.
+    const bool under_way = !cut.keep.empty() && cut.keep.front().begin == first;
+    for (std::size_t k = 0; k < cut.keep.size(); ++k) {
+      const bool later =
+          range->split ? cut.keep[k].begin >= *range->split : k >= kIdentificationPulses + (under_way ? 1 : 0);
+      cut.keep[k].purpose = later ? Purpose::validation : Purpose::identification;
+    }
+    plan.rule = fmt::format("filtered from {:g} s on, then the {} displacements of the reference cut out{}",
+                            clock.seconds(range->from), cut.keep.size(),
+                            range->split ? "" : fmt::format("; the first {} identify", kIdentificationPulses));
+    plan.cuts = {std::move(cut)};
+    return plan;
+  }
+  const Index split =
+      range->split.value_or(sines && !limits.from_s ? first + kIdentificationSamples : first + (last - first) * 4 / 5);
+  plan.cuts = {divided(range->from, range->to, split)};
+  if (split < last) plan.split_s = clock.seconds(split);
+  const bool published_end = sines && !limits.from_s && range->to == kSinusoidalEnd;
+  plan.rule = fmt::format("{:g} s to {:g} s{}", clock.seconds(range->from), clock.seconds(range->to),
+                          published_end ? " (published window)" : "");
+  return plan;
+}
+
+Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+                                    const WindowLimits& limits) {
+  auto range = in_samples(limits, 0, clock.samples(), clock);
+  if (!range) return tl::unexpected(range.error());
+  WindowPlan plan;
+  if (protocol == Protocol::underdamped) {
+    const Index rest = longest_rest(reference, range->from, range->to);
+    const std::vector<Stretch> runs = displacements(reference, rest, range->from, range->to);
+    if (runs.empty()) {
+      return bad_data("the reference is not displaced anywhere in the window", "choose --from and --to, or --protocol");
+    }
+    const std::size_t first_half = (runs.size() + 1) / 2;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const bool later = range->split ? runs[k].begin >= *range->split : k >= first_half;
+      Cut cut{runs[k].begin, runs[k].end, {runs[k]}};
+      cut.keep.front().purpose = later ? Purpose::validation : Purpose::identification;
+      plan.cuts.push_back(std::move(cut));
+    }
+    plan.rule = fmt::format("{} displacements of the reference, each cut out before filtering", runs.size());
+    return plan;
+  }
+  Index begin = range->from, end = range->to;
+  if (protocol == Protocol::sinusoidal) {
+    const auto [first, last] = lasting_range(reference, begin, end);
+    if (!limits.from_s) begin = first;
+    if (!limits.to_s) end = last;
+    plan.rule = fmt::format("{:g} s to {:g} s, where the reference keeps to its lasting range", clock.seconds(begin),
+                            clock.seconds(end));
+  } else {
+    plan.rule = fmt::format("{:g} s to {:g} s", clock.seconds(begin), clock.seconds(end));
+  }
+  const Index split = range->split.value_or(begin + (end - begin) * 4 / 5);
+  if (limits.split_s && (split <= begin || split > end)) {
+    return split_outside(*limits.split_s, begin, end, clock);
+  }
+  plan.cuts = {divided(begin, end, split)};
+  plan.split_s = clock.seconds(split);
+  return plan;
+}
+
+void append_stretches(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,
+                      std::vector<Stretch>& stretches) {
+  const auto row_at = [&](Index sample) {
+    return std::clamp<Index>((sample - first_sample + every - 1) / every, 0, rows);
+  };
+  for (const Stretch& keep : cut.keep) {
+    const Index begin = row_at(keep.begin), end = row_at(keep.end);
+    if (begin >= end) continue;
+    stretches.push_back({first_row + begin, first_row + end, keep.purpose, first_sample + begin * every});
+  }
+}
+
+}  // namespace mbk::preprocess

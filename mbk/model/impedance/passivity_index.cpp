@@ -1,0 +1,107 @@
+#include "mbk/model/impedance/passivity_index.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mbk/model/impedance/ellipse.h"
+
+namespace mbk::impedance {
+namespace {
+
+Eigen::RowVectorXd no_gradient(const Model& model) {
+  const Index n = model.axes();
+  return Eigen::RowVectorXd::Zero(3 * n * n + n);
+}
+
+/// `which`-th eigenvalue of a symmetric part, from below.
+Sensitive eigenvalue(const Model& model, int matrix, Index which) {
+  const Index n = model.axes();
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric_part(matrix_of(model, matrix)));
+  const Vector v = solver.eigenvectors().col(which);
+  Sensitive result{solver.eigenvalues()[which], no_gradient(model)};
+  result.gradient.segment(matrix * n * n, n * n) = Vector((v * v.transpose()).reshaped()).transpose();
+  return result;
+}
+
+/// a(ω) = ω m_a − k_a/ω of two axes.
+Sensitive antisymmetry(const Model& model, double omega) {
+  Sensitive a{omega * antisymmetric_part(model.M) - antisymmetric_part(model.K) / omega, no_gradient(model)};
+  a.gradient[1] = omega / 2.0;
+  a.gradient[2] = -omega / 2.0;
+  a.gradient[9] = -0.5 / omega;
+  a.gradient[10] = 0.5 / omega;
+  return a;
+}
+
+}  // namespace
+
+double standard_error(const Sensitive& quantity, const Matrix& covariance) {
+  const double variance = (quantity.gradient * covariance * quantity.gradient.transpose()).value();
+  return variance < 0.0 ? 0.0 : std::sqrt(variance);
+}
+
+const Matrix& matrix_of(const Model& model, int matrix) {
+  return matrix == 0 ? model.M : (matrix == 1 ? model.B : model.K);
+}
+
+Sensitive smallest_eigenvalue(const Model& model, int matrix) {
+  return eigenvalue(model, matrix, 0);
+}
+
+Sensitive passivity_index(const Model& model, double omega) {
+  if (model.axes() == 1) return eigenvalue(model, 1, 0);
+  const Sensitive a = antisymmetry(model, omega);
+  const Matrix B = symmetric_part(model.B);
+  const double half = (B(0, 0) - B(1, 1)) / 2.0, radius = std::hypot(half, B(0, 1), a.value);
+  Sensitive index{B.trace() / 2.0 - radius, no_gradient(model)};
+  index.gradient[4] = index.gradient[7] = 0.5;
+  if (radius > 0.0) {  // at 0 it has a kink; the trace alone moves it then
+    index.gradient -= a.gradient * (a.value / radius);
+    index.gradient[4] -= 0.5 * half / radius;
+    index.gradient[7] += 0.5 * half / radius;
+    index.gradient[5] -= 0.5 * B(0, 1) / radius;
+    index.gradient[6] -= 0.5 * B(0, 1) / radius;
+  }
+  return index;
+}
+
+Sensitive antisymmetry_margin(const Model& model, double omega, int sign) {
+  if (model.axes() == 1) return eigenvalue(model, 1, 0);
+  const Matrix B = symmetric_part(model.B);
+  const double determinant = B.determinant();
+  const Sensitive a = antisymmetry(model, omega);
+  if (!(determinant > 0.0)) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    return {kNaN, Eigen::RowVectorXd::Constant(a.gradient.size(), kNaN)};
+  }
+  const double root = std::sqrt(determinant);
+  Sensitive margin{root - sign * a.value, -sign * a.gradient};
+  margin.gradient[4] += 0.5 * B(1, 1) / root;
+  margin.gradient[7] += 0.5 * B(0, 0) / root;
+  margin.gradient[5] -= 0.5 * B(0, 1) / root;
+  margin.gradient[6] -= 0.5 * B(0, 1) / root;
+  return margin;
+}
+
+std::optional<double> nonpassive_below(const Model& model) {
+  if (model.axes() == 1) return model.B(0, 0) > 0.0 ? std::optional(0.0) : std::nullopt;
+  const Matrix B = symmetric_part(model.B);
+  if (!(B.determinant() > 0.0 && B.trace() > 0.0)) return std::nullopt;
+  return std::abs(antisymmetric_part(model.K)) / (2.0 * std::numbers::pi * std::sqrt(B.determinant()));
+}
+
+std::optional<Sensitive> excess_of_passivity(const Model& model) {
+  if (!(smallest_eigenvalue(model, 0).value >= 0.0 && smallest_eigenvalue(model, 2).value >= 0.0)) return std::nullopt;
+  return smallest_eigenvalue(model, 1);
+}
+
+Sensitive published_excess_of_passivity(const Model& model) {
+  Sensitive excess = eigenvalue(model, 1, model.axes() - 1);
+  excess.value /= 2.0;
+  excess.gradient /= 2.0;
+  return excess;
+}
+
+}  // namespace mbk::impedance

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/impedance/model.h"
+
+namespace mbk::impedance {
+
+/// A number that follows from a model, and its derivative by the model's stacked M, B, K and x₀ (model.h), for the
+/// delta method.
+struct Sensitive {
+  double value = 0;
+  Eigen::RowVectorXd gradient;
+};
+
+/// Its standard error by the delta method; NaN, where there is no covariance, stays NaN.
+/// @param covariance of the stacked model
+[[nodiscard]] double standard_error(const Sensitive& quantity, const Matrix& covariance);
+
+/// M (0), B (1) or K (2).
+[[nodiscard]] const Matrix& matrix_of(const Model& model, int matrix);
+
+/// Smallest eigenvalue of the symmetric part of M (0), B (1) or K (2): dλ = vᵀ dZ v.
+[[nodiscard]] Sensitive smallest_eigenvalue(const Model& model, int matrix);
+
+/// Passivity index at one frequency, ½ λ_min(Z(jω) + Zᴴ(jω)) with Z(s) = M s + B + K/s: how much more damping than none
+/// the limb has there, in the direction and phase in which it has least [N·s/m]. In closed form
+///   tr(B_s)/2 − √( ((b_xx − b_yy)/2)² + b_s² + (ω m_a − k_a/ω)² ),
+/// with B_s = (B + Bᵀ)/2, and m_a, k_a the antisymmetric parts of M and K. One axis: b.
+/// Over a band its minimum is at an end, for |ω m_a − k_a/ω| is largest there. @param omega > 0 [rad/s]
+[[nodiscard]] Sensitive passivity_index(const Model& model, double omega);
+
+/// √det B_s ∓ (ω m_a − k_a/ω), `sign` = ±1: both are positive where B_s is positive definite and the index is positive.
+/// NaN where det B_s ≤ 0; with one axis b. @param omega > 0 [rad/s]
+[[nodiscard]] Sensitive antisymmetry_margin(const Model& model, double omega, int sign);
+
+/// Below this frequency [Hz] the antisymmetric stiffness makes a limb without inertial antisymmetry active:
+/// |k_a|/(2π √det B_s). Absent where B_s is not positive definite. 0 with one axis.
+[[nodiscard]] std::optional<double> nonpassive_below(const Model& model);
+
+/// Excess of passivity of the symmetric part: the largest δ for which Z − δI is still positive real, λ_min(B_s)
+/// [N·s/m]. Absent unless the symmetric parts of M and K are positive semidefinite.
+[[nodiscard]] std::optional<Sensitive> excess_of_passivity(const Model& model);
+
+/// What table 3.6 of Dyck (2013) prints in its place, λ_max(B_s)/2. It is the excess of no system: half of the
+/// *largest* eigenvalue (docs/theory/sources-slips.md).
+[[nodiscard]] Sensitive published_excess_of_passivity(const Model& model);
+
+}  // namespace mbk::impedance

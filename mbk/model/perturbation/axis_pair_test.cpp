@@ -1,0 +1,75 @@
+#include "mbk/model/perturbation/axis_pair.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace mbk::perturbation {
+namespace {
+
+constexpr double kPeriod = 10.0;
+constexpr double kRounding = 1e-12;  // sums of 1000 products of order 10
+
+Multisine sines(std::uint64_t seed, const std::vector<int>& harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29}) {
+  return Multisine::with_random_phases(kPeriod, harmonics, std::vector<double>(harmonics.size(), 1.0), seed).value();
+}
+
+/// Mean of r₁(t) r₂(t + delay) over one period, exact on 1000 samples for lines below 500.
+double correlation(const AxisPair& pair, double delay) {
+  double sum = 0.0;
+  for (int n = 0; n < 1000; ++n) {
+    const double t = 0.001 * kPeriod * n;
+    sum += pair.first.at(t).value * pair.second.at(t + delay).value / 1000.0;
+  }
+  return sum;
+}
+
+TEST(AxisPair, InterleavedAxesAreUncorrelatedAtEveryDelay) {
+  const AxisPair pair = interleaved(sines(3)).value();
+  EXPECT_EQ(pair.first.lines().size(), 5u);
+  EXPECT_EQ(pair.second.lines().size(), 5u);
+  for (const double delay : {0.0, 0.1, 0.333, 2.0, 7.77}) EXPECT_NEAR(correlation(pair, delay), 0.0, kRounding);
+}
+
+TEST(AxisPair, InterleavedAxesTogetherAreTheSignal) {
+  const Multisine signal = sines(3, {9, 2, 5});
+  const AxisPair pair = interleaved(signal).value();
+  EXPECT_EQ(pair.second.lines()[0].harmonic, 5);
+  for (const double t : {0.0, 1.1, 9.7}) {
+    EXPECT_NEAR(pair.first.at(t).value + pair.second.at(t).value, signal.at(t).value, 1e-14) << t;
+  }
+}
+
+TEST(AxisPair, HadamardExperimentsAreUncorrelatedTogetherButNotAlone) {
+  const auto experiments = hadamard_experiments(sines(3), sines(4)).value();
+  for (const double delay : {0.0, 0.1, 0.333, 2.0, 7.77}) {
+    const double one = correlation(experiments[0], delay), other = correlation(experiments[1], delay);
+    EXPECT_NEAR(one + other, 0.0, kRounding) << delay;
+    EXPECT_GT(std::abs(one), 0.01) << delay;
+  }
+}
+
+TEST(AxisPair, PeakNormIsThatOfACircleAndOfADenseGrid) {
+  const Multisine cosine = Multisine::create(kPeriod, {{3, 0.5, 0.0}}).value();
+  const Multisine sine = Multisine::create(kPeriod, {{3, 0.5, 1.5707963267948966}}).value();
+  EXPECT_NEAR(peak_norm({cosine, sine}).value(), 0.5, 1e-15);
+  const AxisPair pair{sines(5), sines(6)};
+  double largest = 0.0;
+  for (int k = 0; k < 100000; ++k) {
+    largest = std::max(largest, std::hypot(pair.first.at(1e-4 * k).value, pair.second.at(1e-4 * k).value));
+  }
+  EXPECT_GE(peak_norm(pair).value(), largest * (1.0 - 1e-12));
+  EXPECT_LE(peak_norm(pair).value(), largest * (1.0 + 1e-5));  // (ω·50 µs)²/2 = 4e-7 of either axis
+  EXPECT_NEAR(peak_norm(pair.scaled(0.01)).value(), 0.01 * peak_norm(pair).value(), 1e-12);
+}
+
+TEST(AxisPair, RefusesAxesThatDoNotFit) {
+  EXPECT_FALSE(interleaved(sines(1, {4})));
+  EXPECT_FALSE(hadamard_experiments(sines(1, {1, 2}), sines(1, {1, 3})));
+  const Multisine other = Multisine::create(5.0, {{1, 1.0, 0.0}}).value();
+  EXPECT_FALSE(hadamard_experiments(sines(1, {1}), other));
+  EXPECT_FALSE(peak_norm({sines(1, {1}), other}));
+}
+
+}  // namespace
+}  // namespace mbk::perturbation

@@ -1,0 +1,136 @@
+#include "mbk/model/perturbation/optimal_power.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace mbk::perturbation {
+namespace {
+
+Result<void> check(const OptimalPowerOptions& o) {
+  if (o.limited != LimitedSignal::force) return {};
+  if (!o.nominal) {
+    return bad_usage("a limited force needs a nominal impedance", "give M, B and K as far as they are known");
+  }
+  const auto [M, B, K] = *o.nominal;
+  if (!(std::isfinite(M) && std::isfinite(B) && std::isfinite(K))) {
+    return bad_usage(fmt::format("nominal impedance M {} kg, B {} N·s/m, K {} N/m is not finite", M, B, K));
+  }
+  return {};
+}
+
+/// Limited signal over position at ω.
+std::complex<double> transfer(const OptimalPowerOptions& o, double omega) {
+  switch (o.limited) {
+    case LimitedSignal::position:
+      return 1.0;
+    case LimitedSignal::velocity:
+      return {0.0, omega};
+    case LimitedSignal::force:
+      return {o.nominal->K - o.nominal->M * omega * omega, o.nominal->B * omega};
+  }
+  return 1.0;
+}
+
+double angular_frequency(int harmonic, double period) {
+  return 2.0 * std::numbers::pi * harmonic / period;
+}
+
+Result<Multisine> multiplied(const Multisine& signal, const OptimalPowerOptions& options, bool inverse) {
+  std::vector<Multisine::Line> lines = signal.lines();
+  for (Multisine::Line& line : lines) {
+    const std::complex<double> H = transfer(options, angular_frequency(line.harmonic, signal.period()));
+    line.amplitude *= inverse ? 1.0 / std::abs(H) : std::abs(H);
+    line.phase += inverse ? -std::arg(H) : std::arg(H);
+  }
+  return Multisine::create(signal.period(), std::move(lines));
+}
+
+}  // namespace
+
+Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmonics,
+                                   const OptimalPowerOptions& options) {
+  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
+  const auto n = static_cast<Index>(harmonics.size());
+  std::vector<Multisine::Line> lines;
+  for (const int k : harmonics) lines.push_back({k, 1.0, 0.0});
+  if (const auto valid = Multisine::create(period, lines); !valid) return tl::unexpected(valid.error());
+  if (n < 2) return bad_usage("one line cannot tell M from K", "give at least two lines");
+  if (!(options.floor >= 0.0 && options.floor * static_cast<double>(n) < 1.0)) {
+    return bad_usage(fmt::format("floor {} at each of {} lines is not from 0 to below 1 in all", options.floor, n));
+  }
+  if (options.floor > 0.0 && n < 5) {
+    return bad_usage(fmt::format("{} lines have no three between the lowest and the highest", n),
+                     "give at least five lines, or take floor 0");
+  }
+
+  // Iₖ with frequencies relative to the highest: the determinant changes by a factor only.
+  double highest = 0.0;
+  for (const int k : harmonics) highest = std::max(highest, angular_frequency(k, period));
+  std::vector<Eigen::Matrix3d> information;
+  double largest_cost = 0.0;
+  for (const int k : harmonics) {
+    largest_cost = std::max(largest_cost, std::norm(transfer(options, angular_frequency(k, period))));
+  }
+  for (const int k : harmonics) {
+    const double omega = angular_frequency(k, period);
+    const double u = std::pow(omega / highest, 2);
+    const double cost = std::norm(transfer(options, omega)) / largest_cost;
+    if (!(cost > 0.0)) return bad_usage(fmt::format("the nominal impedance is zero at harmonic {}", k));
+    information.push_back((Eigen::Matrix3d() << u * u, 0.0, -u, 0.0, u, 0.0, -u, 0.0, 1.0).finished() / cost);
+  }
+
+  constexpr double kGap = 1e-7;
+  constexpr int kMostIterations = 1'000'000;
+  const double free = 1.0 - options.floor * static_cast<double>(n);
+  Vector v = Vector::Constant(n, 1.0 / static_cast<double>(n));
+  OptimalPower power;
+  power.sensitivity.resize(n);
+  for (power.iterations = 1; power.iterations <= kMostIterations; ++power.iterations) {
+    power.shares = (options.floor + free * v.array()).matrix();
+    Eigen::Matrix3d I = Eigen::Matrix3d::Zero();
+    for (Index k = 0; k < n; ++k) I += power.shares[k] * information[static_cast<std::size_t>(k)];
+    const Eigen::Matrix3d inverse = I.inverse();
+    for (Index k = 0; k < n; ++k) {
+      power.sensitivity[k] = inverse.cwiseProduct(information[static_cast<std::size_t>(k)]).sum();  // both symmetric
+    }
+    const double mean = v.dot(power.sensitivity);
+    power.gap = free * (power.sensitivity.maxCoeff() - mean);
+    power.log_determinant = std::log(I.determinant());
+    if (power.gap <= kGap) return power;
+    v = v.cwiseProduct(power.sensitivity) / mean;
+  }
+  return fail(ErrorKind::not_usable,
+              fmt::format("the shares of power are {:.1e} from optimal after {} steps", power.gap, kMostIterations),
+              "leave out lines that stand close to others");
+}
+
+Result<Multisine> limited_signal(const Multisine& position, const OptimalPowerOptions& options) {
+  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
+  return multiplied(position, options, false);
+}
+
+Result<Multisine> optimal_multisine(double period, const std::vector<int>& harmonics,
+                                    const OptimalPowerOptions& options, const SignalLimit& limit,
+                                    const LowCrestOptions& phases) {
+  if (!(limit.value > 0.0 && std::isfinite(limit.value))) {
+    return bad_usage(fmt::format("limit {} of the signal is not above 0", limit.value));
+  }
+  const auto power = optimal_power(period, harmonics, options);
+  if (!power) return tl::unexpected(power.error());
+  std::vector<Multisine::Line> lines;
+  for (std::size_t i = 0; i < harmonics.size(); ++i) {
+    lines.push_back({harmonics[i], std::sqrt(2.0 * power->shares[static_cast<Index>(i)]), 0.0});
+  }
+  const auto flat = Multisine::create(period, std::move(lines));
+  if (!flat) return tl::unexpected(flat.error());
+  const auto limited = with_low_crest_phases(*flat, phases);
+  if (!limited) return tl::unexpected(limited.error());
+  const double reached = limit.measure == SignalLimit::Measure::rms ? limited->root_mean_square() : limited->peak();
+  return multiplied(limited->scaled(limit.value / reached), options, true);
+}
+
+}  // namespace mbk::perturbation

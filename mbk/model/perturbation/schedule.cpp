@@ -1,0 +1,286 @@
+#include "mbk/model/perturbation/schedule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "mbk/model/perturbation/largest_value.h"
+
+namespace mbk::perturbation {
+namespace {
+
+Result<void> check_duration(double duration) {
+  if (!(duration > 0.0)) return bad_usage(fmt::format("duration {} s is not above 0", duration));
+  if (!(duration <= Schedule::kLongest)) {
+    return bad_usage(fmt::format("duration {:g} s is above {} s", duration, Schedule::kLongest), "make several trials");
+  }
+  return {};
+}
+
+Jet<Eigen::Vector2d> along(const Jet<double>& r, const Eigen::Vector2d& direction_B) {
+  return {r.value * direction_B, r.first * direction_B, r.second * direction_B};
+}
+
+/// Unit vector at an angle; what is rounding only is zero, so that π/2 leaves the x axis at rest.
+Eigen::Vector2d unit_vector(double angle) {
+  const auto component = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
+  return {component(std::cos(angle)), component(std::sin(angle))};
+}
+
+/// Lowest and highest frequency of the lines that have an amplitude.
+void widen(std::pair<Hertz, Hertz>& band, const Multisine& signal) {
+  for (const Multisine::Line& line : signal.lines()) {
+    if (line.amplitude == 0.0) continue;
+    const Hertz frequency(line.harmonic / signal.period());
+    if (band.second.value == 0.0) band.first = frequency;
+    band.first = std::min(band.first, frequency);
+    band.second = std::max(band.second, frequency);
+  }
+}
+
+/// To three significant digits.   ratio > 0
+double rounded_down(double ratio) {
+  const double digit = std::pow(10.0, std::floor(std::log10(ratio)) - 2.0);
+  return digit * std::floor(ratio / digit);
+}
+
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
+}  // namespace
+
+std::string_view unit(Quantity quantity, Space space) {
+  if (quantity == Quantity::position) return space == Space::hand ? "m" : "rad";
+  return space == Space::hand ? "N" : "N·m";
+}
+
+Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity quantity, Space space, double duration,
+                                     double moving_in) {
+  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  if (!(moving_in > 0.0 && moving_in <= duration)) {
+    return bad_usage(
+        fmt::format("moving-in time {} s is not above 0 and at most the duration {} s", moving_in, duration));
+  }
+  const MinimumJerk growth({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, moving_in);
+  return with_countable_cycles(
+      Schedule(Sines{std::move(first), std::move(second), growth, moving_in}, quantity, space, duration));
+}
+
+Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantity quantity, double tail, Space space) {
+  auto schedule = PulseSchedule::create(options);
+  if (!schedule) return tl::unexpected(schedule.error());
+  if (!(tail >= options.return_duration)) {
+    return bad_usage(fmt::format("tail {} s is shorter than the way back {} s", tail, options.return_duration));
+  }
+  const double duration = schedule->pulses().back().offset + tail;
+  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  return with_countable_cycles(Schedule(*std::move(schedule), quantity, space, duration));
+}
+
+Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, double angle, Quantity quantity,
+                                         double duration, Space space) {
+  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  if (!std::isfinite(angle)) return bad_usage(fmt::format("angle {} rad is not finite", angle));
+  auto sequence = RandomBinary::create(options, duration);
+  if (!sequence) return tl::unexpected(sequence.error());
+  return with_countable_cycles(Schedule(Binary{*std::move(sequence), unit_vector(angle)}, quantity, space, duration));
+}
+
+Result<Schedule> Schedule::rest(double duration) {
+  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  return Schedule(Rest{}, Quantity::position, Space::hand, duration);
+}
+
+Jet<Eigen::Vector2d> Schedule::at(double t) const {
+  const Eigen::Vector2d zero = Eigen::Vector2d::Zero();
+  if (t < 0.0) return {zero, zero, zero};
+  return std::visit(
+      Overloaded{[&](const Rest&) -> Jet<Eigen::Vector2d> {
+                   return {zero, zero, zero};
+                 },
+                 [&](const Sines& sines) -> Jet<Eigen::Vector2d> {
+                   const Jet<double> x = sines.first.at(t), y = sines.second.at(t), g = sines.growth.at(t);
+                   const Eigen::Vector2d value(x.value, y.value), first(x.first, y.first), second(x.second, y.second);
+                   return {g.value * value, g.first * value + g.value * first,
+                           g.second * value + 2.0 * g.first * first + g.value * second};
+                 },
+                 [&](const PulseSchedule& pulses) { return pulses.at(t); },
+                 [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
+      shape_);
+}
+
+Eigen::Vector2d Schedule::reference(double t) const {
+  if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) return pulses->reference(t);
+  return at(t).value;
+}
+
+std::vector<ScheduleEvent> Schedule::events() const {
+  std::vector<ScheduleEvent> events;
+  if (const auto* schedule = std::get_if<PulseSchedule>(&shape_)) {
+    for (const PulseSchedule::Pulse& pulse : schedule->pulses()) {
+      events.push_back({pulse.onset, "onset", pulse.angle});
+      events.push_back({pulse.offset, "offset", pulse.angle});
+    }
+  }
+  return events;
+}
+
+std::pair<Hertz, Hertz> Schedule::band() const {
+  std::pair<Hertz, Hertz> band;
+  std::visit(Overloaded{[](const Rest&) {},
+                        [&](const Sines& sines) {
+                          widen(band, sines.first);
+                          widen(band, sines.second);
+                        },
+                        [&](const PulseSchedule& pulses) { band.second = pulses.bandwidth(); },
+                        [&](const Binary& binary) { band.second = binary.sequence.bandwidth(); }},
+             shape_);
+  return band;
+}
+
+/// What a pulse or binary sequence excites is G's own oscillation, whatever its switching leaves of the band.
+Hertz Schedule::fastest() const {
+  const auto* binary = std::get_if<Binary>(&shape_);
+  return binary ? binary->sequence.filter().bandwidth() : band().second;
+}
+
+Result<Schedule> Schedule::with_countable_cycles(Schedule schedule) {
+  const double cycles = schedule.fastest().value * schedule.duration();
+  if (cycles <= kMostCycles) return schedule;
+  return bad_usage(fmt::format("{:.4g} Hz over {:g} s are more than {:g} cycles", schedule.fastest().value,
+                               schedule.duration(), kMostCycles),
+                   "lower the highest frequency, or make several trials");
+}
+
+/// Times between which the signal is smooth, from 0 to the duration.
+std::vector<double> Schedule::breaks() const {
+  std::vector<double> times = {0.0};
+  if (const auto* sines = std::get_if<Sines>(&shape_)) {
+    times.push_back(sines->moving_in);
+  } else if (const auto* schedule = std::get_if<PulseSchedule>(&shape_)) {
+    for (const PulseSchedule::Pulse& pulse : schedule->pulses()) {
+      for (const double time : {pulse.onset, pulse.offset, pulse.offset + schedule->options().return_duration}) {
+        times.push_back(time);
+      }
+    }
+  } else if (const auto* binary = std::get_if<Binary>(&shape_)) {
+    for (std::size_t i = 1; i < binary->sequence.size(); ++i) {
+      times.push_back(static_cast<double>(i) * binary->sequence.options().switching_time);
+    }
+  }
+  times.push_back(duration_);
+  return times;
+}
+
+/// 64 samples to the period of the highest frequency and 8 at least between two breaks, each of which is sampled on
+/// both sides.
+std::vector<double> Schedule::grid() const {
+  const std::vector<double> times = breaks();
+  const double highest = fastest().value;
+  std::vector<double> grid = {0.0};
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    const double length = times[i + 1] - times[i];
+    if (!(length > 0.0)) continue;
+    const int pieces = static_cast<int>(std::max(8.0, std::ceil(64.0 * highest * length)));
+    for (int k = 1; k < pieces; ++k) grid.push_back(times[i] + length * k / pieces);
+    grid.push_back(std::nextafter(times[i + 1], 0.0));
+    grid.push_back(times[i + 1]);
+  }
+  return grid;
+}
+
+Facts Schedule::facts() const {
+  const std::vector<double> times = grid();
+  std::vector<Jet<Eigen::Vector2d>> samples;
+  samples.reserve(times.size());
+  for (const double t : times) samples.push_back(at(t));
+  const auto largest = [&](const auto& measure) {
+    std::vector<double> values;
+    values.reserve(samples.size());
+    for (const auto& sample : samples) values.push_back(measure(sample));
+    return largest_value(times, values, [&](double t) { return measure(at(t)); });
+  };
+  using Sample = Jet<Eigen::Vector2d>;
+  const LargestValue peak = largest([](const Sample& r) { return r.value.norm(); });
+  const LargestValue speed = largest([](const Sample& r) { return r.first.norm(); });
+  const LargestValue acceleration = largest([](const Sample& r) { return r.second.norm(); });
+
+  Facts facts;
+  facts.peak = peak.value;
+  facts.peak_time = peak.time;
+  facts.peak_speed = speed.value;
+  facts.peak_speed_time = speed.time;
+  facts.peak_acceleration = acceleration.value;
+  facts.peak_acceleration_time = acceleration.time;
+  for (int axis = 0; axis < 2; ++axis) {
+    facts.axis_peak[axis] = largest([&](const Sample& r) { return std::abs(r.value[axis]); }).value;
+  }
+  Eigen::Vector2d energy = Eigen::Vector2d::Zero();  // ∫ r² dt by Simpson's rule on each piece
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    const Eigen::Vector2d middle = at(0.5 * (times[i] + times[i + 1])).value;
+    energy += (times[i + 1] - times[i]) / 6.0 *
+              (samples[i].value.cwiseAbs2() + 4.0 * middle.cwiseAbs2() + samples[i + 1].value.cwiseAbs2());
+  }
+  facts.axis_rms = (energy / duration_).cwiseSqrt();
+  facts.rms = std::sqrt(energy.sum() / duration_);
+  for (int axis = 0; axis < 2; ++axis) {
+    if (facts.axis_rms[axis] > 0.0) facts.crest_factor[axis] = facts.axis_peak[axis] / facts.axis_rms[axis];
+  }
+  std::tie(facts.lowest_frequency, facts.highest_frequency) = band();
+  return facts;
+}
+
+Result<void> Schedule::check(const Limits& limits) const {
+  const Facts found = facts();
+  const std::string_view u = unit(quantity_, space_);
+  const char* name = quantity_ == Quantity::position ? "displacement" : space_ == Space::hand ? "force" : "torque";
+  struct Demand {
+    std::string name;
+    double value, time;
+    std::optional<double> limit;
+    std::string unit;
+  };
+  const Demand demands[] = {{fmt::format("peak {}", name), found.peak, found.peak_time, limits.peak, std::string(u)},
+                            {fmt::format("rate of the {}", name), found.peak_speed, found.peak_speed_time, limits.speed,
+                             fmt::format("{}/s", u)},
+                            {fmt::format("second derivative of the {}", name), found.peak_acceleration,
+                             found.peak_acceleration_time, limits.acceleration, fmt::format("{}/s²", u)}};
+  for (const Demand& demand : demands) {
+    if (!demand.limit) continue;
+    if (!(*demand.limit > 0.0)) {
+      return bad_usage(fmt::format("limit {} {} of the {} is not above 0", *demand.limit, demand.unit, demand.name));
+    }
+    if (demand.value <= *demand.limit) continue;
+    return bad_usage(
+        fmt::format("{} {:.6g} {} at {:.3f} s is above the limit {:.6g} {}", demand.name, demand.value, demand.unit,
+                    demand.time, *demand.limit, demand.unit),
+        fmt::format("multiply the amplitude by {:.3g} or less", rounded_down(*demand.limit / demand.value)));
+  }
+  if (limits.bandwidth) {
+    if (!(limits.bandwidth->value > 0.0)) {
+      return bad_usage(fmt::format("limit {} Hz of the bandwidth is not above 0", limits.bandwidth->value));
+    }
+    if (found.highest_frequency > *limits.bandwidth) {
+      const bool lines = std::holds_alternative<Sines>(shape_);
+      return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {}, throughout, is above the limit {:.4g} Hz",
+                                   found.highest_frequency.value, name, limits.bandwidth->value),
+                       lines ? "leave out the lines above it" : "lower the natural frequency of the filter");
+    }
+  }
+  if (limits.reachable && quantity_ == Quantity::position) {
+    for (const double t : grid()) {
+      if (const auto inside = limits.reachable(at(t).value); !inside) {
+        return tl::unexpected(inside.error().in(fmt::format("displacement at {:.3f} s", t)));
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace mbk::perturbation

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/base/core/units.h"
+#include "mbk/model/perturbation/jet.h"
+#include "mbk/model/perturbation/minimum_jerk.h"
+#include "mbk/model/perturbation/multisine.h"
+#include "mbk/model/perturbation/random_binary.h"
+#include "mbk/model/perturbation/underdamped_pulse.h"
+
+namespace mbk::perturbation {
+
+enum class Quantity { position, force };  ///< what a signal commands: a displacement from home, or a force
+enum class Space { hand, joint };         ///< hand: base frame, Cartesian [m | N]; joint: [rad | N·m]
+
+/// The unit of a commanded value: "m", "rad", "N" or "N·m".
+[[nodiscard]] std::string_view unit(Quantity quantity, Space space);
+
+/// Something that a schedule does at one instant.
+struct ScheduleEvent {
+  double time = 0.0;   ///< [s] from the start of the schedule
+  std::string name;    ///< "onset" or "offset" of a pulse
+  double value = 0.0;  ///< angle of the pulse from +x [rad]
+};
+
+/// What a schedule demands, over its whole duration with moving in and pauses. u is the unit of its value. Peaks are
+/// those of the continuous signal, not of its samples.
+struct Facts {
+  double peak = 0.0;                                       ///< largest |r| of both axes together [u]
+  double peak_time = 0.0;                                  ///< where [s]
+  double rms = 0.0;                                        ///< √(mean of |r|²) [u]
+  double peak_speed = 0.0;                                 ///< largest |ṙ| [u/s]
+  double peak_speed_time = 0.0;                            ///< where [s]
+  double peak_acceleration = 0.0;                          ///< largest |r̈| [u/s²], also that after a jump
+  double peak_acceleration_time = 0.0;                     ///< where [s]
+  Eigen::Vector2d axis_peak = Eigen::Vector2d::Zero();     ///< largest |rᵢ| of each axis [u]
+  Eigen::Vector2d axis_rms = Eigen::Vector2d::Zero();      ///< of each axis [u]
+  Eigen::Vector2d crest_factor = Eigen::Vector2d::Zero();  ///< axis_peak/axis_rms; 0 for an axis that rests
+  Hertz lowest_frequency;                                  ///< sines: lowest line; else 0
+  Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Rest: 0
+};
+
+/// What a schedule must keep to; what is empty is not checked. u is the unit of its value.
+struct Limits {
+  std::optional<double> peak;          ///< of |r| [u]
+  std::optional<double> speed;         ///< of |ṙ| [u/s]
+  std::optional<double> acceleration;  ///< of |r̈| [u/s²]
+  std::optional<Hertz> bandwidth;      ///< of Facts::highest_frequency
+  /// Whether a displacement from home [m or rad] can be reached. Asked all along the path of a position schedule; a
+  /// force schedule's path is not known beforehand, and it is not asked.
+  std::function<Result<void>(const Eigen::Vector2d& displacement)> reachable;
+};
+
+/// A two-axis signal r(t) with its facts: everything that a robot, simulated or real, is told to do in one trial. It
+/// begins at rest; after its duration sines go on, a binary sequence keeps its last value, all else rests.
+class Schedule {
+ public:
+  static constexpr double kLongest = 3600.0;  ///< [s]; longer trials are several schedules
+  static constexpr double kMostCycles = 1e5;  ///< of the highest frequency within the duration
+
+  /// One multisine for each axis, r = g(t) [s₁(t), s₂(t)], with g from 0 to 1 by minimum jerk. The periods may differ.
+  /// @param moving_in  time in which g grows [s]
+  /// @fails  moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest or not finite; more than
+  /// kMostCycles of the highest line.
+  [[nodiscard]] static Result<Schedule> multisine(Multisine first, Multisine second, Quantity quantity, Space space,
+                                                  double duration, double moving_in);
+
+  /// Underdamped pulses; in Space::joint, direction +x is the first joint's.
+  /// @param tail  from the last offset to the end [s]; not below the time of the way back
+  /// @fails  as PulseSchedule::create; the tail is too short or not finite; the whole is longer than kLongest; more
+  /// than kMostCycles of the filter's bandwidth.
+  [[nodiscard]] static Result<Schedule> pulses(const PulseSchedule::Options& options, Quantity quantity, double tail,
+                                               Space space = Space::hand);
+
+  /// A filtered random binary sequence along one direction.
+  /// @param angle  of the direction of +A from +x, base frame, or from the first joint's axis in Space::joint [rad]
+  /// @fails  as RandomBinary::create; the angle is not finite; duration above kLongest; more than
+  /// kMostCycles of the filter's bandwidth.
+  [[nodiscard]] static Result<Schedule> random_binary(const RandomBinaryOptions& options, double angle,
+                                                      Quantity quantity, double duration, Space space = Space::hand);
+
+  /// Nothing moves: position, Space::hand, zero.   @fails  duration ≤ 0, above kLongest or not finite.
+  [[nodiscard]] static Result<Schedule> rest(double duration);
+
+  [[nodiscard]] Quantity quantity() const { return quantity_; }
+  [[nodiscard]] Space space() const { return space_; }
+  [[nodiscard]] double duration() const { return duration_; }  ///< [s]
+
+  /// r, ṙ, r̈ at t [s]: displacement from home [m or rad] or force [N or N·m]; zero before 0. Does not allocate.
+  [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
+
+  /// What a recording stores as the reference at t [s], in the unit of the value: the steps behind pulses, before G, so
+  /// that each pulse has an onset and an offset; for all else, which never rests, the signal itself. Does not allocate.
+  [[nodiscard]] Eigen::Vector2d reference(double t) const;
+
+  /// Onset and offset of every pulse, in time order; empty for all else.
+  [[nodiscard]] std::vector<ScheduleEvent> events() const;
+
+  /// Found on a grid of 64 samples to the period of the highest frequency, peaks then refined. Offline: allocates.
+  [[nodiscard]] Facts facts() const;
+
+  /// @fails  a limit is broken, or is itself not above 0: quantity, value, limit, time and remedy are named. What
+  /// `reachable` refuses gets the time added. Offline: allocates.
+  [[nodiscard]] Result<void> check(const Limits& limits) const;
+
+ private:
+  struct Rest {};
+  struct Sines {
+    Multisine first;
+    Multisine second;
+    MinimumJerk growth;
+    double moving_in;
+  };
+  struct Binary {
+    RandomBinary sequence;
+    Eigen::Vector2d direction_B;
+  };
+  using Shape = std::variant<Rest, Sines, PulseSchedule, Binary>;
+
+  Schedule(Shape shape, Quantity quantity, Space space, double duration)
+      : shape_(std::move(shape)), quantity_(quantity), space_(space), duration_(duration) {}
+
+  [[nodiscard]] static Result<Schedule> with_countable_cycles(Schedule schedule);
+  [[nodiscard]] std::pair<Hertz, Hertz> band() const;
+  [[nodiscard]] Hertz fastest() const;
+  [[nodiscard]] std::vector<double> breaks() const;
+  [[nodiscard]] std::vector<double> grid() const;
+
+  Shape shape_;
+  Quantity quantity_;
+  Space space_;
+  double duration_;
+};
+
+}  // namespace mbk::perturbation

@@ -1,0 +1,105 @@
+#include "mbk/model/perturbation/underdamped_pulse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mbk/base/numeric/random.h"
+
+namespace mbk::perturbation {
+namespace {
+
+/// Unit vector at the angle 2π k/n, exact along the axes.
+Eigen::Vector2d unit_vector(int k, int n) {
+  constexpr double kCosine[] = {1.0, 0.0, -1.0, 0.0};
+  if (4 * k % n == 0) {
+    const int quarter = 4 * k / n;
+    return {kCosine[quarter % 4], kCosine[(quarter + 3) % 4]};
+  }
+  const double angle = 2.0 * std::numbers::pi * k / n;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+Result<void> check(const PulseSchedule::Options& o) {
+  if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} is not above 0", o.amplitude));
+  if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
+  if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
+  if (o.repetitions > PulseSchedule::kMostPulses / o.directions) {
+    return bad_usage(fmt::format("{} directions, {} times each, are more than {} pulses", o.directions, o.repetitions,
+                                 PulseSchedule::kMostPulses));
+  }
+  if (!(o.shortest_duration > 0.0 && o.shortest_duration <= o.longest_duration && std::isfinite(o.longest_duration))) {
+    return bad_usage(
+        fmt::format("pulse durations from {} s to {} s are no range above 0", o.shortest_duration, o.longest_duration));
+  }
+  if (!(o.shortest_pause >= 0.0 && o.shortest_pause <= o.longest_pause && std::isfinite(o.longest_pause))) {
+    return bad_usage(fmt::format("pauses from {} s to {} s are no range from 0", o.shortest_pause, o.longest_pause));
+  }
+  if (!(o.return_duration > 0.0 && o.return_duration <= o.shortest_pause)) {
+    return bad_usage(fmt::format("the way back takes {} s, which is not above 0 and at most the shortest pause {} s",
+                                 o.return_duration, o.shortest_pause));
+  }
+  if (!(o.quiet >= 0.0 && std::isfinite(o.quiet))) return bad_usage(fmt::format("quiet time {} s is below 0", o.quiet));
+  return {};
+}
+
+}  // namespace
+
+Result<UnderdampedPulse> UnderdampedPulse::create(double amplitude, double damping_ratio, RadPerSec natural_frequency) {
+  if (!std::isfinite(amplitude)) return bad_usage(fmt::format("pulse amplitude {} is not finite", amplitude));
+  const auto filter = UnderdampedFilter::create(damping_ratio, natural_frequency);
+  if (!filter) return tl::unexpected(filter.error());
+  return UnderdampedPulse(amplitude, *filter);
+}
+
+Jet<double> UnderdampedPulse::at(double t) const {
+  if (t < 0.0) return {0.0, 0.0, 0.0};
+  return filter_.response(0.0, 0.0, amplitude_, t);
+}
+
+Result<PulseSchedule> PulseSchedule::create(const Options& options) {
+  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
+  const auto shape = UnderdampedPulse::create(options.amplitude, options.damping_ratio, options.natural_frequency);
+  if (!shape) return tl::unexpected(shape.error());
+
+  PulseSchedule schedule(options, *shape);
+  std::vector<int> order;
+  for (int i = 0; i < options.directions * options.repetitions; ++i) order.push_back(i % options.directions);
+  numeric::Random random(options.seed);
+  for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random.below(i + 1)]);
+
+  double end = options.quiet;
+  for (const int direction : order) {
+    const double onset = end + random.uniform(options.shortest_pause, options.longest_pause);
+    end = onset + random.uniform(options.shortest_duration, options.longest_duration);
+    schedule.pulses_.push_back({onset, end, direction, 2.0 * std::numbers::pi * direction / options.directions,
+                                unit_vector(direction, options.directions)});
+  }
+  return schedule;
+}
+
+const PulseSchedule::Pulse* PulseSchedule::last_onset_before(double t) const {
+  const auto next = std::ranges::upper_bound(pulses_, t, {}, &Pulse::onset);
+  return next == pulses_.begin() ? nullptr : &*std::prev(next);
+}
+
+Jet<Eigen::Vector2d> PulseSchedule::at(double t) const {
+  const Pulse* pulse = last_onset_before(t);
+  if (!pulse) return {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  const auto along = [&]() -> Jet<double> {
+    if (t < pulse->offset) return shape_.at(t - pulse->onset);
+    const MinimumJerk back(shape_.at(pulse->offset - pulse->onset), {0.0, 0.0, 0.0}, options_.return_duration);
+    return back.at(t - pulse->offset);
+  }();
+  return {along.value * pulse->direction_B, along.first * pulse->direction_B, along.second * pulse->direction_B};
+}
+
+Eigen::Vector2d PulseSchedule::reference(double t) const {
+  const Pulse* pulse = last_onset_before(t);
+  if (!pulse || t >= pulse->offset) return Eigen::Vector2d::Zero();
+  return options_.amplitude * pulse->direction_B;
+}
+
+}  // namespace mbk::perturbation

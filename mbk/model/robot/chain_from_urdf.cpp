@@ -1,0 +1,371 @@
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <kdl/rigidbodyinertia.hpp>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "mbk/model/robot/chain_parts.h"
+
+namespace mbk::robot {
+namespace {
+
+using Model = urdf::ModelInterfaceSharedPtr;
+using Link = urdf::LinkConstSharedPtr;
+using JointOfTree = urdf::JointConstSharedPtr;
+
+/// While it lives, what the URDF parser would print is kept. The parser has one place for that in the whole program, so
+/// one reads at a time.
+class Overheard : public console_bridge::OutputHandler {
+ public:
+  Overheard() { console_bridge::useOutputHandler(this); }
+  ~Overheard() override { console_bridge::restorePreviousOutputHandler(); }
+  Overheard(const Overheard&) = delete;
+  Overheard(Overheard&&) = delete;
+  Overheard& operator=(const Overheard&) = delete;
+  Overheard& operator=(Overheard&&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text;
+  }
+  [[nodiscard]] const std::string& first() const { return first_; }
+
+ private:
+  std::lock_guard<std::mutex> alone_{mutex()};
+  std::string first_;
+
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+};
+
+/// How deep elements stand in one another, at most: the parser calls itself for each level.
+int depth(std::string_view xml) {
+  int now = 0, most = 0;
+  for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
+    if (xml[i] == '<' && xml[i + 1] == '/') --now;
+    if (xml[i] == '<' && xml[i + 1] != '/' && xml[i + 1] != '!' && xml[i + 1] != '?') most = std::max(most, ++now);
+    if (xml[i] == '/' && xml[i + 1] == '>') --now;
+  }
+  return most;
+}
+
+KDL::Frame frame(const urdf::Pose& pose) {
+  double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
+  pose.rotation.getQuaternion(x, y, z, w);
+  return {KDL::Rotation::Quaternion(x, y, z, w), {pose.position.x, pose.position.y, pose.position.z}};
+}
+
+KDL::Vector vector(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
+
+bool finite(const KDL::Frame& frame) {
+  return std::isfinite(frame.p.Norm()) && std::isfinite(frame.M.UnitX().Norm() + frame.M.UnitY().Norm());
+}
+
+/// Every link has one parent and hangs on the root, so that walks along the tree end.
+Result<void> check_tree(const Model& model) {
+  std::map<std::string, std::string> parent_joint;
+  for (const auto& [name, joint] : model->joints_) {
+    const auto [first, is_first] = parent_joint.emplace(joint->child_link_name, name);
+    if (!is_first) {
+      return bad_data(
+          fmt::format("link '{}' hangs on two joints, '{}' and '{}'", joint->child_link_name, first->second, name),
+          "a serial robot is a tree: give each link one parent");
+    }
+  }
+  std::size_t reached = 0;
+  std::vector<Link> open = {model->getRoot()};
+  while (!open.empty()) {
+    const Link link = open.back();
+    open.pop_back();
+    ++reached;
+    for (const auto& child : link->child_links) open.push_back(child);
+  }
+  if (reached == model->links_.size()) return {};
+  return bad_data(fmt::format("{} of {} links do not hang on the root link '{}'", model->links_.size() - reached,
+                              model->links_.size(), model->getRoot()->name),
+                  "a serial robot is one tree: join them");
+}
+
+/// The parser hands what it complains of to printf as a format, so that "%n" in a number would write into memory: each
+/// '%' becomes '％'.
+std::string without_formats(std::string_view text) {
+  std::string safe;
+  for (const char c : text) safe += c == '%' ? std::string("％") : std::string(1, c);
+  return safe;
+}
+
+/// Links that hang on each other in a loop would keep each other alive.
+void take_apart(const urdf::ModelInterface& model) {
+  for (const auto& [name, link] : model.links_) link->clear();
+}
+
+Result<Model> parse(std::string_view urdf) {
+  constexpr int kDeepest = 1000;  // a URDF stands 4 deep
+  constexpr const char* kRemedy = "check it, as by 'check_urdf FILE'";
+  if (depth(urdf) > kDeepest) return bad_data("no URDF: elements stand too deep in one another", kRemedy);
+  if (urdf.find("</robot") == std::string_view::npos) return bad_data("no URDF: there is no </robot>", kRemedy);
+  const Overheard overheard;
+  Model model;
+  try {
+    model = urdf::parseURDF(without_formats(urdf));
+  } catch (const std::exception& problem) {
+    return bad_data(fmt::format("no URDF: {}", problem.what()), kRemedy);
+  }
+  const auto refused = [&](const Error& error) {
+    if (model) take_apart(*model);
+    return tl::unexpected(error);
+  };
+  // The parser also gives robots with parts that it could not read.
+  if (!overheard.first().empty()) return refused(bad_data("no URDF: " + overheard.first(), kRemedy).value());
+  if (!model || !model->getRoot()) return refused(bad_data("no URDF", kRemedy).value());
+  if (auto ok = check_tree(model); !ok) return refused(ok.error());
+  return model;
+}
+
+std::string names(const std::vector<std::string>& all) {
+  return fmt::format("'{}'", fmt::join(all, "', '"));
+}
+
+Result<Link> find_link(const Model& model, const std::string& name, const char* which) {
+  if (const Link link = model->getLink(without_formats(name))) return link;
+  std::vector<std::string> known;
+  for (const auto& [one, link] : model->links_) known.push_back(one);
+  return bad_usage(fmt::format("the URDF has no link '{}' for the {}", name, which), "it has " + names(known));
+}
+
+Result<Link> only_leaf(const Model& model, const Link& base) {
+  std::vector<std::string> leaves;
+  std::vector<Link> open = {base};
+  while (!open.empty()) {
+    const Link link = open.back();
+    open.pop_back();
+    if (link->child_links.empty()) leaves.push_back(link->name);
+    for (const auto& child : link->child_links) open.push_back(child);
+  }
+  if (leaves.size() == 1) return Link(model->getLink(leaves.front()));
+  std::sort(leaves.begin(), leaves.end());
+  return bad_data(fmt::format("the robot ends in several links: {}", names(leaves)),
+                  "say by tip_link which is the hand");
+}
+
+/// The joints from base to tip, in this order.
+Result<std::vector<JointOfTree>> way(const Link& base, const Link& tip) {
+  std::vector<JointOfTree> joints;
+  for (Link link = tip; link != base; link = link->getParent()) {
+    if (!link->parent_joint) {
+      return bad_usage(fmt::format("link '{}' does not hang on link '{}'", tip->name, base->name),
+                       "choose base_link and tip_link along one arm");
+    }
+    joints.emplace_back(link->parent_joint);
+  }
+  std::reverse(joints.begin(), joints.end());
+  return joints;
+}
+
+/// The links that are one body: with `link`, all beyond it but for what `beyond` moves. Frame: that of the body.
+struct Gathered {
+  KDL::RigidBodyInertia inertia;
+  bool stated = false;  ///< some link of it has an <inertial>
+};
+
+Result<void> gather(const Link& link, const KDL::Frame& from_body, const std::string& beyond, Gathered& body) {
+  if (link->inertial) {
+    const urdf::Inertial& one = *link->inertial;
+    const KDL::RotationalInertia about_centre(one.ixx, one.iyy, one.izz, one.ixy, one.ixz, one.iyz);
+    const KDL::Frame centre = from_body * frame(one.origin);
+    const double sum = one.mass + one.ixx + one.iyy + one.izz + one.ixy + one.ixz + one.iyz;
+    if (!std::isfinite(sum) || !finite(centre)) {
+      return bad_data(fmt::format("<inertial> of link '{}' holds a number that is not finite", link->name),
+                      "correct it");
+    }
+    body.inertia = body.inertia + centre * KDL::RigidBodyInertia(one.mass, KDL::Vector::Zero(), about_centre);
+    body.stated = true;
+  }
+  for (const auto& joint : link->child_joints) {
+    if (joint->name == beyond) continue;
+    const auto child = std::find_if(link->child_links.begin(), link->child_links.end(),
+                                    [&](const auto& one) { return one->name == joint->child_link_name; });
+    if (child == link->child_links.end()) continue;
+    const KDL::Frame there = from_body * frame(joint->parent_to_joint_origin_transform);
+    if (auto ok = gather(*child, there, beyond, body); !ok) return ok;
+  }
+  return {};
+}
+
+Result<void> check_kind(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::REVOLUTE:
+    case urdf::Joint::CONTINUOUS:
+    case urdf::Joint::PRISMATIC:
+      break;
+    default:
+      return bad_data(fmt::format("joint '{}' is {}", joint.name,
+                                  joint.type == urdf::Joint::FLOATING ? "floating"
+                                  : joint.type == urdf::Joint::PLANAR ? "planar"
+                                                                      : "of an unknown type"),
+                      "between base and tip joints are revolute, continuous, prismatic or fixed");
+  }
+  if (joint.mimic) {
+    return bad_data(fmt::format("joint '{}' mimics joint '{}'", joint.name, joint.mimic->joint_name),
+                    "only joints that move by themselves are supported; make it fixed, or model the chain without it");
+  }
+  return {};
+}
+
+/// @param zero, sign  the URDF's coordinate is zero + sign · the recording's
+Result<SerialChain::Joint> description(const urdf::Joint& joint, double zero, int sign) {
+  SerialChain::Joint d{joint.name, joint.child_link_name, joint.type == urdf::Joint::PRISMATIC};
+  if (joint.dynamics) {
+    d.damping = joint.dynamics->damping;
+    d.friction = joint.dynamics->friction;
+    if (!std::isfinite(d.damping + d.friction)) {
+      return bad_data(fmt::format("<dynamics> of joint '{}' holds a number that is not finite", joint.name),
+                      "correct it");
+    }
+  }
+  if (joint.type == urdf::Joint::CONTINUOUS) {
+    constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
+    d.range = {-kWithoutEnd, kWithoutEnd};
+    return d;
+  }
+  const double lower = joint.limits ? joint.limits->lower : 0.0, upper = joint.limits ? joint.limits->upper : 0.0;
+  if (!(lower < upper) || !std::isfinite(upper - lower)) {
+    return bad_data(fmt::format("the limits of joint '{}', {:g} … {:g}, leave it no room", joint.name, lower, upper),
+                    "write lower and upper in its <limit>, or make it continuous or fixed");
+  }
+  const auto [low, high] = std::minmax({sign * (lower - zero), sign * (upper - zero)});
+  d.range = {low, high};
+  return d;
+}
+
+void append_coefficients(const std::string& link, const KDL::RigidBodyInertia& inertia, ChainParts& parts) {
+  const KDL::Vector h = inertia.getMass() * inertia.getCOG();
+  const KDL::RotationalInertia about_origin = inertia.getRotationalInertia();
+  const double* I = about_origin.data;
+  const Index first = parts.stated.size();
+  parts.stated.conservativeResize(first + kCoefficientsPerBody);
+  parts.stated.tail(kCoefficientsPerBody) << inertia.getMass(), h[0], h[1], h[2], I[0], I[1], I[2], I[4], I[5], I[8];
+  const auto add = [&](const char* name, const char* unit) {
+    parts.coefficients.push_back({fmt::format("{}.{}", link, name), unit});
+  };
+  add("mass", "kg");
+  for (const char* name : {"mass_x", "mass_y", "mass_z"}) add(name, "kg·m");
+  for (const char* name : {"inertia_xx", "inertia_xy", "inertia_xz", "inertia_yy", "inertia_yz", "inertia_zz"}) {
+    add(name, "kg·m²");
+  }
+}
+
+Result<void> check_options(const SerialChain::Options& options) {
+  if (!options.gravity.allFinite()) return bad_usage("gravity is not finite", "give three numbers in m/s²");
+  if (!options.tool.allFinite()) return bad_usage("the tool is not finite", "give three numbers");
+  const std::set<SerialChain::Axis> different(options.hand_axes.begin(), options.hand_axes.end());
+  if (different.empty() || different.size() > 2 || different.size() != options.hand_axes.size()) {
+    return bad_usage("the hand is not measured along one or two different axes", "choose them from x, y and z");
+  }
+  return {};
+}
+
+Result<void> check_readings(const SerialChain::Options& options, std::size_t joints) {
+  const auto fits = [&](std::size_t given, const char* what) -> Result<void> {
+    if (given == 0 || given == joints) return {};
+    return bad_usage(fmt::format("{} {} for {} joints", given, what, joints), "give one for each joint that moves");
+  };
+  if (auto ok = fits(options.zero.size(), "zeros"); !ok) return ok;
+  if (auto ok = fits(options.sign.size(), "signs"); !ok) return ok;
+  if (!std::all_of(options.zero.begin(), options.zero.end(), [](double zero) { return std::isfinite(zero); })) {
+    return bad_usage("the zero of a joint is not finite", "give numbers");
+  }
+  if (!std::all_of(options.sign.begin(), options.sign.end(), [](int sign) { return sign == 1 || sign == -1; })) {
+    return bad_usage("the sign of a joint is neither 1 nor −1", "choose one of them");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Options& options) {
+  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  const auto parsed = parse(urdf);
+  if (!parsed) return tl::unexpected(parsed.error());
+  const Model& model = *parsed;
+  const auto base =
+      options.base_link.empty() ? Result<Link>(model->getRoot()) : find_link(model, options.base_link, "base");
+  if (!base) return tl::unexpected(base.error());
+  const auto tip = options.tip_link.empty() ? only_leaf(model, *base) : find_link(model, options.tip_link, "tip");
+  if (!tip) return tl::unexpected(tip.error());
+  const auto joints = way(*base, *tip);
+  if (!joints) return tl::unexpected(joints.error());
+
+  std::vector<JointOfTree> moving;
+  std::copy_if(joints->begin(), joints->end(), std::back_inserter(moving),
+               [](const JointOfTree& joint) { return joint->type != urdf::Joint::FIXED; });
+  if (moving.empty() || moving.size() > kMostJoints) {
+    return bad_data(
+        fmt::format("{} joints move between link '{}' and link '{}'", moving.size(), (*base)->name, (*tip)->name),
+        fmt::format("1 to {} are supported", kMostJoints));
+  }
+  if (auto ok = check_readings(options, moving.size()); !ok) return tl::unexpected(ok.error());
+
+  ChainParts parts;
+  parts.base_link = (*base)->name;
+  parts.tip_link = (*tip)->name;
+  parts.gravity = vector(options.gravity);
+  for (const SerialChain::Axis axis : options.hand_axes) parts.hand_axes.push_back(static_cast<int>(axis));
+  KDL::Frame from_body;  // of the link that is reached, from the last body that moves
+  for (const JointOfTree& joint : *joints) {
+    const KDL::Frame origin = from_body * frame(joint->parent_to_joint_origin_transform);
+    if (!finite(origin)) {
+      return bad_data(fmt::format("<origin> of joint '{}' holds a number that is not finite", joint->name),
+                      "correct it");
+    }
+    from_body = origin;
+    if (joint->type == urdf::Joint::FIXED) continue;
+    if (auto ok = check_kind(*joint); !ok) return tl::unexpected(ok.error());
+    const std::size_t i = parts.joints.size();
+    const double zero = options.zero.empty() ? 0.0 : options.zero[i];
+    const int sign = options.sign.empty() ? 1 : options.sign[i];
+    auto told = description(*joint, zero, sign);
+    if (!told) return tl::unexpected(told.error());
+    KDL::Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
+    if (const double length = axis.Norm(); !(length > 0.0) || !std::isfinite(length)) {
+      return bad_data(fmt::format("the axis of joint '{}' has no length", joint->name),
+                      "write a direction in its <axis>");
+    }
+    axis = axis / axis.Norm();
+    ChainJoint unturned{origin, axis, told->slides};
+    parts.joints.push_back({unturned.pose(zero), static_cast<double>(sign) * axis, told->slides});
+
+    const std::string beyond = i + 1 < moving.size() ? moving[i + 1]->name : std::string();
+    Gathered body;
+    if (auto ok = gather(model->getLink(told->link), KDL::Frame(), beyond, body); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    if (!body.stated) {
+      return bad_data(fmt::format("link '{}' moves but has no <inertial>", told->link),
+                      "give it one; where its numbers are going to be identified, any will do, also 0");
+    }
+    append_coefficients(told->link, body.inertia, parts);
+    parts.descriptions.push_back(*std::move(told));
+    from_body = KDL::Frame();
+  }
+  parts.hand = from_body * vector(options.tool);
+  if (!parts.stated.allFinite()) {
+    return bad_data("the bodies are too heavy or too large for numbers", "check mass, inertia and origin of each link");
+  }
+  return parts;
+}
+
+}  // namespace mbk::robot

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+
+#include "mbk/model/robot/drive_terms.h"
+
+namespace mbk::robot {
+
+/// A term of the drives and the word for it on the command line and in files.
+struct DriveTermName {
+  const char* word;
+  bool DriveTerms::*wanted;
+};
+
+/// In the order in which they stand for each joint.
+inline constexpr std::array<DriveTermName, 6> kDriveTermNames = {{{"motor_inertia", &DriveTerms::motor_inertia},
+                                                                  {"viscous", &DriveTerms::viscous},
+                                                                  {"coulomb", &DriveTerms::coulomb},
+                                                                  {"stribeck", &DriveTerms::stribeck},
+                                                                  {"cable", &DriveTerms::cable},
+                                                                  {"offset", &DriveTerms::offset}}};
+
+}  // namespace mbk::robot

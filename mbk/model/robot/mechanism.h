@@ -1,0 +1,100 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/result.h"
+
+namespace mbk::robot {
+
+inline constexpr int kMostJoints = 8;
+
+/// One number for each joint [rad, or m where it slides]; never on the heap.
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostJoints, 1>;
+using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostJoints, kMostJoints>;
+/// Along the axes in which the hand is measured: one or two.
+using HandVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
+using HandJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, kMostJoints>;
+
+/// A number that the dynamics are linear in.
+struct Coefficient {
+  std::string name;
+  std::string unit;
+};
+
+/// A motion of all joints, sample by sample.
+struct JointMotion {
+  Matrix position;      ///< N×n [rad or m]
+  Matrix velocity;      ///< N×n [rad/s or m/s]
+  Matrix acceleration;  ///< N×n [rad/s² or m/s²]
+
+  [[nodiscard]] Index samples() const { return position.rows(); }
+};
+
+/// Infinite where there is no limit [rad, or m where the joint slides].
+struct JointRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// I(q), Cᵀ(q, q̇) q̇ and g(q) in one state.
+struct JointTerms {
+  JointMatrix inertia;              ///< n×n [kg·m²; kg where a joint slides]
+  JointVector coriolis_transposed;  ///< Cᵀ q̇ = ½ ∂(q̇ᵀ I q̇)/∂q [N·m or N]
+  JointVector gravity;              ///< g(q) [N·m or N]
+};
+
+/// The bodies of a robot: where its hand is, and the torque of its inertia and weight, which is linear in p
+/// coefficients φ (Khosla & Kanade 1985; Dyck 2013, eq. A.5):
+///   I(q) q̈ + C(q, q̇) q̇ + g(q) = Y(q, q̇, q̈) φ                                  [N·m, or N where a joint slides]
+/// Joint angles are those of the recording; the hand is in the base frame. What the drives add stands in
+/// drive_terms.h. Pure functions of state; those of one state do not allocate unless it is said.
+class Mechanism {
+ public:
+  virtual ~Mechanism() = default;
+
+  /// n, 1 … kMostJoints.
+  [[nodiscard]] virtual int joints() const = 0;
+  /// What the joint is called; "1", "2", … where nobody named it.
+  [[nodiscard]] virtual std::string joint_name(int joint) const;
+  /// Where the joint by itself may stand; check_joints may know more.
+  [[nodiscard]] virtual JointRange joint_range(int joint) const = 0;
+  /// The joint's coordinate is a length.
+  [[nodiscard]] virtual bool slides(int joint) const = 0;
+  /// Of the hand: 1 or 2.
+  [[nodiscard]] virtual int hand_axes() const = 0;
+  /// φ, p of them.
+  [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;
+
+  /// Y in one state, n×p.
+  virtual void regressor(const JointVector& position, const JointVector& velocity, const JointVector& acceleration,
+                         Eigen::Ref<Matrix> Y) const = 0;
+  /// Y of a motion: N×p for each joint. Allocates.
+  [[nodiscard]] virtual std::vector<Matrix> regressors(const JointMotion& motion) const;
+  /// By differences of the regressor; a mechanism that knows better says so. Allocates unless overridden.
+  [[nodiscard]] virtual JointTerms terms(const JointVector& position, const JointVector& velocity,
+                                         const Vector& phi) const;
+
+  /// Of the hand from the base [m].
+  [[nodiscard]] virtual HandVector hand_position(const JointVector& position) const = 0;
+  /// ∂p/∂q, axes×n [m; 1 where a joint slides].
+  [[nodiscard]] virtual HandJacobian jacobian(const JointVector& position) const = 0;
+  /// dJ/dt.
+  [[nodiscard]] virtual HandJacobian jacobian_rate(const JointVector& position, const JointVector& velocity) const = 0;
+
+  /// Whether the robot can stand there.
+  /// @fails  data: a joint is beyond its limits (the worst is named, and by how much), or not finite.
+  [[nodiscard]] virtual Result<void> check_joints(const JointVector& position) const = 0;
+  /// Joint positions spread evenly over all that the limits leave, up to `per_joint` along each joint. Allocates.
+  [[nodiscard]] virtual std::vector<JointVector> postures(int per_joint) const = 0;
+
+ protected:  // copied only as what they are
+  Mechanism() = default;
+  Mechanism(const Mechanism&) = default;
+  Mechanism(Mechanism&&) = default;
+  Mechanism& operator=(const Mechanism&) = default;
+  Mechanism& operator=(Mechanism&&) = default;
+};
+
+}  // namespace mbk::robot

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk {
+
+/// Numbers of a file under the name that they have there: a column of a table, a variable, a field of a structure.
+struct StoredArray {
+  std::string name;  ///< "" for a column without a heading
+  Index rows = 0, columns = 0;
+  double minimum = 0, maximum = 0;  ///< of the finite values; NaN where there is none
+  std::string unit;                 ///< as the file says it; "" where it does not
+  double rate_hz = 0;               ///< as the file says it; 0 where it does not
+};
+
+/// What a file holds, before anything is said about channels.
+struct FileContents {
+  SourceFile source;
+  bool table = false;  ///< the arrays are columns, counted from 1
+  std::vector<StoredArray> arrays;
+  std::vector<std::string> notes;  ///< what was left aside, and why
+};
+
+}  // namespace mbk

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/impedance/model.h"
+#include "mbk/model/trial/prepared_trial.h"
+#include "mbk/model/trial/warning.h"
+
+namespace mbk {
+
+/// What the parameters may be.
+enum class Structure {
+  full,         ///< M, B, K free (eq. 3.2–3.3)
+  symmetric,    ///< M and K symmetric, B free
+  mass_spring,  ///< M = m I, B = 0, K symmetric (eq. 3.8–3.9)
+};
+
+[[nodiscard]] constexpr std::string_view text(Structure structure) {
+  switch (structure) {
+    case Structure::full:
+      return "full";
+    case Structure::symmetric:
+      return "symmetric";
+    case Structure::mass_spring:
+      return "mass-spring";
+  }
+  return "unknown";
+}
+
+/// How the parameters are found.
+enum class Method {
+  least_squares,           ///< regression on the measured motion
+  instrumental_variables,  ///< on what the known perturbation alone makes of it
+};
+
+[[nodiscard]] constexpr std::string_view text(Method method) {
+  return method == Method::least_squares ? "ls" : "iv";
+}
+
+/// What stands behind instrumental variables, and whether it may.
+struct InstrumentCheck {
+  ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
+  Vector strength;  ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; below 10 the instrument is weak
+  Vector answered;  ///< n, share of what the model leaves that answers the perturbation linearly within half a second
+
+  [[nodiscard]] double weakest() const { return strength.minCoeff<Eigen::PropagateNaN>(); }
+  [[nodiscard]] bool strong() const { return weakest() > 10.0; }
+};
+
+/// How well the model explains the force, axis by axis.
+struct Fit {
+  Vector vaf;             ///< [%], on held-back data where there are any (eq. 3.10)
+  Vector rmse;            ///< [N], on the same data; a constant error counts
+  Vector vaf_in_sample;   ///< [%], on the data that made the parameters of this check
+  bool held_back = true;  ///< false: no data were held back, and vaf is in-sample
+};
+
+/// Did the perturbation ask enough of the limb?
+struct Excitation {
+  int rank = 0;              ///< of the regressors
+  double condition = 0;      ///< of the centred regressors, each scaled to unit length
+  double motion_ratio = 1;   ///< smallest over largest standard deviation of position over directions; 1 axis: 1
+  double motion = 0;         ///< largest standard deviation of position [m]
+  double inertia_share = 0;  ///< of the force's variance: what only the inertial term can explain, smallest direction
+  double duration = 0;       ///< [s] of data behind the parameters
+};
+
+/// §3.5.4 of Dyck 2013: the same fit on every n-th row, at 100 Hz or half the rate of the rows, whichever is less.
+struct DecimationCheck {
+  double rate_hz = 0;  ///< after decimation
+  impedance::Model model;
+  double largest_change = 0;  ///< of M, B, K, relative to the largest element of its matrix
+};
+
+/// Units of M, B, K, x₀, position and force.
+struct Units {
+  const char *inertia, *damping, *stiffness, *position, *force;
+};
+
+[[nodiscard]] constexpr Units units_of(Motion motion) {
+  switch (motion) {
+    case Motion::translation:
+      return {"kg", "N·s/m", "N/m", "m", "N"};
+    case Motion::rotation:
+      return {"kg·m²", "N·m·s/rad", "N·m/rad", "rad", "N·m"};
+    case Motion::unknown:
+      break;
+  }
+  return {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad", "m or rad", "N or N·m"};
+}
+
+/// Where two methods find different models in the same rows: the parameter whose difference is largest in terms of its
+/// own standard error, which counts that both methods saw the same noise.
+struct Disagreement {
+  std::string parameter;      ///< as in Identification::parameters
+  double difference = 0;      ///< instrumental variables less least squares
+  double standard_error = 0;  ///< of that difference
+  bool significant = false;   ///< more than chance gives in 1 % of cases to any of M, B and K
+};
+
+/// The same fit on data drawn again and again from blocks of the rows: how the numbers would have come out in other
+/// experiments of the same kind.
+struct Replicates {
+  Matrix models;       ///< (3n²+n)×B, stacked as in impedance/model.h
+  double block_s = 0;  ///< [s] of a block; a whole perturbation where that is shorter
+  double blocks = 0;   ///< that the data hold beside each other
+  std::uint64_t seed = 1;
+};
+
+/// An impedance, how sure it is, how well it fits, and whether it may be used.
+struct Identification {
+  impedance::Model model;
+  Matrix covariance;                    ///< of `parameters`, 3n²+n square
+  std::vector<std::string> parameters;  ///< m_xx m_xy m_yx m_yy b_… k_… x0 y0; one axis: m b k x0
+  impedance::Model judged;              ///< behind `fit`: from the data that are there to identify, and nothing else
+  impedance::Model standard_error;      ///< √ of its diagonal, in the model's shape
+  /// The part of it that the robot's coefficients have, where the force rests on a model of the robot.
+  std::optional<impedance::Model> standard_error_of_robot;
+  Method method = Method::least_squares;
+  std::optional<InstrumentCheck> instrument;  ///< with instrumental variables only
+  std::optional<Replicates> replicates;       ///< where a bootstrap was asked for
+  Structure structure = Structure::full;
+  double hac_lag_s = 0;         ///< reach of the autocovariance in the standard errors [s]
+  double handle_mass = 0;       ///< [kg] taken off the diagonal of M
+  std::string parameters_from;  ///< "identification" or "all": the data behind the parameters
+  Fit fit;
+  Excitation excitation;
+  std::optional<DecimationCheck> decimation;
+  Index samples = 0;                      ///< behind the parameters
+  std::vector<Preparation> preparations;  ///< one per pooled trial
+  std::vector<SourceFile> sources;
+  std::vector<double> durations, rates;  ///< per source: [s] and [Hz]
+  int axes = 2;
+  Motion motion = Motion::translation;
+  std::vector<std::string> notes;  ///< what the reader said of the recordings
+  std::vector<Warning> warnings;
+  bool usable = true;
+};
+
+}  // namespace mbk

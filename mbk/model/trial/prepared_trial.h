@@ -1,0 +1,118 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/units.h"
+#include "mbk/model/trial/protocol.h"
+#include "mbk/model/trial/recording.h"
+#include "mbk/model/trial/warning.h"
+
+namespace mbk {
+
+/// What moves, which decides the units of M, B and K.
+enum class Motion {
+  translation,  ///< m and N: kg, N·s/m, N/m
+  rotation,     ///< rad and N·m: kg·m², N·m·s/rad, N·m/rad
+  unknown,      ///< one axis whose file says neither
+};
+
+/// What a stretch of samples is for.
+enum class Purpose { identification, validation };
+
+/// Rows [begin, end) of a PreparedTrial, consecutive in time; a perturbation or a part of one.
+struct Stretch {
+  Index begin = 0, end = 0;
+  Purpose purpose = Purpose::identification;
+  Index first_sample = 0;  ///< of the recording: what row `begin` was made around
+  [[nodiscard]] Index size() const { return end - begin; }
+};
+
+/// Order of the zero-phase low-pass (Dyck 2013 §3.5.1).
+inline constexpr int kLowpassOrder = 5;
+
+/// Where the force at the hand comes from.
+enum class ForceSource {
+  sensor,          ///< measured
+  virtual_sensor,  ///< from motion, torques and a model of the robot, not causal (Dyck 2013, §5.2.2, method 1)
+  observer,        ///< from the same, as it could be had while the robot runs
+};
+
+[[nodiscard]] constexpr std::string_view text(ForceSource source) {
+  switch (source) {
+    case ForceSource::sensor:
+      return "sensor";
+    case ForceSource::virtual_sensor:
+      return "virtual";
+    case ForceSource::observer:
+      return "observer";
+  }
+  return "unknown";
+}
+
+/// How the signals of a PreparedTrial were made, so that any number can be traced and made again.
+struct Preparation {
+  Mode mode = Mode::improved;
+  Procedure procedure = Procedure::chapter3;  ///< meaningful in reference mode
+  Protocol protocol = Protocol::free;
+  std::string protocol_rule;      ///< why that protocol, in words
+  std::string window_rule;        ///< which samples count, in words
+  double from_s = 0, to_s = 0;    ///< [s] from the recording's first sample: first and last sample that count
+  std::optional<double> split_s;  ///< [s] where identification ends and validation begins
+  int perturbations = 1;          ///< stretches that were cut out
+  int smoothing_order = 6;        ///< Savitzky–Golay N
+  int smoothing_window = 101;     ///< Savitzky–Golay W [samples]
+  std::optional<Hertz> cutoff;    ///< zero-phase Butterworth low-pass of kLowpassOrder; none = not applied
+  std::string cutoff_rule;        ///< how the cutoff came about, in words
+  Hertz band_low, band_high;      ///< excited band that the filters let through
+  bool acceleration_from_sensor = false;
+  ForceSource force_source = ForceSource::sensor;
+  bool cut_before_filter = true;
+  Index every = 1;  ///< of the filtered samples, the first of so many is kept
+};
+
+/// What the perturbation reference is, by the unit of its channel.
+enum class ReferenceQuantity { position, force, unknown };
+
+[[nodiscard]] constexpr std::string_view text(ReferenceQuantity quantity) {
+  switch (quantity) {
+    case ReferenceQuantity::position:
+      return "position";
+    case ReferenceQuantity::force:
+      return "force";
+    case ReferenceQuantity::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+/// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame. Where the low-pass leaves
+/// nothing between them, only every so many samples of the recording are here.
+struct PreparedTrial {
+  int axes = 2;  ///< n, 1 or 2
+  Motion motion = Motion::translation;
+  double sample_time = 0;      ///< T [s], between rows
+  double recording_rate = 0;   ///< [Hz]
+  Vector time;                 ///< N, [s] from the recording's first sample
+  Matrix position;             ///< N×n, x [m]
+  Matrix velocity;             ///< N×n, ẋ [m/s]
+  Matrix acceleration;         ///< N×n, ẍ [m/s²]
+  Matrix force_hand_on_robot;  ///< N×n, F_h [N]: what the limb exerts on the machine
+  Matrix
+      force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ by the p coefficients of the robot; empty where F_h does not rest on any
+  Matrix robot_covariance;  ///< p×p, of those coefficients
+  Matrix reference;         ///< N×n, unfiltered; empty where none was recorded
+  Matrix reference_motion;  ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
+  ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
+  std::vector<Stretch> stretches;  ///< in order of time; rows outside them do not count
+  Preparation preparation;
+  std::vector<SourceFile> sources;
+  double recording_duration = 0;   ///< [s]
+  std::vector<std::string> notes;  ///< what the reader said of the recording
+  std::vector<Warning> warnings;   ///< about the recording and its preparation
+};
+
+}  // namespace mbk

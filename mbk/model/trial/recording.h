@@ -1,0 +1,57 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+
+namespace mbk {
+
+/// One measured signal, as recorded, in SI units and radians.
+struct Channel {
+  std::string name;   ///< as in the channel table of the documentation: hand_x, force_y, joint_1, reaction, …
+  std::string unit;   ///< SI: "m", "N", "rad", "N.m", "m/s2"; "" where the file does not say
+  std::string frame;  ///< "base" for hand_*, force_*, reference_*, acceleration_*; "joint" for joint_*, torque_*
+  Vector values;      ///< one value per sample of Recording::time
+};
+
+/// Something that happened at an instant: the onset of a perturbation, its offset, its direction.
+struct Event {
+  double time = 0.0;  ///< [s], on the clock of Recording::time
+  std::string name;
+  double value = 0.0;
+};
+
+/// A file that a recording came from.
+struct SourceFile {
+  std::string path;
+  std::string format;  ///< "MAT v7", "CSV", …
+  std::string sha256;  ///< 64 hexadecimal digits, of the file's bytes
+};
+
+/// What was measured, sample by sample, exactly as it was recorded: never resampled, padded, sorted or cleaned.
+/// Gaps, jitter, backward time and non-finite values stay in it; recording::inspect reports them.
+struct Recording {
+  Vector time;                  ///< [s], as recorded; not necessarily even or increasing
+  bool time_from_rate = false;  ///< true where the file holds no time, but it or the user gave the rate
+  bool untimed = false;  ///< true where the rows are no samples but loads or places by themselves: `time` counts them
+  std::vector<Channel> channels;  ///< each as long as `time`
+  std::vector<Event> events;
+  std::map<std::string, std::string> metadata;  ///< participant number, posture, protocol, robot, …
+  std::vector<SourceFile> sources;              ///< one, or several for numbered parts
+  std::vector<std::string> notes;               ///< what the reader wants its user to know, in words
+
+  [[nodiscard]] Index samples() const { return time.size(); }
+
+  /// The channel of that name, or nullptr.
+  [[nodiscard]] const Channel* find(std::string_view name) const {
+    for (const Channel& channel : channels) {
+      if (channel.name == name) return &channel;
+    }
+    return nullptr;
+  }
+};
+
+}  // namespace mbk

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mbk/model/trial/chart.h"
+
+namespace mbk {
+
+/// Where a number of ours comes from, beside one that a source printed.
+enum class Provenance {
+  recomputed,       ///< from other printed numbers, by the formula
+  simulated,        ///< the mechanism, by a simulated robot, participant or rig: alike in form, not in value
+  not_recoverable,  ///< what it rests on was never published
+};
+
+[[nodiscard]] constexpr std::string_view text(Provenance provenance) {
+  switch (provenance) {
+    case Provenance::recomputed:
+      return "recomputed";
+    case Provenance::simulated:
+      return "simulated";
+    case Provenance::not_recoverable:
+      return "not recoverable";
+  }
+  return "unknown";
+}
+
+/// How a number of ours stands to the printed one.
+enum class Agreement {
+  not_compared,     ///< one of the two is missing, or ours is simulated and need not be the same
+  within_rounding,  ///< what the rounding of the numbers that ours rests on leaves open reaches the printed one's
+  slip,             ///< it does not, and the source is at fault: the table names the slip
+  differs,          ///< it does not, and nothing explains it
+};
+
+[[nodiscard]] constexpr std::string_view text(Agreement agreement) {
+  switch (agreement) {
+    case Agreement::not_compared:
+      return "not compared";
+    case Agreement::within_rounding:
+      return "within rounding";
+    case Agreement::slip:
+      return "slip";
+    case Agreement::differs:
+      return "differs";
+  }
+  return "unknown";
+}
+
+/// One cell of a table: numbers, or words where there is no number.
+struct ReproducedCell {
+  std::string printed;                             ///< as it stands in print, every digit; empty: nothing is printed
+  std::optional<double> printed_value;             ///< absent where words are printed
+  double rounding = 0;                             ///< half a unit of the last printed digit
+  std::optional<double> ours;                      ///< absent where ours is words or cannot be had
+  std::string words;                               ///< ours, where it is no number
+  std::optional<double> spread;                    ///< standard deviation or error of ours, as the table says
+  std::optional<std::pair<double, double>> range;  ///< what the rounding of the inputs leaves ours, low and high
+  Agreement agreement = Agreement::not_compared;
+
+  /// Ours − printed, where both are numbers.
+  [[nodiscard]] std::optional<double> difference() const {
+    if (!ours || !printed_value) return {};
+    return *ours - *printed_value;
+  }
+};
+
+struct ReproducedColumn {
+  std::string name;
+  std::string unit;  ///< may be empty
+  int decimals = 2;  ///< with which ours is shown where nothing is printed
+};
+
+struct ReproducedRow {
+  std::string name;
+  std::vector<ReproducedCell> cells;  ///< one for each column
+};
+
+/// A table of the source and ours, cell by cell.
+struct ReproducedTable {
+  std::string id;  ///< by which printed cells are found: "3.6"; with a suffix where an exhibit has several
+  std::string title;
+  Provenance provenance = Provenance::recomputed;
+  std::string what_rows_are;  ///< "participant"
+  std::string spread_is;      ///< "standard error over four trials"; empty: no cell has one
+  std::vector<ReproducedColumn> columns;
+  std::vector<ReproducedRow> rows;
+  std::string slip;  ///< id of the slip that explains cells that differ; empty: none does
+};
+
+/// One thing of the source, made again: a table, a figure, a slip, a question or a piece of future work.
+struct Exhibit {
+  enum class Kind { table, figure, slip, question, future_work };
+  std::string id;     ///< "table-3.6", "figure-4.3", "slip-1", "question-2", "future-work-4"
+  std::string title;  ///< in words of our own
+  Kind kind = Kind::table;
+  int chapter = 0;  ///< 3 to 6; 0: an appendix
+  Provenance provenance = Provenance::recomputed;
+  std::vector<std::string> text;      ///< paragraphs: how ours came about, what to see, why it cannot be had
+  std::vector<std::string> commands;  ///< that make ours, as they are typed
+  std::vector<ReproducedTable> tables;
+  std::vector<Chart> charts;
+  std::vector<std::string> related;  ///< ids of other exhibits
+};
+
+[[nodiscard]] constexpr std::string_view text(Exhibit::Kind kind) {
+  switch (kind) {
+    case Exhibit::Kind::table:
+      return "table";
+    case Exhibit::Kind::figure:
+      return "figure";
+    case Exhibit::Kind::slip:
+      return "slip";
+    case Exhibit::Kind::question:
+      return "question";
+    case Exhibit::Kind::future_work:
+      return "future work";
+  }
+  return "unknown";
+}
+
+/// What of a source was made again.
+struct Reproduction {
+  std::string source;  ///< what it is a reproduction of
+  std::vector<Exhibit> exhibits;
+
+  /// How many cells of recomputed tables stand so to the printed ones.
+  [[nodiscard]] int count(Agreement agreement) const {
+    int cells = 0;
+    for (const Exhibit& exhibit : exhibits) {
+      for (const ReproducedTable& table : exhibit.tables) {
+        for (const ReproducedRow& row : table.rows) {
+          for (const ReproducedCell& cell : row.cells) cells += cell.agreement == agreement ? 1 : 0;
+        }
+      }
+    }
+    return cells;
+  }
+};
+
+}  // namespace mbk

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/robot/dynamic_model.h"
+#include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/prepared_dynamics.h"
+
+namespace mbk {
+
+/// How a robot's coefficients are found.
+enum class RobotMethod {
+  least_squares,           ///< every joint alike
+  weighted_least_squares,  ///< each joint by the noise of its torque
+  instrumental_variables,  ///< weighted, on what the commanded or smoothed motion makes of the regressors
+};
+
+[[nodiscard]] constexpr std::string_view text(RobotMethod method) {
+  switch (method) {
+    case RobotMethod::least_squares:
+      return "ls";
+    case RobotMethod::weighted_least_squares:
+      return "wls";
+    case RobotMethod::instrumental_variables:
+      return "iv";
+  }
+  return "unknown";
+}
+
+/// What a coefficient of the robot turned out to be.
+struct RobotCoefficient {
+  robot::Coefficient coefficient;
+  double value = 0;           ///< 0 where it is not identified: its share is in those that are
+  double standard_error = 0;  ///< NaN where it is not identified
+  bool identified = true;
+  bool fixed = false;  ///< taken as known
+  /// What the value holds besides the coefficient itself, as in "+ 0.04·link_2.mass"; empty where it stands for itself.
+  std::string together_with;
+};
+
+/// How well the torque of one joint is explained; NaN where no torque of it counts.
+struct TorqueFit {
+  double vaf = 0, rmse = 0;                      ///< [%], [N·m or N]; held back where anything was
+  double vaf_in_sample = 0, rmse_in_sample = 0;  ///< on the data behind the coefficients
+  std::optional<double> vaf_smoothed;            ///< of vaf's data, predicted from the smoothed motion
+};
+
+/// Whether the inertia matrix is one in every posture.
+struct InertiaCheck {
+  double smallest = 0;        ///< eigenvalue over the postures [kg·m²; kg]
+  std::vector<double> where;  ///< the joints there
+  double largest_mass = 0;    ///< that the hand feels in the middle of the workspace [kg; kg·m²]
+};
+
+/// The dynamics of a robot, how sure they are and how well they hold.
+struct RobotIdentification {
+  robot::DynamicModel model;  ///< with covariance and delay
+  std::vector<RobotCoefficient> coefficients;
+  RobotMethod method = RobotMethod::weighted_least_squares;
+  InstrumentMotion instrument_motion = InstrumentMotion::none;
+  double motion_cutoff = 0;    ///< [Hz], where the motion was smoothed for it
+  double smoothed_cutoff = 0;  ///< [Hz] of the motion behind vaf_smoothed, in the first recording that judges
+  std::optional<double> delay_standard_error;  ///< [s]; absent where the delay was not estimated
+  std::vector<TorqueFit> fit;                  ///< of each joint
+  bool held_back = true;                       ///< false: vaf and rmse are in-sample
+  std::vector<std::string> held_back_files;    ///< where whole recordings were
+  int rank = 0;                                ///< coefficients that the data tell apart
+  int structural_rank = 0;                     ///< that any motion could
+  double condition = 0;                        ///< of the regressors kept, each scaled to unit length
+  std::vector<std::pair<std::string, double>>
+      weakest;  ///< what is hardest to tell apart: coefficients with their shares
+  InertiaCheck inertia;
+  double hac_lag_s = 0;
+  Index samples = 0;
+  std::string description, urdf;  ///< the files that say what robot it is, as they were; empty for the thesis's
+  std::vector<Preparation> preparations;
+  std::vector<SourceFile> sources;
+  std::vector<double> durations, rates;
+  std::vector<std::string> notes;
+  std::vector<Warning> warnings;
+  bool usable = true;
+};
+
+}  // namespace mbk

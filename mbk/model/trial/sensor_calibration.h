@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk {
+
+/// Why a calibration needs care.
+enum class SensorWarningCode {
+  few_loads,
+  one_sided_loads,
+  loads_nearly_collinear,
+  clipping,
+  nonlinear,
+  hysteresis,
+  noise_below_resolution,
+  zero_changed,
+  voltage_unlikely,
+  step_contradicts_converter,
+};
+
+/// Every code with its text, which is stable: scripts may test for it.
+inline constexpr auto kSensorWarningTexts = std::to_array<std::pair<SensorWarningCode, std::string_view>>({
+    {SensorWarningCode::few_loads, "few-loads"},
+    {SensorWarningCode::one_sided_loads, "one-sided-loads"},
+    {SensorWarningCode::loads_nearly_collinear, "loads-nearly-collinear"},
+    {SensorWarningCode::clipping, "clipping"},
+    {SensorWarningCode::nonlinear, "nonlinear"},
+    {SensorWarningCode::hysteresis, "hysteresis"},
+    {SensorWarningCode::noise_below_resolution, "noise-below-resolution"},
+    {SensorWarningCode::zero_changed, "zero-changed"},
+    {SensorWarningCode::voltage_unlikely, "voltage-unlikely"},
+    {SensorWarningCode::step_contradicts_converter, "step-contradicts-converter"},
+});
+
+[[nodiscard]] constexpr std::string_view text(SensorWarningCode code) {
+  for (const auto& [known, words] : kSensorWarningTexts) {
+    if (known == code) return words;
+  }
+  return "unknown";
+}
+
+[[nodiscard]] constexpr std::optional<SensorWarningCode> sensor_warning_code(std::string_view words) {
+  for (const auto& [known, its_words] : kSensorWarningTexts) {
+    if (its_words == words) return known;
+  }
+  return std::nullopt;
+}
+
+struct SensorWarning {
+  SensorWarningCode code;
+  std::string message;
+  std::string remedy;  ///< what to try next; "try" in JSON
+};
+
+/// A line F = slope · V + intercept by regression of the force on the voltage (the form of Dyck 2013, eq. E.2).
+struct ForceOnVoltage {
+  double slope = 0.0, slope_error = 0.0;          ///< and its standard error [N/V]
+  double intercept = 0.0, intercept_error = 0.0;  ///< force at 0 V, and its standard error [N]
+  double r_squared = 0.0;
+};
+
+/// One axis of a calibrated force sensor.
+struct SensorAxis {
+  std::string name;                                     ///< "x" or "y", of force_x and voltage_x
+  double zero_voltage = 0.0, zero_voltage_error = 0.0;  ///< V₀, voltage of no force, and its standard error [V]
+  double intercept = 0.0, intercept_error = 0.0;        ///< force at 0 V on every axis, −(S V₀)ᵢ [N]
+  double r_squared = 0.0;            ///< share of the voltage's variance within its runs that the loads explain
+  double rmse = 0.0;                 ///< of F − S (V − V₀) [N]
+  ForceOnVoltage published;          ///< this axis by itself, the other way round
+  double full_scale = 0.0;           ///< largest |load| [N]
+  Index loads = 0;                   ///< different loads on this axis, or the intervals into which they were put
+  double nonlinearity = 0.0;         ///< largest mean deviation from the line at one load [N]
+  std::optional<double> hysteresis;  ///< largest difference between loading and unloading at one load [N]
+  std::optional<double> noise;       ///< standard deviation at constant load [V]; absent where no load repeats
+  std::optional<double> step;        ///< smallest step between voltages of the data [V]; absent where none is seen
+  std::optional<double> conversion;  ///< step of the converter as it was said, 2·range/2ᵇⁱᵗˢ [V]
+  /// The step that counts: what was said goes before what was seen.
+  [[nodiscard]] std::optional<double> resolution() const { return conversion ? conversion : step; }
+};
+
+/// F = S (V − V₀) of a force sensor of one or two axes, in its own axes.
+struct SensorCalibration {
+  std::vector<SourceFile> sources;
+  std::vector<SensorAxis> axes;       ///< n
+  Matrix slope, slope_error;          ///< S and its standard errors, n×n [N/V]; diagonal where no crosstalk was fitted
+  Matrix crosstalk, crosstalk_error;  ///< row j, column i: what axis j feels of a load on i [N/N]; 0×0: not fitted
+  std::optional<double> lever_arm;    ///< L₀ from the gauges to the load during the calibration [m]
+  double delay = 0.0;                 ///< by which the voltage comes after the load [s]; 0 where none is seen
+  std::vector<Vector> zero_voltages;  ///< V₀ of each run [V]; that of the last one stands in `axes`
+  Index rows = 0;                     ///< rows of tables, or samples
+  bool continuous = false;            ///< from recordings over time; otherwise one row a load
+  double hac_lag_s = 0.0;             ///< reach of the residual's correlation in the standard errors, where continuous
+  std::vector<SensorWarning> warnings;
+  std::vector<std::string> notes;
+};
+
+}  // namespace mbk

@@ -1,0 +1,66 @@
+#include "mbk/present/report/force_comparison_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "mbk/present/report/layout.h"
+
+namespace mbk::report {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// So many decimals, never "-0", and a dash for what is undefined.
+std::string cell(double value, int decimals) {
+  if (!std::isfinite(value)) return "–";
+  const double unit = std::pow(10.0, decimals);
+  return fmt::format("{:.{}f}", std::round(unit * value) / unit + 0.0, decimals);
+}
+
+std::string axis_name(Index axis, Index axes) {
+  if (axes == 1) return "F";
+  return axis == 0 ? "Fx" : "Fy";
+}
+
+}  // namespace
+
+std::string force_comparison_text(const ForceComparison& comparison, std::string_view estimated,
+                                  std::string_view measured) {
+  constexpr double kMilliseconds = 1000.0;
+  const Index axes = comparison.vaf.size();
+  std::string text = fmt::format("{} against {}, {:.1f} s\n", estimated, measured, comparison.duration);
+
+  Rows together = {{"", "RMS in N", "RMSE in N", "VAF in %", "gain", "correlation", "late by ms"}};
+  for (Index axis = 0; axis < axes; ++axis) {
+    together.push_back({axis_name(axis, axes), cell(comparison.measured_rms[axis], 2),
+                        cell(comparison.all.rmse[axis], 3), cell(comparison.vaf[axis], 2),
+                        cell(comparison.gain[axis], 3), cell(comparison.correlation[axis], 4),
+                        cell(kMilliseconds * comparison.lag[axis], 1)});
+  }
+  text += table(together);
+
+  Rows apart = {{"", "share in %"}};
+  for (Index axis = 0; axis < axes; ++axis) apart[0].push_back("bias " + axis_name(axis, axes) + " in N");
+  for (Index axis = 0; axis < axes; ++axis) apart[0].push_back("RMSE " + axis_name(axis, axes) + " in N");
+  const auto add = [&](const char* name, const ForceAgreement& part) {
+    const double share = 100.0 * static_cast<double>(part.rows) / static_cast<double>(comparison.all.rows);
+    std::vector<std::string> row = {name, cell(share, 0)};
+    for (const double bias : part.bias) row.push_back(cell(bias, 3));
+    for (const double rmse : part.rmse) row.push_back(cell(rmse, 3));
+    apart.push_back(std::move(row));
+  };
+  add("at rest", comparison.rest);
+  add("in motion", comparison.motion);
+  add("at reversals", comparison.reversals);
+  add("all", comparison.all);
+  text += "\n" + table(apart);
+  text += paragraph("  ", fmt::format("bias: mean of the former less the latter; at rest: no faster than {:g} rad/s "
+                                      "(m/s where a joint slides); reversals: {:g} ms to each side of where a joint "
+                                      "turns back; RMS: of the latter about its mean",
+                                      comparison.rest_speed, kMilliseconds * comparison.reversal_window));
+  return text;
+}
+
+}  // namespace mbk::report

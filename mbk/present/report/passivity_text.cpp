@@ -1,0 +1,122 @@
+#include "mbk/present/report/passivity_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <vector>
+
+#include "mbk/present/report/draw_chart.h"
+#include "mbk/present/report/layout.h"
+#include "mbk/present/report/text.h"
+
+namespace mbk::report {
+namespace {
+
+std::string between(const Interval& interval) {
+  if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return "";
+  return fmt::format("[{:.3g}, {:.3g}]", interval.first, interval.second);
+}
+
+const char* long_name(Method method) {
+  return method == Method::least_squares ? "least squares" : "instrumental variables";
+}
+
+std::string model_text(const ModelPassivity& model) {
+  std::string text = fmt::format("  model of {}: {} from {:.3g} to {:.3g} Hz\n", long_name(model.method),
+                                 mbk::text(model.verdict), model.band.low.value, model.band.high.value);
+  std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "± s.e.", "unit", ""}};
+  for (const PassivityCondition& c : model.conditions) {
+    rows.push_back({c.name, fmt::format("{:.3g}", c.value), fmt::format("{:.2g}", c.standard_error), c.unit,
+                    c.verdict == Verdict::passive  ? "holds"
+                    : c.verdict == Verdict::active ? "fails"
+                                                   : "open"});
+  }
+  text += table(rows);
+  rows = {{"smallest index", fmt::format("{:.3g}", model.smallest_index), between(model.smallest_index95),
+           fmt::format("at {:.3g} Hz", model.smallest_at.value)}};
+  if (model.excess) {
+    rows.push_back({"excess of passivity", fmt::format("{:.3g}", model.excess->corrected),
+                    between(model.excess->corrected95), "of the symmetric part: smallest eigenvalue of B"});
+    rows.push_back({"  by the published formula", fmt::format("{:.3g}", model.excess->published),
+                    between(model.excess->published95), "half of the largest eigenvalue of B"});
+  }
+  if (model.nonpassive_below_hz && *model.nonpassive_below_hz > 0.0) {
+    rows.push_back({"active below", fmt::format("{:.2g} Hz", *model.nonpassive_below_hz), "",
+                    "where the antisymmetric stiffness outweighs the damping"});
+  }
+  return text + table(rows);
+}
+
+std::string energy_text(const EnergyAccount& account, const char* unit) {
+  const char* const what = account.shortage_at_end < 0.0 ? "excess at the end" : "shortage at the end";
+  const char* const largest = account.shortage_largest < 0.0 ? "smallest excess" : "largest shortage";
+  const auto shortage = [](double value, const Interval& interval) {
+    return value < 0.0 ? std::pair{-value, Interval{-interval.second, -interval.first}} : std::pair{value, interval};
+  };
+  const auto [end, end95] = shortage(account.shortage_at_end, account.shortage_at_end95);
+  const auto [most, most95] = shortage(account.shortage_largest, account.shortage_largest95);
+  return fmt::format("  energy: {}\n", mbk::text(account.verdict)) +
+         table({{"absorbed", fmt::format("{:.3g} J", account.absorbed), between(account.absorbed95),
+                 fmt::format("in {:.1f} s", account.duration)},
+                {what, fmt::format("{:.3g} {}", end, unit), between(end95), "eq. (4.3)"},
+                {largest, fmt::format("{:.3g} {}", most, unit), between(most95), "over time"}}) +
+         paragraph("    ", account.reason);
+}
+
+}  // namespace
+
+std::string passivity_text(const Passivity& passivity, Motion motion) {
+  std::string text =
+      fmt::format("passivity: {}, by the {}\n", mbk::text(passivity.verdict), passivity.by_model ? "model" : "energy");
+  text += paragraph("  ", passivity.reason);
+  text += "\n";
+  for (const ModelPassivity& model : passivity.models) text += model_text(model) + "\n";
+  if (passivity.energy) text += energy_text(*passivity.energy, units_of(motion).damping) + "\n";
+  return text + "  (brackets are 95 % intervals)\n";
+}
+
+std::string consistent_text(const ConsistentFit& fit, Motion motion) {
+  std::vector<std::string> active;
+  if (fit.inertia.active) active.emplace_back("inertia");
+  if (fit.damping.active) active.emplace_back("damping");
+  if (fit.stiffness.active) active.emplace_back("stiffness");
+  const Units units = units_of(motion);
+  const auto row = [](const char* name, const Semidefiniteness& one, const char* unit) {
+    const double smallest = one.active ? 0.0 : one.smallest;  // to rounding
+    return std::vector<std::string>{name, fmt::format("{:.3g}", one.free_smallest), fmt::format("{:.3g}", smallest),
+                                    unit};
+  };
+  const std::string held =
+      active.empty() ? "the data ask for nothing else but symmetry"
+                     : fmt::format("{} held at the edge of what a passive limb can have", fmt::join(active, " and "));
+  return paragraph("  ", fmt::format("nearest model with M and K symmetric and M, B, K positive semidefinite: {}; the "
+                                     "residual's power grows by {:.2g} %, {} moves by {:.2g} standard errors",
+                                     held, fit.increase_percent(), fit.largest_change, fit.largest_change_errors)) +
+         table({{"smallest eigenvalue", "as found", "nearest", ""},
+                row("M", fit.inertia, units.inertia),
+                row("B", fit.damping, units.damping),
+                row("K", fit.stiffness, units.stiffness)});
+}
+
+std::string passivity_line(const Passivity& passivity) {
+  return paragraph("  ", fmt::format("passivity: {}, by the {}: {}", mbk::text(passivity.verdict),
+                                     passivity.by_model ? "model" : "energy", passivity.reason));
+}
+
+Chart energy_chart(const Energy& energy) {
+  Chart chart;
+  chart.title = "energy that the limb absorbed";
+  chart.x = {"time", "s"};
+  chart.y = {"energy", "J"};
+  ChartSeries series;
+  series.name = "energy";
+  series.drawn = ChartSeries::Drawn::line;
+  series.x.assign(energy.curve.time.begin(), energy.curve.time.end());
+  series.y.assign(energy.curve.absorbed.begin(), energy.curve.absorbed.end());
+  chart.series.push_back(std::move(series));
+  chart.horizontal.push_back({0.0, "0"});
+  return chart;
+}
+
+}  // namespace mbk::report

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "mbk/model/trial/chart.h"
+#include "mbk/model/trial/consistent_fit.h"
+#include "mbk/model/trial/passivity.h"
+
+namespace mbk::report {
+
+/// A verdict in full for the terminal: why, every condition of each model, excess and shortage, energy.
+[[nodiscard]] std::string passivity_text(const Passivity& passivity, Motion motion);
+
+/// The nearest model that a passive limb can have, and what it costs.
+[[nodiscard]] std::string consistent_text(const ConsistentFit& fit, Motion motion);
+
+/// The verdict and its reason in a few words.
+[[nodiscard]] std::string passivity_line(const Passivity& passivity);
+
+/// Energy over time (Dyck 2013, figs 3.15, 3.17, 4.3, 4.4).
+[[nodiscard]] Chart energy_chart(const Energy& energy);
+
+}  // namespace mbk::report

@@ -1,0 +1,139 @@
+#include "mbk/present/report/robot_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/present/report/force_comparison_text.h"
+#include "mbk/present/report/layout.h"
+
+namespace mbk::report {
+namespace {
+
+const char* method_text(RobotMethod method) {
+  switch (method) {
+    case RobotMethod::least_squares:
+      return "least squares, every joint alike";
+    case RobotMethod::weighted_least_squares:
+      return "least squares, each joint weighted by the noise of its torque";
+    case RobotMethod::instrumental_variables:
+      return "instrumental variables, each joint weighted by the noise of its torque";
+  }
+  return "";
+}
+
+std::string instruments_text(const RobotIdentification& found) {
+  switch (found.instrument_motion) {
+    case InstrumentMotion::joint_reference:
+      return "from the reference of the joints";
+    case InstrumentMotion::hand_reference:
+      return "from the reference of the hand";
+    case InstrumentMotion::smoothed:
+      return fmt::format("from the motion, low-passed at {:.3g} Hz", found.motion_cutoff);
+    case InstrumentMotion::none:
+      break;
+  }
+  return "none";
+}
+
+std::string percent(double vaf) {
+  return std::isfinite(vaf) ? fmt::format("{:.2f}", vaf) : "–";
+}
+
+std::string how_found(const RobotIdentification& found) {
+  std::string text;
+  for (std::size_t k = 0; k < found.sources.size() && k < found.durations.size(); ++k) {
+    text += fmt::format("{}   {:.1f} s at {:.6g} Hz   {}\n", found.sources[k].path, found.durations[k], found.rates[k],
+                        found.sources[k].format);
+  }
+  const Preparation& how = found.preparations.front();
+  std::vector<std::vector<std::string>> rows = {{"method", method_text(found.method)}};
+  if (found.method == RobotMethod::instrumental_variables) rows.push_back({"instruments", instruments_text(found)});
+  rows.push_back({"window", how.window_rule});
+  rows.push_back({"filters", filters_text(how)});
+  rows.push_back(
+      {"excitation", fmt::format("{} of {} coefficients told apart ({} in any motion), condition {:.3g}", found.rank,
+                                 found.coefficients.size(), found.structural_rank, found.condition)});
+  const double delay = 1e3 * found.model.delay;
+  rows.push_back(
+      {"motor delay", found.delay_standard_error
+                          ? with_interval(delay, 1e3 * numeric::kNormal95 * *found.delay_standard_error) + " ms, found"
+                          : fmt::format("{:.4g} ms, given", delay)});
+  return text + table(rows);
+}
+
+}  // namespace
+
+std::string robot_text(const RobotIdentification& found) {
+  std::string text = how_found(found) + "\n";
+  std::vector<std::vector<std::string>> rows;
+  std::string nothing;
+  bool combined = false;
+  for (const RobotCoefficient& one : found.coefficients) {
+    if (one.fixed) {
+      rows.push_back({one.coefficient.name, fmt::format("{:.6g}", one.value), one.coefficient.unit, "given"});
+      continue;
+    }
+    if (!one.identified) {
+      nothing += (nothing.empty() ? "" : ", ") + one.coefficient.name;
+      continue;
+    }
+    combined = combined || !one.together_with.empty();
+    rows.push_back({one.coefficient.name, with_interval(one.value, numeric::kNormal95 * one.standard_error),
+                    one.coefficient.unit, one.together_with});
+  }
+  text += table(rows) + "  (± is the 95 % interval; W θ = τ + Jᵀ F, τ the motors', F the hand's force on the robot)\n";
+  if (combined) {
+    text += paragraph("  ",
+                      "What stands behind a value is part of it: only these sums can be told apart (base "
+                      "parameters), and they are all that torque and force need.");
+  }
+  if (!nothing.empty()) text += paragraph("  not told apart, or without effect: ", nothing);
+
+  rows = {{found.held_back ? "held back" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
+  const bool smoothed =
+      std::ranges::any_of(found.fit, [](const TorqueFit& fit) { return fit.vaf_smoothed.has_value(); });
+  if (smoothed) rows.front().push_back(fmt::format("VAF %, motion smoothed at {:.3g} Hz", found.smoothed_cutoff));
+  for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
+    const TorqueFit& fit = found.fit[joint];
+    const char* unit = found.model.mechanism->slides(static_cast<int>(joint)) ? "N" : "N·m";
+    rows.push_back({fmt::format("torque of joint {}", joint + 1), percent(fit.vaf),
+                    fmt::format("{:.3g} {}", fit.rmse, unit), percent(fit.vaf_in_sample),
+                    fmt::format("{:.3g} {}", fit.rmse_in_sample, unit)});
+    if (fit.vaf_smoothed) rows.back().push_back(percent(*fit.vaf_smoothed));
+  }
+  text += "\n" + table(rows);
+  if (found.inertia.smallest > 0.0) {
+    text += fmt::format("  inertia matrix positive definite in every posture: smallest eigenvalue {:.3g}\n",
+                        found.inertia.smallest);
+  }
+  if (!found.warnings.empty()) text += "\n" + warnings_text(found.warnings);
+  if (!found.usable) text += "\n  NOT USABLE: do not use this model; see the warnings above.\n";
+  return text;
+}
+
+std::string force_text(const ForceSummary& force) {
+  const bool observed = force.source == ForceSource::observer;
+  const bool sure = force.standard_error.size() > 0;
+  std::string text;
+  for (const SourceFile& source : force.sources) text += fmt::format("{}   {}\n", source.path, source.format);
+  for (const std::string& note : force.notes) text += paragraph("  ", note);
+  std::vector<std::vector<std::string>> rows = {{"", "RMS", "peak"}};
+  if (sure) rows.front().emplace_back("± of the robot's dynamics");
+  for (Index axis = 0; axis < force.rms.size(); ++axis) {
+    rows.push_back({force.rms.size() == 1 ? "F" : (axis == 0 ? "Fx" : "Fy"), fmt::format("{:.3g} N", force.rms[axis]),
+                    fmt::format("{:.3g} N", force.peak[axis])});
+    if (sure) rows.back().push_back(fmt::format("{:.2g} N", numeric::kNormal95 * force.standard_error[axis]));
+  }
+  text += "\n" + table(rows);
+  if (force.comparison) {
+    text += "\n" +
+            force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor", "force sensor");
+  }
+  return text;
+}
+
+}  // namespace mbk::report

@@ -1,0 +1,44 @@
+#include "mbk/present/report/schedule_text.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace mbk::report {
+namespace {
+
+/// The unit in which people think of a value, and how many of it one SI unit is.
+struct Shown {
+  const char* unit;
+  double factor;
+};
+
+Shown shown(const perturbation::Schedule& schedule) {
+  const bool joint = schedule.space() == perturbation::Space::joint;
+  if (schedule.quantity() == perturbation::Quantity::force) return {joint ? "N·m" : "N", 1.0};
+  return joint ? Shown{"°", 180.0 / std::numbers::pi} : Shown{"mm", 1000.0};
+}
+
+}  // namespace
+
+std::string schedule_text(const perturbation::Schedule& schedule) {
+  const perturbation::Facts facts = schedule.facts();
+  const auto [unit, factor] = shown(schedule);
+  const Eigen::Vector2d peak = factor * facts.axis_peak, rms = factor * facts.axis_rms;
+  std::string text = fmt::format("  duration      {:.1f} s\n", schedule.duration());
+  text += fmt::format("  peak          {:.4g} {} at {:.2f} s; first axis {:.4g}, second {:.4g}\n", factor * facts.peak,
+                      unit, facts.peak_time, peak[0], peak[1]);
+  text += fmt::format("  rms           {:.4g} {}; first axis {:.4g}, second {:.4g}\n", factor * facts.rms, unit, rms[0],
+                      rms[1]);
+  text += fmt::format("  speed         {:.4g} {}/s at most, at {:.2f} s\n", factor * facts.peak_speed, unit,
+                      facts.peak_speed_time);
+  text += fmt::format("  acceleration  {:.4g} {}/s² at most, at {:.2f} s\n", factor * facts.peak_acceleration, unit,
+                      facts.peak_acceleration_time);
+  text += fmt::format("  crest factor  {:.3g} and {:.3g}, pauses and moving in counted\n", facts.crest_factor[0],
+                      facts.crest_factor[1]);
+  text +=
+      fmt::format("  band          {:.3g} to {:.3g} Hz\n", facts.lowest_frequency.value, facts.highest_frequency.value);
+  return text;
+}
+
+}  // namespace mbk::report

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/robot/workspace.h"
+#include "mbk/model/trial/bootstrap_findings.h"
+#include "mbk/model/trial/chart.h"
+#include "mbk/model/trial/file_contents.h"
+#include "mbk/model/trial/findings.h"
+#include "mbk/model/trial/force_comparison.h"
+#include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/inspection.h"
+#include "mbk/model/trial/recording.h"
+#include "mbk/model/trial/summary.h"
+#include "mbk/model/trial/validation_table.h"
+
+namespace mbk::report {
+
+/// What a terminal shows without breaking lines; wider are only single words and tables of numbers.
+inline constexpr std::size_t kLineColumns = 100;
+
+/// The words of `text` on lines of at most `width` columns, as far as words are short enough.
+[[nodiscard]] std::string wrapped(std::string_view text, std::size_t width);
+
+/// A result for the terminal: what was measured and how, the model with 95 % intervals and units, the fit, the
+/// ellipses with a picture where there are findings, and every warning with what to try.
+[[nodiscard]] std::string result_text(const Identification& identification, const std::optional<Findings>& findings);
+
+/// The other method beside the first: that both agree, or its model and why they differ.
+[[nodiscard]] std::string alternative_text(const Identification& identification, const Identification& alternative,
+                                           const Disagreement& disagreement);
+
+/// A computed force against that of the sensor, and what it changes in the model (Dyck 2013, tables 5.3–5.5 in form).
+[[nodiscard]] std::string by_sensor_text(const Identification& computed, const Identification& sensed,
+                                         const ForceComparison& comparison);
+
+/// Every quantity with its interval by the bootstrap and by the delta method.
+[[nodiscard]] std::string bootstrap_text(const BootstrapFindings& bootstrap);
+
+/// Mean and between-trial standard error of several results.
+[[nodiscard]] std::string summary_text(const Summary& summary);
+
+/// The ellipse table and picture alone.
+[[nodiscard]] std::string ellipses_text(const Findings& findings);
+
+/// What is in a recording, and what is wrong with it.
+[[nodiscard]] std::string info_text(const Recording& recording, const Inspection& inspection);
+
+/// What a file holds where nothing in it is recognised as a recording, why, and what to do.
+[[nodiscard]] std::string contents_text(const FileContents& contents, const Error& unrecognised);
+
+/// Where the hand can be, drawn with the links at `posture` where there is one [mm]. The outline is that of fig. A.2.
+[[nodiscard]] Chart workspace_chart(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture);
+
+/// The same in words and Braille: links, limits, extents and area, and what holds at the one place.
+[[nodiscard]] std::string workspace_text(const robot::Workspace& workspace,
+                                         const std::optional<robot::Posture>& posture);
+
+/// A study against known truth, row by row, with what is wanted, then its charts.
+[[nodiscard]] std::string validation_text(const ValidationTable& table);
+
+}  // namespace mbk::report

@@ -1,0 +1,310 @@
+#include "mbk/present/report/text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "mbk/present/report/picture.h"
+
+namespace mbk::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Identification identification(int axes = 2) {
+  Identification id;
+  const Index n = axes;
+  id.axes = axes;
+  id.model = {Matrix::Constant(n, n, 1.20021), Matrix::Constant(n, n, -6.5), Matrix::Constant(n, n, 120.0),
+              Vector::Constant(n, 0.304)};
+  id.standard_error = {Matrix::Constant(n, n, 0.0011 / 1.96), Matrix::Constant(n, n, 0.1), Matrix::Constant(n, n, 10.0),
+                       Vector::Constant(n, 0.001)};
+  id.fit = {Vector::Constant(n, 97.123), Vector::Constant(n, 0.3141), Vector::Constant(n, 98.765), true};
+  id.preparations.emplace_back();
+  id.preparations[0].protocol_rule = "the reference varies continuously";
+  id.preparations[0].window_rule = "12 s to 62 s";
+  id.preparations[0].cutoff = Hertz(5.0);
+  id.preparations[0].cutoff_rule = "given";
+  id.sources.push_back({"a.mat", "MAT v7", "abc"});
+  id.durations = {62.0};
+  id.rates = {1000.0};
+  id.excitation.duration = 40.0;
+  return id;
+}
+
+Findings findings() {
+  Findings all;
+  for (EllipseFinding& finding : all.ellipses) {
+    finding.ellipse = {2.0, 1.0, 6.28, 2.0, 0.5};
+    finding.area95 = {6.0, 6.6};
+    finding.shape95 = {1.9, 2.1};
+    finding.orientation95 = {0.45, 0.55};
+  }
+  all.antisymmetry[1] = {7.7, {5.0, 10.0}, 11.5, {7.0, 15.0}};
+  return all;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string line_with(const std::string& text, const std::string& what) {
+  for (const std::string& line : lines_of(text)) {
+    if (line.find(what) != std::string::npos) return line;
+  }
+  return "";
+}
+
+TEST(ResultText, ShowsEveryMatrixWithItsUnit) {
+  const std::string text = result_text(identification(), std::nullopt);
+  EXPECT_THAT(line_with(text, "inertia M"), testing::EndsWith("kg"));
+  EXPECT_THAT(line_with(text, "damping B"), testing::EndsWith("N·s/m"));
+  EXPECT_THAT(line_with(text, "stiffness K"), testing::EndsWith("N/m"));
+  EXPECT_THAT(line_with(text, "equilibrium"), testing::EndsWith("mm"));
+  EXPECT_THAT(line_with(text, "equilibrium"), HasSubstr("x 304.0 ± 2.0"));
+}
+
+TEST(ResultText, UnitsFollowWhatMoves) {
+  Identification rotation = identification(1);
+  rotation.motion = Motion::rotation;
+  const std::string text = result_text(rotation, std::nullopt);
+  EXPECT_THAT(line_with(text, "inertia M"), testing::EndsWith("kg·m²"));
+  EXPECT_THAT(line_with(text, "stiffness K"), testing::EndsWith("N·m/rad"));
+  EXPECT_THAT(line_with(text, "equilibrium x0"), testing::EndsWith("rad"));
+  EXPECT_THAT(text, HasSubstr("RMSE 0.314 N·m"));
+  rotation.motion = Motion::unknown;
+  EXPECT_THAT(result_text(rotation, std::nullopt), HasSubstr("kg or kg·m²"));
+}
+
+TEST(ResultText, TheIntervalIs196StandardErrorsToTwoDigits) {
+  const std::string text = result_text(identification(), std::nullopt);
+  EXPECT_THAT(text, HasSubstr("1.2002 ± 0.0011"));
+  EXPECT_THAT(text, HasSubstr("-6.50 ± 0.20"));
+  EXPECT_THAT(text, HasSubstr("120 ± 20"));
+  EXPECT_THAT(text, HasSubstr("± is the 95 % interval"));
+}
+
+TEST(ResultText, WhatIsUndefinedIsCalledSo) {
+  Identification id = identification();
+  id.model.x0[1] = kNaN;
+  id.standard_error.K(0, 0) = kNaN;
+  const std::string text = result_text(id, std::nullopt);
+  EXPECT_THAT(line_with(text, "equilibrium"), HasSubstr("undefined"));
+  EXPECT_THAT(text, Not(HasSubstr("nan")));
+}
+
+TEST(ResultText, AnErrorThatIsNoneIsNotShown) {
+  Identification id = identification();
+  id.standard_error.B(0, 0) = 0.0;
+  id.standard_error.B(0, 1) = -0.1;  // as a file could claim
+  EXPECT_THAT(line_with(result_text(id, std::nullopt), "damping B"), testing::ContainsRegex("-6.5 +-6.5 +-6.50 ±"));
+}
+
+TEST(ResultText, AFitThatIsUndefinedIsCalledSo) {
+  Identification id = identification();
+  id.fit.vaf[1] = kNaN;
+  EXPECT_THAT(result_text(id, std::nullopt), Not(HasSubstr("nan")));
+}
+
+TEST(ResultText, ColumnsBeginWhereTheirHeadingDoes) {
+  const auto lines = lines_of(result_text(identification(), std::nullopt));
+  for (std::size_t k = 0; k + 3 < lines.size(); ++k) {
+    if (lines[k].find("xx") == std::string::npos) continue;
+    const std::size_t yy = columns(lines[k].substr(0, lines[k].find("yy")));
+    for (std::size_t row = 1; row <= 3; ++row) {
+      const std::size_t begin = lines[k + row].rfind("  ", lines[k + row].rfind("±")) + 2;  // of the fourth value
+      EXPECT_EQ(columns(lines[k + row].substr(0, begin)), yy) << lines[k + row];
+    }
+    return;
+  }
+  FAIL() << "no heading";
+}
+
+TEST(ResultText, HasNoTrailingBlanks) {
+  Identification id = identification();
+  id.warnings.push_back({WarningCode::fit_poor, "poor", "again"});
+  id.notes.push_back("row 9 left aside");
+  id.decimation.emplace();
+  for (const std::string& text :
+       {result_text(id, findings()), result_text(identification(1), std::nullopt), ellipses_text(findings()),
+        summary_text({2, Motion::translation, id.model, id.standard_error})}) {
+    for (const std::string& line : lines_of(text)) EXPECT_FALSE(line.ends_with(' ')) << '"' << line << '"';
+  }
+}
+
+TEST(ResultText, EveryWarningSaysWhatToTry) {
+  Identification id = identification();
+  id.warnings.push_back({WarningCode::band_too_narrow, "the filter cuts", "raise --cutoff"});
+  EXPECT_THAT(result_text(id, std::nullopt),
+              HasSubstr("  ! band-too-narrow: the filter cuts\n    try: raise --cutoff\n"));
+  EXPECT_THAT(result_text(identification(), std::nullopt), Not(HasSubstr("try:")));
+}
+
+TEST(ResultText, WhatIsNotUsableSaysSo) {
+  Identification id = identification();
+  EXPECT_THAT(result_text(id, std::nullopt), Not(HasSubstr("NOT USABLE")));
+  id.usable = false;
+  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("NOT USABLE"));
+}
+
+TEST(ResultText, TheFitSaysOnWhatItIsJudged) {
+  Identification id = identification();
+  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on held-back data  VAF x 97.12, y 97.12 %"));
+  id.fit.held_back = false;
+  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on the same data"));
+}
+
+TEST(ResultText, SaysHowItWasMade) {
+  Identification id = identification();
+  id.handle_mass = 0.194;
+  id.structure = Structure::symmetric;
+  id.preparations[0].mode = Mode::reference;
+  const std::string text = result_text(id, std::nullopt);
+  EXPECT_THAT(text, HasSubstr("a.mat   62.0 s at 1000 Hz   MAT v7"));
+  EXPECT_THAT(text, HasSubstr("reference, chapter3 of the published procedure"));
+  EXPECT_THAT(text, HasSubstr("free (the reference varies continuously)"));
+  EXPECT_THAT(text, HasSubstr("Savitzky–Golay N 6 W 101, then zero-phase Butterworth 5 Hz: given"));
+  EXPECT_THAT(text, HasSubstr("0.194 kg taken off the inertia"));
+  EXPECT_THAT(text, HasSubstr("symmetric"));
+  id.preparations[0].cutoff.reset();
+  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("no low-pass"));
+}
+
+TEST(EllipsesText, ShowsAreaShapeOrientationAndAntisymmetry) {
+  const std::string text = ellipses_text(findings());
+  const std::string stiffness = line_with(text, "stiffness");
+  EXPECT_THAT(stiffness, HasSubstr("6.28 [6.00, 6.60]"));
+  EXPECT_THAT(stiffness, HasSubstr("2.00 [1.90, 2.10]"));
+  EXPECT_THAT(stiffness, HasSubstr("28.6°"));  // 0.5 rad
+  EXPECT_THAT(stiffness, HasSubstr("11.5 % [7.0, 15.0]"));
+}
+
+TEST(EllipsesText, AnIndefiniteMatrixShowsItsEigenvaluesInstead) {
+  Findings none = findings();
+  none.ellipses[0].ellipse = {2.0, -0.25, kNaN, kNaN, 0.5};
+  EXPECT_THAT(line_with(ellipses_text(none), "inertia"), HasSubstr("none"));
+  EXPECT_THAT(line_with(ellipses_text(none), "inertia"), HasSubstr("(λ -0.25, 2)"));
+}
+
+TEST(SummaryText, ShowsTheErrorItself) {
+  Summary summary{3, Motion::translation, identification().model, identification().standard_error};
+  const std::string text = summary_text(summary);
+  EXPECT_THAT(text, HasSubstr("mean of 3 trials"));
+  EXPECT_THAT(text, HasSubstr("120 ± 10"));  // not 1.96 of it
+  EXPECT_THAT(text, HasSubstr("standard error between trials"));
+}
+
+TEST(InfoText, NamesEveryProblem) {
+  Recording recording;
+  recording.sources.push_back({"a.csv", "CSV", "0123456789abcdef0123"});
+  recording.notes.push_back("a comma too many");
+  Inspection facts;
+  facts.samples = 100;
+  facts.interval_median = 0.001;
+  facts.gaps.push_back({49, 0.049, 0.5});
+  facts.duplicated_times = 1;
+  facts.first_duplicated = 10;
+  facts.backward_times = 3;
+  facts.first_backward = 20;
+  facts.non_finite.push_back({"force_x", 2, 30});
+  facts.channels.push_back({"force_x", "N", -1.0, 1.0, false, true, 0.01});
+  const std::string text = info_text(recording, facts);
+  EXPECT_THAT(text, HasSubstr("a gap of 0.5 s after sample 50 (0.049 s)"));
+  EXPECT_THAT(text, HasSubstr("time repeats once, first at sample 11"));
+  EXPECT_THAT(text, HasSubstr("time runs backwards 3 times, first at sample 21"));
+  EXPECT_THAT(text, HasSubstr("force_x is not a number 2 times, first at sample 31"));
+  EXPECT_THAT(text, HasSubstr("clipped?"));
+  EXPECT_THAT(text, HasSubstr("note: a comma too many"));
+  EXPECT_THAT(text, Not(HasSubstr("no gap")));
+}
+
+ValidationTable validation() {
+  ValidationTable table;
+  table.study = "springs";
+  table.question = "does the fit give the springs?";
+  table.unit = "N/m";
+  table.runs = 20;
+  table.rows.push_back({"k_xx", 431.5, {429.0, 434.0}, std::pair{420.0, 440.0}});
+  return table;
+}
+
+TEST(ValidationText, ShowsARowWithItsIntervalAndVerdict) {
+  ValidationTable table = validation();
+  EXPECT_THAT(line_with(validation_text(table), "k_xx"),
+              testing::ContainsRegex("431.50 +.429.00, 434.00. +.420, 440. +ok$"));
+  table.rows[0].wanted = {435.0, 440.0};
+  EXPECT_THAT(line_with(validation_text(table), "k_xx"), HasSubstr("FALLS SHORT"));
+  EXPECT_FALSE(table.met());
+}
+
+TEST(ValidationText, ARowThatIsNotJudgedIsReported) {
+  ValidationTable table = validation();
+  table.rows.push_back({"k_yx", 900.0, {899.0, 901.0}, std::nullopt});
+  EXPECT_THAT(line_with(validation_text(table), "k_yx"), testing::EndsWith("reported"));
+  EXPECT_TRUE(table.met());
+}
+
+TEST(ValidationText, SpreadCoverageAndUnitStandWhereARowHasThem) {
+  ValidationTable table = validation();
+  EXPECT_THAT(validation_text(table), Not(HasSubstr("spread")));
+  EXPECT_THAT(validation_text(table), Not(HasSubstr("intervals hold")));
+  table.rows.push_back({"m_xx", 1.3264, {1.31, 1.34}, std::nullopt, "kg", 0.0123, 0.945});
+  const std::string text = validation_text(table);
+  EXPECT_THAT(text, HasSubstr("spread of runs"));
+  EXPECT_THAT(line_with(text, "m_xx"), HasSubstr("1.326 kg"));
+  EXPECT_THAT(line_with(text, "m_xx"), HasSubstr("0.012"));
+  EXPECT_THAT(line_with(text, "m_xx"), HasSubstr("94.5 %"));
+}
+
+TEST(ValidationText, AWishWithOneEndIsWords) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  ValidationTable table = validation();
+  table.rows[0].wanted = {400.0, infinity};
+  EXPECT_THAT(validation_text(table), HasSubstr("at least 400"));
+  table.rows[0].wanted = {-infinity, 500.0};
+  EXPECT_THAT(validation_text(table), HasSubstr("at most 500"));
+}
+
+TEST(ValidationText, NotesAndChartsFollowTheTable) {
+  ValidationTable table = validation();
+  table.notes.emplace_back("The springs are those of the maker.");
+  Chart chart;
+  chart.title = "Springs, found and made";
+  table.charts.push_back(chart);
+  const std::string text = validation_text(table);
+  EXPECT_LT(text.find("k_xx"), text.find("  The springs are those"));
+  EXPECT_LT(text.find("The springs are those"), text.find("Springs, found and made"));
+}
+
+TEST(BySensorText, HasTheSensorsModelAndWhatTheComputedForceMakesOfIt) {
+  Identification computed = identification(1), sensed = identification(1);
+  computed.preparations[0].force_source = ForceSource::observer;
+  computed.model.K(0, 0) = 123.5;  // of 120
+  const ForceAgreement none{0, Vector::Zero(1), Vector::Zero(1)};
+  ForceComparison comparison{.all = none, .reversals = none, .rest = none, .motion = none};
+  for (Vector* part : {&comparison.measured_rms, &comparison.vaf, &comparison.correlation, &comparison.gain,
+                       &comparison.lag, &comparison.correlation_at_lag}) {
+    *part = Vector::Ones(1);
+  }
+  const std::string text = by_sensor_text(computed, sensed, comparison);
+  EXPECT_THAT(text, HasSubstr("momentum observer against force sensor"));
+  const std::size_t by_sensor = text.find("by the force sensor"),
+                    less = text.find("the computed force less the sensor");
+  ASSERT_NE(less, std::string::npos);
+  EXPECT_THAT(line_with(text.substr(by_sensor), "stiffness K"), HasSubstr("120"));
+  EXPECT_THAT(line_with(text.substr(less), "stiffness K"), HasSubstr("3.5"));
+}
+
+}  // namespace
+}  // namespace mbk::report

@@ -1,0 +1,61 @@
+#include "mbk/present/report/width_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "mbk/present/report/layout.h"
+
+namespace mbk::report {
+namespace {
+
+std::string between(double value, const Interval& interval) {
+  if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return fmt::format("{:.3g}", value);
+  return fmt::format("{:.3g} [{:.3g}, {:.3g}]", value, interval.first, interval.second);
+}
+
+std::string times(const WidthRatio& ratio, bool directed) {
+  const std::string text = "× " + between(ratio.ratio, ratio.ratio95);
+  return directed ? text + fmt::format(" at {:.0f}°", 180.0 / std::numbers::pi * ratio.direction) : text;
+}
+
+}  // namespace
+
+std::string width_text(const WidthFindings& widths) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> notes;
+  bool directed = false;
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    const char* const name = kMatrixNames[k];
+    if (!widths.of[k]) {
+      notes.push_back(fmt::format("{} has no width: {}", name, widths.refused[k]));
+      continue;
+    }
+    const WidthFinding& one = *widths.of[k];
+    directed = one.ratios.size() > 1;
+    rows.push_back({name, between(one.distance, one.distance95), times(one.ratios.front(), directed)});
+    if (directed) rows.back().push_back(times(one.ratios.back(), directed));
+    rows.back().emplace_back(one.told_apart ? "" : "not told apart");
+    if (!one.surely_positive) {
+      notes.push_back(
+          fmt::format("{}: a smallest eigenvalue is not surely above zero, and without it the distance has "
+                      "no upper end: do not trust the interval",
+                      name));
+    }
+  }
+  std::string text;
+  if (!rows.empty()) {
+    rows.insert(rows.begin(), directed ? std::vector<std::string>{"", "width", "second to first, least", "most", ""}
+                                       : std::vector<std::string>{"", "width", "second to first", ""});
+    text += table(rows);
+    text += paragraph("  ",
+                      "(width √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % intervals. Noise alone gives "
+                      "a width above 0: it means something where both are told apart)");
+  }
+  for (const std::string& note : notes) text += paragraph("  ! ", note);
+  return text;
+}
+
+}  // namespace mbk::report

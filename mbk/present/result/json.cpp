@@ -1,0 +1,518 @@
+#include "mbk/present/result/json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/impedance/model.h"
+#include "mbk/present/result/force_comparison_json.h"
+#include "mbk/present/result/joint_domain_json.h"
+#include "mbk/present/result/json_parts.h"
+#include "mbk/present/result/json_reading.h"
+#include "mbk/present/result/passivity_json.h"
+
+namespace mbk::result {
+namespace {
+
+constexpr const char* kResultSchema = "mbk.result/1";
+constexpr const char* kResultsSchema = "mbk.results/1";
+
+Json model_json(const impedance::Model& model) {
+  return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
+}
+
+Json numbers(const std::vector<double>& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(number(value));
+  return array;
+}
+
+Json references_json(const std::vector<ChartReference>& lines) {
+  Json array = Json::array();
+  for (const ChartReference& line : lines) array.push_back({{"value", number(line.value)}, {"name", line.name}});
+  return array;
+}
+
+Json chart_json(const Chart& chart) {
+  Json json = {{"title", chart.title},
+               {"x", {{"label", chart.x.label}, {"unit", chart.x.unit}}},
+               {"y", {{"label", chart.y.label}, {"unit", chart.y.unit}}},
+               {"series", Json::array()}};
+  for (const ChartSeries& series : chart.series) {
+    Json one = {{"name", series.name}, {"x", numbers(series.x)}, {"y", numbers(series.y)}};
+    for (const auto& ends : series.intervals) one["intervals"].push_back(interval(ends));
+    json["series"].push_back(std::move(one));
+  }
+  if (!chart.horizontal.empty()) json["horizontal"] = references_json(chart.horizontal);
+  if (!chart.vertical.empty()) json["vertical"] = references_json(chart.vertical);
+  if (chart.identity) json["identity"] = true;
+  if (!chart.notes.empty()) json["notes"] = chart.notes;
+  return json;
+}
+
+Json ellipses_json(const Findings& findings) {
+  Json json = Json::object();
+  const double degrees = 180.0 / std::numbers::pi;
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    const EllipseFinding& finding = findings.ellipses[k];
+    json[kMatrixNames[k]] = {{"area", number(finding.ellipse.area)},
+                             {"shape", number(finding.ellipse.shape)},
+                             {"orientation_deg", number(degrees * finding.ellipse.orientation)},
+                             {"eigenvalues", {number(finding.ellipse.lambda_min), number(finding.ellipse.lambda_max)}},
+                             {"symmetric_part", rows(finding.symmetric)},
+                             {"interval95",
+                              {{"area", interval(finding.area95)},
+                               {"shape", interval(finding.shape95)},
+                               {"orientation_deg", interval(finding.orientation95, degrees)}}}};
+  }
+  return json;
+}
+
+Json antisymmetry_json(const Findings& findings) {
+  const auto one = [](const AntisymmetryFinding& finding) {
+    return Json{{"value", number(finding.value)},
+                {"value_interval95", interval(finding.value95)},
+                {"zmean_percent", number(finding.zmean_percent)},
+                {"interval95", interval(finding.zmean95)}};
+  };
+  return {{"inertia", one(findings.antisymmetry[0])}, {"stiffness", one(findings.antisymmetry[1])}};
+}
+
+Json fit_json(const Fit& fit) {
+  return {{"VAF", list(fit.vaf)},
+          {"RMSE", list(fit.rmse)},
+          {"validated_on", fit.held_back ? "held-back" : "in-sample"},
+          {"VAF_in_sample", list(fit.vaf_in_sample)}};
+}
+
+Json instrument_json(const InstrumentCheck& check) {
+  return {{"reference", text(check.from)},
+          {"first_stage_F", list(check.strength)},
+          {"weakest_F", number(check.weakest())},
+          {"strong", check.strong()},
+          {"answered_share", list(check.answered)}};
+}
+
+/// A second method beside the first, without what both have in common.
+Json alternative_json(const Identification& id) {
+  Json json = {{"method", text(id.method)},
+               {"model", model_json(id.model)},
+               {"standard_error", model_json(id.standard_error)},
+               {"fit", fit_json(id.fit)},
+               {"usable", id.usable}};
+  if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
+  return json;
+}
+
+Json bootstrap_json(const BootstrapFindings& bootstrap) {
+  Json json = {{"replicates", bootstrap.replicates},
+               {"block_s", bootstrap.block_s},
+               {"blocks", number(bootstrap.blocks)},
+               {"seed", bootstrap.seed},
+               {"quantities", Json::array()}};
+  for (const BootstrapFinding& finding : bootstrap.findings) {
+    json["quantities"].push_back({{"name", finding.name},
+                                  {"unit", finding.unit},
+                                  {"value", number(finding.value)},
+                                  {"interval95", interval(finding.interval95)},
+                                  {"delta_interval95", interval(finding.delta95)}});
+  }
+  return json;
+}
+
+Json consistent_json(const ConsistentFit& fit) {
+  const auto cone = [](const Semidefiniteness& one) {
+    return Json{{"free_smallest_eigenvalue", number(one.free_smallest)},
+                {"smallest_eigenvalue", number(one.smallest)},
+                {"active", one.active}};
+  };
+  return {
+      {"model", model_json(fit.model)},
+      {"inertia", cone(fit.inertia)},
+      {"damping", cone(fit.damping)},
+      {"stiffness", cone(fit.stiffness)},
+      {"fit", fit_json(fit.fit)},
+      {"residual_power_increase_percent", number(fit.increase_percent())},
+      {"force_change", number(fit.force_change)},
+      {"largest_change", {{"parameter", fit.largest_change}, {"standard_errors", number(fit.largest_change_errors)}}},
+      {"duality_gap", number(fit.duality_gap)}};
+}
+
+Json disagreement_json(const Disagreement& disagreement) {
+  return {{"parameter", disagreement.parameter},
+          {"iv_less_ls", number(disagreement.difference)},
+          {"standard_error", number(disagreement.standard_error)},
+          {"significant", disagreement.significant}};
+}
+
+/// What a force sensor gives, and what the computed force makes of it instead.
+Json by_sensor_json(const Identification& computed, const Identification& sensed) {
+  const impedance::Model &a = computed.model, &b = sensed.model;
+  return {{"model", model_json(b)},
+          {"standard_error", model_json(sensed.standard_error)},
+          {"fit", fit_json(sensed.fit)},
+          {"induced_error", model_json({a.M - b.M, a.B - b.B, a.K - b.K, a.x0 - b.x0})}};
+}
+
+Json result_json(const Measurement& measured) {
+  const Identification& id = measured.identification;
+  Json json = header(kResultSchema);
+  json["inputs"] = inputs_json(id.sources);
+  for (std::size_t i = 0; i < id.sources.size(); ++i) {
+    json["inputs"][i]["duration_s"] = id.durations[i];
+    json["inputs"][i]["rate_hz"] = id.rates[i];
+  }
+  if (!id.notes.empty()) json["notes"] = id.notes;
+  if (!id.preparations.empty()) {  // a result that was read back says nothing of how it was made
+    json["mode"] = text(id.preparations.front().mode);
+    json["protocol"] = text(id.preparations.front().protocol);
+  }
+  json["method"] = text(id.method);
+  json["axes"] = id.axes;
+  json["structure"] = text(id.structure);
+  if (id.motion != Motion::unknown) {
+    const Units units = units_of(id.motion);
+    json["units"] = {{"M", units.inertia},
+                     {"B", units.damping},
+                     {"K", units.stiffness},
+                     {"x0", units.position},
+                     {"force", units.force}};
+  }
+  json["model"] = model_json(id.model);
+  json["standard_error"] = model_json(id.standard_error);
+  if (id.standard_error_of_robot) json["standard_error_of_robot"] = model_json(*id.standard_error_of_robot);
+  json["fit"] = fit_json(id.fit);
+  if (measured.findings) {
+    json["ellipses"] = ellipses_json(*measured.findings);
+    json["antisymmetry"] = antisymmetry_json(*measured.findings);
+  }
+  if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
+  if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
+  json["alternatives"] = Json::array();
+  if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
+  json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
+  if (measured.force_comparison) json["force_comparison"] = force_comparison_json(*measured.force_comparison);
+  if (measured.by_sensor) json["by_force_sensor"] = by_sensor_json(id, *measured.by_sensor);
+  if (measured.bootstrap) json["bootstrap"] = bootstrap_json(*measured.bootstrap);
+  if (measured.consistent) json["consistent_fit"] = consistent_json(*measured.consistent);
+  if (measured.passivity) json["passivity"] = passivity_json(*measured.passivity);
+  json["warnings"] = warnings_json(id.warnings);
+  json["usable"] = id.usable;
+  json["covariance"] = {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}};
+  json["estimation"] = {{"parameters_from", id.parameters_from},
+                        {"samples", id.samples},
+                        {"duration_s", id.excitation.duration},
+                        {"hac_lag_s", id.hac_lag_s},
+                        {"handle_mass_kg", id.handle_mass}};
+  json["excitation"] = {{"rank", id.excitation.rank},
+                        {"condition", number(id.excitation.condition)},
+                        {"motion_ratio", number(id.excitation.motion_ratio)},
+                        {"motion", number(id.excitation.motion)},
+                        {"inertia_share", number(id.excitation.inertia_share)}};
+  if (id.decimation) {
+    json["decimate_check"] = {{"rate_hz", id.decimation->rate_hz},
+                              {"model", model_json(id.decimation->model)},
+                              {"largest_relative_change", id.decimation->largest_change}};
+  }
+  json["preparation"] = Json::array();
+  for (const Preparation& one : id.preparations) json["preparation"].push_back(preparation_json(one));
+  return json;
+}
+
+Json info_json(const Recording& recording, const Inspection& inspection) {
+  Json json = header("mbk.info/1");
+  json["inputs"] = inputs_json(recording.sources);
+  json["samples"] = inspection.samples;
+  json["duration_s"] = number(inspection.duration);
+  json["rate_hz"] = number(inspection.rate_hz);
+  json["interval_s"] = {{"minimum", number(inspection.interval_min)},
+                        {"median", number(inspection.interval_median)},
+                        {"maximum", number(inspection.interval_max)},
+                        {"standard_deviation", number(inspection.interval_standard_deviation)}};
+  json["gaps"] = Json::array();
+  for (const Gap& gap : inspection.gaps) {
+    json["gaps"].push_back(
+        {{"after_sample", gap.sample + 1}, {"time_s", number(gap.time)}, {"length_s", number(gap.length)}});
+  }
+  json["duplicated_times"] = inspection.duplicated_times;
+  json["backward_times"] = inspection.backward_times;
+  json["non_finite"] = Json::array();
+  for (const NonFinite& bad : inspection.non_finite) {
+    json["non_finite"].push_back({{"channel", bad.channel}, {"count", bad.count}, {"first_sample", bad.first + 1}});
+  }
+  json["missing"] = Json::array();
+  for (const MissingSamples& missing : inspection.missing) {
+    json["missing"].push_back(
+        {{"first_sample", missing.first + 1}, {"count", missing.count}, {"time_s", number(missing.time)}});
+  }
+  json["channels"] = Json::array();
+  for (const ChannelFacts& facts : inspection.channels) {
+    json["channels"].push_back({{"name", facts.name},
+                                {"unit", facts.unit},
+                                {"minimum", number(facts.min)},
+                                {"maximum", number(facts.max)},
+                                {"constant", facts.constant},
+                                {"clipped", facts.clipped}});
+  }
+  json["metadata"] = Json::object();
+  for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
+  json["notes"] = recording.notes;
+  return json;
+}
+
+/// One document whatever their number: the only object itself, or all of them as `results` of another schema.
+std::string one_or_list(const char* schema_of_list, const std::vector<Json>& objects) {
+  if (objects.size() == 1) return dumped(objects.front());
+  Json json = header(schema_of_list);
+  json["results"] = objects;
+  return dumped(json);
+}
+
+// Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
+
+impedance::Model model_from(const Json& json, const char* name, Index n) {
+  const auto found = json.find(name);
+  if (found == json.end() || !found->is_object()) throw Malformed{fmt::format("'{}' is missing", name)};
+  return {matrix_from(*found, "M", n, n), matrix_from(*found, "B", n, n), matrix_from(*found, "K", n, n),
+          found->contains("x0") ? Vector(matrix_from(*found, "x0", n, 1)) : Vector::Constant(n, kUnknown)};
+}
+
+Fit fit_from(const Json& json, Index n) {
+  Fit fit;
+  fit.vaf = list_from(json, "VAF", n);
+  fit.rmse = list_from(json, "RMSE", n);
+  fit.vaf_in_sample =
+      json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n) : Vector::Constant(n, kUnknown);
+  fit.held_back = json.value("validated_on", "held-back") == "held-back";
+  return fit;
+}
+
+std::vector<Warning> warnings_from(const Json& json) {
+  if (!json.is_array()) throw Malformed{"'warnings' is not a list"};
+  std::vector<Warning> warnings;
+  for (const Json& one : json) {
+    const std::string code = one.value("code", "");
+    const auto known = warning_code(code);
+    if (!known) throw Malformed{fmt::format("there is no warning '{}'", code)};
+    warnings.push_back({*known, one.value("message", ""), one.value("try", "")});
+  }
+  return warnings;
+}
+
+Motion motion_from(const Json& json) {
+  const auto units = json.find("units");
+  if (units == json.end()) return Motion::unknown;
+  const std::string inertia = units->value("M", "");
+  for (const Motion motion : {Motion::translation, Motion::rotation}) {
+    if (inertia == units_of(motion).inertia) return motion;
+  }
+  return Motion::unknown;
+}
+
+Identification identification_from(const Json& json) {
+  if (!has_schema(json, kResultSchema)) {
+    throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
+  }
+  Identification id;
+  const auto model = json.find("model");
+  const bool one_axis = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array() &&
+                        (*model)["M"].size() == 1;
+  id.axes = one_axis ? 1 : 2;
+  const Index n = id.axes, count = 3 * n * n + n;
+  id.model = model_from(json, "model", n);
+  id.covariance = Matrix::Constant(count, count, kUnknown);
+  const Matrix none = Matrix::Constant(n, n, kUnknown);
+  id.standard_error = {none, none, none, Vector::Constant(n, kUnknown)};
+  if (json.contains("standard_error")) {
+    id.standard_error = model_from(json, "standard_error", n);
+    id.covariance = impedance::stacked(id.standard_error).cwiseAbs2().asDiagonal();
+  }
+  if (const auto covariance = json.find("covariance"); covariance != json.end() && covariance->is_object()) {
+    id.covariance = matrix_from(*covariance, "matrix", count, count);
+    id.parameters = covariance->value("parameters", std::vector<std::string>{});
+  }
+  id.method = json.value("method", "ls") == text(Method::instrumental_variables) ? Method::instrumental_variables
+                                                                                 : Method::least_squares;
+  id.usable = json.value("usable", true);
+  if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
+    for (const Json& input : *inputs) {
+      id.sources.push_back({input.value("file", ""), input.value("format", ""), input.value("sha256", "")});
+      id.durations.push_back(input.contains("duration_s") ? number_from(input["duration_s"]) : kUnknown);
+      id.rates.push_back(input.contains("rate_hz") ? number_from(input["rate_hz"]) : kUnknown);
+    }
+  }
+  id.motion = motion_from(json);
+  const Vector unknown = Vector::Constant(n, kUnknown);
+  id.fit = json.contains("fit") ? fit_from(json["fit"], n) : Fit{unknown, unknown, unknown, false};
+  if (json.contains("warnings")) id.warnings = warnings_from(json["warnings"]);
+  if (const auto notes = json.find("notes"); notes != json.end()) id.notes = notes->get<std::vector<std::string>>();
+  return id;
+}
+
+}  // namespace
+
+std::string to_json(const Measurement& measured) {
+  return dumped(result_json(measured));
+}
+
+std::string to_json(const std::vector<Measurement>& results, const std::optional<Summary>& summary) {
+  Json json = header(kResultsSchema);
+  json["results"] = Json::array();
+  for (const Measurement& measured : results) json["results"].push_back(result_json(measured));
+  if (summary) {
+    json["summary"] = {{"trials", summary->trials},
+                       {"model", model_json(summary->mean)},
+                       {"between_trial_standard_error", model_json(summary->between_trial_standard_error)}};
+  }
+  return dumped(json);
+}
+
+std::string to_json(const std::vector<Identification>& identifications, const std::vector<Findings>& findings) {
+  std::vector<Json> objects;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    Json json = header("mbk.ellipse/1");
+    json["inputs"] = inputs_json(identifications[i].sources);
+    json["ellipses"] = ellipses_json(findings[i]);
+    json["antisymmetry"] = antisymmetry_json(findings[i]);
+    objects.push_back(std::move(json));
+  }
+  return one_or_list("mbk.ellipses/1", objects);
+}
+
+std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections) {
+  std::vector<Json> objects;
+  for (std::size_t i = 0; i < inspections.size(); ++i) objects.push_back(info_json(recordings[i], inspections[i]));
+  return one_or_list("mbk.infos/1", objects);
+}
+
+std::string to_json(const FileContents& contents, const Error& unrecognised) {
+  Json json = header("mbk.contents/1");
+  json["inputs"] = inputs_json({contents.source});
+  json["kind"] = contents.table ? "table" : "variables";
+  json["arrays"] = Json::array();
+  for (const StoredArray& array : contents.arrays) {
+    Json one = {{"name", array.name},
+                {"rows", array.rows},
+                {"columns", array.columns},
+                {"minimum", number(array.minimum)},
+                {"maximum", number(array.maximum)}};
+    if (!array.unit.empty()) one["unit"] = array.unit;
+    if (array.rate_hz > 0) one["rate_hz"] = array.rate_hz;
+    json["arrays"].push_back(std::move(one));
+  }
+  json["notes"] = contents.notes;
+  json["unrecognised"] = {{"message", unrecognised.message}, {"try", unrecognised.remedy}};
+  return dumped(json);
+}
+
+std::string to_json(const ValidationTable& table) {
+  Json json = header("mbk.validation/1");
+  json["study"] = table.study;
+  json["question"] = table.question;
+  json["unit"] = table.unit;
+  json["runs"] = table.runs;
+  json["seed"] = table.seed;
+  json["rows"] = Json::array();
+  for (const ValidationRow& row : table.rows) {
+    Json one = {{"what", row.what},
+                {"value", number(row.value)},
+                {"interval99", interval(row.interval99)},
+                {"wanted", row.wanted ? interval(*row.wanted) : Json(nullptr)},
+                {"met", row.judged() ? Json(row.met()) : Json(nullptr)}};
+    if (row.unit) one["unit"] = *row.unit;
+    if (row.spread) one["spread"] = number(*row.spread);
+    if (row.coverage) one["coverage"] = number(*row.coverage);
+    json["rows"].push_back(std::move(one));
+  }
+  json["met"] = table.met();
+  if (!table.notes.empty()) json["notes"] = table.notes;
+  for (const Chart& chart : table.charts) json["charts"].push_back(chart_json(chart));
+  return dumped(json);
+}
+
+std::string to_json(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
+  const double degrees = 180.0 / std::numbers::pi;
+  const robot::Geometry& geometry = workspace.geometry;
+  const robot::JointLimits& limits = geometry.limits;
+  const auto at = [](const Eigen::Vector2d& place) { return Json::array({number(place.x()), number(place.y())}); };
+  Json json = header("mbk.workspace/1");
+  json["links_m"] = {geometry.d1, geometry.d2};
+  json["limits_deg"] = {{"theta1", {degrees * limits.theta1_low, degrees * limits.theta1_high}},
+                        {"theta2", {degrees * limits.theta2_low, degrees * limits.theta2_high}},
+                        {"smallest_opening", degrees * limits.smallest_opening}};
+  json["x_m"] = {number(workspace.low.x()), number(workspace.high.x())};
+  json["y_m"] = {number(workspace.low.y()), number(workspace.high.y())};
+  json["area_m2"] = number(workspace.area);
+  json["outline_m"] = Json::array();
+  for (const Eigen::Vector2d& place : workspace.outline) json["outline_m"].push_back(at(place));
+  if (posture) {
+    const impedance::Ellipse felt = impedance::ellipse(posture->inertia_at_hand);
+    Json margins = Json::array();
+    for (const robot::Margin& margin : posture->margins) {
+      margins.push_back({{"quantity", margin.quantity},
+                         {"limit_deg", degrees * margin.limit},
+                         {"kind", margin.upper ? "most" : "least"},
+                         {"left_deg", number(degrees * margin.left())}});
+    }
+    json["at"] = {{"hand_m", at(posture->hand)},
+                  {"theta_deg", at(degrees * posture->theta)},
+                  {"jacobian_m", rows(posture->jacobian)},
+                  {"manipulability_m2", number(posture->manipulability)},
+                  {"margins", std::move(margins)},
+                  {"inertia_at_hand_kg",
+                   {{"matrix", rows(posture->inertia_at_hand)},
+                    {"eigenvalues", {number(felt.lambda_min), number(felt.lambda_max)}},
+                    {"orientation_deg", number(degrees * felt.orientation)}}}};
+  }
+  return dumped(json);
+}
+
+std::string one_or_list_json(const char* schema_of_list, const std::vector<std::string>& documents) {
+  std::vector<Json> objects;
+  for (const std::string& document : documents) objects.push_back(Json::parse(document));
+  return one_or_list(schema_of_list, objects);
+}
+
+std::optional<PassivityBand> passivity_band_from_json(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  const Json::json_pointer alone("/passivity/band_hz"), first("/results/0/passivity/band_hz");
+  for (const auto& place : {alone, first}) {
+    if (!json.contains(place)) continue;
+    const Json& band = json[place];
+    if (!band.is_array() || band.size() != 2 || !band[0].is_number() || !band[1].is_number()) continue;
+    return PassivityBand{Hertz(band[0].get<double>()), Hertz(band[1].get<double>()), "as stored with the result"};
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
+  const char* const remedy = "give a file that 'mbk measure --json' or 'mbk identify --json' wrote";
+  try {
+    const Json json = Json::parse(text);
+    std::vector<Identification> all;
+    if (has_schema(json, kResultsSchema)) {
+      const auto results = json.find("results");
+      if (results == json.end() || !results->is_array() || results->empty()) {
+        throw Malformed{"'results' holds no result"};
+      }
+      for (const Json& one : *results) all.push_back(identification_from(one));
+    } else {
+      all.push_back(identification_from(json));
+    }
+    return all;
+  } catch (const Malformed& malformed) {
+    return bad_data(malformed.message, remedy);
+  } catch (const nlohmann::json::parse_error& error) {
+    return bad_data(fmt::format("not valid JSON, byte {}", error.byte), remedy);
+  } catch (const nlohmann::json::exception& error) {
+    return bad_data(fmt::format("not a result of mbk ({})", error.what()), remedy);
+  }
+}
+
+}  // namespace mbk::result

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <string>
+
+#include "mbk/present/result/json_parts.h"
+
+/// How documents of mbk are read back. For the sources of this module only.
+namespace mbk::result {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// What stands in a document and cannot be; thrown within a reading function only.
+struct Malformed {
+  std::string message;
+};
+
+inline bool has_schema(const Json& json, const char* schema) {
+  if (!json.is_object()) return false;
+  const auto found = json.find("schema");
+  return found != json.end() && found->is_string() && *found == schema;
+}
+
+inline double number_from(const Json& json) {
+  if (json.is_null()) return kUnknown;
+  if (!json.is_number())
+    throw Malformed{fmt::format("a number was expected, and a value of type '{}' stands there", json.type_name())};
+  return json.get<double>();
+}
+
+inline Matrix matrix_from(const Json& object, const char* name, Index expected_rows, Index expected_columns) {
+  const auto found = object.find(name);
+  if (found == object.end()) throw Malformed{fmt::format("'{}' is missing", name)};
+  const auto wrong = [&] {
+    return Malformed{fmt::format("'{}' is not a {}×{} matrix", name, expected_rows, expected_columns)};
+  };
+  if (!found->is_array() || static_cast<Index>(found->size()) != expected_rows) throw wrong();
+  Matrix matrix(expected_rows, expected_columns);
+  for (Index i = 0; i < expected_rows; ++i) {
+    const Json& row = (*found)[static_cast<std::size_t>(i)];
+    // A vector (expected_columns = 1) is written as a plain list.
+    if (expected_columns == 1 && !row.is_array()) {
+      matrix(i, 0) = number_from(row);
+      continue;
+    }
+    if (!row.is_array() || static_cast<Index>(row.size()) != expected_columns) throw wrong();
+    for (Index j = 0; j < expected_columns; ++j) matrix(i, j) = number_from(row[static_cast<std::size_t>(j)]);
+  }
+  return matrix;
+}
+
+inline Vector list_from(const Json& object, const char* name, Index size) {
+  return matrix_from(object, name, size, 1);
+}
+
+}  // namespace mbk::result

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/model/trial/arm_posture.h"
+#include "mbk/model/trial/diagnostics.h"
+#include "mbk/model/trial/summary.h"
+#include "mbk/present/result/json.h"
+
+namespace mbk::result {
+
+/// What a report says of one recording beside its numbers.
+struct RecordingFacts {
+  std::map<std::string, std::string> metadata;
+  std::optional<ArmPosture> posture;
+};
+
+/// One result with everything that is drawn for it.
+struct ReportedResult {
+  Measurement measured;
+  std::vector<RecordingFacts> recordings;  ///< one, or those that were pooled
+  std::optional<Diagnostics> diagnostics;
+};
+
+/// Everything in a report.
+struct Report {
+  std::vector<ReportedResult> results;  ///< at least one
+  std::optional<Summary> summary;
+  std::string command;  ///< as typed
+  std::string note;     ///< of whoever made the report: a date, a name; may be empty
+};
+
+/// Schema "mbk.report/1": `result` as `to_json` writes it, and for each result metadata, posture and diagnostics, which
+/// have six digits (time and frequency nine), since they are there to be looked at. null where a number is undefined.
+[[nodiscard]] std::string to_json(const Report& report);
+
+}  // namespace mbk::result

@@ -1,0 +1,45 @@
+#include "mbk/simulate/laboratory/axis_loads.h"
+
+#include <cmath>
+#include <limits>
+
+namespace mbk::laboratory {
+namespace {
+
+impedance::Model one_axis(double mass, double damping, double stiffness, double rest) {
+  const auto number = [](double value) { return Matrix::Constant(1, 1, value); };
+  return {number(mass), number(damping), number(stiffness), Vector::Constant(1, rest)};
+}
+
+}  // namespace
+
+impedance::Model MassSpringDamper::impedance(double /*position*/) const {
+  return one_axis(mass_, damping_, stiffness_, stiffness_ != 0.0 ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+}
+
+AlongLine::AlongLine(participant::Load& load, const Eigen::Vector2d& origin, double angle)
+    : load_(&load), origin_(origin), direction_(std::cos(angle), std::sin(angle)) {}
+
+participant::HandState AlongLine::hand(const participant::JointState& state) const {
+  return {origin_ + state.position * direction_, state.velocity * direction_, 0.0, 0.0};
+}
+
+void AlongLine::tick(double t, double sample_time, const participant::JointState& state, double reaction) {
+  load_->tick(t, sample_time, hand(state), reaction * direction_);
+}
+
+participant::OneAxisDynamics AlongLine::dynamics(const participant::JointState& state) const {
+  const participant::LoadDynamics dynamics = load_->dynamics(hand(state));
+  return {direction_.dot(dynamics.inertia * direction_), direction_.dot(dynamics.bias)};
+}
+
+impedance::Model AlongLine::impedance(double position) const {
+  const impedance::Model model = load_->impedance(origin_ + position * direction_);
+  const auto along = [&](const Matrix& m) { return direction_.dot(m * direction_); };
+  const double stiffness = along(model.K);
+  // where K (x − x₀) has no part along the line
+  const double pull = direction_.dot(model.K * (model.x0 - origin_));
+  return one_axis(along(model.M), along(model.B), stiffness, pull / stiffness);
+}
+
+}  // namespace mbk::laboratory

@@ -1,0 +1,30 @@
+#include "mbk/simulate/laboratory/find_scenario.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace mbk::laboratory {
+
+Result<Scenario> find_scenario(const std::string& name_or_file, const std::string& trial) {
+  std::string text;
+  if (const ReadyScenario* ready = find_ready_scenario(name_or_file)) {
+    text = ready->text;
+  } else {
+    std::ifstream in(name_or_file);
+    if (!in) {
+      return bad_data("no such file, and no ready scenario of that name", "'mbk simulate --list' names the ready ones",
+                      name_or_file);
+    }
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  auto scenarios = read_scenarios(text, name_or_file);
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  for (Scenario& one : *scenarios) {
+    if (trial.empty() || one.trial_name == trial) return std::move(one);
+  }
+  return bad_usage(fmt::format("there is no trial '{}' in {}", trial, name_or_file), "see the [[trial]] names in it");
+}
+
+}  // namespace mbk::laboratory

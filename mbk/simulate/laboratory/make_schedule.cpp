@@ -1,0 +1,94 @@
+#include <cmath>
+
+#include "mbk/model/perturbation/axis_pair.h"
+#include "mbk/model/perturbation/optimal_power.h"
+#include "mbk/model/perturbation/phases.h"
+#include "mbk/simulate/laboratory/scenario.h"
+
+namespace mbk::laboratory {
+namespace {
+
+using perturbation::AxisPair;
+using perturbation::Multisine;
+using perturbation::Schedule;
+
+/// Streams of the seed for the phases of the two axes.
+constexpr std::uint32_t kPhases = 10;
+
+/// Amplitudes up to a common factor.
+Result<std::vector<double>> relative_amplitudes(const MultisinePlan& plan) {
+  std::vector<double> amplitudes(plan.harmonics.size(), 1.0);
+  if (!plan.optimal_power) return amplitudes;
+  const auto power = perturbation::optimal_power(plan.period, plan.harmonics, *plan.optimal_power);
+  if (!power) return tl::unexpected(power.error());
+  for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+    amplitudes[k] = std::sqrt(power->shares[static_cast<Index>(k)]);
+  }
+  return amplitudes;
+}
+
+/// One axis with its phases, its size still open.
+Result<Multisine> sines(const MultisinePlan& plan, std::uint64_t seed, std::uint32_t axis) {
+  const auto amplitudes = relative_amplitudes(plan);
+  if (!amplitudes) return tl::unexpected(amplitudes.error());
+  return Multisine::with_random_phases(plan.period, plan.harmonics, *amplitudes, seed, kPhases + axis);
+}
+
+Result<Multisine> with_phases(const MultisinePlan& plan, const Multisine& signal, std::uint64_t seed) {
+  switch (plan.phases) {
+    case MultisinePlan::Phases::random:
+      break;
+    case MultisinePlan::Phases::schroeder:
+      return perturbation::with_schroeder_phases(signal);
+    case MultisinePlan::Phases::low_crest:
+      return perturbation::with_low_crest_phases(signal, {.seed = seed});
+  }
+  return signal;
+}
+
+Result<AxisPair> both_axes(const MultisinePlan& plan, std::uint64_t seed) {
+  auto first = sines(plan, seed, 0);
+  auto second = sines(plan, seed, 1);
+  if (!first) return tl::unexpected(first.error());
+  if (!second) return tl::unexpected(second.error());
+  if (plan.axes == MultisinePlan::Axes::interleaved) return perturbation::interleaved(*first);
+  return AxisPair{*first, *second};
+}
+
+Result<Schedule> schedule_of(const MultisinePlan& plan, std::uint64_t seed) {
+  auto pair = both_axes(plan, seed);
+  if (!pair) return tl::unexpected(pair.error());
+  const auto first = with_phases(plan, pair->first, seed), second = with_phases(plan, pair->second, seed + 1);
+  if (!first) return tl::unexpected(first.error());
+  if (!second) return tl::unexpected(second.error());
+  pair = AxisPair{first->scaled(plan.peak / first->peak()), second->scaled(plan.peak / second->peak())};
+  if (plan.axes == MultisinePlan::Axes::hadamard_second) pair->second = pair->second.scaled(-1.0);
+  return Schedule::multisine(pair->first, pair->second, plan.quantity, plan.space, plan.duration, plan.moving_in);
+}
+
+Result<Schedule> schedule_of(const PulsePlan& plan, std::uint64_t seed) {
+  perturbation::PulseSchedule::Options pulses = plan.pulses;
+  pulses.seed = seed;
+  return Schedule::pulses(pulses, plan.quantity, plan.tail, plan.space);
+}
+
+Result<Schedule> schedule_of(const RandomBinaryPlan& plan, std::uint64_t seed) {
+  perturbation::RandomBinaryOptions sequence = plan.sequence;
+  sequence.seed = seed;
+  return Schedule::random_binary(sequence, plan.angle, plan.quantity, plan.duration, plan.space);
+}
+
+Result<Schedule> schedule_of(const RestPlan& plan, std::uint64_t /*seed*/) {
+  return Schedule::rest(plan.duration);
+}
+
+}  // namespace
+
+Result<Schedule> make_schedule(const PerturbationPlan& plan, std::uint64_t seed) {
+  auto schedule = std::visit([&](const auto& kind) { return schedule_of(kind, seed); }, plan.kind);
+  if (!schedule) return tl::unexpected(schedule.error().in("perturbation"));
+  if (auto ok = schedule->check(plan.limits); !ok) return tl::unexpected(ok.error().in("perturbation"));
+  return schedule;
+}
+
+}  // namespace mbk::laboratory

@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "mbk/simulate/laboratory/scenario.h"
+
+namespace mbk::laboratory {
+namespace {
+
+using perturbation::Schedule;
+
+PerturbationPlan sines(const MultisinePlan& plan = {}) {
+  return {plan, {}};
+}
+
+Schedule made(const PerturbationPlan& plan, std::uint64_t seed = 1) {
+  auto schedule = make_schedule(plan, seed);
+  EXPECT_TRUE(schedule) << schedule.error().line();
+  return *schedule;
+}
+
+/// Values of both axes over the second period, when they have moved in.
+Matrix period(const Schedule& schedule) {
+  Matrix values(10000, 2);
+  for (Index i = 0; i < values.rows(); ++i) {
+    values.row(i) = schedule.at(10.0 + 1e-3 * static_cast<double>(i)).value.transpose();
+  }
+  return values;
+}
+
+TEST(MakeSchedule, EachAxisReachesItsPeak) {
+  for (const auto phases : {MultisinePlan::Phases::random, MultisinePlan::Phases::schroeder}) {
+    MultisinePlan plan;
+    plan.phases = phases;
+    plan.peak = 0.02;
+    const Vector largest = period(made(sines(plan))).cwiseAbs().colwise().maxCoeff().transpose();
+    EXPECT_NEAR(largest[0], 0.02, 2e-6);
+    EXPECT_NEAR(largest[1], 0.02, 2e-6);
+  }
+}
+
+TEST(MakeSchedule, IsTheSameForTheSameSeedAlone) {
+  EXPECT_EQ(period(made(sines(), 4)), period(made(sines(), 4)));
+  EXPECT_NE(period(made(sines(), 4)), period(made(sines(), 5)));
+}
+
+TEST(MakeSchedule, PhasesOfLowCrestPutMorePowerUnderTheSamePeak) {
+  MultisinePlan random, low;
+  low.phases = MultisinePlan::Phases::low_crest;
+  const double before = period(made(sines(random))).squaredNorm(), after = period(made(sines(low))).squaredNorm();
+  EXPECT_GT(after, 1.3 * before);
+}
+
+TEST(MakeSchedule, HadamardPairDiffersInTheSignOfTheSecondAxis) {
+  MultisinePlan first, second;
+  first.axes = MultisinePlan::Axes::hadamard_first;
+  second.axes = MultisinePlan::Axes::hadamard_second;
+  const Matrix a = period(made(sines(first), 7)), b = period(made(sines(second), 7));
+  EXPECT_EQ(a.col(0), b.col(0));
+  EXPECT_EQ(a.col(1), -b.col(1));
+}
+
+/// Share of each harmonic in the power of each axis, which nothing but the harmonics has.
+Matrix shares(const MultisinePlan& plan) {
+  const Matrix values = period(made(sines(plan)));
+  Matrix power(static_cast<Index>(plan.harmonics.size()), 2);
+  for (Index k = 0; k < power.rows(); ++k) {
+    Eigen::RowVector2cd sum = Eigen::RowVector2cd::Zero();
+    for (Index i = 0; i < values.rows(); ++i) {
+      const double angle = 2.0 * std::numbers::pi * plan.harmonics[static_cast<std::size_t>(k)] *
+                           static_cast<double>(i) / static_cast<double>(values.rows());
+      sum += values.row(i) * std::complex<double>(std::cos(angle), std::sin(angle));
+    }
+    power.row(k) = 2.0 * sum.cwiseAbs2() / static_cast<double>(values.rows());
+  }
+  return power.array().rowwise() / values.colwise().squaredNorm().array();
+}
+
+TEST(MakeSchedule, OptimalPowerIsSharedAmongTheLinesAsItSays) {
+  MultisinePlan plan;
+  plan.optimal_power.emplace();
+  const Vector wanted = perturbation::optimal_power(plan.period, plan.harmonics, *plan.optimal_power)->shares;
+  EXPECT_GT(wanted.maxCoeff(), 10.0 * wanted.minCoeff());
+  for (const auto phases : {MultisinePlan::Phases::random, MultisinePlan::Phases::low_crest}) {
+    plan.phases = phases;
+    const Matrix power = shares(plan);
+    for (Index axis = 0; axis < 2; ++axis) EXPECT_LT((power.col(axis) - wanted).cwiseAbs().maxCoeff(), 1e-12);
+  }
+}
+
+TEST(MakeSchedule, PowerIsFlatWithoutARuleForIt) {
+  const Matrix power = shares({});
+  EXPECT_LT((power.array() - 0.1).abs().maxCoeff(), 1e-12);  // ten lines
+}
+
+TEST(MakeSchedule, InterleavedAxesShareNoLine) {
+  MultisinePlan plan;
+  plan.axes = MultisinePlan::Axes::interleaved;
+  const Matrix power = shares(plan);
+  EXPECT_LT(power.rowwise().minCoeff().maxCoeff(), 1e-20);
+  EXPECT_NEAR(power.col(0).sum(), 1.0, 1e-12);
+  EXPECT_NEAR(power.col(1).sum(), 1.0, 1e-12);
+}
+
+TEST(MakeSchedule, TakesSeedAndSizeOfPulsesAndSequencesFromPlanAndSeed) {
+  PulsePlan pulses;
+  RandomBinaryPlan binary;
+  binary.angle = std::numbers::pi / 6.0;
+  for (const PerturbationPlan& plan : {PerturbationPlan{pulses, {}}, PerturbationPlan{binary, {}}}) {
+    EXPECT_EQ(period(made(plan, 3)), period(made(plan, 3)));
+  }
+  const auto onsets = [&](std::uint64_t seed) { return made({pulses, {}}, seed).events().front().time; };
+  EXPECT_NE(onsets(3), onsets(4));
+  EXPECT_NEAR(made({pulses, {}}, 3).duration(), made({pulses, {}}, 3).events().back().time + pulses.tail, 1e-12);
+  const Matrix along = period(made({binary, {}}, 3));
+  EXPECT_LT((along.col(1) * std::cos(binary.angle) - along.col(0) * std::sin(binary.angle)).cwiseAbs().maxCoeff(),
+            1e-12);
+  EXPECT_GT(along.norm(), 0.0);
+  EXPECT_EQ(made({RestPlan{4.0}, {}}).facts().peak, 0.0);
+}
+
+TEST(MakeSchedule, SaysWhichLimitIsBroken) {
+  PerturbationPlan plan = sines();
+  plan.limits.speed = 0.01;
+  const auto outcome = make_schedule(plan, 1);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().where, "perturbation");
+  EXPECT_NE(outcome.error().message.find("0.01"), std::string::npos) << outcome.error().message;
+}
+
+}  // namespace
+}  // namespace mbk::laboratory

@@ -1,0 +1,235 @@
+#include "mbk/simulate/laboratory/prescribed_motion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/simulate/laboratory/noise.h"
+
+namespace mbk::laboratory {
+namespace {
+
+using numeric::Random;
+using perturbation::Jet;
+using perturbation::MinimumJerk;
+using perturbation::Multisine;
+using perturbation::PulseSchedule;
+
+// Streams of the seed; pulses use stream 0, the sines of axis i stream kSines + i, and so on.
+constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;
+
+Result<void> check(const PrescribedMotionOptions& o) {
+  if (o.protocol == Protocol::free) return bad_usage("protocol free moves nothing", "take sinusoidal or underdamped");
+  const Index axes = o.limb.axes();
+  if (axes != 1 && axes != 2) return bad_usage(fmt::format("a limb with {} axes: 1 or 2 are possible", axes));
+  for (const Matrix* matrix : {&o.limb.M, &o.limb.B, &o.limb.K}) {
+    if (matrix->rows() != axes || matrix->cols() != axes || !matrix->allFinite()) {
+      return bad_usage(fmt::format("M, B and K must be finite {0}×{0} matrices", axes));
+    }
+  }
+  if (o.limb.x0.size() != axes || !o.limb.x0.allFinite()) {
+    return bad_usage(fmt::format("x0 must have {} finite entries", axes));
+  }
+  if (o.home.size() != axes || !o.home.allFinite()) {
+    return bad_usage(fmt::format("home must have {} finite entries", axes));
+  }
+  const std::pair<const char*, double> positive[] = {
+      {"radius", o.radius}, {"moving-in time", o.moving_in}, {"duration", o.sinusoidal_duration}, {"tail", o.tail}};
+  for (const auto& [name, value] : positive) {
+    if (!(value > 0.0 && std::isfinite(value))) return bad_usage(fmt::format("{} {} is not above 0", name, value));
+  }
+  return {};
+}
+
+Result<void> check(const PrescribedMotionSensors& s) {
+  const std::pair<const char*, double> parts[] = {{"position quantum", s.position_quantum},
+                                                  {"force noise", s.force_noise},
+                                                  {"coloured force noise", s.coloured_force_noise},
+                                                  {"acceleration noise", s.acceleration_noise}};
+  for (const auto& [name, value] : parts) {
+    if (!(value >= 0.0 && std::isfinite(value))) return bad_usage(fmt::format("{} {} is below 0", name, value));
+  }
+  const double bandwidth = s.coloured_force_bandwidth.value;
+  if (!(bandwidth > 0.0 && std::isfinite(bandwidth))) {
+    return bad_usage(fmt::format("bandwidth {} Hz of the coloured force noise is not above 0", bandwidth));
+  }
+  return {};
+}
+
+/// One multisine per axis with phases of its own, scaled together so that the path reaches the circle and, sampled at
+/// 1 ms, stays within it.
+Result<std::vector<Multisine>> sines_in_circle(const PrescribedMotionOptions& o) {
+  const std::vector<double> equal(o.harmonics.size(), 1.0);
+  std::vector<Multisine> axes;
+  for (Index i = 0; i < o.limb.axes(); ++i) {
+    auto axis =
+        Multisine::with_random_phases(o.period, o.harmonics, equal, o.seed, kSines + static_cast<std::uint32_t>(i));
+    if (!axis) return tl::unexpected(axis.error());
+    axes.push_back(*std::move(axis));
+  }
+  double largest = 0.0;
+  for (int k = 0; k < o.period * 1000.0; ++k) {
+    double square = 0.0;
+    for (const Multisine& axis : axes) square += std::pow(axis.at(0.001 * k).value, 2);
+    largest = std::max(largest, square);
+  }
+  for (Multisine& axis : axes) axis = axis.scaled(o.radius / std::sqrt(largest));
+  return axes;
+}
+
+std::string as_text(const Vector& row) {
+  std::vector<std::string> entries;
+  for (const double value : row) entries.push_back(fmt::format("{:.17g}", value));
+  return fmt::format("[{}]", fmt::join(entries, ", "));
+}
+
+std::string as_text(const Matrix& matrix) {
+  std::vector<std::string> rows;
+  for (Index i = 0; i < matrix.rows(); ++i) rows.push_back(as_text(Vector(matrix.row(i).transpose())));
+  return fmt::format("[{}]", fmt::join(rows, ", "));
+}
+
+std::map<std::string, std::string> metadata(const PrescribedMotionOptions& o) {
+  const auto number = [](double value) { return fmt::format("{:.17g}", value); };
+  return {{"protocol", std::string(text(o.protocol))},
+          {"seed", std::to_string(o.seed)},
+          {"truth_M", as_text(o.limb.M)},
+          {"truth_B", as_text(o.limb.B)},
+          {"truth_K", as_text(o.limb.K)},
+          {"truth_x0", as_text(o.limb.x0)},
+          {"position_quantum_m", number(o.sensors.position_quantum)},
+          {"force_noise_N", number(o.sensors.force_noise)},
+          {"coloured_force_noise_N", number(o.sensors.coloured_force_noise)},
+          {"coloured_force_bandwidth_hz", number(o.sensors.coloured_force_bandwidth.value)},
+          {"acceleration_noise_m_per_s2", number(o.sensors.acceleration_noise)}};
+}
+
+}  // namespace
+
+impedance::Model relaxed_arm() {
+  impedance::Model arm;
+  arm.M = (Matrix(2, 2) << 1.326, -0.935, -0.935, 1.883).finished();
+  arm.B = (Matrix(2, 2) << 5.76, -2.14, -2.14, 10.56).finished();
+  arm.K = (Matrix(2, 2) << 42.4, -28.6 + 7.7, -28.6 - 7.7, 125.3).finished();
+  arm.x0 = Eigen::Vector2d(0.284, 0.017);
+  return arm;
+}
+
+impedance::Model relaxed_arm_one_axis() {
+  const impedance::Model arm = relaxed_arm();
+  return {arm.M.bottomRightCorner(1, 1), arm.B.bottomRightCorner(1, 1), arm.K.bottomRightCorner(1, 1), arm.x0.tail(1)};
+}
+
+Result<PrescribedMotion> PrescribedMotion::create(const PrescribedMotionOptions& options) {
+  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
+  if (options.protocol == Protocol::sinusoidal) {
+    auto axes = sines_in_circle(options);
+    if (!axes) return tl::unexpected(axes.error());
+    return PrescribedMotion(options.home, options.sinusoidal_duration,
+                            Sines{*std::move(axes), MinimumJerk({0, 0, 0}, {1, 0, 0}, options.moving_in)});
+  }
+  PulseSchedule::Options pulses = options.pulses;
+  pulses.seed = options.seed;
+  if (options.limb.axes() == 1) {
+    pulses.repetitions = std::max(1, pulses.directions * pulses.repetitions / 2);
+    pulses.directions = 2;
+  }
+  auto schedule = PulseSchedule::create(pulses);
+  if (!schedule) return tl::unexpected(schedule.error());
+  const double duration = schedule->pulses().back().offset + options.tail;
+  return PrescribedMotion(options.home, duration, *std::move(schedule));
+}
+
+Jet<Vector> PrescribedMotion::at(double t) const {
+  const Index axes = home_.size();
+  if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) {
+    const Jet<Eigen::Vector2d> d = pulses->at(t);
+    return {home_ + d.value.head(axes), d.first.head(axes), d.second.head(axes)};
+  }
+  const Sines& sines = std::get<Sines>(shape_);
+  const Jet<double> g = sines.growth.at(t);
+  Jet<Vector> x{home_, Vector(axes), Vector(axes)};
+  for (Index i = 0; i < axes; ++i) {
+    const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
+    x.value[i] += g.value * s.value;
+    x.first[i] = g.first * s.value + g.value * s.first;
+    x.second[i] = g.second * s.value + 2.0 * g.first * s.first + g.value * s.second;
+  }
+  return x;
+}
+
+Vector PrescribedMotion::reference(double t) const {
+  if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) return home_ + pulses->reference(t).head(home_.size());
+  return at(t).value;
+}
+
+std::vector<Event> PrescribedMotion::events() const {
+  std::vector<Event> events;
+  if (const auto* schedule = std::get_if<PulseSchedule>(&shape_)) {
+    for (const PulseSchedule::Pulse& pulse : schedule->pulses()) {
+      events.push_back({pulse.onset, "onset", pulse.angle});
+      events.push_back({pulse.offset, "offset", pulse.angle});
+    }
+  }
+  return events;
+}
+
+Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& options, Hertz rate) {
+  if (!(rate.value > 0.0 && std::isfinite(rate.value))) {
+    return bad_usage(fmt::format("sample rate {} Hz is not above 0", rate.value));
+  }
+  if (const auto valid = check(options.sensors); !valid) return tl::unexpected(valid.error());
+  const auto motion = PrescribedMotion::create(options);
+  if (!motion) return tl::unexpected(motion.error());
+
+  const Index axes = options.limb.axes();
+  const auto samples = static_cast<Index>(std::llround(motion->duration() * rate.value));
+  Matrix position(samples, axes), force(samples, axes), reference(samples, axes), acceleration(samples, axes);
+  Recording recording;
+  recording.time.resize(samples);
+  for (Index i = 0; i < samples; ++i) {
+    const double t = static_cast<double>(i + 1) / rate.value;
+    const Jet<Vector> x = motion->at(t);
+    recording.time[i] = t;
+    position.row(i) = x.value.transpose();
+    acceleration.row(i) = x.second.transpose();
+    reference.row(i) = motion->reference(t).transpose();
+    const impedance::Model& limb = options.limb;
+    force.row(i) = -(limb.M * x.second + limb.B * x.first + limb.K * (x.value - limb.x0)).transpose();
+  }
+
+  const PrescribedMotionSensors& sensors = options.sensors;
+  const char* suffix[] = {"_x", "_y"};
+  const auto add = [&](const char* name, const char* one_axis_name, const char* unit, const Matrix& signals,
+                       const auto& sense) {
+    for (Index i = 0; i < axes; ++i) {
+      Vector signal = signals.col(i);
+      sense(signal, static_cast<std::uint32_t>(i));
+      recording.channels.push_back(
+          {axes == 1 ? one_axis_name : std::string(name) + suffix[i], unit, "base", std::move(signal)});
+    }
+  };
+  add("hand", "position", "m", position, [&](Vector& s, std::uint32_t) {
+    for (double& value : s) value = quantised(value, sensors.position_quantum);
+  });
+  add("force", "reaction", "N", force, [&](Vector& s, std::uint32_t axis) {
+    WhiteNoise white(sensors.force_noise, Random(options.seed, kWhiteForce + axis));
+    ColouredNoise coloured(sensors.coloured_force_noise, sensors.coloured_force_bandwidth, 1.0 / rate.value,
+                           Random(options.seed, kColouredForce + axis));
+    for (double& value : s) value = value + white.next() + coloured.next();
+  });
+  add("reference", "reference", "m", reference, [](Vector&, std::uint32_t) {});
+  add("acceleration", "acceleration", "m/s2", acceleration, [&](Vector& s, std::uint32_t axis) {
+    WhiteNoise white(sensors.acceleration_noise, Random(options.seed, kAcceleration + axis));
+    for (double& value : s) value += white.next();
+  });
+  recording.events = motion->events();
+  recording.metadata = metadata(options);
+  return recording;
+}
+
+}  // namespace mbk::laboratory

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/result.h"
+#include "mbk/base/core/units.h"
+#include "mbk/model/impedance/model.h"
+#include "mbk/model/perturbation/minimum_jerk.h"
+#include "mbk/model/perturbation/multisine.h"
+#include "mbk/model/perturbation/underdamped_pulse.h"
+#include "mbk/model/trial/protocol.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::laboratory {
+
+/// Relaxed arm of participant 1 (rebuilt from Dyck 2013, tables 3.3 and 3.5, with k_a = 7.7 N/m), 2 axes.
+[[nodiscard]] impedance::Model relaxed_arm();
+
+/// The y axis of `relaxed_arm` alone.
+[[nodiscard]] impedance::Model relaxed_arm_one_axis();
+
+/// What the sensors add to the truth. Zero switches a part off.
+struct PrescribedMotionSensors {
+  double position_quantum = 2e-6;       ///< positions are rounded to multiples of it [m]
+  double force_noise = 0.02;            ///< white, standard deviation [N]
+  double coloured_force_noise = 0.0;    ///< low-passed to first order, standard deviation [N]
+  Hertz coloured_force_bandwidth{1.5};  ///< its −3 dB frequency
+  double acceleration_noise = 0.02;     ///< white, standard deviation [m/s²]
+};
+
+struct PrescribedMotionOptions {
+  /// Sinusoidal: ten sines up to 3 Hz within a circle of 2 cm, moving in over the first seconds. Underdamped: 16 steps
+  /// of 5 mm in random directions, at rest in between (Dyck 2013, §3.4).
+  Protocol protocol = Protocol::sinusoidal;
+  impedance::Model limb = relaxed_arm();      ///< the truth; one or two axes, which is what is recorded
+  Vector home = Eigen::Vector2d(0.28, 0.02);  ///< where the hand starts, base frame [m]; one entry per axis
+  PrescribedMotionSensors sensors;
+  std::uint64_t seed = 1;  ///< of phases, pulses and noise
+
+  double period = 10.0;                                                ///< of the sinusoidal protocol's sines [s]
+  std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};  ///< of 1/period: 0.1 … 2.9 Hz
+  double radius = 0.01;                                                ///< of the circle that the sines fill [m]
+  double moving_in = 5.0;             ///< the sines grow from rest over this time [s]; the published window
+                                      ///< begins at 12 s
+  double sinusoidal_duration = 62.1;  ///< [s]; the published procedure needs 62 s
+
+  perturbation::PulseSchedule::Options pulses = {};  ///< of the underdamped protocol; `seed` above is used
+  double tail = 3.0;                                 ///< recorded after the last pulse [s]
+};
+
+/// The way of the hand in closed form: position, velocity and acceleration at any time, base frame.
+class PrescribedMotion {
+ public:
+  /// With one axis, pulses go along ±x, as many as there would be in all directions.
+  /// @fails  protocol is free (nothing moves the hand); the limb has neither one nor two axes, is not square or not
+  /// finite; home has another size; a length or
+  ///         time is not above zero; as Multisine and PulseSchedule.
+  [[nodiscard]] static Result<PrescribedMotion> create(const PrescribedMotionOptions& options);
+
+  /// x, ẋ, ẍ of the hand [m, m/s, m/s²], one entry per axis.
+  [[nodiscard]] perturbation::Jet<Vector> at(double t) const;
+
+  /// What the robot is told to follow [m]: the motion itself for sines; home, displaced during the pulses, for pulses.
+  [[nodiscard]] Vector reference(double t) const;
+
+  [[nodiscard]] double duration() const { return duration_; }  ///< [s]
+
+  /// For every pulse an "onset" and an "offset" whose value is the direction's angle from +x [rad].
+  [[nodiscard]] std::vector<Event> events() const;
+
+ private:
+  struct Sines {
+    std::vector<perturbation::Multisine> axes;
+    perturbation::MinimumJerk growth;
+  };
+
+  PrescribedMotion(Vector home, double duration, std::variant<Sines, perturbation::PulseSchedule> shape)
+      : home_(std::move(home)), duration_(duration), shape_(std::move(shape)) {}
+
+  Vector home_;
+  double duration_;
+  std::variant<Sines, perturbation::PulseSchedule> shape_;
+};
+
+/// A recording in which the hand follows the reference exactly and the limb answers
+///   F_h = −(M ẍ + B ẋ + K (x − x₀))                                       (Dyck 2013, eq. 3.2)
+/// so that the truth behind it is exact; then the sensors' rounding and noise. There is no loop: nothing that the
+/// limb does moves the robot, and neither bias from feedback nor loss of the motion can occur.
+/// Sample i is at (i + 1)/rate. Two axes: hand_x, hand_y, force_x, force_y, reference_x, reference_y, acceleration_x,
+/// acceleration_y; one axis: position, reaction, reference, acceleration. Metadata hold protocol, seed, the sensors'
+/// options and truth_M, truth_B, truth_K, truth_x0 as JSON arrays with 17 digits.
+/// @param rate  sample rate > 0
+/// @fails  rate ≤ 0; a sensor option is negative or not finite; as PrescribedMotion::create.
+[[nodiscard]] Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& options, Hertz rate);
+
+}  // namespace mbk::laboratory

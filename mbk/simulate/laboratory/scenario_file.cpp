@@ -1,0 +1,559 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/base/config/trials.h"
+#include "mbk/model/robot_file/planar_keys.h"
+#include "mbk/simulate/laboratory/scenario.h"
+
+namespace mbk::laboratory {
+namespace {
+
+using config::above;
+using config::at_least;
+using config::between;
+using config::Section;
+using perturbation::Quantity;
+using perturbation::Space;
+
+/// What an experiment file says beside the scenario (session/experiment.h): for whoever runs it.
+constexpr std::array kSectionsOfExperiments = {"session", "safety", "person", "device"};
+
+/// From the shoulder to the test location (Dyck 2013, §3.4.2) [m].
+constexpr double kShoulderDistance = 0.52;
+
+ClosedLoop::Options read_robot(const Section& s) {
+  ClosedLoop::Options options;
+  options.robot = robot_file::read_planar_robot(s);
+  options.handle_mass = s.number("handle_mass_kg", options.handle_mass, at_least(0));
+  options.steps_per_tick = s.integer("steps_per_tick", options.steps_per_tick, 1, 100);
+  if (const Section c = s.section("capstan"); c.given()) {
+    robot::Capstan capstan;
+    capstan.stiffness = c.vector2("stiffness_Nm_per_rad", capstan.stiffness, above(0));
+    capstan.damping = c.vector2("damping_Nms_per_rad", capstan.damping, at_least(0));
+    capstan.motor_inertia = c.vector2("motor_inertia_kg_m2", capstan.motor_inertia, above(0));
+    options.capstan = capstan;
+  }
+  return options;
+}
+
+control::Mode read_control(const Section& s) {
+  enum class Kind { position, force, line };
+  const auto kind =
+      s.required_choice<Kind>("kind", {{"position", Kind::position}, {"force", Kind::force}, {"line", Kind::line}});
+  if (kind == Kind::force) return ForceMode{};
+  if (kind == Kind::line) {
+    LineMode mode;
+    mode.line.angle = s.number("angle_deg", mode.line.angle);
+    mode.line.stiffness = s.number("stiffness_N_per_m", mode.line.stiffness, at_least(0));
+    mode.line.damping = s.number("damping_Ns_per_m", mode.line.damping, at_least(0));
+    mode.line.velocity_cutoff = Hertz(s.number("velocity_cutoff_hz", mode.line.velocity_cutoff.value, above(0)));
+    return mode;
+  }
+  PositionMode mode;
+  mode.gains.proportional = s.vector2("proportional_Nm_per_rad", mode.gains.proportional, at_least(0));
+  mode.gains.derivative = s.vector2("derivative_Nms_per_rad", mode.gains.derivative, at_least(0));
+  mode.gains.velocity_cutoff = Hertz(s.number("velocity_cutoff_hz", mode.gains.velocity_cutoff.value, above(0)));
+  return mode;
+}
+
+/// A unit in which a perturbation may be given, and what it commands.
+struct SizeUnit {
+  std::string_view name;
+  Quantity quantity;
+  Space space;
+};
+constexpr SizeUnit kDegrees{"deg", Quantity::position, Space::joint},
+    kMillimetres{"mm", Quantity::position, Space::hand}, kNewtons{"N", Quantity::force, Space::hand},
+    kNewtonMetres{"Nm", Quantity::force, Space::joint};
+constexpr std::array kSizeUnits = {kDegrees, kMillimetres, kNewtons, kNewtonMetres};
+
+/// A size whose key's unit says what is commanded: peak_deg, peak_mm, peak_N.
+struct Size {
+  SizeUnit unit;
+  double value;  ///< [rad, m, N or N·m]
+};
+
+/// The one of the allowed units that stands in the file. Without any it is the fallback, unless that has a unit of
+/// another machine.
+Size read_size(const Section& s, const std::string& word, const std::vector<SizeUnit>& allowed, const Size& fallback) {
+  const auto key = [&](const SizeUnit& unit) { return fmt::format("{}_{}", word, unit.name); };
+  std::string keys;
+  for (const SizeUnit& unit : allowed) keys += (keys.empty() ? "" : " or ") + key(unit);
+  const auto is_allowed = [&](const SizeUnit& unit) {
+    return std::ranges::find(allowed, unit.name, &SizeUnit::name) != allowed.end();
+  };
+  std::optional<Size> size;
+  for (const SizeUnit& unit : kSizeUnits) {
+    if (!s.has(key(unit))) continue;
+    if (!is_allowed(unit)) s.reject(key(unit), "this machine is not driven in that unit", "use " + keys);
+    if (size) s.reject(key(unit), "the size is given twice, in different units", "keep one of them");
+    size = {unit, s.number(key(unit), fallback.value, above(0))};
+  }
+  if (size) return *size;
+  if (is_allowed(fallback.unit)) return fallback;
+  return {allowed.front(), s.required_number(key(allowed.front()), above(0))};
+}
+
+std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Section& s) {
+  using perturbation::LimitedSignal;
+  enum class Power { flat, d_optimal };
+  const auto power = s.choice("power", {{"flat", Power::flat}, {"d_optimal", Power::d_optimal}}, Power::flat);
+  perturbation::OptimalPowerOptions options;
+  options.limited = s.choice(
+      "power_limited_by",
+      {{"position", LimitedSignal::position}, {"velocity", LimitedSignal::velocity}, {"force", LimitedSignal::force}},
+      options.limited);
+  options.floor = s.number("power_floor_percent", options.floor, between(0, 100));
+  if (const Section nominal = s.section("nominal"); nominal.given()) {
+    options.nominal = {nominal.required_number("mass_kg"), nominal.required_number("damping_Ns_per_m"),
+                       nominal.required_number("stiffness_N_per_m")};
+  }
+  if (power == Power::flat) return std::nullopt;
+  return options;
+}
+
+MultisinePlan read_multisine(const Section& s, const Size& size) {
+  using Phases = MultisinePlan::Phases;
+  using Axes = MultisinePlan::Axes;
+  MultisinePlan plan;
+  plan.quantity = size.unit.quantity;
+  plan.space = size.unit.space;
+  plan.peak = size.value;
+  plan.period = s.number("period_s", plan.period, above(0));
+  std::vector<double> harmonics(plan.harmonics.begin(), plan.harmonics.end());
+  harmonics = s.numbers("harmonics", harmonics, between(1, 1e6));
+  plan.harmonics.clear();
+  for (const double harmonic : harmonics) {
+    if (harmonic != std::round(harmonic)) s.reject("harmonics", fmt::format("{:g} is no whole number", harmonic));
+    plan.harmonics.push_back(static_cast<int>(harmonic));
+  }
+  plan.phases = s.choice(
+      "phases", {{"random", Phases::random}, {"schroeder", Phases::schroeder}, {"low_crest", Phases::low_crest}},
+      plan.phases);
+  plan.axes = s.choice("axes",
+                       {{"independent", Axes::independent},
+                        {"interleaved", Axes::interleaved},
+                        {"hadamard_first", Axes::hadamard_first},
+                        {"hadamard_second", Axes::hadamard_second}},
+                       plan.axes);
+  plan.optimal_power = read_optimal_power(s);
+  plan.duration = s.number("duration_s", plan.duration, above(0));
+  plan.moving_in = s.number("moving_in_s", plan.moving_in, at_least(0));
+  return plan;
+}
+
+PulsePlan read_pulses(const Section& s, const Size& size) {
+  PulsePlan plan;
+  perturbation::PulseSchedule::Options& p = plan.pulses;
+  plan.quantity = size.unit.quantity;
+  plan.space = size.unit.space;
+  p.amplitude = size.value;
+  p.damping_ratio = s.number("damping_ratio", p.damping_ratio, config::within(0, 1));
+  p.natural_frequency = RadPerSec(s.number("natural_frequency_rad_per_s", p.natural_frequency.value, above(0)));
+  p.directions = s.integer("directions", p.directions, 1, 360);
+  p.repetitions = s.integer("repetitions", p.repetitions, 1, 1000);
+  p.shortest_duration = s.number("shortest_duration_s", p.shortest_duration, above(0));
+  p.longest_duration = s.number("longest_duration_s", p.longest_duration, above(0));
+  p.shortest_pause = s.number("shortest_pause_s", p.shortest_pause, above(0));
+  p.longest_pause = s.number("longest_pause_s", p.longest_pause, above(0));
+  p.return_duration = s.number("return_s", p.return_duration, above(0));
+  p.quiet = s.number("quiet_s", p.quiet, at_least(0));
+  plan.tail = s.number("tail_s", plan.tail, at_least(0));
+  return plan;
+}
+
+RandomBinaryPlan read_random_binary(const Section& s, const Size& size) {
+  RandomBinaryPlan plan;
+  perturbation::RandomBinaryOptions& b = plan.sequence;
+  plan.quantity = size.unit.quantity;
+  plan.space = size.unit.space;
+  b.amplitude = size.value;
+  b.switching_time = s.number("switching_time_s", b.switching_time, above(0));
+  b.zero_mean = s.flag("zero_mean", b.zero_mean);
+  b.damping_ratio = s.number("damping_ratio", b.damping_ratio, config::within(0, 1));
+  b.natural_frequency = RadPerSec(s.number("natural_frequency_rad_per_s", b.natural_frequency.value, above(0)));
+  plan.angle = s.number("angle_deg", plan.angle);
+  plan.duration = s.number("duration_s", plan.duration, above(0));
+  return plan;
+}
+
+enum class Machine { planar, one_axis };
+
+/// A signal has limits in its own unit.
+perturbation::Limits read_limits(const Section& s, const SizeUnit& unit) {
+  perturbation::Limits limits;
+  const auto limit = [&](std::string_view before, std::string_view after) {
+    const auto key = [&](const SizeUnit& one) { return fmt::format("{}{}{}", before, one.name, after); };
+    for (const SizeUnit& other : kSizeUnits) {
+      if (other.name != unit.name && s.has(key(other))) {
+        s.reject(key(other), fmt::format("the perturbation is in {}", unit.name), "use " + key(unit));
+      }
+    }
+    return s.optional_number(key(unit), above(0));
+  };
+  limits.peak = limit("peak_", "");
+  limits.speed = limit("speed_", "_per_s");
+  if (const auto value = s.optional_number("bandwidth_hz", above(0))) limits.bandwidth = Hertz(*value);
+  return limits;
+}
+
+PerturbationPlan read_perturbation(const Section& s, Machine machine) {
+  enum class Kind { none, multisine, pulses, random_binary };
+  const bool one_axis = machine == Machine::one_axis;
+  const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, at_hand = {kMillimetres, kNewtons},
+                              of_sines = {kDegrees, kMillimetres, kNewtons};
+  const auto amplitude = [&](const SizeUnit& unit, double fallback) {
+    return read_size(s, "amplitude", one_axis ? of_axis : at_hand, {unit, fallback});
+  };
+  PerturbationPlan plan;
+  SizeUnit unit = kMillimetres;
+  switch (s.required_choice<Kind>("kind", {{"multisine", Kind::multisine},
+                                           {"pulses", Kind::pulses},
+                                           {"random_binary", Kind::random_binary},
+                                           {"none", Kind::none}})) {
+    case Kind::none:
+      plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
+      break;
+    case Kind::multisine: {
+      const Size size = read_size(s, "peak", one_axis ? of_axis : of_sines, {kDegrees, MultisinePlan{}.peak});
+      plan.kind = read_multisine(s, size);
+      unit = size.unit;
+      break;
+    }
+    case Kind::pulses: {
+      const Size size = amplitude(kMillimetres, PulsePlan{}.pulses.amplitude);
+      plan.kind = read_pulses(s, size);
+      unit = size.unit;
+      break;
+    }
+    case Kind::random_binary: {
+      const Size size = amplitude(kNewtons, RandomBinaryPlan{}.sequence.amplitude);
+      plan.kind = read_random_binary(s, size);
+      unit = size.unit;
+      break;
+    }
+  }
+  plan.limits = read_limits(s.section("limits"), unit);
+  return plan;
+}
+
+participant::TwoLinkArm::Options read_two_links(const Section& s, const Vector2d& home) {
+  participant::TwoLinkArm::Options limb;
+  participant::ArmGeometry& geometry = limb.geometry;
+  geometry.upper_arm = s.number("upper_arm_mm", geometry.upper_arm, above(0));
+  geometry.forearm = s.number("forearm_mm", geometry.forearm, above(0));
+  geometry.shoulder = s.vector2("shoulder_mm", home - Vector2d(0.0, kShoulderDistance));
+  geometry.rotation = s.number("rotation_deg", geometry.rotation);
+  limb.equilibrium = s.vector2("equilibrium_mm", home);
+  if (s.has("number")) {
+    if (const auto person = participant::participant_limb(s.integer("number", 1, 1, 6))) limb.joints = person->joints;
+  }
+  participant::JointParameters& joints = limb.joints;
+  joints.inertia = s.matrix2("inertia_kg_m2", joints.inertia);
+  joints.elbow_angle = s.number("inertia_elbow_deg", joints.elbow_angle);
+  joints.damping = s.matrix2("damping_Nms_per_rad", joints.damping);
+  joints.stiffness = s.matrix2("stiffness_Nm_per_rad", joints.stiffness);
+  return limb;
+}
+
+impedance::Model read_linear_limb(const Section& s, const Vector2d& home) {
+  return {s.required_matrix2("mass_kg"), s.required_matrix2("damping_Ns_per_m"),
+          s.required_matrix2("stiffness_N_per_m"), s.vector2("equilibrium_mm", home)};
+}
+
+/// What a person adds to the limb; all of it is off where the file does not speak of it.
+participant::ArmOptions read_will(const Section& s, const Vector2d& home) {
+  participant::ArmOptions arm = participant::relaxed_arm_options();
+  const Section c = s.section("correction");
+  participant::IntermittentController::Options& will = arm.controller;
+  will.position = c.vector2("target_mm", home);
+  will.position_gain = c.number("position_gain", will.position_gain, at_least(0));
+  will.position_threshold = c.number("threshold_mm", will.position_threshold, at_least(0));
+  will.force = c.vector2("target_N", will.force);
+  will.force_gain = c.number("force_gain", will.force_gain, at_least(0));
+  will.force_threshold = c.number("threshold_N", will.force_threshold, at_least(0));
+  will.interval = c.number("interval_ms", will.interval, above(0));
+  will.delay = c.number("delay_ms", will.delay, at_least(0));
+  will.random_error = c.number("random_error_percent", will.random_error, at_least(0));
+  will.largest_increment = c.number("largest_increment_N", will.largest_increment, at_least(0));
+  will.ramp = c.number("ramp_ms", will.ramp, above(0));
+  will.leak = c.number("leak_s", will.leak, above(0));
+
+  const Section t = s.section("cocontraction");
+  participant::Cocontraction::Options& tension = arm.cocontraction;
+  tension.rest = t.number("rest", tension.rest, between(0, 1));
+  tension.slope = t.number("slope", tension.slope, at_least(0));
+  tension.speed = t.number("speed_mm_per_s", tension.speed, above(0));
+  tension.time_constant = t.number("time_constant_s", tension.time_constant, above(0));
+  tension.stiffness_gain = t.number("stiffness_gain", tension.stiffness_gain, at_least(0));
+  tension.damping_gain = t.number("damping_gain", tension.damping_gain, at_least(0));
+  tension.voluntary_damping = t.number("voluntary_damping", tension.voluntary_damping, between(0, 1));
+
+  const Section r = s.section("remnant");
+  arm.remnant.floor = r.number("floor_N", arm.remnant.floor, at_least(0));
+  arm.remnant.per_force = r.number("per_force", arm.remnant.per_force, at_least(0));
+  arm.remnant.cutoff = Hertz(r.number("cutoff_hz", arm.remnant.cutoff.value, above(0)));
+  return arm;
+}
+
+/// A matrix, or one number for the same in all directions.
+Matrix2d read_matrix_or_number(const Section& s, const char* key, const char* scalar_key) {
+  if (s.has(key)) return s.matrix2(key, Matrix2d::Zero());
+  return s.number(scalar_key, 0.0, at_least(0)) * Matrix2d::Identity();
+}
+
+RigPlan read_rig(const Section& s, const Vector2d& home) {
+  RigPlan rig;
+  rig.mass = s.number("mass_kg", rig.mass, at_least(0));
+  rig.damping = read_matrix_or_number(s, "damping_matrix_Ns_per_m", "damping_Ns_per_m");
+  const std::vector<Section> springs = s.sections("spring");
+  for (const Section& one : springs) {
+    rig.springs.push_back({one.required_number("stiffness_N_per_m", above(0)),
+                           one.required_number("rest_length_mm", at_least(0)), one.required_vector2("anchor_mm"),
+                           one.vector2("hole_mm", Vector2d::Zero())});
+  }
+  if (springs.empty()) {
+    rig.stiffness = s.required_matrix2("stiffness_N_per_m");
+    rig.equilibrium = s.vector2("equilibrium_mm", home);
+  } else {
+    for (const char* key : {"stiffness_N_per_m", "equilibrium_mm"}) {
+      if (s.has(key)) s.reject(key, "the springs decide it", "leave it out, or leave the springs out");
+    }
+  }
+  return rig;
+}
+
+participant::ToneRobot::Options read_tone(const Section& s, const Vector2d& home) {
+  participant::ToneRobot::Options tone;
+  tone.inertia = s.number("mass_kg", tone.inertia, at_least(0));
+  tone.stiffness = s.matrix2("stiffness_N_per_m", tone.stiffness);
+  tone.damping = s.matrix2("damping_Ns_per_m", tone.damping);
+  tone.rest = s.vector2("rest_mm", home);
+  tone.rigidity = s.number("rigidity_N", tone.rigidity, at_least(0));
+  tone.rigidity_speed = s.number("rigidity_speed_mm_per_s", tone.rigidity_speed, above(0));
+  tone.catch_gain = s.number("catch_gain_Ns_per_m", tone.catch_gain, at_least(0));
+  tone.catch_speed = s.number("catch_speed_mm_per_s", tone.catch_speed, at_least(0));
+  tone.stretch_angle = s.number("stretch_angle_deg", tone.stretch_angle);
+  tone.release_force = s.number("release_force_N", tone.release_force, above(0));
+  tone.motor_lag = s.number("motor_lag_ms", tone.motor_lag, at_least(0));
+  tone.largest_force = s.number("largest_force_N", tone.largest_force, above(0));
+  return tone;
+}
+
+participant::OneAxisJoint::Options read_joint(const Section& s) {
+  participant::OneAxisJoint::Options joint;
+  if (s.required_text("kind") != "joint") {
+    s.reject("kind", "a one-axis machine holds a joint", "write kind = \"joint\", or take a planar robot");
+  }
+  joint.inertia = s.number("inertia_kg_m2", joint.inertia, above(0));
+  joint.viscosity = s.number("viscosity_Nms_per_rad", joint.viscosity, at_least(0));
+  joint.stiffness = s.number("stiffness_Nm_per_rad", joint.stiffness, at_least(0));
+  joint.rest = s.number("rest_deg", joint.rest);
+  const Section r = s.section("reflex");
+  joint.reflex.gain = r.number("gain_Nms_per_rad", joint.reflex.gain, at_least(0));
+  joint.reflex.delay = r.number("delay_ms", joint.reflex.delay, at_least(0));
+  joint.reflex.natural_frequency =
+      RadPerSec(Hertz(r.number("natural_frequency_hz", Hertz(joint.reflex.natural_frequency).value, above(0))));
+  joint.reflex.damping_ratio = r.number("damping_ratio", joint.reflex.damping_ratio, above(0));
+  joint.reflex.stretched_by_positive_velocity =
+      r.flag("stretched_by_positive_velocity", joint.reflex.stretched_by_positive_velocity);
+  const Section noise = s.section("remnant");
+  joint.remnant.floor = noise.number("floor_Nm", joint.remnant.floor, at_least(0));
+  joint.remnant.cutoff = Hertz(noise.number("cutoff_hz", joint.remnant.cutoff.value, above(0)));
+  return joint;
+}
+
+LoadCellOptions read_load_cell(const Section& s) {
+  LoadCellOptions cell;
+  cell.white_noise = s.number("white_noise_N", cell.white_noise, at_least(0));
+  cell.coloured_noise = s.number("coloured_noise_N", cell.coloured_noise, at_least(0));
+  cell.coloured_bandwidth = Hertz(s.number("coloured_bandwidth_hz", cell.coloured_bandwidth.value, above(0)));
+  cell.gain = s.matrix2("gain", cell.gain);
+  cell.offset = s.vector2("offset_N", cell.offset);
+  cell.drift_walk = s.number("drift_walk_N_per_sqrt_s", cell.drift_walk, at_least(0));
+  cell.drift_rate = s.vector2("drift_rate_N_per_s", cell.drift_rate);
+  return cell;
+}
+
+StrainGaugeOptions read_strain_gauge(const Section& s) {
+  StrainGaugeOptions gauge;
+  gauge.slope = s.vector2("slope_N_per_V", gauge.slope);
+  gauge.offset = s.vector2("offset_N", gauge.offset);
+  gauge.calibration_arm = s.number("calibration_arm_mm", gauge.calibration_arm, above(0));
+  gauge.arm = s.number("arm_mm", gauge.arm, above(0));
+  gauge.crosstalk = s.vector2("crosstalk_percent", gauge.crosstalk, between(-100, 100));
+  gauge.bridge_noise = s.number("bridge_noise_V_per_sqrt_hz", gauge.bridge_noise, at_least(0));
+  gauge.cutoff = Hertz(s.number("cutoff_hz", gauge.cutoff.value, at_least(0)));
+  gauge.filter_order = s.integer("filter_order", gauge.filter_order, 1, 20);
+  gauge.converter_bits = s.integer("converter_bits", gauge.converter_bits, 0, 24);
+  gauge.converter_range = s.number("converter_range_V", gauge.converter_range, above(0));
+  gauge.assumed_arm = s.number("assumed_arm_mm", gauge.assumed_arm, above(0));
+  gauge.assumed_offset = s.vector2("assumed_offset_N", gauge.assumed_offset);
+  return gauge;
+}
+
+AccelerometerOptions read_accelerometer(const Section& s) {
+  AccelerometerOptions meter;
+  meter.noise = s.number("noise_m_per_s2", meter.noise, at_least(0));
+  meter.bias = s.vector2("bias_m_per_s2", meter.bias);
+  meter.gain_error = s.vector2("gain_error_percent", meter.gain_error, above(-100));
+  meter.misalignment = s.number("misalignment_deg", meter.misalignment);
+  meter.bandwidth = Hertz(s.number("bandwidth_hz", meter.bandwidth.value, at_least(0)));
+  return meter;
+}
+
+SensorOptions read_sensors(const Section& s) {
+  enum class Force { load_cell, strain_gauge, perfect };
+  enum class Acceleration { accelerometer, perfect };
+  SensorOptions sensors;
+  sensors.encoder_resolution = s.number("encoder_resolution_rad", sensors.encoder_resolution, at_least(0));
+
+  const Section force = s.section("force");
+  switch (force.choice(
+      "kind", {{"load_cell", Force::load_cell}, {"strain_gauge", Force::strain_gauge}, {"perfect", Force::perfect}},
+      Force::load_cell)) {
+    case Force::load_cell:
+      sensors.force = read_load_cell(force);
+      break;
+    case Force::strain_gauge:
+      sensors.force = read_strain_gauge(force);
+      break;
+    case Force::perfect:
+      sensors.force = PerfectSensor{};
+      break;
+  }
+  const Section acceleration = s.section("acceleration");
+  if (acceleration.choice("kind", {{"accelerometer", Acceleration::accelerometer}, {"perfect", Acceleration::perfect}},
+                          Acceleration::accelerometer) == Acceleration::perfect) {
+    sensors.acceleration = PerfectSensor{};
+  } else {
+    sensors.acceleration = read_accelerometer(acceleration);
+  }
+  if (const Section motor = s.section("motor_current"); motor.given()) {
+    MotorCurrentOptions current;
+    current.torque_constant = motor.vector2("torque_constant_Nm_per_A", current.torque_constant, above(0));
+    current.torque_constant_error =
+        motor.vector2("torque_constant_error_percent", current.torque_constant_error, above(-100));
+    current.noise = motor.number("noise_A", current.noise, at_least(0));
+    sensors.torque = current;
+  }
+  using Timestamps = ClockOptions::Timestamps;
+  const Section clock = s.section("clock");
+  sensors.clock.jitter = clock.number("jitter_us", sensors.clock.jitter, at_least(0));
+  sensors.clock.timestamps = clock.choice(
+      "timestamps", {{"actual", Timestamps::actual}, {"nominal", Timestamps::nominal}}, sensors.clock.timestamps);
+  return sensors;
+}
+
+OneAxisSensorOptions read_one_axis_sensors(const Section& s) {
+  OneAxisSensorOptions sensors;
+  sensors.position_resolution = s.number("position_resolution_rad", sensors.position_resolution, at_least(0));
+  sensors.reaction_noise = s.number("reaction_noise_Nm", sensors.reaction_noise, at_least(0));
+  sensors.coloured_noise = s.number("coloured_noise_Nm", sensors.coloured_noise, at_least(0));
+  sensors.coloured_bandwidth = Hertz(s.number("coloured_bandwidth_hz", sensors.coloured_bandwidth.value, above(0)));
+  sensors.drift_walk = s.number("drift_walk_Nm_per_sqrt_s", sensors.drift_walk, at_least(0));
+  sensors.drift_rate = s.number("drift_rate_Nm_per_s", sensors.drift_rate);
+  sensors.acceleration_noise = s.number("acceleration_noise_rad_per_s2", sensors.acceleration_noise, at_least(0));
+  return sensors;
+}
+
+OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
+  OneAxisTrial trial;
+  OneAxisLoop::Machine& machine = trial.machine;
+  machine.inertia = robot.number("inertia_kg_m2", machine.inertia, above(0));
+  machine.friction.viscous = robot.number("viscous_Nms_per_rad", machine.friction.viscous, at_least(0));
+  machine.friction.coulomb = robot.number("coulomb_Nm", machine.friction.coulomb, at_least(0));
+  machine.friction.smoothing = robot.number("smoothing_rad_per_s", machine.friction.smoothing, above(0));
+  machine.steps_per_tick = robot.integer("steps_per_tick", machine.steps_per_tick, 1, 100);
+  const Section control = root.section("control");
+  trial.controlled =
+      control.required_choice<Quantity>("kind", {{"position", Quantity::position}, {"force", Quantity::force}});
+  if (trial.controlled == Quantity::position) {
+    trial.servo.proportional = control.number("proportional_Nm_per_rad", trial.servo.proportional, at_least(0));
+    trial.servo.derivative = control.number("derivative_Nms_per_rad", trial.servo.derivative, at_least(0));
+    trial.servo.velocity_cutoff =
+        Hertz(control.number("velocity_cutoff_hz", trial.servo.velocity_cutoff.value, above(0)));
+  }
+  trial.joint = read_joint(root.section("participant"));
+  trial.sensors = read_one_axis_sensors(root.section("sensors"));
+  return trial;
+}
+
+PlanarTrial read_planar(const Section& root, const Section& robot) {
+  PlanarTrial trial;
+  trial.robot = read_robot(robot);
+  trial.home = robot.vector2("home_mm", trial.home);
+  trial.control = read_control(root.section("control"));
+  trial.sensors = read_sensors(root.section("sensors"));
+  const Section person = root.section("participant"), rig = root.section("rig");
+  if (person.given() && rig.given()) {
+    rig.reject("mass_kg", "a participant and a rig cannot both hold the handle", "keep [participant] or [rig]");
+  }
+  if (rig.given()) trial.load = read_rig(rig, trial.home);
+  if (person.given()) {
+    enum class Kind { arm, linear, tone };
+    const auto kind =
+        person.required_choice<Kind>("kind", {{"arm", Kind::arm}, {"linear", Kind::linear}, {"tone", Kind::tone}});
+    if (kind == Kind::tone) {
+      trial.load = read_tone(person, trial.home);
+    } else {
+      participant::ArmOptions arm = read_will(person, trial.home);
+      if (kind == Kind::arm) arm.limb = read_two_links(person, trial.home);
+      if (kind == Kind::linear) arm.limb = read_linear_limb(person, trial.home);
+      trial.load = arm;
+    }
+  }
+  return trial;
+}
+
+/// The machine's axis is the first one of the schedule: everything goes to and fro along it.
+void along_one_axis(PerturbationPlan& plan) {
+  if (auto* binary = std::get_if<RandomBinaryPlan>(&plan.kind)) binary->angle = 0.0;
+  if (auto* pulses = std::get_if<PulsePlan>(&plan.kind)) {
+    perturbation::PulseSchedule::Options& p = pulses->pulses;
+    p.repetitions = std::max(1, p.repetitions * p.directions / 2);  // as many as there would be in all directions
+    p.directions = 2;
+  }
+}
+
+}  // namespace
+
+Scenario read_scenario(const Section& root) {
+  Scenario scenario;
+  const Section recording = root.section("recording");
+  scenario.condition = recording.text("condition", "");
+  scenario.rate = Hertz(recording.number("rate_hz", scenario.rate.value, between(10, 100'000)));
+  scenario.seed = recording.integer<std::uint64_t>("seed", scenario.seed, 0, std::numeric_limits<std::int64_t>::max());
+  scenario.readers = recording.choice<Readers>(
+      "readable_by", {{"owner", Readers::owner}, {"group", Readers::group}, {"all", Readers::all}}, scenario.readers);
+  const Section robot = root.section("robot");
+  const auto machine =
+      robot.choice("kind", {{"planar", Machine::planar}, {"one_axis", Machine::one_axis}}, Machine::planar);
+  scenario.perturbation = read_perturbation(root.section("perturbation"), machine);
+  if (machine == Machine::planar) {
+    scenario.trial = read_planar(root, robot);
+  } else {
+    scenario.trial = read_one_axis(root, robot);
+    along_one_axis(scenario.perturbation);
+  }
+  return scenario;
+}
+
+Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file) {
+  return config::read_trials(text, file, [&](const Section& root, const std::string& name) -> Result<Scenario> {
+    for (const char* section : kSectionsOfExperiments) root.leave_to_others(section);
+    Scenario scenario = read_scenario(root);
+    scenario.file_name = file.stem().string();
+    scenario.trial_name = name;
+    return scenario;
+  });
+}
+
+}  // namespace mbk::laboratory

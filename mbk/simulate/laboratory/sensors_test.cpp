@@ -1,0 +1,286 @@
+#include "mbk/simulate/laboratory/sensors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mbk/simulate/laboratory/link_axes.h"
+#include "tests/support/allocations.h"
+
+namespace mbk::laboratory {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTick = 1e-3;
+const robot::Geometry kGeometry;
+
+SensorSuite suite(const SensorOptions& options, std::uint64_t seed = 1) {
+  return SensorSuite::create(options, kGeometry, kTick, seed).value();
+}
+
+/// Every part switched off, one by one.
+SensorOptions silent() {
+  SensorOptions options;
+  options.encoder_resolution = 0.0;
+  options.force = LoadCellOptions{.white_noise = 0.0};
+  options.acceleration = AccelerometerOptions{.noise = 0.0};
+  options.torque = MotorCurrentOptions{};
+  return options;
+}
+
+/// Some state of a rigid drive in motion.
+TrueState state(int k) {
+  const double t = k * kTick;
+  TrueState s;
+  s.time = t;
+  s.theta = {0.2 + 0.3 * std::sin(3.0 * t), 1.1 + 0.4 * std::sin(4.0 * t)};
+  s.motor_angle = s.theta;
+  s.position = robot::hand_position(kGeometry, s.theta);
+  s.acceleration = {3.0 * std::sin(7.0 * t), -2.0 * std::cos(5.0 * t)};
+  s.force_hand_on_robot = {9.0 * std::cos(6.0 * t), 4.0 + 5.0 * std::sin(2.0 * t)};
+  s.motor_torque = {2.0 * std::sin(9.0 * t), 1.0};
+  return s;
+}
+
+void expect_truth(const SensorSuite::Reading& reading, const TrueState& truth) {
+  EXPECT_EQ(reading.time, truth.time);
+  EXPECT_EQ(reading.joint, truth.theta);
+  EXPECT_EQ(reading.hand, truth.position);
+  EXPECT_EQ(reading.force, truth.force_hand_on_robot);
+  EXPECT_EQ(reading.acceleration, truth.acceleration);
+  EXPECT_EQ(reading.torque, truth.motor_torque);
+}
+
+TEST(SensorSuite, PerfectOrSilentReadsTheTruthToTheLastBit) {
+  for (const SensorOptions& options : {SensorOptions::perfect(), silent()}) {
+    SensorSuite sensors = suite(options);
+    for (int k = 0; k < 500; ++k) expect_truth(sensors.read(state(k)), state(k));
+    EXPECT_EQ(sensors.next_interval(), kTick);
+    EXPECT_EQ(sensors.clipped_samples(), 0);
+    EXPECT_EQ(sensors.force_delay(), 0.0);
+  }
+}
+
+TEST(SensorSuite, EncodersCountInStepsOfTwoMicrometresAtTheFirstLink) {
+  const double count = SensorOptions{}.encoder_resolution;
+  EXPECT_NEAR(count * kGeometry.d1, 2e-6, 1e-20);
+  SensorSuite sensors = suite({});
+  double square = 0.0;
+  constexpr int kCount = 20000;
+  for (int k = 0; k < kCount; ++k) {
+    const Vector2d angle = state(k).motor_angle, error = sensors.encoders(angle) - angle;
+    ASSERT_LE(error.cwiseAbs().maxCoeff(), 0.5 * count * (1.0 + 1e-9)) << k;
+    square += error.squaredNorm() / (2.0 * kCount);
+  }
+  EXPECT_NEAR(std::sqrt(square), count / std::sqrt(12.0), 0.02 * count / std::sqrt(12.0));
+}
+
+TEST(SensorSuite, HandIsTheForwardKinematicsOfWhatTheControllerSees) {
+  SensorSuite sensors = suite({});
+  TrueState truth = state(100);
+  truth.motor_angle += Vector2d(0.003, -0.002);  // elastic cables
+  const SensorSuite::Reading reading = sensors.read(truth);
+  EXPECT_EQ(reading.joint, sensors.encoders(truth.motor_angle));
+  EXPECT_EQ(reading.hand, robot::hand_position(kGeometry, reading.joint));
+}
+
+TEST(LinkAxes, AreThePhysicalRotationOfTheLastLink) {
+  for (double theta2 = -0.5; theta2 < 3.0; theta2 += 0.1) {
+    const Matrix2d axes = link_axes(theta2);
+    EXPECT_LT((axes.transpose() * axes - Matrix2d::Identity()).norm(), 1e-15);
+    EXPECT_NEAR(axes.determinant(), 1.0, 1e-15);
+    // The last link stands at θ₂ − 90° from the x axis; its x_s points from the elbow to the hand
+    EXPECT_LT((axes - Eigen::Rotation2Dd(theta2 - kPi / 2.0).toRotationMatrix()).norm(), 1e-15);
+    const Vector2d theta(0.3, theta2);
+    const Vector2d link = robot::hand_position(kGeometry, theta) - robot::elbow_position(kGeometry, theta);
+    EXPECT_LT((kGeometry.d2 * axes.col(0) - link).norm(), 1e-15);
+  }
+}
+
+TEST(SensorSuite, ForceErrorsTurnWithTheLastLink) {
+  SensorOptions options = silent();
+  options.force = LoadCellOptions{.white_noise = 0.0, .offset = {1.0, 0.0}};
+  SensorSuite sensors = suite(options);
+  for (const int k : {0, 300, 700}) {
+    const Vector2d error = sensors.read(state(k)).force - state(k).force_hand_on_robot;
+    const double theta2 = state(k).theta[1];
+    EXPECT_LT((error - Vector2d(std::sin(theta2), -std::cos(theta2))).norm(), 1e-14) << k;
+  }
+}
+
+TEST(SensorSuite, WrongAngleTurnsForceAndAcceleration) {
+  SensorSuite sensors = suite(silent());
+  TrueState truth = state(100);
+  truth.motor_angle[1] += 0.01;  // what the cable hides from the encoder
+  const SensorSuite::Reading reading = sensors.read(truth);
+  const Matrix2d turn = Eigen::Rotation2Dd(0.01).toRotationMatrix();
+  EXPECT_LT((reading.force - turn * truth.force_hand_on_robot).norm(), 1e-13);
+  EXPECT_LT((reading.acceleration - turn * truth.acceleration).norm(), 1e-13);
+}
+
+TEST(SensorSuite, AccelerometerIsTurnedToTheBaseFrame) {
+  SensorOptions options = silent();
+  options.acceleration = AccelerometerOptions{.noise = 0.0, .gain_error = {0.1, 0.0}};
+  SensorSuite sensors = suite(options);
+  const TrueState truth = state(100);
+  const Matrix2d axes = link_axes(truth.theta[1]);
+  const Vector2d expected = axes * Vector2d(1.1, 1.0).asDiagonal() * axes.transpose() * truth.acceleration;
+  EXPECT_LT((sensors.read(truth).acceleration - expected).norm(), 1e-14);
+}
+
+TEST(SensorSuite, StrainGaugeWithoutItsFilterReadsWithinHalfAStepOfEachAxis) {
+  SensorOptions options = silent();
+  options.force = StrainGaugeOptions{.bridge_noise = 0.0, .cutoff = Hertz(0.0)};
+  SensorSuite sensors = suite(options);
+  const double half_steps = 0.5 * std::hypot(8.56, 8.15) * 20.0 / 4096.0;
+  for (int k = 0; k < 1000; ++k) {
+    const TrueState truth = state(k);
+    ASSERT_LE((sensors.read(truth).force - truth.force_hand_on_robot).norm(), half_steps * (1.0 + 1e-9)) << k;
+  }
+}
+
+TEST(SensorSuite, PassesOnDelayAndClippedSamplesOfTheStrainGauge) {
+  SensorOptions options;
+  options.force = StrainGaugeOptions{};
+  SensorSuite sensors = suite(options);
+  EXPECT_NEAR(sensors.force_delay(), 8.56e-3, 5e-6);
+  TrueState truth = state(0);
+  truth.force_hand_on_robot = {300.0, 0.0};
+  for (int k = 0; k < 3; ++k) (void)sensors.read(truth);
+  EXPECT_EQ(sensors.clipped_samples(), 3);
+}
+
+TEST(SensorSuite, TorqueFromTheCurrentHasTheErrorOfItsConstantAndNoise) {
+  SensorOptions options = silent();
+  options.torque =
+      MotorCurrentOptions{.torque_constant = {0.5, 0.25}, .torque_constant_error = {0.1, -0.2}, .noise = 0.04};
+  SensorSuite sensors = suite(options);
+  TrueState truth = state(0);
+  truth.motor_torque = {2.0, -1.0};
+  constexpr int kCount = 100000;
+  Vector2d mean = Vector2d::Zero(), square = Vector2d::Zero();
+  for (int k = 0; k < kCount; ++k) {
+    const Vector2d torque = sensors.read(truth).torque;
+    mean += torque / kCount;
+    square += (torque - Vector2d(2.2, -0.8)).cwiseAbs2() / kCount;
+  }
+  const Vector2d deviation(0.5 * 1.1 * 0.04, 0.25 * 0.8 * 0.04);
+  EXPECT_LT((mean - Vector2d(2.2, -0.8)).norm(), 5.0 * deviation.norm() / std::sqrt(kCount));
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(std::sqrt(square[i]), deviation[i], 0.012 * deviation[i]);  // 5 errors
+}
+
+TEST(SensorSuite, TimestampsAreWhenTheTickWasOrWhenItShouldHaveBeen) {
+  SensorOptions actual, nominal;
+  actual.clock.jitter = nominal.clock.jitter = 5e-5;
+  nominal.clock.timestamps = ClockOptions::Timestamps::nominal;
+  SensorSuite first = suite(actual), second = suite(nominal);
+  double time = kTick;
+  for (int k = 0; k < 1000; ++k) {
+    TrueState truth = state(0);
+    truth.time = time;
+    ASSERT_EQ(first.read(truth).time, time);
+    ASSERT_NEAR(second.read(truth).time, (k + 1) * kTick, 1e-15 * (k + 1));
+    const double interval = first.next_interval();
+    ASSERT_EQ(interval, second.next_interval());
+    time += interval;
+  }
+}
+
+/// What two suites with the same seed read in some ticks, one column each.
+using Signals = std::vector<std::pair<std::string, std::vector<double>>>;
+Signals record(const SensorOptions& options) {
+  SensorSuite sensors = suite(options, 11);
+  Signals signals = {{"clock", {}}, {"force", {}}, {"acceleration", {}}, {"torque", {}}, {"hand", {}}};
+  for (int k = 0; k < 50; ++k) {
+    signals[0].second.push_back(sensors.next_interval());
+    const SensorSuite::Reading reading = sensors.read(state(k));
+    signals[1].second.push_back(reading.force[0]);
+    signals[2].second.push_back(reading.acceleration[0]);
+    signals[3].second.push_back(reading.torque[0]);
+    signals[4].second.push_back(reading.hand[0]);
+  }
+  return signals;
+}
+
+TEST(SensorSuite, OneNoiseLeavesEveryOtherSignalAsItWas) {
+  SensorOptions loud;
+  loud.clock.jitter = 1e-5;
+  loud.torque = MotorCurrentOptions{.noise = 0.01};
+  const Signals all = record(loud);
+  const auto same_but = [&](const std::string& changed, const SensorOptions& options) {
+    const Signals other = record(options);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      EXPECT_EQ(all[i].second != other[i].second, all[i].first == changed) << all[i].first << " without " << changed;
+    }
+  };
+  SensorOptions options = loud;
+  options.clock.jitter = 0.0;
+  same_but("clock", options);
+  options = loud;
+  options.force = PerfectSensor{};
+  same_but("force", options);
+  options = loud;
+  options.acceleration = PerfectSensor{};
+  same_but("acceleration", options);
+  options = loud;
+  options.torque = CommandedTorque{};
+  same_but("torque", options);
+}
+
+TEST(SensorSuite, SameSeedReadsTheSameAndAnotherSeedOtherwise) {
+  SensorSuite first = suite({}, 4), again = suite({}, 4), other = suite({}, 5);
+  const Vector2d force = first.read(state(3)).force;
+  EXPECT_EQ(force, again.read(state(3)).force);
+  EXPECT_NE(force, other.read(state(3)).force);
+}
+
+TEST(SensorSuite, ReadsWithoutAllocating) {
+  SensorOptions strain_gauge;
+  strain_gauge.force = StrainGaugeOptions{};
+  strain_gauge.acceleration = AccelerometerOptions{.bandwidth = Hertz(100.0)};
+  strain_gauge.torque = MotorCurrentOptions{.noise = 0.01};
+  strain_gauge.clock.jitter = 1e-5;
+  for (const SensorOptions& options : {SensorOptions{}, strain_gauge}) {
+    const long before_making = testing_support::allocations();
+    SensorSuite sensors = suite(options);
+    EXPECT_GT(testing_support::allocations(), before_making);  // the counter counts
+    const long before = testing_support::allocations();
+    double sum = 0.0;
+    for (int k = 0; k < 1000; ++k) {
+      sum +=
+          sensors.next_interval() + sensors.encoders(state(k).motor_angle).sum() + sensors.read(state(k)).force.sum();
+    }
+    EXPECT_EQ(testing_support::allocations(), before);
+    EXPECT_TRUE(std::isfinite(sum));
+  }
+}
+
+TEST(SensorSuite, RefusesWhatHasNoMeaning) {
+  const auto message = [](auto change, double sample_time = kTick) {
+    SensorOptions options;
+    change(options);
+    const auto sensors = SensorSuite::create(options, kGeometry, sample_time, 1);
+    return sensors ? std::string() : sensors.error().message;
+  };
+  EXPECT_EQ(message([](auto&) {}), "");
+  EXPECT_EQ(message([](auto&) {}, 0.0), "sample time 0 s is not above zero");
+  EXPECT_EQ(message([](auto& o) { o.encoder_resolution = -1e-6; }),
+            "encoder resolution -1e-06 rad is below zero or not finite");
+  EXPECT_EQ(message([](auto& o) { o.clock.jitter = 5e-4; }),
+            "jitter 0.0005 s is not below a third of the sample time 0.001 s");
+  EXPECT_EQ(message([](auto& o) {
+              o.torque = MotorCurrentOptions{.torque_constant = {0.1, 0.0}};
+            }),
+            "torque constant 0 N·m/A is not above zero");
+  EXPECT_NE(message([](auto& o) { o.torque = MotorCurrentOptions{.noise = -1.0}; }), "");
+  EXPECT_NE(message([](auto& o) { o.force = LoadCellOptions{.white_noise = -1.0}; }), "");
+  EXPECT_NE(message([](auto& o) { o.force = StrainGaugeOptions{.arm = 0.0}; }), "");
+  EXPECT_NE(message([](auto& o) { o.acceleration = AccelerometerOptions{.noise = -1.0}; }), "");
+}
+
+}  // namespace
+}  // namespace mbk::laboratory

@@ -1,0 +1,85 @@
+#include <map>
+#include <string>
+
+#include "mbk/simulate/laboratory/make_load.h"
+#include "mbk/simulate/laboratory/truth_text.h"
+
+namespace mbk::laboratory {
+namespace {
+
+Result<Performance> run(const PlanarTrial& trial, const Scenario& scenario, const SimulateOptions& options,
+                        perturbation::Schedule schedule) {
+  auto load = make_load(scenario, trial);
+  if (!load) return tl::unexpected(load.error());
+  return perform(Experiment{trial.robot, trial.home, std::move(schedule), trial.control, trial.sensors, scenario.rate,
+                            scenario.seed, options.progress, options.watch},
+                 **load);
+}
+
+Result<Performance> run(const OneAxisTrial& trial, const Scenario& scenario, const SimulateOptions& options,
+                        perturbation::Schedule schedule) {
+  if (trial.controlled != schedule.quantity()) {
+    return bad_usage("control and perturbation speak of different quantities",
+                     "let both be of positions, or both of torques");
+  }
+  participant::OneAxisJoint::Options person = trial.joint;
+  person.seed = scenario.seed;
+  auto joint = participant::OneAxisJoint::create(person, 1.0 / scenario.rate.value);
+  if (!joint) return tl::unexpected(joint.error().in("participant"));
+  return perform(OneAxisExperiment{trial.machine, trial.servo, std::move(schedule), trial.sensors, scenario.rate,
+                                   scenario.seed, options.progress},
+                 *joint);
+}
+
+/// The arm at the handle, where there is one.
+const participant::ArmOptions* arm_of(const Scenario& scenario) {
+  const auto* planar = std::get_if<PlanarTrial>(&scenario.trial);
+  return planar == nullptr ? nullptr : std::get_if<participant::ArmOptions>(&planar->load);
+}
+
+/// Lengths and place of an arm of two links: anyone in the room could measure them, so they are no part of the truth.
+void add_geometry(const participant::ArmOptions& arm, std::map<std::string, std::string>& metadata) {
+  const auto* limb = std::get_if<participant::TwoLinkArm::Options>(&arm.limb);
+  if (limb == nullptr) return;
+  metadata["shoulder_x_m"] = exact_text(limb->geometry.shoulder.x());
+  metadata["shoulder_y_m"] = exact_text(limb->geometry.shoulder.y());
+  metadata["upper_arm_m"] = exact_text(limb->geometry.upper_arm);
+  metadata["forearm_m"] = exact_text(limb->geometry.forearm);
+  metadata["elbow"] = "right";
+}
+
+/// Whether somebody in the scenario acts by will.
+bool has_will(const Scenario& scenario) {
+  const auto* arm = arm_of(scenario);
+  return arm != nullptr && (arm->controller.position_gain > 0.0 || arm->controller.force_gain > 0.0);
+}
+
+}  // namespace
+
+Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options) {
+  auto schedule = make_schedule(scenario.perturbation, scenario.seed);
+  if (!schedule) return tl::unexpected(schedule.error());
+  auto performance = std::visit([&](const auto& trial) { return run(trial, scenario, options, std::move(*schedule)); },
+                                scenario.trial);
+  if (!performance) return performance;
+  performance->recording.metadata.merge(scenario_metadata(scenario));
+  return performance;
+}
+
+std::map<std::string, std::string> scenario_metadata(const Scenario& scenario) {
+  std::map<std::string, std::string> metadata;
+  if (const auto* arm = arm_of(scenario)) add_geometry(*arm, metadata);
+  metadata["truth_scenario"] = scenario.file_name;
+  if (!scenario.trial_name.empty()) metadata["truth_trial"] = scenario.trial_name;
+  if (!scenario.condition.empty()) metadata["truth_condition"] = scenario.condition;
+  if (has_will(scenario)) metadata["truth_note"] = kTunedGains;
+  metadata["truth_seed"] = std::to_string(scenario.seed);
+  return metadata;
+}
+
+Recording without_truth(Recording recording) {
+  std::erase_if(recording.metadata, [](const auto& entry) { return entry.first.starts_with("truth_"); });
+  return recording;
+}
+
+}  // namespace mbk::laboratory

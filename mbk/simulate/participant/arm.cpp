@@ -1,0 +1,114 @@
+#include "mbk/simulate/participant/arm.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+namespace mbk::participant {
+namespace {
+
+constexpr std::uint32_t kControllerStream = 1, kRemnantStream = 2;
+
+/// Symmetric parts [xx, yy, xy] of a hand impedance.
+struct HandImpedance {
+  std::array<double, 3> M, B, K;
+};
+
+/// From area and shape of the published ellipses (Dyck 2013, tables 3.3 and 3.5): λmax = √(A R/π), λmin = √(A/(πR)).
+constexpr std::array<HandImpedance, 6> kParticipants = {{
+    {{1.326, 1.883, -0.935}, {5.76, 10.56, -2.14}, {42.4, 125.3, -28.6}},
+    {{1.301, 1.357, -0.807}, {5.78, 9.10, -2.57}, {45.2, 112.1, -34.2}},
+    {{1.536, 1.717, -0.958}, {6.01, 10.48, -3.34}, {39.5, 108.3, -28.0}},
+    {{1.419, 1.885, -1.025}, {4.75, 9.56, -3.17}, {36.6, 151.6, -43.3}},
+    {{1.275, 2.082, -0.951}, {4.80, 11.95, -2.54}, {39.0, 165.1, -28.3}},
+    {{1.105, 1.659, -0.770}, {3.16, 8.21, -1.31}, {22.7, 93.4, -23.7}},
+}};
+
+Matrix symmetric(const std::array<double, 3>& parts) {
+  return (Matrix2d() << parts[0], parts[2], parts[2], parts[1]).finished();
+}
+
+}  // namespace
+
+ArmOptions relaxed_arm_options() {
+  ArmOptions options;
+  options.remnant.floor = 0.10;
+  return options;
+}
+
+ArmOptions rigid_arm_options() {
+  ArmOptions options;
+  options.controller.position_gain = 1.4;
+  options.cocontraction.rest = 0.4;
+  options.cocontraction.slope = 0.6;
+  return options;
+}
+
+Result<TwoLinkArm::Options> participant_limb(int participant) {
+  if (participant < 1 || participant > 6) {
+    return bad_usage(fmt::format("participant {} is not one of the six, 1 to 6", participant));
+  }
+  const HandImpedance& hand = kParticipants[static_cast<std::size_t>(participant - 1)];
+  TwoLinkArm::Options options;
+  const auto joints = joint_parameters(options.geometry,
+                                       {symmetric(hand.M), symmetric(hand.B), symmetric(hand.K), options.equilibrium});
+  if (!joints) return tl::unexpected(joints.error());
+  options.joints = *joints;
+  return options;
+}
+
+Result<ArmOptions> participant_options(int participant) {
+  const auto limb = participant_limb(participant);
+  if (!limb) return tl::unexpected(limb.error());
+  ArmOptions options = relaxed_arm_options();
+  options.limb = *limb;
+  return options;
+}
+
+Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
+  struct CreateLimb {
+    Result<Limb> operator()(const TwoLinkArm::Options& arm) const { return TwoLinkArm::create(arm).map(as_limb); }
+    Result<Limb> operator()(const impedance::Model& model) const { return LinearLimb::create(model).map(as_limb); }
+    static Limb as_limb(const Limb& limb) { return limb; }
+  };
+  auto limb = std::visit(CreateLimb{}, options.limb);
+  if (!limb) return tl::unexpected(limb.error());
+  auto controller = IntermittentController::create(options.controller, sample_time, options.seed, kControllerStream);
+  if (!controller) return tl::unexpected(controller.error());
+  const auto cocontraction = Cocontraction::create(options.cocontraction, sample_time);
+  if (!cocontraction) return tl::unexpected(cocontraction.error());
+  const auto remnant = Remnant<2>::create(options.remnant, sample_time, options.seed, kRemnantStream);
+  if (!remnant) return tl::unexpected(remnant.error());
+  return Arm(std::move(*limb), std::move(*controller), *cocontraction, *remnant);
+}
+
+Arm::Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant)
+    : limb_(std::move(limb)), controller_(std::move(controller)), cocontraction_(cocontraction), remnant_(remnant) {
+  tense();
+}
+
+void Arm::tense() {
+  std::visit([this](auto& limb) { limb.scale(cocontraction_.stiffness_scale(), cocontraction_.damping_scale()); },
+             limb_);
+}
+
+void Arm::tick(double /*t*/, double /*sample_time*/, const HandState& hand, const Vector2d& force_on_robot) {
+  cocontraction_.step(hand.velocity.norm());
+  tense();
+  const Matrix2d K = std::visit([&](const auto& limb) { return limb.stiffness(hand.position); }, limb_);
+  const Vector2d& voluntary = controller_.step(hand.position, force_on_robot, K, cocontraction_.voluntary_weight());
+  noise_ = remnant_.step(voluntary.norm());
+}
+
+LoadDynamics Arm::dynamics(const HandState& hand) const {
+  LoadDynamics dynamics = std::visit([&](const auto& limb) { return limb.dynamics(hand); }, limb_);
+  dynamics.bias -= controller_.force() + noise_;
+  return dynamics;
+}
+
+impedance::Model Arm::impedance(const Vector2d& hand) const {
+  return std::visit([&](const auto& limb) { return limb.impedance(hand); }, limb_);
+}
+
+}  // namespace mbk::participant

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "mbk/simulate/participant/cocontraction.h"
+#include "mbk/simulate/participant/intermittent_controller.h"
+#include "mbk/simulate/participant/linear_limb.h"
+#include "mbk/simulate/participant/remnant.h"
+#include "mbk/simulate/participant/two_link_arm.h"
+
+namespace mbk::participant {
+
+/// Everything that tells one simulated arm from another. A relaxed and a rigid arm differ in these numbers only.
+struct ArmOptions {
+  std::variant<TwoLinkArm::Options, impedance::Model> limb;  ///< two links, or the same impedance everywhere
+  IntermittentController::Options controller;
+  Cocontraction::Options cocontraction;
+  Remnant<2>::Options remnant;
+  std::uint64_t seed = 1;  ///< of the controller's errors and of the remnant
+};
+
+/// An arm that is asked to do nothing: no voluntary force, no co-contraction, a little noise.
+[[nodiscard]] ArmOptions relaxed_arm_options();
+
+/// An arm that holds its hand in place "as quickly as possible" (Dyck 2013, §4.1): co-contracted, with an intermittent
+/// controller of gain 1.4. Its numbers were tuned, not fitted, so that the same arm generates energy when 2 N pulses
+/// shake it and absorbs energy at 8 N and in a 6 N multisine, as in figs. 4.3–4.5.
+[[nodiscard]] ArmOptions rigid_arm_options();
+
+/// The passive arm of one of the six participants of Dyck (2013), relaxed: joint matrices from tables 3.3 and 3.5 as
+/// rebuilt (symmetric parts), links of 0.31 and 0.34 m, the hand 0.52 m ahead of the shoulder. The inertias of the
+/// second and the third are those of no such chain with a straight elbow, so keep these two near that posture.
+/// @param participant  1 … 6
+/// @fails  usage: another number.
+[[nodiscard]] Result<TwoLinkArm::Options> participant_limb(int participant);
+
+/// `relaxed_arm_options` with the limb of a participant.
+/// @fails  as participant_limb
+[[nodiscard]] Result<ArmOptions> participant_options(int participant);
+
+/// A person's arm: a passive limb, and what the person adds to it,
+///   F_h = passive limb (stiffness and damping scaled by co-contraction) + F_v + n
+/// F_v of an intermittent controller, n a remnant. All three are decided once a tick and held over it.
+class Arm : public Load {
+ public:
+  /// @param sample_time  T [s] of the ticks that will follow
+  /// @fails  as the parts.
+  [[nodiscard]] static Result<Arm> create(const ArmOptions& options, double sample_time);
+
+  void tick(double t, double sample_time, const HandState& hand, const Vector2d& force_on_robot) override;
+  [[nodiscard]] LoadDynamics dynamics(const HandState& hand) const override;
+
+  /// Of the limb, with the co-contraction of the last tick.
+  [[nodiscard]] impedance::Model impedance(const Vector2d& hand) const override;
+
+  [[nodiscard]] const Vector2d& voluntary_force() const { return controller_.force(); }  ///< F_v [N]
+  [[nodiscard]] const Vector2d& remnant() const { return noise_; }                       ///< n [N]
+  [[nodiscard]] double cocontraction() const { return cocontraction_.level(); }          ///< 0 … 1
+
+ private:
+  using Limb = std::variant<TwoLinkArm, LinearLimb>;
+  Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant);
+  void tense();
+
+  Limb limb_;
+  IntermittentController controller_;
+  Cocontraction cocontraction_;
+  Remnant<2> remnant_;
+  Vector2d noise_ = {0.0, 0.0};
+};
+
+}  // namespace mbk::participant

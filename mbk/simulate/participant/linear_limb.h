@@ -1,0 +1,36 @@
+#pragma once
+
+#include "mbk/base/core/result.h"
+#include "mbk/simulate/participant/load.h"
+
+namespace mbk::participant {
+
+/// A limb whose hand impedance is the same everywhere, M ẍ + B ẋ + K (x − x₀) = −F_h (Dyck 2013, eq. 3.2): exactly
+/// what the estimators assume. M symmetric; B and K any.
+class LinearLimb : public Load {
+ public:
+  /// @fails  usage: not two axes, not finite, M not symmetric positive semidefinite.
+  [[nodiscard]] static Result<LinearLimb> create(const impedance::Model& model);
+
+  /// s_K and s_D ≥ 0 multiply K and B, both 1 for the limb as it was created: co-contraction. May change between ticks.
+  void scale(double stiffness, double damping) {
+    stiffness_scale_ = stiffness;
+    damping_scale_ = damping;
+  }
+
+  [[nodiscard]] LoadDynamics dynamics(const HandState& hand) const override;
+  [[nodiscard]] impedance::Model impedance(const Eigen::Vector2d& hand) const override;
+
+  /// Its K alone; does not allocate.
+  [[nodiscard]] Eigen::Matrix2d stiffness(const Eigen::Vector2d& /*hand*/) const { return stiffness_scale_ * K_; }
+
+ private:
+  LinearLimb(const Eigen::Matrix2d& M, const Eigen::Matrix2d& B, const Eigen::Matrix2d& K, const Eigen::Vector2d& x0)
+      : M_(M), B_(B), K_(K), x0_(x0) {}
+
+  Eigen::Matrix2d M_, B_, K_;
+  Eigen::Vector2d x0_;
+  double stiffness_scale_ = 1.0, damping_scale_ = 1.0;
+};
+
+}  // namespace mbk::participant

@@ -1,0 +1,146 @@
+#include "mbk/simulate/participant/two_link_arm.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mbk/base/core/option_limits.h"
+
+namespace mbk::participant {
+namespace {
+
+Result<void> within_reach(const ArmGeometry& geometry, const Vector2d& hand) {
+  // A place within reach comes back from its own joint angles
+  const double gap = (hand_position(geometry, joint_angles(geometry, hand)) - hand).norm();
+  if (gap < 1e-9) return {};
+  return bad_usage(
+      fmt::format("the hand at ({:.4g}, {:.4g}) m is {:.4g} m from the shoulder, out of reach of links of "
+                  "{:.4g} and {:.4g} m",
+                  hand.x(), hand.y(), (hand - geometry.shoulder).norm(), geometry.upper_arm, geometry.forearm),
+      "move the shoulder or the hand");
+}
+
+Result<void> check(const ArmGeometry& geometry) {
+  if (!geometry.shoulder.allFinite() || !std::isfinite(geometry.rotation)) {
+    return bad_usage("the place and the rotation of the shoulder must be finite");
+  }
+  return above_zero({{"upper arm", geometry.upper_arm, "m"}, {"forearm", geometry.forearm, "m"}});
+}
+
+}  // namespace
+
+Matrix2d ChainInertia::matrix(double elbow_angle) const {
+  const double coupling = b * std::cos(elbow_angle);
+  return (Matrix2d() << a + 2.0 * coupling, c + coupling, c + coupling, c).finished();
+}
+
+Vector2d ChainInertia::coriolis_torque(double elbow_angle, const Vector2d& q_rate) const {
+  return b * std::sin(elbow_angle) * Vector2d(-(2.0 * q_rate[0] + q_rate[1]) * q_rate[1], q_rate[0] * q_rate[0]);
+}
+
+Result<ChainInertia> ChainInertia::from_matrix(const Matrix2d& I_q, double elbow_angle) {
+  if (!I_q.allFinite() || !std::isfinite(elbow_angle)) return bad_usage("the inertia of an arm must be finite");
+  if (std::abs(I_q(0, 1) - I_q(1, 0)) > 1e-9 * I_q.norm()) {
+    return bad_usage("the joint inertia of an arm must be symmetric");
+  }
+  const double cosine = std::cos(elbow_angle);
+  if (std::abs(cosine) < 0.05) {
+    return bad_usage(fmt::format("an inertia at {:.3g} rad of the elbow says nothing about other postures: "
+                                 "|cos q2| {:.3g} is below 0.05",
+                                 elbow_angle, std::abs(cosine)),
+                     "give the inertia at a posture with the elbow farther from a right angle");
+  }
+  ChainInertia chain;
+  chain.c = I_q(1, 1);
+  chain.b = (I_q(0, 1) - chain.c) / cosine;
+  chain.a = I_q(0, 0) - 2.0 * chain.b * cosine;
+  double largest_cosine = 0.0;  // |cos q₂| in the range
+  for (const double angle : {elbow_angle - kElbowRange, elbow_angle, elbow_angle + kElbowRange}) {
+    largest_cosine = std::max(largest_cosine, std::abs(std::cos(angle)));
+  }
+  // det I = c (a − c) − b² cos² q₂
+  if (!(chain.c > 0.0 && chain.c * (chain.a - chain.c) > std::pow(chain.b * largest_cosine, 2))) {
+    return bad_usage(fmt::format("the joint inertia gives a, b, c = {:.4g}, {:.4g}, {:.4g} kg·m², which is not "
+                                 "positive definite {:.2g} rad of the elbow away",
+                                 chain.a, chain.b, chain.c, kElbowRange),
+                     "c (a - c) must be above (b cos q2)²");
+  }
+  return chain;
+}
+
+Result<JointParameters> joint_parameters(const ArmGeometry& geometry, const impedance::Model& hand) {
+  if (hand.axes() != 2 || hand.M.cols() != 2 || hand.B.rows() != 2 || hand.B.cols() != 2 || hand.K.rows() != 2 ||
+      hand.K.cols() != 2 || hand.x0.size() != 2) {
+    return bad_usage("the hand of an arm of two links has 2×2 matrices M, B and K and two coordinates x0");
+  }
+  if (!impedance::stacked(hand).allFinite()) return bad_usage("M, B, K and x0 of a hand must be finite");
+  if (auto ok = check(geometry); !ok) return tl::unexpected(ok.error());
+  const Vector2d x0 = hand.x0;
+  if (auto ok = within_reach(geometry, x0); !ok) return tl::unexpected(ok.error());
+  const Vector2d q = joint_angles(geometry, x0);
+  const Matrix2d J = jacobian(geometry, q);
+  const auto at_joints = [&](const Matrix& at_hand) { return Matrix2d(J.transpose() * at_hand * J); };
+  return JointParameters{at_joints(hand.M), q[1], at_joints(hand.B), at_joints(hand.K)};
+}
+
+Result<TwoLinkArm> TwoLinkArm::create(const Options& options) {
+  if (auto ok = check(options.geometry); !ok) return tl::unexpected(ok.error());
+  if (!options.joints.damping.allFinite() || !options.joints.stiffness.allFinite()) {
+    return bad_usage("the joint damping and stiffness of an arm must be finite");
+  }
+  if (auto ok = within_reach(options.geometry, options.equilibrium); !ok) return tl::unexpected(ok.error());
+  const auto inertia = ChainInertia::from_matrix(options.joints.inertia, options.joints.elbow_angle);
+  if (!inertia) return tl::unexpected(inertia.error());
+  return TwoLinkArm(options, *inertia);
+}
+
+Vector2d TwoLinkArm::elastic_torque(const Vector2d& q) const {
+  return stiffness_scale_ * options_.joints.stiffness * (q - q0_);
+}
+
+LoadDynamics TwoLinkArm::dynamics(const HandState& hand) const {
+  const Vector2d q = joint_angles(options_.geometry, hand.position);
+  const Matrix2d J_inverse = jacobian(options_.geometry, q).inverse();
+  const Vector2d q_rate = J_inverse * hand.velocity;
+  // q̈ = J⁻¹ (ẍ − J̇ q̇)
+  const Matrix2d inertia = J_inverse.transpose() * inertia_.matrix(q[1]) * J_inverse;
+  const Vector2d torque =
+      inertia_.coriolis_torque(q[1], q_rate) + damping_scale_ * options_.joints.damping * q_rate + elastic_torque(q);
+  const Vector2d convective = jacobian_rate(options_.geometry, q, q_rate) * q_rate;
+  return {inertia, J_inverse.transpose() * torque - inertia * convective, 0.0};
+}
+
+Matrix2d TwoLinkArm::stiffness(const Vector2d& hand) const {
+  const Vector2d q = joint_angles(options_.geometry, hand);
+  const Matrix2d J_inverse = jacobian(options_.geometry, q).inverse();
+  const Vector2d force_hand_on_robot = -(J_inverse.transpose() * elastic_torque(q));
+  return J_inverse.transpose() *
+         (stiffness_scale_ * options_.joints.stiffness + force_curvature(options_.geometry, q, force_hand_on_robot)) *
+         J_inverse;
+}
+
+impedance::Model TwoLinkArm::impedance(const Vector2d& hand) const {
+  const Vector2d q = joint_angles(options_.geometry, hand);
+  const Matrix2d J_inverse = jacobian(options_.geometry, q).inverse();
+  const Matrix2d K = stiffness(hand);
+  const Vector2d bias = J_inverse.transpose() * elastic_torque(q);
+  const Eigen::FullPivLU<Matrix2d> solver(K);
+  const Vector2d x0 = solver.isInvertible() ? Vector2d(hand - solver.solve(bias))
+                                            : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  return {J_inverse.transpose() * inertia_.matrix(q[1]) * J_inverse,
+          damping_scale_ * J_inverse.transpose() * options_.joints.damping * J_inverse, K, x0};
+}
+
+double TwoLinkArm::kinetic_energy(const HandState& hand) const {
+  const Vector2d q = joint_angles(options_.geometry, hand.position);
+  const Vector2d q_rate = jacobian(options_.geometry, q).inverse() * hand.velocity;
+  return 0.5 * q_rate.dot(inertia_.matrix(q[1]) * q_rate);
+}
+
+double TwoLinkArm::elastic_energy(const Vector2d& hand) const {
+  const Vector2d q = joint_angles(options_.geometry, hand);
+  return 0.5 * (q - q0_).dot(elastic_torque(q));
+}
+
+}  // namespace mbk::participant

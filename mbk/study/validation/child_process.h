@@ -1,0 +1,40 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+
+namespace mbk::validation {
+
+/// A program that runs beside this one; it is killed where it still runs when this goes.
+class ChildProcess {
+ public:
+  /// @param command  the program and its arguments
+  /// @param output  file that gets its standard output and standard error; it reads nothing
+  /// @fails  data: it cannot be begun.
+  [[nodiscard]] static Result<ChildProcess> start(const std::vector<std::string>& command,
+                                                  const std::filesystem::path& output);
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&&) = delete;
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+  ~ChildProcess();
+
+  void send(int signal) const;
+
+  /// Until it ends, at most so long [s].
+  /// @returns  its exit code; 128 and the signal's number where one ended it; absent where it still runs
+  [[nodiscard]] std::optional<int> wait(double longest);
+
+ private:
+  explicit ChildProcess(pid_t id) : id_(id) {}
+  pid_t id_;
+  std::optional<int> ended_;
+};
+
+}  // namespace mbk::validation

@@ -1,0 +1,40 @@
+#include <gtest/gtest.h>
+
+#include "mbk/study/validation/study.h"
+
+namespace mbk::validation {
+namespace {
+
+const ValidationRow* find(const ValidationTable& table, std::string_view what) {
+  for (const ValidationRow& row : table.rows) {
+    if (row.what.find(what) != std::string::npos) return &row;
+  }
+  return nullptr;
+}
+
+TEST(ClosedLoopStudy, FindsThatLeastSquaresCallsAPassiveArmActiveAndInstrumentsAndEnergyDoNot) {
+  const auto table = closed_loop_study({.runs = 4, .seed = 1});
+  ASSERT_TRUE(table) << table.error().line();
+  for (const char* what : {"ls active, theorem 3.2", "iv passive, M_s", "energy passive", "no model explains half",
+                           "energy active", "verdict active, by the energy"}) {
+    const ValidationRow* row = find(*table, what);
+    ASSERT_NE(row, nullptr) << what;
+    EXPECT_GE(row->value, 75.0) << what;  // of four runs; twenty and more by command
+  }
+  EXPECT_LT(find(*table, "ls: smallest eigenvalue of M")->value, -100.0);  // its sign is wrong
+  EXPECT_EQ(find(*table, "6 N multisine: verdict active")->value, 0.0);
+}
+
+TEST(ClosedLoopStudy, IsTheSameOnAnyNumberOfThreads) {
+  const auto one = closed_loop_study({.runs = 1, .seed = 5, .threads = 1});
+  const auto two = closed_loop_study({.runs = 1, .seed = 5, .threads = 2});
+  ASSERT_TRUE(one && two);
+  for (std::size_t k = 0; k < one->rows.size(); ++k) EXPECT_EQ(one->rows[k].value, two->rows[k].value);
+}
+
+TEST(ClosedLoopStudy, RefusesNoRuns) {
+  EXPECT_FALSE(closed_loop_study({.runs = 0}));
+}
+
+}  // namespace
+}  // namespace mbk::validation

@@ -1,0 +1,34 @@
+#include "mbk/study/validation/coverage.h"
+
+#include <gtest/gtest.h>
+
+namespace mbk::validation {
+namespace {
+
+TEST(Coverage, NominalNinetyFivePercentIntervalsHoldTheTruthThatOften) {
+  const auto table = coverage({.runs = 160, .seed = 1});
+  ASSERT_TRUE(table) << table.error().line();
+  ASSERT_EQ(table->rows.size(),
+            34u);  // 14 parameters, 9 of ellipses, 2 antisymmetries, excess, and 2 for each of 4 arms
+  for (const ValidationRow& row : table->rows) {
+    // What is never said is never wrong: an arm that is well passive has to be recognised now and then.
+    if (row.what.starts_with("passive arm called passive")) {
+      EXPECT_GT(row.value, 40.0) << row.what;
+    }
+    EXPECT_TRUE(row.met()) << row.what << ": " << row.value << " % of 160 runs, 99 % interval " << row.interval99.first
+                           << " to " << row.interval99.second;
+  }
+}
+
+TEST(Coverage, IsTheSameForTheSameSeedOnAnyNumberOfThreads) {
+  const auto one = coverage({.runs = 6, .seed = 3, .threads = 1}), two = coverage({.runs = 6, .seed = 3, .threads = 2});
+  ASSERT_TRUE(one && two);
+  for (std::size_t k = 0; k < one->rows.size(); ++k) EXPECT_EQ(one->rows[k].value, two->rows[k].value);
+}
+
+TEST(Coverage, RefusesNoRuns) {
+  EXPECT_FALSE(coverage({.runs = 0}));
+}
+
+}  // namespace
+}  // namespace mbk::validation

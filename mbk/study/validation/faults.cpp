@@ -1,0 +1,287 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/base/realtime/clock.h"
+#include "mbk/experiment/session/plan.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/files/journal/tick.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/simulate/laboratory/ready_scenarios.h"
+#include "mbk/study/validation/fault_kinds.h"
+#include "mbk/study/validation/study.h"
+#include "mbk/study/validation/temporary_folder.h"
+
+namespace mbk::validation {
+namespace {
+
+namespace fs = std::filesystem;
+using safety::Reason;
+
+/// Ticks are recorded by a thread of its own: where the robot does not wait for it, time has to have a pace.
+constexpr double kPace = 20.0;
+
+/// The gate knows the angles of the tick's beginning, in counts of the encoder: what a hand at full speed turns in a
+/// tick, and a count, are the difference [N].
+constexpr double kForceTolerance = 0.05;
+
+/// A hand that is driven the wrong way while it shall follow a position is stopped below this speed [m/s].
+constexpr double kRunawaySpeed = 0.4;
+constexpr std::string_view kWrongWay = "motors pull the wrong way";
+
+/// The robot is found so far from the test location [m].
+constexpr double kAway = 0.015;
+
+constexpr std::array kTrialKinds = {TrialKind::position, TrialKind::force};
+
+/// What became of one run.
+struct Outcome {
+  int ticks = -1;  ///< from the onset to motors that are off and stay so; −1: never
+  Reason reason = Reason::none;
+  double handle_force = 0.0;  ///< largest that was commanded, by the true angles [N]
+  double speed = 0.0;         ///< largest of the hand since the onset, by the true angles [m/s]
+  bool recorded = false;      ///< the recording opens and holds every command to the bit
+};
+
+std::int64_t draw_onset(const FaultKind& kind, int detection, numeric::Random& random) {
+  const auto between = [&](int low, int high) {
+    return low + static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(high - low)));
+  };
+  const int latest = kTrialEnds - detection - safety::kRampTicks;
+  switch (kind.onset) {
+    case Onset::beginning:
+      return 0;
+    case Onset::anywhere:
+      return between(1, latest);
+    case Onset::perturbing:
+      return between(kPerturbationBegins, kPerturbationEnds - std::min(detection, 1500));
+    case Onset::moving:
+      return between(1000, kPerturbationEnds - 1000);
+    case Onset::ending:
+      return between(kTrialEnds - 200, kTrialEnds - 100);
+  }
+  return 0;
+}
+
+/// Whether the recording holds, tick for tick, what reached the robot.
+bool holds_every_command(const fs::path& file, const std::vector<FaultyDevice::Received>& received) {
+  const auto recording = recording::read(file, {});
+  if (!recording || std::cmp_not_equal(recording->samples(), received.size())) return false;
+  if (recording->metadata.at("ended") != "safety stop") return false;
+  const Channel *first = recording->find("torque_1"), *second = recording->find("torque_2");
+  for (std::size_t i = 0; i < received.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    const Vector2d& torque = received[i].command.torque;
+    if (first->values[at] != torque[0] || second->values[at] != torque[1]) return false;
+  }
+  return true;
+}
+
+int ticks_to_off(const std::vector<FaultyDevice::Received>& received, std::int64_t onset) {
+  const auto on = std::ranges::find_if(received.rbegin(), received.rend(), [](const FaultyDevice::Received& one) {
+    return one.command.enabled && !one.command.torque.isZero(0.0);
+  });
+  return std::max(0, static_cast<int>((received.rend() - on) - onset));
+}
+
+Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64_t seed, const fs::path& target) {
+  numeric::Random random(seed);
+  const int detection = kind.detection[static_cast<std::size_t>(trial_kind)];
+  auto trials = session::read_experiment(fault_experiment(trial_kind), "faults.toml");
+  if (!trials) return tl::unexpected(trials.error());
+  FaultRun run;
+  run.kind = trial_kind;
+  run.trial = std::move(trials->front());
+  run.trial.scenario.seed = seed;
+  std::int64_t onset = draw_onset(kind, detection, random);
+  kind.make(run, random);
+
+  laboratory::Scenario scenario = run.trial.scenario;
+  std::get<laboratory::PlanarTrial>(scenario.trial).home += kAway * Vector2d(random.uniform() - 0.5, 0.5).normalized();
+  auto robot = laboratory::SimulatedDevice::create(scenario);
+  if (!robot) return tl::unexpected(robot.error());
+  const bool keeps_time =
+      run.keeps_time || run.outside == Outside::stalled_clock || run.outside == Outside::stalled_recorder;
+  const bool paced = keeps_time || run.outside != Outside::nothing;
+  realtime::VirtualClock clock(1.0 / run.trial.scenario.rate.value, paced ? kPace : 0.0);
+  if (run.outside == Outside::stalled_clock) {
+    run.fault.reading = [&clock, stall = run.stall](device::State&, int k) {
+      if (k == 0) clock.stall(stall);
+      return true;
+    };
+  }
+  FaultyDevice device(**robot, run.trial.planar().robot.robot.geometry, run.fault, onset, keeps_time,
+                      kTrialEnds + 1000);
+  session::Session session({true, 0.0, &clock});
+  std::atomic<std::int64_t> begun{-1};
+  const auto watch = [&](std::span<const journal::Tick> ticks) {
+    if (begun >= 0 || std::cmp_less(ticks.back().number, onset)) return;
+    if (run.outside == Outside::operator_stop) {
+      begun = device.tick();
+      session.signals().operator_stop = true;
+    } else if (run.outside == Outside::stalled_recorder) {
+      begun = device.tick();
+      while (!device.stopped()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  };
+  const auto performed = session.perform(device, run.trial, target, watch);
+  if (!performed) return tl::unexpected(performed.error().in(std::string(kind.name)));
+  if (begun >= 0) onset = begun;
+
+  Outcome outcome;
+  outcome.reason = performed->trip.reason;
+  if (outcome.reason != Reason::none) outcome.ticks = ticks_to_off(device.received(), onset);
+  for (const FaultyDevice::Received& one : device.received()) {
+    outcome.handle_force = std::max(outcome.handle_force, one.handle_force);
+  }
+  outcome.speed = device.largest_speed();
+  outcome.recorded = holds_every_command(target, device.received());
+  std::error_code ignored;
+  fs::remove(target, ignored);
+  return outcome;
+}
+
+/// Every planar trial that comes with the program.
+Result<std::vector<session::Trial>> ready_trials() {
+  std::vector<session::Trial> all;
+  for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) {
+    auto trials = session::read_experiment(one.text, std::string(one.name) + ".toml");
+    if (!trials) continue;  // a one-axis machine
+    std::ranges::move(*trials, std::back_inserter(all));
+  }
+  if (all.empty()) return bad_data("no ready scenario is a planar experiment", "");
+  return all;
+}
+
+struct Job {
+  const FaultKind* kind;  // null: nothing breaks
+  TrialKind trial_kind;
+  int run;
+};
+
+std::string_view name_of(TrialKind kind) {
+  return kind == TrialKind::position ? "position" : "force";
+}
+
+ValidationRow row_of(std::string what, double value, std::pair<double, double> wanted, std::string unit) {
+  ValidationRow row;
+  row.what = std::move(what);
+  row.value = value;
+  row.interval99 = {value, value};
+  row.wanted = wanted;
+  row.unit = std::move(unit);
+  return row;
+}
+
+}  // namespace
+
+Result<ValidationTable> faults_study(const StudyOptions& options) {
+  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 20");
+  const auto folder = TemporaryFolder::create("mbk-faults");
+  if (!folder) return tl::unexpected(folder.error());
+  const auto ready = ready_trials();
+  if (!ready) return tl::unexpected(ready.error());
+
+  std::vector<Job> jobs;
+  for (const FaultKind& kind : fault_kinds()) {
+    for (const TrialKind trial_kind : kTrialKinds) {
+      if (kind.detection[static_cast<std::size_t>(trial_kind)] < 0) continue;
+      for (int run = 0; run < options.runs; ++run) jobs.push_back({&kind, trial_kind, run});
+    }
+  }
+  const std::size_t faulty = jobs.size();
+  for (int run = 0; run < 10 * options.runs; ++run) jobs.push_back({nullptr, TrialKind::position, run});
+
+  std::vector<Outcome> outcomes(jobs.size());
+  int done = 0;
+  const auto count = static_cast<int>(jobs.size());
+  const auto ran = numeric::parallel_for(
+      count, options.threads,
+      [&](int i) -> Result<void> {
+        const auto at = static_cast<std::size_t>(i);
+        const Job& job = jobs[at];
+        const std::uint64_t seed = 100'000 * options.seed + static_cast<std::uint64_t>(i);
+        if (job.kind == nullptr) {
+          session::Trial trial = (*ready)[static_cast<std::size_t>(job.run) % ready->size()];
+          trial.scenario.seed = seed;
+          const auto rehearsal = session::rehearse(trial);
+          if (!rehearsal) return tl::unexpected(rehearsal.error());
+          outcomes[at].reason = rehearsal->trip.reason;
+          return {};
+        }
+        auto outcome = perform(*job.kind, job.trial_kind, seed, folder->path() / fmt::format("{}.h5", i));
+        if (!outcome) return tl::unexpected(outcome.error());
+        outcomes[at] = *outcome;
+        return {};
+      },
+      [&](int) {
+        if (options.progress) options.progress(++done, count);
+      });
+  if (!ran) return tl::unexpected(ran.error());
+
+  ValidationTable table;
+  table.study = "faults";
+  table.question = "whatever breaks: are the motors off in time, for the right reason, and is everything recorded?";
+  table.unit = "ticks";
+  table.runs = options.runs;
+  table.seed = options.seed;
+  const double cap = safety::Limits{}.handle_force;
+  double handle_force = 0.0, runaway_speed = 0.0;
+  int right = 0, off = 0, recorded = 0;
+  for (std::size_t i = 0; i < faulty; ++i) {
+    const auto& [kind, trial_kind, run] = jobs[i];
+    const Outcome& outcome = outcomes[i];
+    const int documented = kind->detection[static_cast<std::size_t>(trial_kind)] + safety::kRampTicks;
+    if (run == 0) {
+      table.rows.push_back(row_of(fmt::format("{}, {} trial: off after", kind->name, name_of(trial_kind)), 0.0,
+                                  {0.0, documented}, "ticks"));
+    }
+    double& worst = table.rows.back().value;
+    const bool never = outcome.ticks<0, reason_is_right = std::ranges::count(kind->reasons, outcome.reason)> 0;
+    worst = std::max<double>(worst, never ? kTrialEnds : outcome.ticks);
+    table.rows.back().interval99 = {worst, worst};
+    off += !never && outcome.ticks <= documented ? 1 : 0;
+    right += reason_is_right ? 1 : 0;
+    recorded += outcome.recorded ? 1 : 0;
+    handle_force = std::max(handle_force, outcome.handle_force);
+    if (trial_kind == TrialKind::position && kind->name.starts_with(kWrongWay)) {
+      runaway_speed = std::max(runaway_speed, outcome.speed);
+    }
+    if (never || outcome.ticks > documented || !reason_is_right || !outcome.recorded ||
+        outcome.handle_force > cap + kForceTolerance) {
+      table.notes.push_back(fmt::format("{}, {} trial, run {}: off after {} ticks by {}, {:.3f} N, recording {}",
+                                        kind->name, name_of(trial_kind), run, outcome.ticks,
+                                        safety::code(outcome.reason), outcome.handle_force,
+                                        outcome.recorded ? "whole" : "not whole"));
+    }
+  }
+  const auto share = [&](int met) { return 100.0 * met / static_cast<double>(faulty); };
+  table.rows.push_back(row_of("motors off in time", share(off), {100.0, 100.0}, "%"));
+  table.rows.push_back(row_of("reason is a right one", share(right), {100.0, 100.0}, "%"));
+  table.rows.push_back(row_of("every command in the recording", share(recorded), {100.0, 100.0}, "%"));
+  table.rows.push_back(row_of(fmt::format("hand speed reached, {}, position trials", kWrongWay), runaway_speed,
+                              {0.0, kRunawaySpeed}, "m/s"));
+  int trips = 0;
+  for (std::size_t i = faulty; i < jobs.size(); ++i) {
+    if (outcomes[i].reason == Reason::none) continue;
+    ++trips;
+    table.notes.push_back(fmt::format("without a fault: {} in {}, seed {}", safety::code(outcomes[i].reason),
+                                      (*ready)[static_cast<std::size_t>(jobs[i].run) % ready->size()].protocol,
+                                      100'000 * options.seed + i));
+  }
+  table.rows.push_back(row_of("largest force commanded at the handle, by the true angles", handle_force,
+                              {0.0, cap + kForceTolerance}, "N"));
+  table.rows.push_back(
+      row_of(fmt::format("trips in {} trials without a fault", jobs.size() - faulty), trips, {0.0, 0.0}, ""));
+  table.notes.push_back(fmt::format(
+      "A tick is 1 ms. Wanted is what docs/theory/session.md documents: time to the trip and {} ticks of ramp.",
+      safety::kRampTicks));
+  return table;
+}
+
+}  // namespace mbk::validation

@@ -1,0 +1,137 @@
+#include "mbk/experiment/session/live_estimate.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/experiment/session/plan.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/measure/identify/impedance_fit.h"
+#include "mbk/model/impedance/model.h"
+#include "mbk/simulate/laboratory/make_load.h"
+#include "mbk/simulate/laboratory/ready_scenarios.h"
+#include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/study/validation/seeded_runs.h"
+#include "mbk/study/validation/temporary_folder.h"
+
+namespace mbk::validation {
+namespace {
+
+constexpr std::array kTimes = {10.0, 15.0, 20.0, 40.0};  // since the perturbation began [s]
+constexpr Index kNumbers = 12;                           // of M, B and K
+
+/// Which of the twelve intervals hold the truth, at each time.
+using Held = std::array<std::array<bool, kNumbers>, kTimes.size()>;
+
+Result<std::vector<session::Trial>> ready_trial() {
+  const auto* scenario = laboratory::find_ready_scenario("relaxed_sinusoidal");
+  if (scenario == nullptr) return bad_usage("there is no ready scenario 'relaxed_sinusoidal'");
+  return session::read_experiment(scenario->text, "relaxed_sinusoidal.toml");
+}
+
+Result<std::array<bool, kNumbers>> held_by(const journal::Journal& journal, const measurement::Options& options,
+                                           const Vector& truth) {
+  const auto measured = session::estimate(journal, options);
+  if (!measured) return tl::unexpected(measured.error());
+  const Vector error = impedance::stacked(measured->identification.model) - truth;
+  const Vector reach = numeric::kNormal95 * impedance::stacked(measured->identification.standard_error);
+  std::array<bool, kNumbers> held{};
+  for (Index k = 0; k < kNumbers; ++k) held[static_cast<std::size_t>(k)] = std::abs(error[k]) <= reach[k];
+  return held;
+}
+
+Result<Held> perform(session::Trial trial, std::uint64_t seed, const std::filesystem::path& folder) {
+  trial.scenario.seed = seed;
+  auto robot = laboratory::SimulatedDevice::create(trial.scenario);
+  if (!robot) return tl::unexpected(robot.error());
+  const auto plan = session::make_plan(trial);
+  if (!plan) return tl::unexpected(plan.error());
+  const auto load = laboratory::make_load(trial.scenario, trial.planar());
+  if (!load) return tl::unexpected(load.error());
+  const Vector truth = impedance::stacked((*load)->impedance(trial.planar().home));
+  measurement::Options options;
+  options.identify.handle_mass = trial.planar().robot.handle_mass;
+  options.passivity = false;
+
+  session::Session session({true, 0.0});
+  journal::Journal journal{session::header_of(trial, (*robot)->facts(), plan->schedule), {}, {}, {}};
+  Held held{};
+  std::size_t taken = 0;
+  std::optional<Error> failure;
+  const auto watch = [&](std::span<const journal::Tick> ticks) {
+    for (const journal::Tick& tick : ticks) {  // whichever of them come together
+      if (taken == kTimes.size()) return;
+      journal.ticks.push_back(tick);
+      if (tick.perturbation_time < kTimes[taken]) continue;
+      auto now = held_by(journal, options, truth);
+      if (!now) failure = now.error();
+      if (now) held[taken] = *now;
+      session.signals().end_trial = ++taken == kTimes.size();
+    }
+  };
+  const auto performed = session.perform(**robot, trial, folder / fmt::format("{}.h5", seed), watch);
+  if (!performed) return tl::unexpected(performed.error());
+  std::error_code ignored;
+  std::filesystem::remove(performed->recording, ignored);
+  if (failure) return tl::unexpected(*failure);
+  if (taken < kTimes.size())
+    return bad_data(fmt::format("the trial of seed {} ended before {:g} s", seed, kTimes[taken]), "");
+  return held;
+}
+
+}  // namespace
+
+Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
+  const auto trials = ready_trial();
+  if (!trials) return tl::unexpected(trials.error());
+  const auto folder = TemporaryFolder::create("mbk-live-estimate");
+  if (!folder) return tl::unexpected(folder.error());
+  const auto runs = seeded_runs(
+      options, 200, [&](std::uint64_t seed) -> Result<Held> { return perform(trials->front(), seed, folder->path()); });
+  if (!runs) return tl::unexpected(runs.error());
+
+  ValidationTable table;
+  table.study = "live-estimate";
+  table.question = "how often do the 95 % intervals hold the truth while the trial still runs?";
+  table.unit = "%";
+  table.runs = options.runs;
+  table.seed = options.seed;
+  const auto count = static_cast<Index>(runs->size());
+  const std::vector<std::string> names = identify::parameter_names(2);
+  for (std::size_t at = 0; at < kTimes.size(); ++at) {
+    Vector share = Vector::Zero(count);  // of the twelve, run by run: those of one run depend on each other
+    std::vector<ValidationRow> rows;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(kNumbers); ++k) {
+      int hits = 0;
+      for (Index run = 0; run < count; ++run) {
+        const bool one = (*runs)[static_cast<std::size_t>(run)][at][k];
+        hits += one ? 1 : 0;
+        share[run] += one ? 100.0 / kNumbers : 0.0;
+      }
+      const auto [low, high] = numeric::binomial_interval(hits, options.runs, 0.99);
+      ValidationRow row;
+      row.what = fmt::format("{:g} s, {}", kTimes[at], names[k]);
+      row.value = 100.0 * hits / options.runs;
+      row.interval99 = {100.0 * low, 100.0 * high};
+      rows.push_back(std::move(row));
+    }
+    ValidationRow mean;
+    mean.what = fmt::format("{:g} s, mean of M, B and K", kTimes[at]);
+    mean.value = share.mean();
+    const double spread = count > 1 ? std::sqrt(numeric::variance(share)) : 100.0;
+    const double reach = numeric::kNormal99 * spread / std::sqrt(static_cast<double>(count));
+    mean.interval99 = {std::max(0.0, mean.value - reach), std::min(100.0, mean.value + reach)};
+    mean.wanted = {90.0, 100.0};
+    table.rows.push_back(std::move(mean));
+    std::ranges::move(rows, std::back_inserter(table.rows));
+  }
+  table.notes = {
+      "A relaxed arm, sinusoidal position perturbation, from the session's own ticks: the live estimate is what "
+      "`mbk measure` would make of the perturbation so far. Times count from where the perturbation begins.",
+      "The mean's interval takes runs as independent, not the twelve numbers of one run."};
+  return table;
+}
+
+}  // namespace mbk::validation

@@ -1,0 +1,107 @@
+#include "mbk/study/validation/robot_trials.h"
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "mbk/measure/measurement/identify_robot.h"
+#include "mbk/study/validation/simulated_trials.h"
+
+namespace mbk::validation {
+namespace {
+
+ValidationRow limit_row(std::string what, double value, std::string unit) {
+  ValidationRow row;
+  row.what = std::move(what);
+  row.value = value;
+  row.interval99 = {value, value};
+  row.unit = std::move(unit);
+  return row;
+}
+
+Result<laboratory::Scenario> free_motion_scenario() {
+  auto scenarios = ready("free_motion");
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  return scenarios->front();
+}
+
+}  // namespace
+
+robot::DriveTerms drive_terms(FrictionModel friction) {
+  robot::DriveTerms terms;
+  terms.viscous = friction != FrictionModel::none;
+  terms.coulomb = terms.offset = friction == FrictionModel::full;
+  return terms;
+}
+
+laboratory::PlanarTrial& planar(laboratory::Scenario& scenario) {
+  return std::get<laboratory::PlanarTrial>(scenario.trial);
+}
+
+void measure_currents(laboratory::Scenario& scenario) {
+  laboratory::MotorCurrentOptions current;
+  current.noise = kTorqueNoise / current.torque_constant[0];
+  planar(scenario).sensors.torque = current;
+}
+
+Result<Recording> free_motion(std::uint64_t seed, const std::optional<robot::Capstan>& capstan) {
+  auto scenario = free_motion_scenario();
+  if (!scenario) return tl::unexpected(scenario.error());
+  scenario->seed = seed;
+  planar(*scenario).robot.capstan = capstan;
+  measure_currents(*scenario);
+  auto performance = laboratory::simulate(*scenario);
+  if (!performance) return tl::unexpected(performance.error());
+  return std::move(performance->recording);
+}
+
+Result<Vector> true_parameters(FrictionModel friction) {
+  auto scenario = free_motion_scenario();
+  if (!scenario) return tl::unexpected(scenario.error());
+  const robot::PlanarRobot& robot = planar(*scenario).robot.robot;
+  const robot::DriveTerms terms = drive_terms(friction);
+  const int per_joint = terms.per_joint();
+  Vector truth = Vector::Zero(3 + 2 * per_joint);
+  truth.head(3) << robot.inertia.alpha1, robot.inertia.alpha2, robot.inertia.alpha3;
+  for (int joint = 0; joint < 2; ++joint) {
+    Index at = 3 + joint * per_joint;
+    const robot::JointFriction& of_joint = robot.friction[static_cast<std::size_t>(joint)];
+    if (terms.viscous) truth[at++] = of_joint.viscous;
+    if (terms.coulomb) truth[at] = of_joint.coulomb;
+  }
+  return truth;
+}
+
+Result<RobotIdentification> identified_robot(const Recording& recording, FrictionModel friction,
+                                             robot::PlanarMechanism::Coriolis coriolis) {
+  auto scenario = free_motion_scenario();
+  if (!scenario) return tl::unexpected(scenario.error());
+  robot::PlanarMechanism::Options mechanism;
+  mechanism.geometry = planar(*scenario).robot.robot.geometry;
+  mechanism.coriolis = coriolis;
+  robot::DynamicModel model{std::make_shared<robot::PlanarMechanism>(mechanism), drive_terms(friction)};
+  model.parameters = Vector::Zero(static_cast<Index>(model.coefficients().size()));
+  measurement::RobotOptions options;
+  options.fit.delay = true;
+  return measurement::identify_robot({&recording, 1}, {}, model, options);
+}
+
+ValidationRow at_least_row(std::string what, double value, std::optional<double> limit, std::string unit) {
+  ValidationRow row = limit_row(std::move(what), value, std::move(unit));
+  if (limit) row.wanted = {*limit, std::numeric_limits<double>::infinity()};
+  return row;
+}
+
+ValidationRow at_most_row(std::string what, double value, std::optional<double> limit, std::string unit) {
+  ValidationRow row = limit_row(std::move(what), value, std::move(unit));
+  if (limit) row.wanted = {-std::numeric_limits<double>::infinity(), *limit};
+  return row;
+}
+
+ValidationRow reported_row(std::string what, const Vector& values, std::string unit) {
+  ValidationRow row = bias_row(std::move(what), values, 0.0, std::move(unit));
+  row.wanted.reset();
+  return row;
+}
+
+}  // namespace mbk::validation

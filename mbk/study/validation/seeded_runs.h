@@ -1,0 +1,41 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/study/validation/study.h"
+
+namespace mbk::validation {
+
+/// perform(seed) for as many seeds as there are runs, several at a time, in the order of the seeds.
+/// @param usual  how many runs the message advises
+/// @fails  usage: no runs. As perform: the first failure.
+template <class Perform>
+auto seeded_runs(const StudyOptions& options, int usual, const Perform& perform)
+    -> Result<std::vector<typename std::invoke_result_t<Perform, std::uint64_t>::value_type>> {
+  using Run = typename std::invoke_result_t<Perform, std::uint64_t>::value_type;
+  if (options.runs < 1) {
+    return bad_usage(fmt::format("{} runs show nothing", options.runs), fmt::format("pass --runs {}", usual));
+  }
+  std::vector<Run> runs(static_cast<std::size_t>(options.runs));
+  int done = 0;
+  const auto ran = numeric::parallel_for(
+      options.runs, options.threads,
+      [&](int i) -> Result<void> {
+        auto run = perform(options.seed + static_cast<std::uint64_t>(i));
+        if (!run) return tl::unexpected(run.error());
+        runs[static_cast<std::size_t>(i)] = std::move(*run);
+        return {};
+      },
+      [&](int) {
+        if (options.progress) options.progress(++done, options.runs);
+      });
+  if (!ran) return tl::unexpected(ran.error());
+  return runs;
+}
+
+}  // namespace mbk::validation

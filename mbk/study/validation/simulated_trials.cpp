@@ -1,0 +1,101 @@
+#include "mbk/study/validation/simulated_trials.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/base/numeric/statistics.h"
+
+namespace mbk::validation {
+namespace {
+
+double handle_mass(const laboratory::Scenario& scenario) {
+  const auto* planar = std::get_if<laboratory::PlanarTrial>(&scenario.trial);
+  return planar == nullptr ? 0.0 : planar->robot.handle_mass;
+}
+
+Result<SimulatedTrial> run(const TrialPlan& plan) {
+  const auto performance = laboratory::simulate(plan.scenario);
+  if (!performance) return tl::unexpected(performance.error());
+  SimulatedTrial trial{performance->energy_absorbed, performance->truth, {}};
+  if (!plan.measurement) return trial;
+  measurement::Options options = *plan.measurement;
+  options.passivity = false;
+  options.identify.handle_mass = handle_mass(plan.scenario);
+  auto measured = measurement::measure({&performance->recording, 1}, options);
+  if (!measured) return tl::unexpected(measured.error());
+  trial.identification = std::move(measured->identification);
+  return trial;
+}
+
+}  // namespace
+
+Result<std::vector<laboratory::Scenario>> ready(std::string_view name) {
+  const auto* scenario = laboratory::find_ready_scenario(name);
+  if (scenario == nullptr) return bad_usage(fmt::format("there is no ready scenario '{}'", name));
+  return laboratory::read_scenarios(scenario->text, std::string(name) + ".toml");
+}
+
+Result<laboratory::Scenario> with_limb(laboratory::Scenario scenario, int number) {
+  const auto limb = participant::participant_limb(number);
+  if (!limb) return tl::unexpected(limb.error());
+  auto& arm = std::get<participant::ArmOptions>(std::get<laboratory::PlanarTrial>(scenario.trial).load);
+  std::get<participant::TwoLinkArm::Options>(arm.limb).joints = limb->joints;
+  return scenario;
+}
+
+Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, const StudyOptions& options) {
+  const auto count = static_cast<int>(plans.size());
+  std::vector<SimulatedTrial> trials(plans.size());
+  int done = 0;
+  const auto ran = numeric::parallel_for(
+      count, options.threads,
+      [&](int i) -> Result<void> {
+        auto trial = run(plans[static_cast<std::size_t>(i)]);
+        if (!trial) return tl::unexpected(trial.error());
+        trials[static_cast<std::size_t>(i)] = std::move(*trial);
+        return {};
+      },
+      [&](int) {
+        if (options.progress) options.progress(++done, count);
+      });
+  if (!ran) return tl::unexpected(ran.error());
+  return trials;
+}
+
+ValidationRow bias_row(std::string what, const Vector& errors, double allowed, std::string unit) {
+  const double spread = errors.size() > 1 ? std::sqrt(numeric::variance(errors)) : 0.0;
+  const double reach = numeric::kNormal99 * spread / std::sqrt(static_cast<double>(errors.size()));
+  ValidationRow row;
+  row.what = std::move(what);
+  row.value = errors.mean();
+  row.interval99 = {row.value - reach, row.value + reach};
+  row.wanted = {-allowed, allowed};
+  row.unit = std::move(unit);
+  row.spread = spread;
+  return row;
+}
+
+std::pair<std::string, std::string> rig_names(const std::string& trial) {
+  const auto cut = trial.find("_M");
+  if (cut == std::string::npos) return {trial, trial};
+  return {trial.substr(0, cut), trial.substr(cut + 1)};
+}
+
+measurement::Options mass_and_springs() {
+  measurement::Options options;
+  options.identify.structure = Structure::mass_spring;
+  return options;
+}
+
+Chart identified_against_true(std::string title, const std::string& unit) {
+  Chart chart;
+  chart.title = std::move(title);
+  chart.x = {"true", unit};
+  chart.y = {"identified", unit};
+  chart.identity = true;
+  return chart;
+}
+
+}  // namespace mbk::validation

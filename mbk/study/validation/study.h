@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/validation_table.h"
+
+namespace mbk::validation {
+
+/// How large a study is made.
+struct StudyOptions {
+  int runs = 1;  ///< seeds; what a run is stands at each study
+  std::uint64_t seed = 1;
+  unsigned threads = 0;                                 ///< 0: as many as there are cores
+  std::function<void(int done, int of)> progress = {};  ///< called after each trial, never two at a time
+};
+
+/// A method against known truth, by its name on the command line.
+struct Study {
+  std::string_view name;
+  std::string_view what;  ///< one line for the help
+  int runs;               ///< by default
+  Result<ValidationTable> (*perform)(const StudyOptions&);
+};
+
+/// All of them.
+[[nodiscard]] std::span<const Study> studies();
+
+/// How often do the nominal 95 % intervals of M, B, K and x₀ hold the truth? A run is one recording of a prescribed
+/// motion with coloured force noise of 0.3 N (coverage.h).
+/// @fails  runs < 1; as the laboratory and the measurement. The same for the others.
+[[nodiscard]] Result<ValidationTable> coverage_study(const StudyOptions& options);
+
+/// Bias, spread and coverage of M, B, K and x₀ of a relaxed arm in the closed loop, with sinusoidal and with
+/// underdamped perturbations: the ready scenarios, measured by the default pipeline. A run is one seed of each. Wanted
+/// is a bias below 5 % of the largest element of the matrix, and below 2 mm for x₀.
+[[nodiscard]] Result<ValidationTable> recovery_study(const StudyOptions& options);
+
+/// How often do the 95 % intervals of M, B and K hold the truth while the trial still runs, as the console shows them?
+/// The ready scenario of a relaxed arm passes the whole session, whose ticks come in blocks as the recorder hands them
+/// on; the live estimate is taken 10, 15, 20 and 40 s after the perturbation began. A run is one seed. Wanted is 90 %
+/// on average over the twelve numbers at each time; each of them is reported.
+[[nodiscard]] Result<ValidationTable> live_estimate_study(const StudyOptions& options);
+
+/// Stiffness and mass of the rigs of Dyck (2013), tables 3.1 and 5.1, as they are identified against what they are
+/// (fig. 3.8, table 5.4 and fig. 5.4 in form), for linear rigs and for arrays of real springs. A run is one seed of
+/// each of their trials.
+[[nodiscard]] Result<ValidationTable> springs_study(const StudyOptions& options);
+
+/// Does the simulated participant behave as people did (Dyck 2013, figs 4.3–4.5, tables 4.1–4.3 in form)? The ready
+/// scenarios, three arms, seed after seed: does the energy that the limb absorbed rise, and how much of the force does
+/// a fitted M, B, K explain (published procedure)? The same arm and controller face 2 N and 8 N pulses, which differ in
+/// `amplitude_N` alone; between them the energy crosses zero at an amplitude that is found by interpolation and drawn.
+/// A run is one seed of every arm and condition.
+[[nodiscard]] Result<ValidationTable> participant_study(const StudyOptions& options);
+
+/// Where the limb acts back on its own motion: does least squares call a passive arm active, do instrumental variables
+/// not, and what does the energy say (Dyck 2013, table 4.3)? A run is three pooled trials of a rigid arm under a 6 N
+/// multisine, of the same with the voluntary controller off, and under 2 N pulses.
+[[nodiscard]] Result<ValidationTable> closed_loop_study(const StudyOptions& options);
+
+/// The dynamics of the robot of Dyck (2013), table A.1, with Coulomb friction, identified from its free motion by
+/// measurement::identify_robot as it is by default: bias and coverage of every coefficient, held-back torque, the
+/// printed Coriolis sign against the right one, and what it does to leave Coulomb friction out. A run is one free
+/// motion with its own phases and noise. Wanted: inertias within 0.5 % and a VAF of 99 % in every run, the truth within
+/// two standard errors in 90 % of all cases, and that the printed sign leaves at least twice as much torque in every
+/// run.
+[[nodiscard]] Result<ValidationTable> robot_study(const StudyOptions& options);
+
+/// Force, stiffness and mass of the rigs of Dyck (2013), table 5.1, without a force sensor (tables 5.4 and 5.5 and
+/// fig. 5.4 in form): against the truth and the sensor, with the robot's friction in the model and left out, by the
+/// momentum observer, and with elastic drives. A run is one identified robot and one seed of each rig. Wanted: a force
+/// within 0.05 N (RMSE) for every rig, stiffness and mass within a quarter of the errors in table 5.4.
+[[nodiscard]] Result<ValidationTable> virtual_sensor_study(const StudyOptions& options);
+
+/// The system of Rao & Garnier (2002), four poles and a zero on the right, by identify_transfer_function as it is by
+/// default under white noise of a tenth of the output's variance: bias and coverage of every coefficient, and whether
+/// the order is found. A run is one input and one noise. Wanted: a bias below 1 %, the order in 90 % of the runs.
+[[nodiscard]] Result<ValidationTable> transfer_function_study(const StudyOptions& options);
+
+/// Does a linear time-invariant model hold for a rigid arm along one axis (Dyck 2013, §4.4.2: table 4.4 and fig. 4.7 in
+/// form)? The ready scenario one_axis_random_binary, ±2 N: output-error models of 4 poles and 3 zeros from place to
+/// force, judged on the last 10 s of each trial and on the other trials; beside it the same arm with its controller
+/// off, and relaxed, for several switching times of the force. A run is five trials of each. Wanted: a
+/// median VAF of at least 90 % for the other two, and at every switching time less for the rigid arm, with at least
+/// three times as much unexplained as without its controller.
+[[nodiscard]] Result<ValidationTable> one_dimensional_study(const StudyOptions& options);
+
+/// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of
+/// the four architectures, half of them with delay, held by random terminations where it is stable, and by the
+/// terminations that teleop::worst_terminations constructs where it is not; each with a passive operator, with one who
+/// has an excess of passivity and with one who has a shortage. The controllers are sampled at 1 kHz. Wanted: nothing
+/// that is stable, as designed and with sampling, grows; everything that is constructed grows, at its frequency.
+/// Besides, the passivity controller at a virtual wall.
+[[nodiscard]] Result<ValidationTable> teleoperation_study(const StudyOptions& options);
+
+/// Whatever breaks, are the motors off in time? Each kind of fault (fault_kinds.h) comes into a trial of positions and
+/// one of forces at a moment drawn by lot, through the robot, another thread or the clock, and passes the whole
+/// session. Wanted in every run: motors off within the documented ticks, for a right reason, no command beyond the cap
+/// of the handle force by the true angles, a recording that holds every command to the bit; and not one trip in ten
+/// times as many trials without a fault, over the ready scenarios. A run is one moment of each kind in both trials.
+[[nodiscard]] Result<ValidationTable> faults_study(const StudyOptions& options);
+
+}  // namespace mbk::validation

@@ -1,0 +1,226 @@
+// Figures of chapter 4: 4.1 and 4.3 to 4.8.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/simulate/laboratory/scenario.h"
+#include "mbk/simulate/participant/arm.h"
+#include "mbk/study/validation/simulated_trials.h"
+#include "mbk/thesis/drawing.h"
+#include "mbk/thesis/exhibits.h"
+
+namespace mbk::thesis {
+namespace {
+
+Result<void> figure_4_1(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = {
+      "Twenty seconds of pulses and ten of sines, as recorded, of the first trial of P1, with the force that "
+      "the robot was commanded to exert.",
+      tuned_gains_note()};
+  exhibit.related = {"figure-3.4"};
+  for (const auto& [task, from, to] :
+       {std::tuple{Task::rigid_underdamped, 16.0, 36.0}, std::tuple{Task::rigid_sinusoidal, 20.0, 30.0}}) {
+    const auto results = bench.results(task);
+    if (!results) return tl::unexpected(results.error());
+    const auto charts = signal_charts(text(task), (*results)->front().first, from, to);
+    exhibit.charts.insert(exhibit.charts.end(), charts.begin(), charts.end());
+    exhibit.commands.push_back(
+        fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk measure p1.h5 --handle-mass {} --report p1.html",
+                    scenario_of(task), bench.seed(1, 1), kHandleMass));
+  }
+  return {};
+}
+
+Result<void> energy_figure(Workbench& bench, Task task, Exhibit& exhibit) {
+  const auto results = bench.results(task);
+  if (!results) return tl::unexpected(results.error());
+  exhibit.charts = {energy_chart(**results)};
+  exhibit.commands = {
+      fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}", scenario_of(task),
+                  bench.seed(1, 1), kHandleMass),
+      "mbk validate participant --charts charts      # many seeds, and the amplitude at which it turns"};
+  return {};
+}
+
+Result<void> figure_4_3(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = {"It falls: against small pulses the arm generates energy, whoever's arm it is.", tuned_gains_note()};
+  exhibit.related = {"table-4.3", "table-4.5", "figure-4.5"};
+  return energy_figure(bench, Task::rigid_underdamped, exhibit);
+}
+
+Result<void> figure_4_4(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = {"It rises: the same participants absorb where no instant is left to answer to.", tuned_gains_note()};
+  exhibit.related = {"table-4.3", "figure-4.3"};
+  return energy_figure(bench, Task::rigid_sinusoidal, exhibit);
+}
+
+/// Energy and distance from where it began, of one pulse, from half a second before its onset on.
+void add_pulse(const std::string& what, const Recording& recording, const Energy& energy, Exhibit& exhibit) {
+  constexpr double kBefore = 0.2, kAfter = 1.5;  // [s]
+  // The pulse whose energy is in the middle of all.
+  std::vector<const EnergyPart*> parts;
+  for (const EnergyPart& part : energy.parts) parts.push_back(&part);
+  std::ranges::nth_element(parts, parts.begin() + std::ssize(parts) / 2, {}, &EnergyPart::absorbed);
+  const EnergyPart& pulse = *parts[parts.size() / 2];
+  const Part part = part_of(recording, pulse.from_s - kBefore, pulse.from_s + kAfter);
+  const auto segment = [&](const char* channel) -> Vector {
+    return recording.find(channel)->values.segment(part.begin, part.size);
+  };
+  const Vector time = recording.time.segment(part.begin, part.size).array() - recording.time[0] - pulse.from_s;
+  Matrix place(part.size, 2), force(part.size, 2);
+  place << segment("hand_x"), segment("hand_y");
+  force << segment("force_x"), segment("force_y");
+  const auto onset = static_cast<Index>((time.array() < 0.0).count());
+  Vector absorbed = Vector::Zero(part.size);
+  for (Index i = 1; i < part.size; ++i) {
+    absorbed[i] = absorbed[i - 1] - 0.5 * (force.row(i - 1) + force.row(i)).dot(place.row(i) - place.row(i - 1));
+  }
+  absorbed.array() -= absorbed[onset];
+  const Vector distance = (place.rowwise() - place.row(onset)).rowwise().norm();
+  Chart joules = over_time(what + ": energy absorbed since the onset", {"energy absorbed", "J"});
+  joules.series = {line("energy", time, absorbed)};
+  joules.horizontal = {{0.0, "as at the onset"}};
+  joules.vertical = {{0.0, "onset"}};
+  Chart millimetres = over_time(what + ": distance from where the hand was", {"distance", "mm"});
+  millimetres.series = {line("distance", time, 1e3 * distance)};
+  millimetres.vertical = {{0.0, "onset"}};
+  exhibit.charts.push_back(std::move(joules));
+  exhibit.charts.push_back(std::move(millimetres));
+}
+
+Result<void> figure_4_5(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = {
+      "The pulse with the median energy of P1's first trial, relaxed, rigid at 2 N, and rigid at 8 N. The rigid arm "
+      "absorbs while it is pushed away, before it can react, and generates on the way back. At 2 N it gives back more "
+      "than it took, at 8 N less. The two rigid trials differ in the amplitude alone.",
+      tuned_gains_note()};
+  exhibit.related = {"figure-4.3", "future-work-3"};
+  exhibit.commands = {fmt::format(
+      "mbk simulate rigid_underdamped_8N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {} --json",
+      bench.seed(1, 1), kHandleMass)};
+  const auto relaxed = bench.results(Task::relaxed_underdamped);
+  if (!relaxed) return tl::unexpected(relaxed.error());
+  const auto rigid = bench.results(Task::rigid_underdamped);
+  if (!rigid) return tl::unexpected(rigid.error());
+  auto scenarios = validation::ready("rigid_underdamped_8N");
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  scenarios->front().seed = bench.seed(1, 1);
+  const auto strong = laboratory::simulate(scenarios->front());
+  if (!strong) return tl::unexpected(strong.error());
+  const auto measured = measurement::measure({&strong->recording, 1}, {});
+  if (!measured) return tl::unexpected(measured.error());
+  const auto add = [&](const char* what, const TaskResult& result) {
+    add_pulse(what, result.first, result.trials.front().energy, exhibit);
+  };
+  add("(a) relaxed", (*relaxed)->front());
+  add("(b) rigid, 2 N", (*rigid)->front());
+  add_pulse("(c) rigid, 8 N", strong->recording, measured->energies.front(), exhibit);
+  return {};
+}
+
+Result<void> figure_4_6(Workbench& bench, Exhibit& exhibit) {
+  const auto grasps = bench.one_axis_grasps();
+  if (!grasps) return tl::unexpected(grasps.error());
+  exhibit.text = {"Thirty seconds of the first trial along the y axis.", tuned_gains_note()};
+  exhibit.related = {"table-4.4", "figure-4.7"};
+  exhibit.commands = {"mbk simulate one_axis_random_binary --out binary.h5"};
+  exhibit.charts = signal_charts("one axis", (*grasps)->front().recording, 12.0, 42.0, 1);
+  return {};
+}
+
+Result<void> figure_4_7(Workbench& bench, Exhibit& exhibit) {
+  const auto grasps = bench.one_axis_grasps();
+  if (!grasps) return tl::unexpected(grasps.error());
+  const OneAxisGrasp& first = (*grasps)->front();
+  exhibit.text = {
+      fmt::format("The last 10 s of the first trial, which the model has not seen: measured, and by a model of "
+                  "four poles and three zeros from the measured motion. VAF {:.1f} %.",
+                  first.vaf),
+      tuned_gains_note()};
+  exhibit.related = {"table-4.4"};
+  exhibit.commands = {"mbk validate one-dimensional --charts charts"};
+  Chart chart = over_time("Force along one axis", {"force of the hand on the robot", "N"});
+  chart.series = {line("measured", first.output.time, first.output.measured),
+                  line("model", first.output.time, first.output.modelled)};
+  exhibit.charts = {std::move(chart)};
+  return {};
+}
+
+/// The curve Z(jω) in the plane of Re and Im, from `low` to `high` Hz.
+Chart nyquist(const char* title, const char* border, double at, double low, double high,
+              const std::function<std::complex<double>(std::complex<double>)>& Z) {
+  constexpr int kPoints = 400;
+  Chart chart;
+  chart.title = title;
+  chart.x = {"Re Z(jω)", "N·s/m"};
+  chart.y = {"Im Z(jω)", "N·s/m"};
+  Vector re(kPoints), im(kPoints);
+  for (int k = 0; k < kPoints; ++k) {
+    const double hertz = low * std::pow(high / low, static_cast<double>(k) / (kPoints - 1));
+    const std::complex<double> z = Z({0.0, 2.0 * std::numbers::pi * hertz});
+    re[k] = z.real();
+    im[k] = z.imag();
+  }
+  chart.series = {line(fmt::format("{:g} to {:g} Hz", low, high), re, im)};
+  chart.vertical = {{at, border}};
+  if (at != 0.0) chart.vertical.push_back({0.0, "0"});
+  return chart;
+}
+
+Result<void> figure_4_8(Workbench& bench, Exhibit& exhibit) {
+  // P1 along y: the arm, and the same with a delayed correction of its place, k g e^(−sT)/s, as a rigid grasp has it.
+  const auto& ellipses = bench.given().sinusoidal.front().ellipses;
+  const double m = symmetric_matrix(ellipses[0])(1, 1), b = symmetric_matrix(ellipses[1])(1, 1),
+               k = symmetric_matrix(ellipses[2])(1, 1);
+  constexpr double kDelay = 0.15, kGain = 1.4;  // [s]
+  const auto relaxed = [=](std::complex<double> s) { return m * s + b + k / s; };
+  const auto corrected = [=](std::complex<double> s) {
+    return m * s + b + k * (1.0 + kGain * std::exp(-s * kDelay)) / s;
+  };
+  // A damper behind a spring: passive, without any excess.
+  const auto behind_spring = [=](std::complex<double> s) { return b * k / (b * s + k); };
+  double shortage = 0.0;
+  for (double omega = 0.1; omega < 60.0; omega += 0.001) {
+    shortage = std::max(shortage, -corrected({0.0, omega}).real());
+  }
+  exhibit.text = {
+      fmt::format(
+          "Three one-axis impedances made of P1's numbers along y (m = {:.2f} kg, b = {:.1f} N·s/m, k = {:.0f} "
+          "N/m, rebuilt from table 3.3): a damper behind a spring, which is passive and no more; the arm itself, "
+          "Re Z = b at every frequency, an excess of b; and the arm with a correction of its place that comes "
+          "{:g} s late, whose real part falls to −{:.1f} N·s/m as the frequency goes to 0: that is its shortage.",
+          m, b, k, kDelay, shortage),
+      "The linear correction stands for the participant's controller, which is not linear; only its delay is taken "
+      "over."};
+  exhibit.related = {"table-3.6", "table-4.5"};
+  exhibit.charts = {nyquist("(a) passive", "passive to the right", 0.0, 0.01, 20.0, behind_spring),
+                    nyquist("(b) an excess of passivity δ", "δ", b, 0.5, 6.0, relaxed),
+                    nyquist("(c) a shortage of passivity λ", "−λ", -shortage, 0.2, 6.0, corrected)};
+  return {};
+}
+
+constexpr auto kFigure = Exhibit::Kind::figure;
+constexpr std::array kMakers = {
+    Maker{kFigure, 4, "figure-4.1", "Typical signals of the rigid arm", Provenance::simulated, figure_4_1},
+    Maker{kFigure, 4, "figure-4.3", "Energy of rigid arms, underdamped perturbations", Provenance::simulated,
+          figure_4_3},
+    Maker{kFigure, 4, "figure-4.4", "Energy of rigid arms, sinusoidal perturbations", Provenance::simulated,
+          figure_4_4},
+    Maker{kFigure, 4, "figure-4.5", "Energy in one pulse: relaxed, 2 N, 8 N", Provenance::simulated, figure_4_5},
+    Maker{kFigure, 4, "figure-4.6", "Typical signals along one axis", Provenance::simulated, figure_4_6},
+    Maker{kFigure, 4, "figure-4.7", "Force along one axis, measured and by a model", Provenance::simulated, figure_4_7},
+    Maker{kFigure, 4, "figure-4.8", "Where Nyquist curves run: passive, with an excess, with a shortage",
+          Provenance::recomputed, figure_4_8}};
+
+}  // namespace
+
+std::span<const Maker> rigid_figures() {
+  return kMakers;
+}
+
+}  // namespace mbk::thesis

@@ -1,0 +1,557 @@
+// Slips about filters, samples, errors and models: chapters 3 to 5 and appendix C.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "mbk/base/dsp/butterworth.h"
+#include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/base/numeric/random.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/inspect.h"
+#include "mbk/measure/identify/srivc.h"
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/measure/preprocess/prepare.h"
+#include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/perturbation/multisine.h"
+#include "mbk/model/perturbation/random_binary.h"
+#include "mbk/model/perturbation/underdamped_pulse.h"
+#include "mbk/thesis/slips.h"
+
+namespace mbk::thesis {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr Hertz kRate(1000.0);
+constexpr dsp::SavitzkyGolay kSmoothing{6, 101};
+
+/// A number, or that there is none.
+ReproducedCell number_or_none(double value) {
+  return std::isfinite(value) ? cell(value) : words("0/0");
+}
+
+/// (3.17) in degrees.
+double printed_orientation(const Matrix& Z) {
+  const double sum = Z(0, 0) + Z(1, 1);
+  const double largest = 0.5 * (sum + std::sqrt(sum * sum + 4.0 * (Z(0, 1) * Z(0, 1) - Z(0, 0) * Z(1, 1))));
+  return kDegrees * std::atan((largest - Z(0, 0)) / Z(0, 1));
+}
+
+}  // namespace
+
+Result<void> orientation_of_an_ellipse(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = account(
+      "Where: (3.17). Printed: θ = atan((λ_max − z_xx)/z_s).", "Right: θ = ½ atan2(2 z_s, z_xx − z_yy), mod 180°.",
+      "What shows it: for z_s = 0 the printed form is 0/0 or divides by zero; with a small z_s λ_max − z_xx is lost in "
+      "rounding; and it covers −90° to 90°, while tables 3.3 and 3.5 use 0° to 180°.",
+      "What moves: nothing. Of the twenty-four ellipses of tables 3.3 and 3.5 both forms have the same axis; the "
+      "printed "
+      "angles are those of the corrected form.",
+      "Tests: Slips.OrientationIsThatOfTheAxis; mbk/model/impedance/ellipse_test.cpp, "
+      "Ellipse.HasAnOrientationWhereTheFormulaOfTheSourceHasNone.");
+  exhibit.commands = {
+      "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --json --out relaxed.json && mbk "
+      "ellipse relaxed.json"};
+  exhibit.related = {"table-3.3", "table-3.5"};
+  ReproducedTable table = computed_table("slip-6", "Orientation by both forms", "z_xx, z_yy, z_s",
+                                         {{"(3.17), as printed", "°", 2}, {"½ atan2", "°", 2}});
+  const auto add = [&](const std::string& name, const Matrix& Z) {
+    table.rows.push_back(
+        {name, {number_or_none(printed_orientation(Z)), cell(kDegrees * impedance::ellipse(Z).orientation)}});
+  };
+  add("P1's stiffness, table 3.3", model_of(arm_of(bench.given().sinusoidal, "P1")).K);
+  add("100, 50, 0", Matrix{{100.0, 0.0}, {0.0, 50.0}});
+  add("50, 100, 10⁻⁶", Matrix{{50.0, 1e-6}, {1e-6, 100.0}});
+  add("100, 50, 10⁻⁶", Matrix{{100.0, 1e-6}, {1e-6, 50.0}});
+  int ellipses = 0, negative = 0;
+  double apart = 0.0;
+  for (const auto* arms : {&bench.given().sinusoidal, &bench.given().underdamped}) {
+    for (const PrintedArm& arm : *arms) {
+      for (const PrintedEllipse& ellipse : arm.ellipses) {
+        const Matrix Z = symmetric_matrix(ellipse);
+        const double printed = printed_orientation(Z), right = kDegrees * impedance::ellipse(Z).orientation;
+        ++ellipses;
+        negative += printed < 0.0 ? 1 : 0;
+        apart = std::max(apart, std::abs(std::remainder(right - printed, 180.0)));
+      }
+    }
+  }
+  ReproducedTable all = computed_table("slip-6 all", "All ellipses of tables 3.3 and 3.5", "",
+                                       {{"ellipses", "", 0}, {"(3.17) below 0°", "", 0}, {"apart, mod 180°", "°", 9}});
+  all.rows.push_back(
+      {"both tables", {cell(static_cast<double>(ellipses)), cell(static_cast<double>(negative)), cell(apart)}});
+  exhibit.tables = {std::move(table), std::move(all)};
+  return {};
+}
+
+namespace {
+
+/// Where the gain of a filter against the ideal has fallen to 1/√2 [Hz], by bisection.
+Result<double> minus_3_db(const dsp::SavitzkyGolay& filter, int derivative) {
+  double low = 0.1, high = 100.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    const auto gain = dsp::savitzky_golay_gain(filter, derivative, Hertz(middle), kRate);
+    if (!gain) return tl::unexpected(gain.error());
+    (*gain > std::numbers::sqrt2 / 2.0 ? low : high) = middle;
+  }
+  return low;
+}
+
+Result<Chart> filter_chart(const dsp::SectionCascade& lowpass) {
+  Chart chart;
+  chart.title = "Savitzky–Golay and Butterworth filter together, N = 6, W = 101, 5 Hz";
+  chart.x = {"frequency", "Hz"};
+  chart.y = {"gain, of derivatives against the ideal one", ""};
+  constexpr std::array<const char*, 3> kNames = {"smoothing", "first derivative", "second derivative"};
+  for (int derivative = 0; derivative < 3; ++derivative) {
+    ChartSeries series{kNames[static_cast<std::size_t>(derivative)], {}, {}, {}, ChartSeries::Drawn::line};
+    for (int i = 1; i <= 100; ++i) {
+      const Hertz frequency(0.1 * i);
+      const auto gain = dsp::savitzky_golay_gain(kSmoothing, derivative, frequency, kRate);
+      if (!gain) return tl::unexpected(gain.error());
+      series.x.push_back(frequency.value);
+      series.y.push_back(*gain * std::pow(dsp::gain(lowpass, frequency, kRate), 2));
+    }
+    chart.series.push_back(std::move(series));
+  }
+  chart.vertical = {{5.0, "said to be near unity up to here"}};
+  return chart;
+}
+
+}  // namespace
+
+Result<void> smoothing_cutoff(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = account(
+      "Where: (3.6), and \"near unity over the 5 Hz bandwidth\" in section 3.5.1. Printed: f_c ≈ (N + 1)/(1.6 W − 4.6) "
+      "of the Nyquist frequency.",
+      "Right: Schafer's estimate is (N + 1)/(3.2 m − 4.6) with W = 2m + 1, which is (N + 1)/(1.6 W − 6.2). Applied "
+      "forward and backward, a Butterworth filter has half of its gain at its cutoff, not 1/√2.",
+      "What shows it: the frequency at which the gain of the weights themselves is 1/√2, and the gain of the low-pass "
+      "applied twice.",
+      "What moves: nothing; the formula only describes the filter. But at 5 Hz both filters halve the signal, so the "
+      "band is 0 to about 4 Hz.",
+      "Tests: Slips.SchaferIsNearerToTheWeights; mbk/base/dsp/savitzky_golay_test.cpp, "
+      "SavitzkyGolay.HasTheKnownCutoffsOfTheThesisFilter; mbk/base/dsp/butterworth_test.cpp.");
+  exhibit.commands = {
+      "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --sg-order 6 "
+      "--sg-window 101 --cutoff 5      # the filters are named in the output"};
+  exhibit.related = {"figure-3.5", "statements"};
+  ReproducedTable table =
+      computed_table("slip-7", "−3 dB of the smoothing filter at 1 kHz", "N, W",
+                     {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
+  for (const dsp::SavitzkyGolay& filter : {kSmoothing, dsp::SavitzkyGolay{6, 151}, dsp::SavitzkyGolay{4, 51}}) {
+    const auto cutoff = dsp::savitzky_golay_cutoff(filter, kRate);
+    if (!cutoff) return tl::unexpected(cutoff.error());
+    const double nyquist = 0.5 * kRate.value;
+    table.rows.push_back(
+        {fmt::format("{}, {}", filter.order, filter.window),
+         {cell(nyquist * (filter.order + 1) / (1.6 * filter.window - 4.6)),
+          cell(nyquist * (filter.order + 1) / (3.2 * filter.half_window() - 4.6)), cell(cutoff->value)}});
+  }
+  ReproducedTable derivatives =
+      computed_table("slip-7 derivatives", "−3 dB against the ideal differentiator, N = 6, W = 101", "derivative",
+                     {{"cutoff", "Hz", 1}});
+  for (const int derivative : {1, 2}) {
+    const auto cutoff = minus_3_db(kSmoothing, derivative);
+    if (!cutoff) return tl::unexpected(cutoff.error());
+    derivatives.rows.push_back({derivative == 1 ? "first" : "second", {cell(*cutoff)}});
+  }
+  const double cutoff = bench.given().number("setup", "cutoff of chapter 3, Hz");
+  const auto lowpass = dsp::butterworth_lowpass(5, Hertz(cutoff), kRate);
+  if (!lowpass) return tl::unexpected(lowpass.error());
+  ReproducedTable twice = computed_table("slip-7 low-pass", "Butterworth, fifth order, 5 Hz", "frequency",
+                                         {{"gain, once", "", 3}, {"gain, forward and backward", "", 3}});
+  for (const double frequency : {2.0, 3.0, 4.0, 5.0}) {
+    const double gain = dsp::gain(*lowpass, Hertz(frequency), kRate);
+    twice.rows.push_back({fmt::format("{:g} Hz", frequency), {cell(gain), cell(gain * gain)}});
+  }
+  auto chart = filter_chart(*lowpass);
+  if (!chart) return tl::unexpected(chart.error());
+  exhibit.tables = {std::move(table), std::move(derivatives), std::move(twice)};
+  exhibit.charts = {std::move(*chart)};
+  return {};
+}
+
+Result<void> sign_of_the_errors(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = account(
+      "Where: table 5.4 and the equation above it. Printed: error = identified − theoretical.",
+      "Right: the entries are theoretical − identified.",
+      "What shows it: the text says three times that stiffness is over- and inertia underestimated, and that method 1 "
+      "gives higher stiffness and lower inertia than method 2. Entries of the table under either reading, of k_xx and "
+      "k_yy and of m.",
+      "What moves: the reconstruction of table 5.3 and figure 5.4. No conclusion moves, for the text has the right "
+      "sign.",
+      "Tests: Slips.ErrorsAreTheoreticalLessIdentified.");
+  exhibit.commands = {
+      "mbk simulate rig_table_5_1 --trial K1_M1 --out rig.h5 && mbk measure rig_K1_M1.h5 --structure "
+      "mass-spring --mode reference --procedure chapter5"};
+  exhibit.related = {"table-5.3", "table-5.4", "slip-19"};
+  ReproducedTable table =
+      computed_table("slip-12", "Statements of the text under either sign", "statement",
+                     {{"theoretical + entry, as captioned", "", 0}, {"theoretical − entry", "", 0}});
+  const auto count = [&](const std::vector<PrintedRig>& rigs, std::size_t elements, const auto& holds) {
+    std::array<int, 3> counts{};
+    for (const PrintedRig& rig : rigs) {
+      for (std::size_t k = 0; k < elements; ++k) {
+        const double truth = rig.theoretical[k].value, one = rig.error_method_1[k].value,
+                     two = rig.error_method_2[k].value;
+        counts[0] += holds(truth, truth + one, truth + two) ? 1 : 0;
+        counts[1] += holds(truth, truth - one, truth - two) ? 1 : 0;
+        ++counts[2];
+      }
+    }
+    return counts;
+  };
+  const auto add = [&](const char* name, const std::array<int, 3>& counts) {
+    table.rows.push_back(
+        {name,
+         {words(fmt::format("{} of {}", counts[0], counts[2])), words(fmt::format("{} of {}", counts[1], counts[2]))}});
+  };
+  const Given& given = bench.given();
+  const auto higher = [](double, double one, double two) { return one > two; };
+  const auto lower = [](double, double one, double two) { return one < two; };
+  add("k_xx, k_yy overestimated by method 1",
+      count(given.stiffnesses, 2, [](double truth, double one, double) { return one > truth; }));
+  add("k_xx, k_yy of method 1 above method 2", count(given.stiffnesses, 2, higher));
+  add("m underestimated by method 1",
+      count(given.masses, 1, [](double truth, double one, double) { return one < truth; }));
+  add("m of method 1 below method 2", count(given.masses, 1, lower));
+  exhibit.tables = {std::move(table)};
+  return {};
+}
+
+namespace {
+
+/// P1's arm along a given motion, exactly; `at` gives place, velocity and acceleration of both axes.
+template <typename At, typename Reference>
+Recording exact_recording(const impedance::Model& model, Index samples, const At& at, const Reference& reference) {
+  Recording recording;
+  recording.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / kRate.value;
+  Matrix values(samples, 6);
+  for (Index i = 0; i < samples; ++i) {
+    const perturbation::Jet<Eigen::Vector2d> jet = at(recording.time[i]);
+    const Eigen::Vector2d force =
+        -(model.M * jet.second + model.B * jet.first + model.K * (jet.value - Eigen::Vector2d(model.x0)));
+    const Eigen::Vector2d wanted = reference(recording.time[i]);
+    values.row(i) << jet.value.transpose(), force.transpose(), wanted.transpose();
+  }
+  const std::array<const char*, 6> names = {"hand_x", "hand_y", "force_x", "force_y", "reference_x", "reference_y"};
+  for (Index k = 0; k < 6; ++k) {
+    recording.channels.push_back(
+        {names[static_cast<std::size_t>(k)], k == 2 || k == 3 ? "N" : "m", "base", values.col(k)});
+  }
+  return recording;
+}
+
+Result<Recording> sinusoidal_recording(const impedance::Model& model) {
+  const std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
+  const std::vector<double> amplitudes(harmonics.size(), 0.0015);
+  const auto x = perturbation::Multisine::with_random_phases(10.0, harmonics, amplitudes, 1, 0);
+  const auto y = perturbation::Multisine::with_random_phases(10.0, harmonics, amplitudes, 1, 1);
+  if (!x) return tl::unexpected(x.error());
+  if (!y) return tl::unexpected(y.error());
+  const auto at = [&](double t) {
+    const auto a = x->at(t), b = y->at(t);
+    return perturbation::Jet<Eigen::Vector2d>{{a.value, b.value}, {a.first, b.first}, {a.second, b.second}};
+  };
+  return exact_recording(model, 62001, at, [&](double t) { return at(t).value; });
+}
+
+Result<Recording> pulse_recording(const impedance::Model& model) {
+  const auto pulses = perturbation::PulseSchedule::create({});
+  if (!pulses) return tl::unexpected(pulses.error());
+  const auto samples = static_cast<Index>((pulses->pulses().back().offset + 3.0) * kRate.value);
+  return exact_recording(
+      model, samples, [&](double t) { return pulses->at(t); }, [&](double t) { return pulses->reference(t); });
+}
+
+}  // namespace
+
+Result<void> samples_of_the_program(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = account(
+      "Where: the two programs of appendix C. Printed: the filter starts one centre late and ends one early, the "
+      "window "
+      "opens at the sample before tstart, Λ stays in M, torques are called N/m, and the program for pulses filters the "
+      "whole log before it cuts the pulses out.",
+      "Right: every centre whose window lies inside counts; what lies outside a pulse is cut away before a filter that "
+      "looks ahead can see it; Λ comes off the inertia; torques are N·m.",
+      "What shows it: a recording of P1's arm without noise or friction, in mbk's reference mode, which is the program "
+      "sample for sample, and the model that comes back from pulses in both modes.",
+      "What moves: every number of chapters 3 and 4, by less than its rounding. \"The final 10 s\" to validate are "
+      "9.899 s. Reference mode keeps all of it, "
+      "since its numbers have to be those of the program; default mode does it right, and each result names its mode.",
+      "Tests: Slips.ProgramLosesACentreAtEachEnd, Slips.FilteringBeforeTheCutSmears; "
+      "mbk/measure/preprocess/windows_test.cpp, ReferenceWindows.SinusoidalIsSamples11999To61999.");
+  exhibit.commands = {
+      "mbk simulate relaxed_underdamped --out pulses.h5 && mbk measure pulses.h5 --mode reference && "
+      "mbk measure pulses.h5"};
+  exhibit.related = {"table-3.2", "table-3.4", "statements"};
+  impedance::Model model = model_of(arm_of(bench.given().sinusoidal, "P1"));
+  const auto lasting = sinusoidal_recording(model);
+  if (!lasting) return tl::unexpected(lasting.error());
+  preprocess::Options reference;
+  reference.mode = Mode::reference;
+  reference.protocol = Protocol::sinusoidal;
+  const auto trial = preprocess::prepare(*lasting, recording::inspect(*lasting), reference);
+  if (!trial) return tl::unexpected(trial.error());
+  // The program's window is samples 11999 to 61999, both of them in it.
+  const Index window = 62000 - 11999, possible = window - 2 * kSmoothing.half_window();
+  Index used = 0, validating = 0, first = trial->recording_duration > 0 ? 1000000 : 0;
+  for (const Stretch& stretch : trial->stretches) {
+    used += stretch.size();
+    if (stretch.purpose == Purpose::validation) validating += stretch.size();
+    first = std::min(first, stretch.first_sample);
+  }
+  ReproducedTable centres = computed_table("slip-13", "Centres of the filter in the window of 50 s", "",
+                                           {{"possible", "", 0}, {"used by the program", "", 0}, {"seconds", "s", 3}});
+  centres.rows = {{"all",
+                   {cell(static_cast<double>(possible)), cell(static_cast<double>(used)),
+                    cell(static_cast<double>(used) / kRate.value)}},
+                  {"first centre, as a sample of the log, from 0",
+                   {cell(static_cast<double>(11999 + kSmoothing.half_window())), cell(static_cast<double>(first)),
+                    cell(static_cast<double>(first) / kRate.value)}},
+                  {"to validate",
+                   {cell(static_cast<double>(possible - 40000)), cell(static_cast<double>(validating)),
+                    cell(static_cast<double>(validating) / kRate.value)}}};
+  const auto pulses = pulse_recording(model);
+  if (!pulses) return tl::unexpected(pulses.error());
+  ReproducedTable smear = computed_table(
+      "slip-13 pulses", "P1's arm from pulses without noise", "procedure",
+      {{"m_yy", "kg", 5}, {"b_yy", "N·s/m", 4}, {"k_yy", "N/m", 4}, {"largest error of M, B, K", "", 6}});
+  smear.rows.push_back({"the arm", {cell(model.M(1, 1)), cell(model.B(1, 1)), cell(model.K(1, 1)), cell(0.0)}});
+  for (const auto& [name, mode] : {std::pair{"filtered, then cut (reference mode)", Mode::reference},
+                                   {"cut, then filtered (default mode)", Mode::improved}}) {
+    measurement::Options options;
+    options.preprocess.mode = mode;
+    options.passivity = false;
+    options.identify.parameters_from = identify::ParametersFrom::all;
+    const auto measured = measurement::measure({&*pulses, 1}, options);
+    if (!measured) return tl::unexpected(measured.error());
+    const impedance::Model& found = measured->identification.model;
+    double largest = 0.0;
+    for (const auto& [a, b] : {std::pair{&found.M, &model.M}, {&found.B, &model.B}, {&found.K, &model.K}}) {
+      largest = std::max(largest, (*a - *b).cwiseAbs().maxCoeff() / b->cwiseAbs().maxCoeff());
+    }
+    smear.rows.push_back({name, {cell(found.M(1, 1)), cell(found.B(1, 1)), cell(found.K(1, 1)), cell(largest)}});
+  }
+  exhibit.tables = {std::move(centres), std::move(smear)};
+  return {};
+}
+
+Result<void> offset_of_the_fit(Workbench& /*bench*/, Exhibit& exhibit) {
+  exhibit.text = account(
+      "Where: (3.10). Printed: VAF from variances, \"100 % describes the data perfectly\".",
+      "Right: a variance does not see a constant error, so that a model may be off by any offset at 100 %. It may also "
+      "be negative (table 4.4 prints −2.9): then the model is worse than a constant. The RMSE has to stand beside it.",
+      "What shows it: a force of 2 N at 1 Hz and models that are off by an offset, by a factor, or by the phase.",
+      "What moves: no number; what a VAF of the source says of x₀ and of slow drift of the force is nothing.",
+      "Tests: Slips.VafDoesNotSeeAnOffset.");
+  exhibit.commands = {
+      "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5      # VAF and RMSE of each axis"};
+  exhibit.related = {"table-4.4", "table-5.5"};
+  constexpr Index kSamples = 5000;
+  Vector force(kSamples), shifted(kSamples);
+  for (Index i = 0; i < kSamples; ++i) {
+    const double phase = 2.0 * std::numbers::pi * static_cast<double>(i) / kRate.value;
+    force[i] = 2.0 * std::sin(phase);
+    shifted[i] = 2.0 * std::sin(phase - 1.1);
+  }
+  ReproducedTable table =
+      computed_table("slip-14", "A force of 2 N at 1 Hz", "model", {{"VAF", "%", 1}, {"RMSE", "N", 3}});
+  const auto add = [&](const char* name, const Vector& residual) {
+    table.rows.push_back(
+        {name, {cell(numeric::variance_accounted_for(force, residual)), cell(numeric::root_mean_square(residual))}});
+  };
+  add("off by 1 N", Vector::Constant(kSamples, 1.0));
+  add("off by 10 N", Vector::Constant(kSamples, 10.0));
+  add("0.9 of the force", 0.1 * force);
+  add("63° late", force - shifted);
+  exhibit.tables = {std::move(table)};
+  return {};
+}
+
+namespace {
+
+constexpr double kFitRate = 100.0;  // [Hz]
+
+/// A mass on a spring and a damper, y axis.
+struct OneAxis {
+  double m, b, k;
+  [[nodiscard]] double impedance(double frequency) const {
+    const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency);
+    return std::abs(m * s * s + b * s + k);
+  }
+};
+
+/// The arm of P2 along y on a robot of 1 kg and 8 N·s/m, moved by a random binary force through (3.5).
+struct OneAxisTrial {
+  SignalPair impedance;   ///< place to the force on the arm
+  SignalPair admittance;  ///< the force on the arm to the place
+};
+
+Result<OneAxisTrial> one_axis_trial(const OneAxis& arm, std::uint64_t seed) {
+  constexpr double kRobotMass = 1.0, kRobotDamping = 8.0, kDuration = 50.0, kNoise = 0.02;
+  const auto drive = perturbation::RandomBinary::create({.switching_time = 1.0, .seed = seed}, kDuration);
+  if (!drive) return tl::unexpected(drive.error());
+  const auto samples = static_cast<Index>(kDuration * kFitRate);
+  SignalPair whole;
+  whole.step = 1.0 / kFitRate;
+  whole.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / kFitRate;
+  whole.input = whole.time.unaryExpr([&](double t) { return drive->at(t).value; });
+  const double mass = arm.m + kRobotMass, damping = arm.b + kRobotDamping;
+  const Vector a{{arm.k / mass, damping / mass}};
+  whole.output = identify::simulate_continuous(a, Vector{{1.0 / mass}}, whole);
+  // On the arm alone: what it takes of the force by its share of the same motion, (m s² + b s + k) x.
+  const Vector speed = identify::simulate_continuous(a, Vector{{0.0, 1.0 / mass}}, whole);
+  const Vector acceleration = (whole.input - damping * speed - arm.k * whole.output) / mass;
+  Vector force = arm.m * acceleration + arm.b * speed + arm.k * whole.output;
+  numeric::Random random(seed, 7);
+  for (double& value : force) value += kNoise * random.normal();
+  OneAxisTrial trial{whole, whole};
+  trial.impedance.input = whole.output;
+  trial.impedance.output = force;
+  trial.admittance.input = force;
+  return trial;
+}
+
+/// |B/A| at a frequency.
+double gain_of(const identify::ContinuousFit& fit, double frequency) {
+  const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency);
+  std::complex<double> numerator = 0.0, denominator = std::pow(s, static_cast<int>(fit.a.size()));
+  for (Index k = 0; k < fit.b.size(); ++k) numerator += fit.b[k] * std::pow(s, static_cast<int>(k));
+  for (Index k = 0; k < fit.a.size(); ++k) denominator += fit.a[k] * std::pow(s, static_cast<int>(k));
+  return std::abs(numerator / denominator);
+}
+
+Result<identify::ContinuousFit> fitted(const SignalPair& pair, Index poles, Index zeros) {
+  identify::ContinuousFitOptions options;
+  options.poles = poles;
+  options.zeros = zeros;
+  options.threads = 1;
+  return identify::fit_continuous({pair}, options);
+}
+
+}  // namespace
+
+Result<void> improper_impedance(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = account(
+      "Where: section 4.4.2. Printed: a transfer function with four poles and three zeros from place to force fits "
+      "best.",
+      "Right: m s² + b s + k has two zeros and no pole: it is improper, and a function with more poles than zeros "
+      "tends "
+      "to 0 at high frequencies, where an inertia tends to infinity. Identify the admittance from the force, 1/(m s² + "
+      "b s + k), and turn it round; or take the known force as instrument.",
+      "What shows it: the arm of P2 along y, linear, on a robot of 1 kg and 8 N·s/m, moved by ±2 N as in the source, "
+      "with 0.02 N of noise; both forms fitted by the same method, and the size of the impedance of each.",
+      "What moves: table 4.4. Part of what its VAF leaves is the form, not the central nervous system; how much cannot "
+      "be told without the recordings.",
+      "Tests: Slips.InvertedAdmittanceIsTheImpedanceAndTheProperOneIsNot; mbk/measure/identify/srivc_test.cpp.");
+  exhibit.commands = {
+      "mbk simulate one_axis_random_binary --trial trial_1 --out binary.h5 && mbk tf binary_trial_1.h5 --input "
+      "-force_y "
+      "--output hand_y --poles 2 --zeros 0 --invert position"};
+  exhibit.related = {"table-4.4", "figure-4.7"};
+  const impedance::Model p2 = model_of(arm_of(bench.given().sinusoidal, "P2"));
+  const OneAxis arm{p2.M(1, 1), p2.B(1, 1), p2.K(1, 1)};
+  const auto trial = one_axis_trial(arm, bench.seed(2, 1));
+  if (!trial) return tl::unexpected(trial.error());
+  const auto direct = fitted(trial->impedance, 4, 3);
+  const auto admittance = fitted(trial->admittance, 2, 0);
+  if (!direct) return tl::unexpected(direct.error());
+  if (!admittance) return tl::unexpected(admittance.error());
+  ReproducedTable numbers = computed_table("slip-16", "The arm from its admittance, turned round", "",
+                                           {{"m", "kg", 3}, {"b", "N·s/m", 2}, {"k", "N/m", 1}});
+  numbers.provenance = Provenance::simulated;
+  const double m = 1.0 / admittance->b[0];
+  numbers.rows = {{"the arm", {cell(arm.m), cell(arm.b), cell(arm.k)}},
+                  {"1/admittance, 2 poles", {cell(m), cell(m * admittance->a[1]), cell(m * admittance->a[0])}}};
+  ReproducedTable table =
+      computed_table("slip-16 size", "Size of the impedance, place to force", "frequency",
+                     {{"the arm", "N/m", 1}, {"1/admittance", "N/m", 1}, {"4 poles, 3 zeros", "N/m", 1}});
+  table.provenance = Provenance::simulated;
+  Chart chart;
+  chart.title = "Place to force: a proper function cannot follow an inertia";
+  chart.x = {"frequency", "Hz", true};
+  chart.y = {"size of the impedance", "N/m", true};
+  chart.series = {{"the arm", {}, {}, {}, ChartSeries::Drawn::line},
+                  {"1/admittance", {}, {}, {}, ChartSeries::Drawn::line},
+                  {"4 poles, 3 zeros", {}, {}, {}, ChartSeries::Drawn::line}};
+  const auto sizes = [&](double frequency) {
+    return std::array{arm.impedance(frequency), 1.0 / gain_of(*admittance, frequency), gain_of(*direct, frequency)};
+  };
+  for (const double frequency : {0.5, 1.0, 3.0, 10.0, 100.0, 1000.0}) {
+    const auto [truth, inverted, proper] = sizes(frequency);
+    table.rows.push_back({fmt::format("{:g} Hz", frequency), {cell(truth), cell(inverted), cell(proper)}});
+  }
+  for (int i = 0; i <= 80; ++i) {
+    const double frequency = 0.1 * std::pow(1e4, i / 80.0);
+    const auto all = sizes(frequency);
+    for (std::size_t k = 0; k < 3; ++k) {
+      chart.series[k].x.push_back(frequency);
+      chart.series[k].y.push_back(all[k]);
+    }
+  }
+  ReproducedTable fit = computed_table("slip-16 fit", "How both fits ended", "form",
+                                       {{"R² in sample", "", 5}, {"settled on a stable model", "", 0}});
+  fit.provenance = Provenance::simulated;
+  fit.rows = {{"admittance, 2 poles", {cell(admittance->fit), words(yes(admittance->converged))}},
+              {"impedance, 4 poles, 3 zeros", {cell(direct->fit), words(yes(direct->converged))}}};
+  exhibit.tables = {std::move(numbers), std::move(table), std::move(fit)};
+  exhibit.charts = {std::move(chart)};
+  return {};
+}
+
+Result<void> largest_discrepancy(Workbench& bench, Exhibit& exhibit) {
+  exhibit.text = account(
+      "Where: section 5.3.1. Printed: of all identified parameters the relative discrepancy between both methods is "
+      "largest for k_xx.",
+      "Right: that holds for the discrepancy itself. Relative to the value, by either method or by theory, it is "
+      "largest "
+      "for k_s, which is near zero in four of five springs' arrays; leaving k_s out, k_xx it is, on average.",
+      "What shows it: the difference of both methods in table 5.4, which no sign touches, over the theoretical value "
+      "and over what method 2 identified.",
+      "What moves: no number. The conclusion that the error force is larger along x rests on the discrepancy itself, "
+      "and stands.",
+      "Tests: Slips.RelativeDiscrepancyIsLargestForTheOffDiagonal.");
+  exhibit.commands = {
+      "mbk reproduce --only table-5.3 --out folder      # both methods' stiffness, from which it follows"};
+  exhibit.related = {"table-5.4", "slip-12", "statements"};
+  struct Mean {
+    double absolute = 0, to_theory = 0, to_method_2 = 0, largest = 0;
+  };
+  const auto mean_of = [](const std::vector<PrintedRig>& rigs, std::size_t k) {
+    Mean mean;
+    const double share = 1.0 / static_cast<double>(rigs.size());
+    for (const PrintedRig& rig : rigs) {
+      const double apart = std::abs(rig.error_method_1[k].value - rig.error_method_2[k].value);
+      const double theory = std::abs(rig.theoretical[k].value);
+      const double second = std::abs(rig.theoretical[k].value - rig.error_method_2[k].value);
+      mean.absolute += share * apart;
+      mean.to_theory += share * 100.0 * apart / theory;
+      mean.to_method_2 += share * 100.0 * apart / second;
+      mean.largest = std::max(mean.largest, 100.0 * apart / second);
+    }
+    return mean;
+  };
+  ReproducedTable table = computed_table("slip-19", "Method 1 against method 2, mean over five", "parameter",
+                                         {{"discrepancy", "N/m or kg", 3},
+                                          {"of the theoretical value", "%", 1},
+                                          {"of method 2", "%", 1},
+                                          {"largest of method 2", "%", 1}});
+  const auto add = [&](const char* name, const Mean& mean) {
+    table.rows.push_back(
+        {name, {cell(mean.absolute), cell(mean.to_theory), cell(mean.to_method_2), cell(mean.largest)}});
+  };
+  add("k_xx", mean_of(bench.given().stiffnesses, 0));
+  add("k_yy", mean_of(bench.given().stiffnesses, 1));
+  add("k_s", mean_of(bench.given().stiffnesses, 2));
+  add("m", mean_of(bench.given().masses, 0));
+  exhibit.tables = {std::move(table)};
+  return {};
+}
+
+}  // namespace mbk::thesis
