@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/simulate/laboratory/simulation.h"
 
 namespace {
 
@@ -99,8 +99,9 @@ CycleRecord empty_loop(const std::atomic<bool>& over) {
 
 /// Runs a trial and prints what it took.   @returns  whether nothing was dropped and memory stayed flat
 bool perform(double seconds, bool real_time, const fs::path& folder) {
-  const auto trial = session::read_experiment(experiment(seconds), "bench.toml").value().front();
-  const auto robot = laboratory::SimulatedDevice::create(trial.scenario).value();
+  const auto trial =
+      protocol::read_experiment(experiment(seconds), "bench.toml", laboratory::read_simulation).value().front();
+  const auto robot = laboratory::simulated_robot(trial).value();
   constexpr std::size_t kRing = 1 << 16;
   TimedDevice device(*robot, kRing);
   CycleRecord own;

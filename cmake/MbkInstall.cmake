@@ -113,6 +113,12 @@ function(mbk_install)
   set_target_properties(mbk_all PROPERTIES EXPORT_NAME mbk)
   install(TARGETS mbk_all EXPORT mbk COMPONENT development)
 
+  # Plug-ins that were written for 0.1 name the header without its wing.
+  file(WRITE ${PROJECT_BINARY_DIR}/forward/device_plugin.h
+       "/* The old place of this header, for one version. */\n#include \"mbk/experiment/drivers/device_plugin.h\"\n")
+  install(FILES ${PROJECT_BINARY_DIR}/forward/device_plugin.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mbk/drivers
+          COMPONENT development)
+
   mbk_outside_libraries(MBK_FIND_DEPENDENCIES files)
   set_property(GLOBAL PROPERTY MBK_OUTSIDE_FILES ${files})
   set(folder ${PROJECT_BINARY_DIR}/cmake)

@@ -15,13 +15,14 @@ endfunction()
 #
 # DEPENDS lists every module whose headers this one includes; tests/layering.py reads the includes and fails
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
-# libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES are those that stand in its headers, TEST_LIBRARIES
-# those that only its tests link.
+# libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
+# are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
+# program that is no part of the library.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED" "" "DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -52,7 +53,9 @@ function(mbk_module name)
   target_include_directories(mbk_${name} ${public} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(mbk_${name} ${public} ${dependencies} ${ARG_PUBLIC_LIBRARIES})
   add_library(mbk::${name} ALIAS mbk_${name})
-  mbk_install_module(${name} ${ARG_PRIVATE_HEADERS})
+  if(NOT ARG_NOT_INSTALLED)
+    mbk_install_module(${name} ${ARG_PRIVATE_HEADERS})
+  endif()
 
   if(MBK_BUILD_TESTS AND tests)
     mbk_test(${name}_test SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})

@@ -71,21 +71,21 @@ function(mbk_web_page name)
   endforeach()
 endfunction()
 
-# mbk_embed_page(MODULE SYMBOL [USES OTHER...]): the page web/MODULE as bytes from SYMBOLBegin to SYMBOLEnd in the module
-# of that name, whose sources see MBK_WEB. Without MBK_WEB: nothing.
-function(mbk_embed_page module symbol)
+# mbk_embed_page(MODULE PAGE SYMBOL [USES OTHER...]): the page web/PAGE as bytes from SYMBOLBegin to SYMBOLEnd in MODULE,
+# whose sources see MBK_WEB. Without MBK_WEB: nothing.
+function(mbk_embed_page module page symbol)
   if(NOT MBK_WEB)
     return()
   endif()
   cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
-  mbk_web_page(${module} ${ARG_USES})
-  set(MBK_PAGE_NAME ${module})
+  mbk_web_page(${page} ${ARG_USES})
+  set(MBK_PAGE_NAME ${page})
   set(MBK_PAGE_SYMBOL ${symbol})
-  set(MBK_PAGE_FILE ${PROJECT_BINARY_DIR}/web/${module}/dist/index.html)
+  set(MBK_PAGE_FILE ${PROJECT_BINARY_DIR}/web/${page}/dist/index.html)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/page.S.in page.S @ONLY)
   set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/page.S PROPERTIES OBJECT_DEPENDS ${MBK_PAGE_FILE})
   add_library(mbk_${module}_page OBJECT ${CMAKE_CURRENT_BINARY_DIR}/page.S)
-  add_dependencies(mbk_${module}_page web_${module})
+  add_dependencies(mbk_${module}_page web_${page})
   target_sources(mbk_${module} PRIVATE $<TARGET_OBJECTS:mbk_${module}_page>)
   target_compile_definitions(mbk_${module} PRIVATE MBK_WEB)
   if(TARGET ${module}_test)

@@ -9,6 +9,7 @@
 #include "apps/mbk/robot_commands.h"
 #include "apps/mbk/scenario_argument.h"
 #include "mbk/experiment/session/live_check.h"
+#include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::app {
 namespace {
@@ -31,7 +32,7 @@ std::string findings_text(const std::vector<session::Finding>& findings) {
 int run(const Arguments& arguments) {
   const auto text = read_scenario_text(arguments.file);
   if (!text) return report_error(text.error());
-  const auto setup = session::read_robot_setup(text->text, text->file);
+  const auto setup = session::read_robot_setup(text->text, text->file, laboratory::read_simulation);
   if (!setup) return report_error(setup.error());
   if (arguments.live && !setup->has_device) {
     return report_error(
@@ -43,9 +44,9 @@ int run(const Arguments& arguments) {
     return report_error(ok.error());
   }
   if (!arguments.live) return wrong ? kNotUsable : kFine;
-  const auto robot = session::make_device(setup->device, setup->scenario);
+  const auto robot = protocol::make_device(setup->trial);
   if (!robot) return report_error(robot.error());
-  const auto record = session::watch_robot(**robot, setup->scenario.rate, *arguments.live);
+  const auto record = session::watch_robot(**robot, setup->trial.rate, *arguments.live);
   if (!record) return report_error(record.error());
   const auto seen = session::check_live(*setup, (*robot)->facts(), *record);
   if (auto ok = Output().write(session::live_text(*setup, (*robot)->facts(), *record) + findings_text(seen)); !ok) {

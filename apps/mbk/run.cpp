@@ -19,20 +19,21 @@
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
 #include "apps/mbk/stop_signals.h"
-#include "mbk/experiment/session/live_estimate.h"
-#include "mbk/experiment/session/personal_data.h"
+#include "mbk/experiment/console/live_estimate.h"
+#include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/present/report/text.h"
+#include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::app {
 namespace {
 
 namespace fs = std::filesystem;
+using protocol::Trial;
 using session::Session;
-using session::Trial;
 
 constexpr int kSafetyStop = 5, kMotorsNotOff = 7;
 
@@ -51,7 +52,7 @@ struct Arguments {
 Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
   const auto text = read_scenario_text(arguments.experiment);
   if (!text) return tl::unexpected(text.error());
-  auto trials = session::read_experiment(text->text, text->file);
+  auto trials = protocol::read_experiment(text->text, text->file, laboratory::read_simulation);
   if (!trials) return trials;
   std::vector<Trial> chosen;
   for (const std::string& name : arguments.trials) {
@@ -63,9 +64,9 @@ Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
   }
   if (chosen.empty()) chosen = std::move(*trials);
   for (Trial& trial : chosen) {
-    if (arguments.seed) trial.scenario.seed = *arguments.seed;
+    if (arguments.seed) trial.seed = *arguments.seed;
     if (arguments.person) trial.person.number = *arguments.person;
-    if (arguments.readers) trial.scenario.readers = *arguments.readers;
+    if (arguments.readers) trial.readers = *arguments.readers;
   }
   return chosen;
 }
@@ -136,7 +137,7 @@ int dry_run(const std::vector<Trial>& trials, const std::string& experiment) {
     if (!plan) return report_error(plan.error().in(experiment));
     const auto rehearsal = session::rehearse(trial);
     if (!rehearsal) return report_error(rehearsal.error().in(experiment));
-    if (auto ok = Output().write(session::plan_text(trial, *plan, *rehearsal)); !ok) return report_error(ok.error());
+    if (auto ok = Output().write(plan_text(trial, *plan, *rehearsal)); !ok) return report_error(ok.error());
     if (rehearsal->trip.reason != safety::Reason::none) return kSafetyStop;
   }
   return kFine;
@@ -155,8 +156,8 @@ Measured measure(const session::TrialOutcome& outcome, const Trial& trial, RunCo
   auto recording = recording::read(outcome.recording, {});
   if (!recording) return {recording.error().line() + "\n", true};
   const Recording perturbed = preprocess::perturbation_only(std::move(*recording));
-  const auto measured = console.measured(
-      perturbed, session::across_missed_ticks(perturbed, trial.scenario.rate, measurement_options_of(trial)));
+  const auto measured =
+      console.measured(perturbed, console::across_missed_ticks(perturbed, trial.rate, measurement_options_of(trial)));
   if (!measured) return {fmt::format("not measured: {}\n", measured.error().line()), true};
   const Identification& identification = measured->identification;
   return {report::result_text(identification, std::nullopt),
@@ -228,7 +229,7 @@ int code_of(const session::TrialOutcome& outcome) {
 std::optional<int> perform(Session& session, const Trial& trial, std::size_t index, const fs::path& target,
                            const session::Pace& pace, const Arguments& arguments, RunConsole& console, bool& repeat) {
   repeat = false;
-  auto robot = session::make_device(trial.device, trial.scenario);
+  auto robot = protocol::make_device(trial);
   if (!robot) return report_error(robot.error());
   if (auto ok = console.begin(index, trial, (*robot)->facts(), target); !ok) return report_error(ok.error());
   session::Signals& signals = session.signals();
@@ -320,7 +321,7 @@ int perform_all(Session& session, const std::vector<Trial>& trials, const sessio
 int run(const Arguments& arguments) {
   const auto trials = trials_of(arguments);
   if (!trials) return report_error(trials.error());
-  for (const std::string& warning : session::personal_warnings(*trials)) {
+  for (const std::string& warning : protocol::personal_warnings(*trials)) {
     say("mbk: {}: warning: {}\n", arguments.experiment, warning);
   }
   if (arguments.dry_run) return dry_run(*trials, arguments.experiment);

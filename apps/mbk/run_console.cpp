@@ -10,7 +10,7 @@
 #include "apps/mbk/report_file.h"
 #include "mbk/experiment/console/page.h"
 #include "mbk/experiment/control/trial_control.h"
-#include "mbk/experiment/session/personal_data.h"
+#include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/present/report/html.h"
 
@@ -18,7 +18,7 @@ namespace mbk::app {
 
 using console::Action;
 using console::Question;
-using session::Trial;
+using protocol::Trial;
 
 void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
   command.add_flag_callback(
@@ -34,8 +34,8 @@ void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
 
 measurement::Options measurement_options_of(const Trial& trial) {
   measurement::Options options;
-  options.identify.handle_mass = trial.planar().robot.handle_mass;
-  if (!std::holds_alternative<control::PositionMode>(trial.planar().control)) {
+  options.identify.handle_mass = trial.handle_mass;
+  if (!std::holds_alternative<control::PositionMode>(trial.control)) {
     options.identify.method = Method::instrumental_variables;  // the person answers what least squares takes for noise
   }
   return options;
@@ -103,7 +103,7 @@ bool RunConsole::may_begin(session::Session& session, const Trial& first) {
   std::unique_ptr<device::Device> robot;
   std::optional<session::IdleWatch> idle;
   if (!first.device.simulated()) {
-    if (auto made = session::make_device(first.device, first.scenario)) robot = std::move(*made);
+    if (auto made = protocol::make_device(first)) robot = std::move(*made);
     if (robot && robot->start()) idle.emplace(*robot, watching(session));
   }
   while (true) {
@@ -162,7 +162,7 @@ Result<void> RunConsole::keep_notes() {
   if (!console_ || last_.empty()) return {};
   const auto notes = console_->take_notes();
   for (const std::string& note : notes) {
-    const std::string warning = session::personal_warning("the note", note, false);
+    const std::string warning = protocol::personal_warning("the note", note, false);
     if (warning.empty()) continue;
     say("mbk: warning: {}\n", warning);
     console_->say(warning);

@@ -21,7 +21,7 @@ struct ConsoleArguments {
 void add_console_options(CLI::App& command, ConsoleArguments& arguments);
 
 /// How a trial is measured, while it runs and after it.
-[[nodiscard]] measurement::Options measurement_options_of(const session::Trial& trial);
+[[nodiscard]] measurement::Options measurement_options_of(const protocol::Trial& trial);
 
 /// "median 4.3 µs, p99.9 …, worst …"
 [[nodiscard]] std::string time_text(const realtime::CycleRecord& record);
@@ -33,13 +33,13 @@ class RunConsole {
  public:
   /// Opens it where it is wanted, and prints its addresses.   @fails  as Console::open
   [[nodiscard]] static Result<RunConsole> open(const ConsoleArguments& arguments,
-                                               const std::vector<session::Trial>& trials, session::Signals& signals);
+                                               const std::vector<protocol::Trial>& trials, session::Signals& signals);
 
   /// With --wait, waits for the page, and shows the robot of the first trial meanwhile.
   /// @returns  false where it would rather not
-  [[nodiscard]] bool may_begin(session::Session& session, const session::Trial& first);
+  [[nodiscard]] bool may_begin(session::Session& session, const protocol::Trial& first);
 
-  [[nodiscard]] Result<void> begin(std::size_t index, const session::Trial& trial, const device::Facts& facts,
+  [[nodiscard]] Result<void> begin(std::size_t index, const protocol::Trial& trial, const device::Facts& facts,
                                    const std::filesystem::path& target);
   void watch(std::span<const journal::Tick> ticks);
 

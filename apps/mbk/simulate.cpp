@@ -125,7 +125,7 @@ int show_facts(const Arguments& arguments) {
   if (!jobs) return report_error(jobs.error());
   std::string text;
   for (const Job& job : *jobs) {
-    const auto schedule = laboratory::make_schedule(job.scenario.perturbation, job.scenario.seed);
+    const auto schedule = perturbation::make_schedule(job.scenario.perturbation, job.scenario.seed);
     if (!schedule) return report_error(schedule.error().in(place_of(arguments, job)));
     text += fmt::format("{}{}{}, seed {}\n", job.scenario.file_name, job.scenario.trial_name.empty() ? "" : " ",
                         job.scenario.trial_name, job.scenario.seed) +

@@ -242,15 +242,15 @@ class Site:
 
     def add_library(self):
         text = (ROOT / "CONTRIBUTING.md").read_text()
-        holds = dict(re.findall(r"^\| \d \| `(\w+)` \| (.*?) \|$", text, re.MULTILINE))
+        holds = dict(re.findall(r"^\| [^|]*\| `(\w+)` \| (.*?) \|$", text, re.MULTILINE))
         rows = []
-        for number, modules in re.findall(r"^mbk_layer\((\d+)((?:\s+\w+)+)\)",
-                                          re.sub(r"#[^\n]*", "", (ROOT / "mbk/CMakeLists.txt").read_text()), re.MULTILINE):
-            for module in sorted(modules.split()):
-                place = self.reference.page.get(f"mbk/{module}")
+        lists = re.sub(r"#[^\n]*", "", (ROOT / "mbk/CMakeLists.txt").read_text())
+        for wing, words in re.findall(r"^mbk_wing\((\w+)((?:\s+\w+)*)\)", lists, re.MULTILINE):
+            for module in [word for word in words.split() if word != "LAYER"] or [wing]:
+                place = self.reference.page.get(f"mbk/{wing}" if module == wing else f"mbk/{wing}/{module}")
                 if place:
                     where = self.outward("library", f"api/{place}", f"`{module}`")
-                    rows.append(f"| {number} | {where} | {holds.get(module, '')} |")
+                    rows.append(f"| {wing} | {where} | {holds.get(module, '')} |")
         self.pages["library"] = (
             "# C++ library\n"
             + self.rewritten(
@@ -261,7 +261,7 @@ class Site:
             + "\n" + " · ".join(self.outward("library", f"api/{file}", label) for file, label in (
                 ("files.html", "by header"), ("annotated.html", "by type"), ("namespaces.html", "by namespace"),
                 ("globals_func.html" if (self.out.parent / "html/api/globals_func.html").exists() else "namespacemembers_func.html",
-                 "by function"))) + "\n\n| Layer | Module | Holds |\n|---|---|---|\n" + "\n".join(rows) + "\n")
+                 "by function"))) + "\n\n| Wing | Module | Holds |\n|---|---|---|\n" + "\n".join(rows) + "\n")
 
     # Files that are linked and are no documents
 

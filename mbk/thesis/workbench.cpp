@@ -58,7 +58,7 @@ Result<TaskResult> perform(Task task, int participant, const Workbench& bench) {
 
 Result<OneAxisGrasp> grasp(laboratory::Scenario scenario) {
   namespace one_dimensional = validation::one_dimensional;
-  std::get<laboratory::RandomBinaryPlan>(scenario.perturbation.kind).sequence.switching_time = kSwitchingTime;
+  std::get<perturbation::RandomBinaryPlan>(scenario.perturbation.kind).sequence.switching_time = kSwitchingTime;
   auto performance = laboratory::simulate(scenario);
   if (!performance) return tl::unexpected(performance.error());
   const auto axis = one_dimensional::axis_of(performance->recording);

@@ -15,7 +15,8 @@
 #include <thread>
 
 #include "mbk/experiment/console/console.h"
-#include "mbk/experiment/session/experiment.h"
+#include "mbk/experiment/protocol/experiment.h"
+#include "mbk/simulate/laboratory/simulation.h"
 
 namespace {
 
@@ -61,7 +62,7 @@ void ask(Console& console, Question question) {
 }  // namespace
 
 int main() {
-  const auto trials = mbk::session::read_experiment(kExperiment, "experiment.toml");
+  const auto trials = mbk::protocol::read_experiment(kExperiment, "experiment.toml", mbk::laboratory::read_simulation);
   if (!trials) return 1;
   mbk::session::Signals signals;
   auto console = Console::open(0, *trials, signals, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });

@@ -14,14 +14,13 @@
 #include "mbk/experiment/control/sequencer.h"
 #include "mbk/experiment/safety/trip.h"
 #include "mbk/present/result/json.h"
-#include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::console {
 namespace {
 
 using Json = nlohmann::json;
 using journal::Tick;
-using session::Trial;
+using protocol::Trial;
 
 constexpr std::size_t kMostPending = 8192;  // samples of a frame, at most
 constexpr std::uint64_t kStateBeats = 12;   // a state at least so often
@@ -110,18 +109,17 @@ Console::Console(const std::vector<Trial>& trials, session::Signals& signals)
   for (const Trial& trial : trials) {
     Listed listed;
     listed.name = trial.name.empty() ? trial.protocol : trial.name;
-    listed.condition = trial.scenario.condition;
-    listed.home = trial.planar().home;
-    listed.force = !std::holds_alternative<control::PositionMode>(trial.planar().control);
-    if (const auto schedule = laboratory::make_schedule(trial.scenario.perturbation, trial.scenario.seed)) {
+    listed.condition = trial.condition;
+    listed.home = trial.home;
+    listed.force = !std::holds_alternative<control::PositionMode>(trial.control);
+    if (const auto schedule = perturbation::make_schedule(trial.perturbation, trial.seed)) {
       listed.duration = schedule->duration();
     }
     trials_.push_back(std::move(listed));
   }
   if (const auto html = operator_page()) operator_page_ = make_page(std::string(*html));
   for (auto* ticks : {&pending_, &sending_}) ticks->reserve(kMostPending);
-  live_ =
-      std::make_unique<session::LiveEstimate>([this](const session::LiveEstimate::Estimate& one) { estimated(one); });
+  live_ = std::make_unique<LiveEstimate>([this](const LiveEstimate::Estimate& one) { estimated(one); });
 }
 
 Console::~Console() {
@@ -219,7 +217,7 @@ void Console::watch_throwing(std::span<const Tick> ticks) {
   live_->add(ticks);
 }
 
-void Console::finish(const session::TrialOutcome& outcome) {
+void Console::finish(const protocol::TrialOutcome& outcome) {
   live_->finish();
   const std::scoped_lock lock(mutex_);
   Listed& listed = trials_[current_];
@@ -378,7 +376,7 @@ void Console::decide(Action action) {
   decided_.notify_all();
 }
 
-void Console::estimated(const session::LiveEstimate::Estimate& estimate) {
+void Console::estimated(const LiveEstimate::Estimate& estimate) {
   std::string json =
       fmt::format(R"({{"type":"estimate","final":{},"perturbed_s":{:.3f},)", estimate.final, estimate.perturbed);
   if (estimate.measured) {

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "mbk/base/realtime/cycle_record.h"
+#include "mbk/experiment/console/live_estimate.h"
 #include "mbk/experiment/console/server.h"
 #include "mbk/experiment/device/device.h"
-#include "mbk/experiment/session/live_estimate.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/measure/measurement/measure.h"
 
@@ -55,7 +55,7 @@ class Console {
   /// @param log  one line about what was refused; from the server's thread
   /// @fails  as Server::listen
   [[nodiscard]] static Result<std::unique_ptr<Console>> open(std::uint16_t port,
-                                                             const std::vector<session::Trial>& trials,
+                                                             const std::vector<protocol::Trial>& trials,
                                                              session::Signals& signals,
                                                              std::function<void(const std::string&)> log);
   Console(const Console&) = delete;
@@ -75,7 +75,7 @@ class Console {
   void watch(std::span<const journal::Tick> ticks) noexcept;
 
   /// The trial is over. Returns once the last estimate is there.
-  void finish(const session::TrialOutcome& outcome);
+  void finish(const protocol::TrialOutcome& outcome);
 
   /// How long the ticks of the last trial took and how late they came, apart for those while pages were open and for
   /// the others.
@@ -120,14 +120,14 @@ class Console {
     std::string report_missing;
   };
 
-  Console(const std::vector<session::Trial>& trials, session::Signals& signals);
+  Console(const std::vector<protocol::Trial>& trials, session::Signals& signals);
   Page page(std::string_view path);
   Result<void> command(const Command& command);
   Result<void> reset(const std::string& code);
   Result<void> note(const std::string& text);
   void decide(Action action);
   void beat();
-  void estimated(const session::LiveEstimate::Estimate& estimate);
+  void estimated(const LiveEstimate::Estimate& estimate);
   void watch_throwing(std::span<const journal::Tick> ticks);
   [[nodiscard]] std::string state_locked() const;
 
@@ -161,7 +161,7 @@ class Console {
   Message estimate_;
   std::uint64_t beats_ = 0;
   std::uintmax_t disk_free_ = 0;
-  std::unique_ptr<session::LiveEstimate> live_;
+  std::unique_ptr<LiveEstimate> live_;
   std::unique_ptr<Server> server_;  // the last to be made, and the first to go
 };
 

@@ -121,9 +121,9 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
   const double share = static_cast<double>(record.fresh + record.lost) / static_cast<double>(record.ticks);
   findings.add(share >= kLeastRate && share <= 2.0 - kLeastRate, Verdict::wrong,
                fmt::format("{:.1f} states a second of the robot's, for {:g} ticks of mbk's",
-                           share * setup.scenario.rate.value, setup.scenario.rate.value),
+                           share * setup.trial.rate.value, setup.trial.rate.value),
                "both have to run at the same rate: see rate_hz and the robot's clock");
-  const double silence = static_cast<double>(record.longest_gap) / setup.scenario.rate.value;
+  const double silence = static_cast<double>(record.longest_gap) / setup.trial.rate.value;
   findings.add(silence <= setup.limits.link_silence, Verdict::wrong,
                fmt::format("the longest silence was {:.0f} ms", 1e3 * silence),
                "the gate would switch off: see network, load and [safety] link_silence_ms");
@@ -138,7 +138,7 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
                : record.stop_pressed ? "the stop button is pressed"
                                      : "the stop button is not pressed; press and release it meanwhile to test it",
                "release it");
-  const auto frozen = static_cast<std::uint64_t>(std::max(0.25, setup.limits.frozen) * setup.scenario.rate.value);
+  const auto frozen = static_cast<std::uint64_t>(std::max(0.25, setup.limits.frozen) * setup.trial.rate.value);
   const Vector2d theta(record.joint[0].mean, record.joint[1].mean);
   if (auto ok = robot::check_joints(setup.robot.geometry.limits, theta); !ok) {
     findings.add(false, Verdict::wrong, ok.error().line(),

@@ -8,8 +8,6 @@
 
 #include "mbk/experiment/session/loop.h"
 #include "mbk/model/robot/workspace.h"
-#include "mbk/present/report/schedule_text.h"
-#include "mbk/simulate/laboratory/simulated_device.h"
 
 namespace mbk::session {
 namespace {
@@ -33,10 +31,10 @@ struct PlannedMotion {
 };
 
 /// Limits that follow from the plan: a hand that is driven the wrong way is stopped before it is fast.
-safety::Limits limits_of(const Trial& trial, const PlannedMotion& planned) {
+safety::Limits limits_of(const protocol::Trial& trial, const PlannedMotion& planned) {
   constexpr double kMore = 1.5, kMoreSpeed = 0.05, kMoreWay = 0.015, kTracking = 4.0 * kDegree;  // [1, m/s, m, rad]
   safety::Limits limits = trial.limits;
-  if (!std::holds_alternative<control::PositionMode>(trial.planar().control)) return limits;
+  if (!std::holds_alternative<control::PositionMode>(trial.control)) return limits;
   const double speed = std::max(planned.speed, trial.sequence.move_speed);
   if (trial.from_plan.speed) limits.speed = std::min(limits.speed, kMore * speed + kMoreSpeed);
   if (trial.from_plan.excursion) limits.excursion = std::min(limits.excursion, kMore * planned.excursion + kMoreWay);
@@ -45,12 +43,12 @@ safety::Limits limits_of(const Trial& trial, const PlannedMotion& planned) {
 }
 
 /// What the schedule asks of a hand that follows it.
-Result<PlannedMotion> check_path(const control::TrialControl& control, const Trial& trial) {
+Result<PlannedMotion> check_path(const control::TrialControl& control, const protocol::Trial& trial) {
   const safety::Limits& limits = trial.limits;
   PlannedMotion planned;
-  const robot::Geometry& geometry = trial.planar().robot.robot.geometry;
-  const Eigen::Vector2d home = trial.planar().home;
-  const double step = 1.0 / trial.scenario.rate.value;
+  const robot::Geometry& geometry = trial.robot.geometry;
+  const Eigen::Vector2d home = trial.home;
+  const double step = 1.0 / trial.rate.value;
   const auto ticks = static_cast<int>(control.schedule().duration() / step);
   Eigen::Vector2d last = control.place(0.0);
   for (int i = 0; i <= ticks; ++i) {
@@ -92,11 +90,11 @@ Result<PlannedMotion> check_path(const control::TrialControl& control, const Tri
 /// Takes the peaks out of the ticks as they come.
 class Peaks {
  public:
-  Peaks(Rehearsal& rehearsal, const Trial& trial)
+  Peaks(Rehearsal& rehearsal, const protocol::Trial& trial)
       : rehearsal_(rehearsal),
-        geometry_(trial.planar().robot.robot.geometry),
-        home_(trial.planar().home),
-        span_(static_cast<double>(kSpeedTicks) / trial.scenario.rate.value) {}
+        geometry_(trial.robot.geometry),
+        home_(trial.home),
+        span_(static_cast<double>(kSpeedTicks) / trial.rate.value) {}
 
   void add(const journal::Tick& tick) {
     const Eigen::Vector2d joint(tick.joint[0], tick.joint[1]), torque(tick.torque[0], tick.torque[1]);
@@ -120,20 +118,14 @@ class Peaks {
   std::array<Eigen::Vector2d, kSpeedTicks> hands_{};
 };
 
-std::string limit_line(const char* what, double value, double limit, const char* unit) {
-  return fmt::format("  {:<34}{:>8.3g} {:<4} of {:>5.3g}{}\n", what, value, unit, limit,
-                     value > 0.8 * limit ? "   close to the limit" : "");
-}
-
 }  // namespace
 
-Result<Plan> make_plan(const Trial& trial) {
-  auto schedule = laboratory::make_schedule(trial.scenario.perturbation, trial.scenario.seed);
+Result<Plan> make_plan(const protocol::Trial& trial) {
+  auto schedule = perturbation::make_schedule(trial.perturbation, trial.seed);
   if (!schedule) return tl::unexpected(schedule.error());
-  const laboratory::PlanarTrial& planar = trial.planar();
-  const robot::Geometry& geometry = planar.robot.robot.geometry;
-  const double sample_time = 1.0 / trial.scenario.rate.value;
-  auto control = control::TrialControl::create(planar.control, *schedule, geometry, planar.home, sample_time);
+  const robot::Geometry& geometry = trial.robot.geometry;
+  const double sample_time = 1.0 / trial.rate.value;
+  auto control = control::TrialControl::create(trial.control, *schedule, geometry, trial.home, sample_time);
   if (!control) return tl::unexpected(control.error());
   auto sequence = control::Sequencer::create(*control, trial.sequence, geometry, sample_time);
   if (!sequence) return tl::unexpected(sequence.error());
@@ -149,15 +141,16 @@ Result<Plan> make_plan(const Trial& trial) {
   const auto planned = check_path(*control, trial);
   if (!planned) return tl::unexpected(planned.error());
   const safety::Limits limits = limits_of(trial, *planned);
-  auto gate = safety::Gate::create(limits, planar.robot.robot, planar.home, sample_time);
+  auto gate = safety::Gate::create(limits, trial.robot, trial.home, sample_time);
   if (!gate) return tl::unexpected(gate.error());
   return Plan{limits, std::move(*schedule), std::move(*control), std::move(*sequence), std::move(*gate)};
 }
 
-Result<Rehearsal> rehearse(const Trial& trial) {
+Result<Rehearsal> rehearse(const protocol::Trial& trial) {
   auto plan = make_plan(trial);
   if (!plan) return tl::unexpected(plan.error());
-  auto robot = laboratory::SimulatedDevice::create(trial.scenario);
+  if (!trial.simulation) return bad_usage("there is nothing that simulates the robot", "run the trial itself");
+  auto robot = trial.simulation->robot(trial);
   if (!robot) return tl::unexpected(robot.error());
   Rehearsal rehearsal;
   realtime::BoundedRing<journal::Tick> ring(4096);
@@ -174,7 +167,7 @@ Result<Rehearsal> rehearse(const Trial& trial) {
       if (!last) std::this_thread::yield();
     }
   });
-  realtime::VirtualClock clock(1.0 / trial.scenario.rate.value);
+  realtime::VirtualClock clock(1.0 / trial.rate.value);
   Signals signals;
   LoopTimes times;
   run_loop(**robot, plan->sequence, plan->gate, clock, ring, signals, times);
@@ -182,31 +175,6 @@ Result<Rehearsal> rehearse(const Trial& trial) {
   looking.join();
   rehearsal.trip = plan->gate.trip();
   return rehearsal;
-}
-
-std::string plan_text(const Trial& trial, const Plan& plan, const Rehearsal& rehearsal) {
-  const safety::Limits& limits = plan.limits;
-  const double perturbation = plan.schedule.duration();
-  std::string text = fmt::format("{}{}{}\n", trial.protocol, trial.name.empty() ? "" : ", trial " + trial.name,
-                                 trial.scenario.condition.empty() ? "" : ": " + trial.scenario.condition);
-  text += fmt::format(
-      "  in all        {:.1f} s: soft start {:g} s, way to the test location, {:g} s of rest,\n"
-      "                perturbation {:.1f} s, way back, soft stop {:g} s\n",
-      rehearsal.duration, trial.sequence.soft_start, trial.sequence.settle, perturbation, trial.sequence.soft_start);
-  text += report::schedule_text(plan.schedule);
-  text += "  peaks in a rehearsal on the simulated robot, and the gate's limits\n";
-  text += limit_line("force of the motors at the handle", rehearsal.handle_force, limits.handle_force, "N");
-  text += limit_line("torque of joint 1", rehearsal.joint_torque[0], limits.joint_torque[0], "N·m");
-  text += limit_line("torque of joint 2", rehearsal.joint_torque[1], limits.joint_torque[1], "N·m");
-  text += limit_line("measured force", rehearsal.measured_force, limits.measured_force, "N");
-  text += limit_line("speed of the hand", 1e3 * rehearsal.speed, 1e3 * limits.speed, "mm/s");
-  if (limits.excursion > 0.0) {
-    text += limit_line("way from the test location", 1e3 * rehearsal.excursion, 1e3 * limits.excursion, "mm");
-  }
-  if (rehearsal.trip.reason != safety::Reason::none) {
-    text += fmt::format("  the rehearsal ended in a safety stop: {}\n", safety::sentence(rehearsal.trip));
-  }
-  return text;
 }
 
 }  // namespace mbk::session

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <string>
-
 #include "mbk/base/core/result.h"
 #include "mbk/experiment/control/sequencer.h"
+#include "mbk/experiment/protocol/experiment.h"
 #include "mbk/experiment/safety/gate.h"
-#include "mbk/experiment/session/experiment.h"
 
 namespace mbk::session {
 
@@ -22,8 +20,8 @@ struct Plan {
 /// the one by default: speed 1.5 times the planned one + 50 mm/s, way from home 1.5 times + 15 mm, tracking error 4°.
 /// @fails  usage: the schedule asks for more than the gate allows (force, speed, excursion, workspace, joint margin),
 /// with
-///         value, limit and time; as make_schedule, TrialControl, Sequencer and Gate.
-[[nodiscard]] Result<Plan> make_plan(const Trial& trial);
+///         value, limit and time; as perturbation::make_schedule, TrialControl, Sequencer and Gate.
+[[nodiscard]] Result<Plan> make_plan(const protocol::Trial& trial);
 
 /// The largest values of a rehearsal, each with the limit of the gate.
 struct Rehearsal {
@@ -38,10 +36,7 @@ struct Rehearsal {
 
 /// Runs the trial on the simulated robot with whoever the experiment describes at its handle, through the same loop and
 /// gate; nothing is recorded.
-/// @fails  as make_plan and SimulatedDevice
-[[nodiscard]] Result<Rehearsal> rehearse(const Trial& trial);
-
-/// Schedule, times, limits and what a rehearsal came to, for people.
-[[nodiscard]] std::string plan_text(const Trial& trial, const Plan& plan, const Rehearsal& rehearsal);
+/// @fails  usage: the trial has no simulation; as make_plan and Simulation::robot
+[[nodiscard]] Result<Rehearsal> rehearse(const protocol::Trial& trial);
 
 }  // namespace mbk::session

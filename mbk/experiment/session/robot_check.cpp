@@ -160,7 +160,7 @@ void check_motors(const RobotSetup& setup, const Vector2d& theta, Findings& find
 
 void check_times(const RobotSetup& setup, Findings& findings) {
   const auto watchdog = [&](double seconds) {
-    const double tick = 1.0 / setup.scenario.rate.value;
+    const double tick = 1.0 / setup.trial.rate.value;
     const std::string text = fmt::format("the robot's watchdog is {:g} ms", 1e3 * seconds);
     if (seconds < 3.0 * tick) {
       findings.judge(Verdict::wrong, text, "it would bite at the first late tick: take 20 to 100 ms");
@@ -173,7 +173,7 @@ void check_times(const RobotSetup& setup, Findings& findings) {
   if (const auto* plugin = std::get_if<drivers::PluginOptions>(&setup.device.kind)) watchdog(plugin->watchdog);
 }
 
-std::string device_text(const DevicePlan& plan) {
+std::string device_text(const protocol::DevicePlan& plan) {
   if (const auto* udp = std::get_if<drivers::UdpOptions>(&plan.kind)) {
     return fmt::format("UDP {}:{}{}", udp->address, udp->port, udp->lock_step ? ", in lock-step" : "");
   }
@@ -189,22 +189,23 @@ std::string frame_text(device::Wiring::Frame frame) {
 
 }  // namespace
 
-Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem::path& file) {
+Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem::path& file,
+                                    const protocol::ReadSimulation& simulation) {
   const auto document = config::Document::parse(text, file.string());
   if (!document) return tl::unexpected(document.error());
   const config::Section root = document->root();
   RobotSetup setup;
   setup.has_device = root.has("device");
   if (root.has("control") || root.has("perturbation") || root.has("trial")) {
-    auto trials = read_experiment(text, file);
+    auto trials = protocol::read_experiment(text, file, simulation);
     if (!trials) return tl::unexpected(trials.error());
-    const Trial& first = trials->front();
-    setup.robot = first.planar().robot.robot;
+    const protocol::Trial& first = trials->front();
+    setup.robot = first.robot;
     setup.limits = first.limits;
     setup.device = first.device;
     setup.has_device = true;
-    setup.home = first.planar().home;
-    setup.scenario = first.scenario;
+    setup.home = first.home;
+    setup.trial = first;
     return setup;
   }
   const config::Section robot = root.section("robot");
@@ -215,7 +216,9 @@ Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem
   // The whole description is judged by its own reader, which knows every key.
   if (auto ok = robot_file::parse_robot_description(text, "", file.string()); !ok) return tl::unexpected(ok.error());
   setup.robot = robot_file::read_planar_robot(robot);
-  setup.device = read_device(root.section("device"), file.parent_path());
+  setup.device = protocol::read_device(root.section("device"), file.parent_path());
+  setup.trial.robot = setup.robot;
+  setup.trial.device = setup.device;
   root.leave_to_others("robot");
   root.leave_to_others("drive");
   if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());

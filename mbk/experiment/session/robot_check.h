@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/experiment/session/experiment.h"
+#include "mbk/experiment/protocol/experiment.h"
 #include "mbk/model/robot/dynamics.h"
 
 namespace mbk::session {
@@ -16,16 +16,18 @@ namespace mbk::session {
 struct RobotSetup {
   robot::PlanarRobot robot;
   safety::Limits limits;                ///< of an experiment; those by default for a description
-  DevicePlan device;                    ///< with [device] of either file
+  protocol::DevicePlan device;          ///< with [device] of either file
   bool has_device = false;              ///< there is something to connect to
   std::optional<Eigen::Vector2d> home;  ///< of an experiment [m]
-  laboratory::Scenario scenario;        ///< of an experiment, its first trial: what a simulated robot is made of
+  protocol::Trial trial;  ///< of an experiment, its first; of a description, one with its robot and device
 };
 
 /// An experiment, its first trial, or the description of a robot, by what stands in it: [control] or [perturbation].
 /// @param file  how messages call it, and where the names of libraries begin
 /// @fails  data: as read_experiment, as robot_file::parse_robot_description; the robot is no planar one.
-[[nodiscard]] Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem::path& file);
+/// @param simulation  as of protocol::read_experiment
+[[nodiscard]] Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem::path& file,
+                                                  const protocol::ReadSimulation& simulation = {});
 
 /// One thing that was looked at.
 struct Finding {

@@ -96,22 +96,22 @@ struct NotBegun {
 
 }  // namespace
 
-Header header_of(const Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
+Header header_of(const protocol::Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
   Header header;
-  header.metadata = metadata_of(trial.person);
-  // The scenario's participant is at the handle only where the robot is simulated.
-  if (trial.device.simulated()) header.metadata.merge(laboratory::scenario_metadata(trial.scenario));
+  header.metadata = protocol::metadata_of(trial.person);
+  // Who is simulated is at the handle only where the robot is simulated.
+  if (trial.device.simulated() && trial.simulation) header.metadata.merge(trial.simulation->metadata(trial));
   header.metadata["protocol"] = trial.protocol;
   if (!trial.name.empty()) header.metadata["trial"] = trial.name;
-  if (!trial.scenario.condition.empty()) header.metadata["condition"] = trial.scenario.condition;
+  if (!trial.condition.empty()) header.metadata["condition"] = trial.condition;
   header.metadata["robot"] = facts.name;
-  header.metadata["seed"] = std::to_string(trial.scenario.seed);
-  header.metadata["handle_mass_kg"] = fmt::format("{:.12g}", trial.planar().robot.handle_mass);
+  header.metadata["seed"] = std::to_string(trial.seed);
+  header.metadata["handle_mass_kg"] = fmt::format("{:.12g}", trial.handle_mass);
   header.metadata["software"] = fmt::format("mbk {}", version());
   header.metadata["began"] = now_text();
-  header.geometry = trial.planar().robot.robot.geometry;
-  header.rate = trial.scenario.rate.value;
-  header.readers = trial.scenario.readers;
+  header.geometry = trial.robot.geometry;
+  header.rate = trial.rate.value;
+  header.readers = trial.readers;
   header.reference_unit = schedule.quantity() == perturbation::Quantity::force ? "N" : "m";
   header.has_force = facts.has_force;
   header.has_acceleration = facts.has_acceleration;
@@ -139,7 +139,7 @@ Result<void> Session::reset() {
   return {};
 }
 
-Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial, const fs::path& target,
+Result<TrialOutcome> Session::perform(device::Device& robot, const protocol::Trial& trial, const fs::path& target,
                                       const Watch& watch) {
   if (trial.person.withdrawn) {
     return bad_usage("the person has withdrawn: no further trial is begun", "see [person] withdrawn");
@@ -157,7 +157,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Trial& trial,
   }
   auto plan = make_plan(trial);
   if (!plan) return tl::unexpected(plan.error());
-  const double sample_time = 1.0 / trial.scenario.rate.value;
+  const double sample_time = 1.0 / trial.rate.value;
 
   TrialOutcome outcome;
   outcome.recording = target;

@@ -9,8 +9,8 @@
 #include "mbk/measure/identify/impedance_fit.h"
 #include "mbk/measure/preprocess/prepare.h"
 #include "mbk/model/trial/diagnostics.h"
+#include "mbk/model/trial/measurement.h"
 #include "mbk/model/trial/recording.h"
-#include "mbk/present/result/json.h"
 
 namespace mbk::measurement {
 

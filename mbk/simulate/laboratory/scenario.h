@@ -10,9 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "mbk/model/perturbation/optimal_power.h"
-#include "mbk/model/perturbation/random_binary.h"
-#include "mbk/model/perturbation/underdamped_pulse.h"
+#include "mbk/model/perturbation/schedule_plan.h"
 #include "mbk/model/trial/readers.h"
 #include "mbk/model/trial/springs.h"
 #include "mbk/simulate/laboratory/one_axis_experiment.h"
@@ -28,55 +26,6 @@ class Section;
 }
 
 namespace mbk::laboratory {
-
-/// Sums of sines, one for each axis or joint, with phases and power by a stated rule.
-struct MultisinePlan {
-  enum class Phases { random, schroeder, low_crest };
-  /// Lines and phases of each axis its own, lines in turn to one and the other, or the first or second of a pair of
-  /// experiments that differ in the second axis's sign (axis_pair.h).
-  enum class Axes { independent, interleaved, hadamard_first, hadamard_second };
-  perturbation::Quantity quantity = perturbation::Quantity::position;
-  perturbation::Space space = perturbation::Space::joint;
-  double peak = 0.034906585039886591;  ///< of each axis: ±2° by default [rad, m, N or N·m]
-  double period = 10.0;                ///< [s]
-  std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
-  Phases phases = Phases::random;
-  std::optional<perturbation::OptimalPowerOptions> optimal_power;  ///< absent: the same at every line
-  Axes axes = Axes::independent;
-  double duration = 62.1;  ///< [s]
-  double moving_in = 5.0;  ///< from rest [s]
-};
-
-/// Underdamped pulses in random order.
-struct PulsePlan {
-  perturbation::Quantity quantity = perturbation::Quantity::position;
-  perturbation::Space space = perturbation::Space::hand;
-  perturbation::PulseSchedule::Options pulses;
-  double tail = 3.0;  ///< recorded after the last pulse [s]
-};
-
-/// A filtered random binary sequence along one line.
-struct RandomBinaryPlan {
-  perturbation::Quantity quantity = perturbation::Quantity::force;
-  perturbation::Space space = perturbation::Space::hand;
-  perturbation::RandomBinaryOptions sequence;
-  double angle = 1.5707963267948966;  ///< of the line from +x [rad]
-  double duration = 62.1;             ///< [s]
-};
-
-/// Nothing is commanded.
-struct RestPlan {
-  double duration = 10.0;  ///< [s]
-};
-
-struct PerturbationPlan {
-  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan> kind = MultisinePlan{};
-  perturbation::Limits limits;  ///< what the schedule must keep
-};
-
-/// The schedule that a plan gives with a seed.
-/// @fails  usage: as perturbation's; a limit is broken.
-[[nodiscard]] Result<perturbation::Schedule> make_schedule(const PerturbationPlan& plan, std::uint64_t seed);
 
 /// A payload held by springs: a linear field, or an array of real springs on the disc of the handle.
 struct RigPlan {
@@ -114,7 +63,7 @@ struct Scenario {
   std::string trial_name;  ///< of the [[trial]]; empty where the file has none
   std::string condition;   ///< in words
   std::variant<PlanarTrial, OneAxisTrial> trial;
-  PerturbationPlan perturbation;
+  perturbation::Plan perturbation;
   Hertz rate{1000.0};
   std::uint64_t seed = 1;            ///< of phases, decisions and noise
   Readers readers = Readers::owner;  ///< of the recording
@@ -144,7 +93,8 @@ struct SimulateOptions {
 
 /// Runs a scenario. The same scenario and seed give the same recording, to the bit. To what `perform` writes into the
 /// metadata comes scenario_metadata.
-/// @fails  usage: control and perturbation speak of different quantities; as make_schedule and both `perform`.
+/// @fails  usage: control and perturbation speak of different quantities; as perturbation::make_schedule and both
+/// `perform`.
 [[nodiscard]] Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options = {});
 
 /// The recording without what only a simulation can know: the truth, and the scenario's name and words.

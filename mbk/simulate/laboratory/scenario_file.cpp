@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "mbk/base/config/trials.h"
+#include "mbk/experiment/protocol/trial_sections.h"
 #include "mbk/model/robot_file/planar_keys.h"
 #include "mbk/simulate/laboratory/scenario.h"
 
@@ -20,9 +20,8 @@ using config::at_least;
 using config::between;
 using config::Section;
 using perturbation::Quantity;
-using perturbation::Space;
 
-/// What an experiment file says beside the scenario (session/experiment.h): for whoever runs it.
+/// What an experiment file says beside the scenario (protocol/experiment.h): for whoever runs it.
 constexpr std::array kSectionsOfExperiments = {"session", "safety", "person", "device"};
 
 /// From the shoulder to the test location (Dyck 2013, §3.4.2) [m].
@@ -41,207 +40,6 @@ ClosedLoop::Options read_robot(const Section& s) {
     options.capstan = capstan;
   }
   return options;
-}
-
-control::Mode read_control(const Section& s) {
-  enum class Kind { position, force, line };
-  const auto kind =
-      s.required_choice<Kind>("kind", {{"position", Kind::position}, {"force", Kind::force}, {"line", Kind::line}});
-  if (kind == Kind::force) return ForceMode{};
-  if (kind == Kind::line) {
-    LineMode mode;
-    mode.line.angle = s.number("angle_deg", mode.line.angle);
-    mode.line.stiffness = s.number("stiffness_N_per_m", mode.line.stiffness, at_least(0));
-    mode.line.damping = s.number("damping_Ns_per_m", mode.line.damping, at_least(0));
-    mode.line.velocity_cutoff = Hertz(s.number("velocity_cutoff_hz", mode.line.velocity_cutoff.value, above(0)));
-    return mode;
-  }
-  PositionMode mode;
-  mode.gains.proportional = s.vector2("proportional_Nm_per_rad", mode.gains.proportional, at_least(0));
-  mode.gains.derivative = s.vector2("derivative_Nms_per_rad", mode.gains.derivative, at_least(0));
-  mode.gains.velocity_cutoff = Hertz(s.number("velocity_cutoff_hz", mode.gains.velocity_cutoff.value, above(0)));
-  return mode;
-}
-
-/// A unit in which a perturbation may be given, and what it commands.
-struct SizeUnit {
-  std::string_view name;
-  Quantity quantity;
-  Space space;
-};
-constexpr SizeUnit kDegrees{"deg", Quantity::position, Space::joint},
-    kMillimetres{"mm", Quantity::position, Space::hand}, kNewtons{"N", Quantity::force, Space::hand},
-    kNewtonMetres{"Nm", Quantity::force, Space::joint};
-constexpr std::array kSizeUnits = {kDegrees, kMillimetres, kNewtons, kNewtonMetres};
-
-/// A size whose key's unit says what is commanded: peak_deg, peak_mm, peak_N.
-struct Size {
-  SizeUnit unit;
-  double value;  ///< [rad, m, N or N·m]
-};
-
-/// The one of the allowed units that stands in the file. Without any it is the fallback, unless that has a unit of
-/// another machine.
-Size read_size(const Section& s, const std::string& word, const std::vector<SizeUnit>& allowed, const Size& fallback) {
-  const auto key = [&](const SizeUnit& unit) { return fmt::format("{}_{}", word, unit.name); };
-  std::string keys;
-  for (const SizeUnit& unit : allowed) keys += (keys.empty() ? "" : " or ") + key(unit);
-  const auto is_allowed = [&](const SizeUnit& unit) {
-    return std::ranges::find(allowed, unit.name, &SizeUnit::name) != allowed.end();
-  };
-  std::optional<Size> size;
-  for (const SizeUnit& unit : kSizeUnits) {
-    if (!s.has(key(unit))) continue;
-    if (!is_allowed(unit)) s.reject(key(unit), "this machine is not driven in that unit", "use " + keys);
-    if (size) s.reject(key(unit), "the size is given twice, in different units", "keep one of them");
-    size = {unit, s.number(key(unit), fallback.value, above(0))};
-  }
-  if (size) return *size;
-  if (is_allowed(fallback.unit)) return fallback;
-  return {allowed.front(), s.required_number(key(allowed.front()), above(0))};
-}
-
-std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Section& s) {
-  using perturbation::LimitedSignal;
-  enum class Power { flat, d_optimal };
-  const auto power = s.choice("power", {{"flat", Power::flat}, {"d_optimal", Power::d_optimal}}, Power::flat);
-  perturbation::OptimalPowerOptions options;
-  options.limited = s.choice(
-      "power_limited_by",
-      {{"position", LimitedSignal::position}, {"velocity", LimitedSignal::velocity}, {"force", LimitedSignal::force}},
-      options.limited);
-  options.floor = s.number("power_floor_percent", options.floor, between(0, 100));
-  if (const Section nominal = s.section("nominal"); nominal.given()) {
-    options.nominal = {nominal.required_number("mass_kg"), nominal.required_number("damping_Ns_per_m"),
-                       nominal.required_number("stiffness_N_per_m")};
-  }
-  if (power == Power::flat) return std::nullopt;
-  return options;
-}
-
-MultisinePlan read_multisine(const Section& s, const Size& size) {
-  using Phases = MultisinePlan::Phases;
-  using Axes = MultisinePlan::Axes;
-  MultisinePlan plan;
-  plan.quantity = size.unit.quantity;
-  plan.space = size.unit.space;
-  plan.peak = size.value;
-  plan.period = s.number("period_s", plan.period, above(0));
-  std::vector<double> harmonics(plan.harmonics.begin(), plan.harmonics.end());
-  harmonics = s.numbers("harmonics", harmonics, between(1, 1e6));
-  plan.harmonics.clear();
-  for (const double harmonic : harmonics) {
-    if (harmonic != std::round(harmonic)) s.reject("harmonics", fmt::format("{:g} is no whole number", harmonic));
-    plan.harmonics.push_back(static_cast<int>(harmonic));
-  }
-  plan.phases = s.choice(
-      "phases", {{"random", Phases::random}, {"schroeder", Phases::schroeder}, {"low_crest", Phases::low_crest}},
-      plan.phases);
-  plan.axes = s.choice("axes",
-                       {{"independent", Axes::independent},
-                        {"interleaved", Axes::interleaved},
-                        {"hadamard_first", Axes::hadamard_first},
-                        {"hadamard_second", Axes::hadamard_second}},
-                       plan.axes);
-  plan.optimal_power = read_optimal_power(s);
-  plan.duration = s.number("duration_s", plan.duration, above(0));
-  plan.moving_in = s.number("moving_in_s", plan.moving_in, at_least(0));
-  return plan;
-}
-
-PulsePlan read_pulses(const Section& s, const Size& size) {
-  PulsePlan plan;
-  perturbation::PulseSchedule::Options& p = plan.pulses;
-  plan.quantity = size.unit.quantity;
-  plan.space = size.unit.space;
-  p.amplitude = size.value;
-  p.damping_ratio = s.number("damping_ratio", p.damping_ratio, config::within(0, 1));
-  p.natural_frequency = RadPerSec(s.number("natural_frequency_rad_per_s", p.natural_frequency.value, above(0)));
-  p.directions = s.integer("directions", p.directions, 1, 360);
-  p.repetitions = s.integer("repetitions", p.repetitions, 1, 1000);
-  p.shortest_duration = s.number("shortest_duration_s", p.shortest_duration, above(0));
-  p.longest_duration = s.number("longest_duration_s", p.longest_duration, above(0));
-  p.shortest_pause = s.number("shortest_pause_s", p.shortest_pause, above(0));
-  p.longest_pause = s.number("longest_pause_s", p.longest_pause, above(0));
-  p.return_duration = s.number("return_s", p.return_duration, above(0));
-  p.quiet = s.number("quiet_s", p.quiet, at_least(0));
-  plan.tail = s.number("tail_s", plan.tail, at_least(0));
-  return plan;
-}
-
-RandomBinaryPlan read_random_binary(const Section& s, const Size& size) {
-  RandomBinaryPlan plan;
-  perturbation::RandomBinaryOptions& b = plan.sequence;
-  plan.quantity = size.unit.quantity;
-  plan.space = size.unit.space;
-  b.amplitude = size.value;
-  b.switching_time = s.number("switching_time_s", b.switching_time, above(0));
-  b.zero_mean = s.flag("zero_mean", b.zero_mean);
-  b.damping_ratio = s.number("damping_ratio", b.damping_ratio, config::within(0, 1));
-  b.natural_frequency = RadPerSec(s.number("natural_frequency_rad_per_s", b.natural_frequency.value, above(0)));
-  plan.angle = s.number("angle_deg", plan.angle);
-  plan.duration = s.number("duration_s", plan.duration, above(0));
-  return plan;
-}
-
-enum class Machine { planar, one_axis };
-
-/// A signal has limits in its own unit.
-perturbation::Limits read_limits(const Section& s, const SizeUnit& unit) {
-  perturbation::Limits limits;
-  const auto limit = [&](std::string_view before, std::string_view after) {
-    const auto key = [&](const SizeUnit& one) { return fmt::format("{}{}{}", before, one.name, after); };
-    for (const SizeUnit& other : kSizeUnits) {
-      if (other.name != unit.name && s.has(key(other))) {
-        s.reject(key(other), fmt::format("the perturbation is in {}", unit.name), "use " + key(unit));
-      }
-    }
-    return s.optional_number(key(unit), above(0));
-  };
-  limits.peak = limit("peak_", "");
-  limits.speed = limit("speed_", "_per_s");
-  if (const auto value = s.optional_number("bandwidth_hz", above(0))) limits.bandwidth = Hertz(*value);
-  return limits;
-}
-
-PerturbationPlan read_perturbation(const Section& s, Machine machine) {
-  enum class Kind { none, multisine, pulses, random_binary };
-  const bool one_axis = machine == Machine::one_axis;
-  const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, at_hand = {kMillimetres, kNewtons},
-                              of_sines = {kDegrees, kMillimetres, kNewtons};
-  const auto amplitude = [&](const SizeUnit& unit, double fallback) {
-    return read_size(s, "amplitude", one_axis ? of_axis : at_hand, {unit, fallback});
-  };
-  PerturbationPlan plan;
-  SizeUnit unit = kMillimetres;
-  switch (s.required_choice<Kind>("kind", {{"multisine", Kind::multisine},
-                                           {"pulses", Kind::pulses},
-                                           {"random_binary", Kind::random_binary},
-                                           {"none", Kind::none}})) {
-    case Kind::none:
-      plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
-      break;
-    case Kind::multisine: {
-      const Size size = read_size(s, "peak", one_axis ? of_axis : of_sines, {kDegrees, MultisinePlan{}.peak});
-      plan.kind = read_multisine(s, size);
-      unit = size.unit;
-      break;
-    }
-    case Kind::pulses: {
-      const Size size = amplitude(kMillimetres, PulsePlan{}.pulses.amplitude);
-      plan.kind = read_pulses(s, size);
-      unit = size.unit;
-      break;
-    }
-    case Kind::random_binary: {
-      const Size size = amplitude(kNewtons, RandomBinaryPlan{}.sequence.amplitude);
-      plan.kind = read_random_binary(s, size);
-      unit = size.unit;
-      break;
-    }
-  }
-  plan.limits = read_limits(s.section("limits"), unit);
-  return plan;
 }
 
 participant::TwoLinkArm::Options read_two_links(const Section& s, const Vector2d& home) {
@@ -490,7 +288,7 @@ PlanarTrial read_planar(const Section& root, const Section& robot) {
   PlanarTrial trial;
   trial.robot = read_robot(robot);
   trial.home = robot.vector2("home_mm", trial.home);
-  trial.control = read_control(root.section("control"));
+  trial.control = protocol::read_control(root.section("control"));
   trial.sensors = read_sensors(root.section("sensors"));
   const Section person = root.section("participant"), rig = root.section("rig");
   if (person.given() && rig.given()) {
@@ -514,9 +312,9 @@ PlanarTrial read_planar(const Section& root, const Section& robot) {
 }
 
 /// The machine's axis is the first one of the schedule: everything goes to and fro along it.
-void along_one_axis(PerturbationPlan& plan) {
-  if (auto* binary = std::get_if<RandomBinaryPlan>(&plan.kind)) binary->angle = 0.0;
-  if (auto* pulses = std::get_if<PulsePlan>(&plan.kind)) {
+void along_one_axis(perturbation::Plan& plan) {
+  if (auto* binary = std::get_if<perturbation::RandomBinaryPlan>(&plan.kind)) binary->angle = 0.0;
+  if (auto* pulses = std::get_if<perturbation::PulsePlan>(&plan.kind)) {
     perturbation::PulseSchedule::Options& p = pulses->pulses;
     p.repetitions = std::max(1, p.repetitions * p.directions / 2);  // as many as there would be in all directions
     p.directions = 2;
@@ -527,17 +325,15 @@ void along_one_axis(PerturbationPlan& plan) {
 
 Scenario read_scenario(const Section& root) {
   Scenario scenario;
-  const Section recording = root.section("recording");
-  scenario.condition = recording.text("condition", "");
-  scenario.rate = Hertz(recording.number("rate_hz", scenario.rate.value, between(10, 100'000)));
-  scenario.seed = recording.integer<std::uint64_t>("seed", scenario.seed, 0, std::numeric_limits<std::int64_t>::max());
-  scenario.readers = recording.choice<Readers>(
-      "readable_by", {{"owner", Readers::owner}, {"group", Readers::group}, {"all", Readers::all}}, scenario.readers);
+  const protocol::RecordingSection recording = protocol::read_recording(root.section("recording"));
+  scenario.condition = recording.condition;
+  scenario.rate = recording.rate;
+  scenario.seed = recording.seed;
+  scenario.readers = recording.readers;
   const Section robot = root.section("robot");
-  const auto machine =
-      robot.choice("kind", {{"planar", Machine::planar}, {"one_axis", Machine::one_axis}}, Machine::planar);
-  scenario.perturbation = read_perturbation(root.section("perturbation"), machine);
-  if (machine == Machine::planar) {
+  const protocol::Machine machine = protocol::read_machine(robot);
+  scenario.perturbation = protocol::read_perturbation(root.section("perturbation"), machine);
+  if (machine == protocol::Machine::planar) {
     scenario.trial = read_planar(root, robot);
   } else {
     scenario.trial = read_one_axis(root, robot);

@@ -44,7 +44,7 @@ TEST(ScenarioFile, TheShortestOneHasTheApparatusOfTheThesis) {
   EXPECT_EQ(trial.robot.robot.inertia.alpha2, 0.04217);
   EXPECT_EQ(trial.robot.robot.friction[1].viscous, 0.07389);
   EXPECT_TRUE(std::holds_alternative<NoLoad>(trial.load));
-  const auto& sines = std::get<MultisinePlan>(scenario.perturbation.kind);
+  const auto& sines = std::get<perturbation::MultisinePlan>(scenario.perturbation.kind);
   EXPECT_NEAR(sines.peak, 2.0 * kDegree, 1e-15);
   EXPECT_EQ(sines.harmonics.size(), 10u);
 }
@@ -74,7 +74,7 @@ TEST(ScenarioFile, UnitsOfKeysBecomeSi) {
   EXPECT_NEAR(limb.geometry.rotation, 10.0 * kDegree, 1e-15);
   EXPECT_NEAR(trial.sensors.clock.jitter, 20e-6, 1e-18);
   EXPECT_EQ(std::get<StrainGaugeOptions>(trial.sensors.force).arm, 0.07);
-  const auto& sines = std::get<MultisinePlan>(scenario.perturbation.kind);
+  const auto& sines = std::get<perturbation::MultisinePlan>(scenario.perturbation.kind);
   EXPECT_EQ(sines.peak, 0.007);
   EXPECT_EQ(sines.space, perturbation::Space::hand);
 }
@@ -82,7 +82,8 @@ TEST(ScenarioFile, UnitsOfKeysBecomeSi) {
 TEST(ScenarioFile, TheSizeOfAPerturbationSaysWhatIsCommanded) {
   const auto quantity = [](const std::string& size) {
     const std::string kind = "kind = \"pulses\"\n" + size;
-    return std::get<PulsePlan>(read(with("", "kind = \"force\"", kind)).front().perturbation.kind).quantity;
+    return std::get<perturbation::PulsePlan>(read(with("", "kind = \"force\"", kind)).front().perturbation.kind)
+        .quantity;
   };
   EXPECT_EQ(quantity("amplitude_N = 3"), perturbation::Quantity::force);
   EXPECT_EQ(quantity("amplitude_mm = 3"), perturbation::Quantity::position);
@@ -109,7 +110,7 @@ TEST(ScenarioFile, OneAxisMachinesMoveToAndFro) {
                 "kind = \"position\"", "kind = \"random_binary\""))
           .front();
   EXPECT_EQ(std::get<OneAxisTrial>(scenario.trial).joint.stiffness, 30.0);
-  EXPECT_EQ(std::get<RandomBinaryPlan>(scenario.perturbation.kind).angle, 0.0);
+  EXPECT_EQ(std::get<perturbation::RandomBinaryPlan>(scenario.perturbation.kind).angle, 0.0);
 }
 
 /// Keys convert by one multiplication or division.
@@ -135,7 +136,7 @@ TEST(ScenarioFile, EveryKeyOfThePlanarRobotBecomesItsOption) {
   EXPECT_EQ(scenario.rate.value, 2000.0);
   EXPECT_EQ(scenario.seed, 12u);
   EXPECT_EQ(scenario.condition, "words");
-  EXPECT_EQ(std::get<RestPlan>(scenario.perturbation.kind).duration, 4.0);
+  EXPECT_EQ(std::get<perturbation::RestPlan>(scenario.perturbation.kind).duration, 4.0);
   const PlanarTrial trial = planar(scenario);
   EXPECT_NEAR((trial.home - Vector2d(0.29, -0.045)).norm(), 0.0, kRounding);
   EXPECT_EQ(trial.robot.handle_mass, 0.21);
@@ -176,7 +177,7 @@ TEST(ScenarioFile, EveryKeyOfALineBecomesItsOption) {
   EXPECT_EQ(line.stiffness, 5000.0);
   EXPECT_EQ(line.damping, 70.0);
   EXPECT_EQ(line.velocity_cutoff.value, 80.0);
-  const auto& plan = std::get<RandomBinaryPlan>(scenario.perturbation.kind);
+  const auto& plan = std::get<perturbation::RandomBinaryPlan>(scenario.perturbation.kind);
   EXPECT_EQ(plan.sequence.amplitude, 3.0);
   EXPECT_EQ(plan.sequence.switching_time, 0.4);
   EXPECT_TRUE(plan.sequence.zero_mean);
@@ -197,14 +198,14 @@ TEST(ScenarioFile, EveryKeyOfSinesAndPulsesBecomesItsOption) {
                 "[perturbation.nominal]\nmass_kg = 1.5\ndamping_Ns_per_m = 8\nstiffness_N_per_m = 90\n",
                 "kind = \"force\""))
           .front();
-  const auto& plan = std::get<MultisinePlan>(sines.perturbation.kind);
+  const auto& plan = std::get<perturbation::MultisinePlan>(sines.perturbation.kind);
   EXPECT_EQ(plan.quantity, perturbation::Quantity::force);
   EXPECT_EQ(plan.space, perturbation::Space::hand);
   EXPECT_EQ(plan.peak, 4.0);
   EXPECT_EQ(plan.period, 5.0);
   EXPECT_EQ(plan.harmonics, (std::vector<int>{1, 3, 5, 7, 9}));
-  EXPECT_EQ(plan.phases, MultisinePlan::Phases::low_crest);
-  EXPECT_EQ(plan.axes, MultisinePlan::Axes::interleaved);
+  EXPECT_EQ(plan.phases, perturbation::MultisinePlan::Phases::low_crest);
+  EXPECT_EQ(plan.axes, perturbation::MultisinePlan::Axes::interleaved);
   ASSERT_TRUE(plan.optimal_power);
   EXPECT_EQ(plan.optimal_power->limited, perturbation::LimitedSignal::force);
   EXPECT_NEAR(plan.optimal_power->floor, 0.03, kRounding);
@@ -222,7 +223,7 @@ TEST(ScenarioFile, EveryKeyOfSinesAndPulsesBecomesItsOption) {
                 "limits.peak_mm = 9\nlimits.speed_mm_per_s = 300\n",
                 "kind = \"position\"", "kind = \"pulses\""))
           .front();
-  const auto& pulses = std::get<PulsePlan>(scenario.perturbation.kind);
+  const auto& pulses = std::get<perturbation::PulsePlan>(scenario.perturbation.kind);
   EXPECT_EQ(pulses.quantity, perturbation::Quantity::position);
   EXPECT_EQ(pulses.tail, 2.0);
   const perturbation::PulseSchedule::Options& p = pulses.pulses;
@@ -481,9 +482,10 @@ TEST(ScenarioFile, EachMachineHasItsUnits) {
   EXPECT_NE(refusal(with("limits.peak_mm = 5\n")).find("use peak_deg"), std::string::npos);
   EXPECT_NE(refusal(with("limits.speed_N_per_s = 5\n")).find("use speed_deg_per_s"), std::string::npos);
   const auto torque = read(one_axis("kind = \"multisine\"\npeak_Nm = 3\nlimits.peak_Nm = 4", "kind = \"force\""));
-  const auto schedule = make_schedule(torque.front().perturbation, 1);
+  const auto schedule = perturbation::make_schedule(torque.front().perturbation, 1);
   EXPECT_EQ(perturbation::unit(schedule->quantity(), schedule->space()), "N·m");
-  const auto angle = make_schedule(read(one_axis("kind = \"pulses\"\namplitude_deg = 1")).front().perturbation, 1);
+  const auto angle =
+      perturbation::make_schedule(read(one_axis("kind = \"pulses\"\namplitude_deg = 1")).front().perturbation, 1);
   EXPECT_EQ(perturbation::unit(angle->quantity(), angle->space()), "rad");
   EXPECT_EQ(torque.front().perturbation.limits.peak, 4.0);
 }
@@ -493,7 +495,7 @@ TEST(ScenarioFile, OneAxisPulsesAreAsManyToAndFroAsThereWouldBeAllAround) {
        std::vector<std::array<int, 3>>{{8, 2, 16}, {2, 5, 10}, {1, 4, 4}, {1, 1, 2}}) {
     const auto scenarios = read(one_axis(fmt::format(
         "kind = \"pulses\"\namplitude_deg = 1\ndirections = {}\nrepetitions = {}", directions, repetitions)));
-    const auto& p = std::get<PulsePlan>(scenarios.front().perturbation.kind).pulses;
+    const auto& p = std::get<perturbation::PulsePlan>(scenarios.front().perturbation.kind).pulses;
     EXPECT_EQ(p.directions, 2);
     EXPECT_EQ(p.directions * p.repetitions, pulses) << directions << " directions";
   }

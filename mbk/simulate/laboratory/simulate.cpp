@@ -57,7 +57,7 @@ bool has_will(const Scenario& scenario) {
 }  // namespace
 
 Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options) {
-  auto schedule = make_schedule(scenario.perturbation, scenario.seed);
+  auto schedule = perturbation::make_schedule(scenario.perturbation, scenario.seed);
   if (!schedule) return tl::unexpected(schedule.error());
   auto performance = std::visit([&](const auto& trial) { return run(trial, scenario, options, std::move(*schedule)); },
                                 scenario.trial);

@@ -16,9 +16,9 @@ std::vector<Scenario> ready(const char* name) {
 /// The same trial, over sooner.
 void shorten(Scenario& scenario) {
   auto& kind = scenario.perturbation.kind;
-  if (auto* sines = std::get_if<MultisinePlan>(&kind)) sines->duration = 8.0;
-  if (auto* binary = std::get_if<RandomBinaryPlan>(&kind)) binary->duration = 8.0;
-  if (auto* pulses = std::get_if<PulsePlan>(&kind)) {
+  if (auto* sines = std::get_if<perturbation::MultisinePlan>(&kind)) sines->duration = 8.0;
+  if (auto* binary = std::get_if<perturbation::RandomBinaryPlan>(&kind)) binary->duration = 8.0;
+  if (auto* pulses = std::get_if<perturbation::PulsePlan>(&kind)) {
     pulses->pulses.quiet = 0.5;
     pulses->pulses.repetitions = 1;
     pulses->pulses.longest_pause = 2.5;
@@ -56,7 +56,7 @@ TEST(Simulate, SameSeedGivesTheSameBitsAndAnotherSeedOthers) {
 TEST(Simulate, AmplitudeAloneDecidesWhetherTheSameArmIsActive) {
   Scenario scenario = ready("rigid_underdamped_2N").front();
   const double at_two = simulate(scenario)->energy_absorbed;
-  std::get<PulsePlan>(scenario.perturbation.kind).pulses.amplitude = 8.0;
+  std::get<perturbation::PulsePlan>(scenario.perturbation.kind).pulses.amplitude = 8.0;
   const double at_eight = simulate(scenario)->energy_absorbed;
   EXPECT_LT(at_two, -0.2);
   EXPECT_GT(at_eight, 0.5);

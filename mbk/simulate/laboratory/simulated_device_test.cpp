@@ -9,7 +9,7 @@ namespace {
 
 Scenario ready(const char* name, double seconds) {
   Scenario scenario = read_scenarios(find_ready_scenario(name)->text, name)->front();
-  if (auto* sines = std::get_if<MultisinePlan>(&scenario.perturbation.kind)) sines->duration = seconds;
+  if (auto* sines = std::get_if<perturbation::MultisinePlan>(&scenario.perturbation.kind)) sines->duration = seconds;
   return scenario;
 }
 

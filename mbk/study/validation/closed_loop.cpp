@@ -50,7 +50,7 @@ Result<Run> perform(const Task& task, std::uint64_t seed) {
     arm.controller.position_gain = 0.0;
     arm.cocontraction.rest = 1.0;  // at its ceiling throughout, so that there is one truth
     arm.cocontraction.slope = 0.0;
-    std::get<laboratory::MultisinePlan>(scenario.perturbation.kind).peak = kSmallPeak;
+    std::get<perturbation::MultisinePlan>(scenario.perturbation.kind).peak = kSmallPeak;
   }
   measurement::Options options;
   options.identify.handle_mass = trial.robot.handle_mass;

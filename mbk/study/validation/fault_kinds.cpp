@@ -112,14 +112,14 @@ void push_hard(FaultRun& run, Random& random) {
 }
 
 /// The direction in which the joints come closest to their limits.
-Vector2d towards_joint_limits(const session::Trial& trial) {
-  const robot::Geometry& geometry = trial.planar().robot.robot.geometry;
+Vector2d towards_joint_limits(const protocol::Trial& trial) {
+  const robot::Geometry& geometry = trial.robot.geometry;
   Vector2d worst(1.0, 0.0);
   double least = HUGE_VAL;
   for (int i = 0; i < 16; ++i) {
     const double angle = i * std::numbers::pi / 8.0;
     const Vector2d way(std::cos(angle), std::sin(angle));
-    const auto joints = robot::joint_angles(geometry, trial.planar().home + 0.04 * way);
+    const auto joints = robot::joint_angles(geometry, trial.home + 0.04 * way);
     if (const double margin = joints ? robot::margin(geometry.limits, *joints) : HUGE_VAL; margin < least) {
       least = margin;
       worst = way;
@@ -357,8 +357,7 @@ std::vector<FaultKind> reports() {
 
 /// The gains of the whole trial, as an experiment file sets them.
 void set_gains(FaultRun& run, const std::function<void(control::JointPositionControl::Gains&)>& change) {
-  auto& trial = std::get<laboratory::PlanarTrial>(run.trial.scenario.trial);
-  if (auto* position = std::get_if<control::PositionMode>(&trial.control)) change(position->gains);
+  if (auto* position = std::get_if<control::PositionMode>(&run.trial.control)) change(position->gains);
   change(run.trial.sequence.hold);
 }
 
@@ -476,8 +475,8 @@ std::vector<FaultKind> pushes() {
        {Reason::workspace},
        [](FaultRun& run, Random& random) {
          safety::Limits& limits = only(run);
-         limits.workspace_low = run.trial.planar().home - Vector2d(0.03, 0.03);
-         limits.workspace_high = run.trial.planar().home + Vector2d(0.03, 0.03);
+         limits.workspace_low = run.trial.home - Vector2d(0.03, 0.03);
+         limits.workspace_high = run.trial.home + Vector2d(0.03, 0.03);
          push_hard(run, random);
        }},
       {"joint close to its limit",

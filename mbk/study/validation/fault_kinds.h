@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mbk/base/numeric/random.h"
+#include "mbk/experiment/protocol/experiment.h"
 #include "mbk/experiment/safety/trip.h"
-#include "mbk/experiment/session/experiment.h"
 #include "mbk/study/validation/faulty_device.h"
 
 namespace mbk::validation {
@@ -28,7 +28,7 @@ enum class Outside {
 /// One trial with its fault.
 struct FaultRun {
   TrialKind kind = TrialKind::position;
-  session::Trial trial;
+  protocol::Trial trial;
   DeviceFault fault;
   Outside outside = Outside::nothing;
   std::uint64_t stall = 0;  ///< ticks, of a stalled clock

@@ -13,6 +13,7 @@
 #include "mbk/files/journal/tick.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
+#include "mbk/simulate/laboratory/simulation.h"
 #include "mbk/study/validation/fault_kinds.h"
 #include "mbk/study/validation/study.h"
 #include "mbk/study/validation/temporary_folder.h"
@@ -92,31 +93,30 @@ int ticks_to_off(const std::vector<FaultyDevice::Received>& received, std::int64
 Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64_t seed, const fs::path& target) {
   numeric::Random random(seed);
   const int detection = kind.detection[static_cast<std::size_t>(trial_kind)];
-  auto trials = session::read_experiment(fault_experiment(trial_kind), "faults.toml");
+  auto trials = protocol::read_experiment(fault_experiment(trial_kind), "faults.toml", laboratory::read_simulation);
   if (!trials) return tl::unexpected(trials.error());
   FaultRun run;
   run.kind = trial_kind;
   run.trial = std::move(trials->front());
-  run.trial.scenario.seed = seed;
+  run.trial.seed = seed;
   std::int64_t onset = draw_onset(kind, detection, random);
   kind.make(run, random);
 
-  laboratory::Scenario scenario = run.trial.scenario;
-  std::get<laboratory::PlanarTrial>(scenario.trial).home += kAway * Vector2d(random.uniform() - 0.5, 0.5).normalized();
-  auto robot = laboratory::SimulatedDevice::create(scenario);
+  protocol::Trial elsewhere = run.trial;
+  elsewhere.home += kAway * Vector2d(random.uniform() - 0.5, 0.5).normalized();
+  auto robot = laboratory::simulated_robot(elsewhere);
   if (!robot) return tl::unexpected(robot.error());
   const bool keeps_time =
       run.keeps_time || run.outside == Outside::stalled_clock || run.outside == Outside::stalled_recorder;
   const bool paced = keeps_time || run.outside != Outside::nothing;
-  realtime::VirtualClock clock(1.0 / run.trial.scenario.rate.value, paced ? kPace : 0.0);
+  realtime::VirtualClock clock(1.0 / run.trial.rate.value, paced ? kPace : 0.0);
   if (run.outside == Outside::stalled_clock) {
     run.fault.reading = [&clock, stall = run.stall](device::State&, int k) {
       if (k == 0) clock.stall(stall);
       return true;
     };
   }
-  FaultyDevice device(**robot, run.trial.planar().robot.robot.geometry, run.fault, onset, keeps_time,
-                      kTrialEnds + 1000);
+  FaultyDevice device(**robot, run.trial.robot.geometry, run.fault, onset, keeps_time, kTrialEnds + 1000);
   session::Session session({true, 0.0, &clock});
   std::atomic<std::int64_t> begun{-1};
   const auto watch = [&](std::span<const journal::Tick> ticks) {
@@ -147,10 +147,10 @@ Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64
 }
 
 /// Every planar trial that comes with the program.
-Result<std::vector<session::Trial>> ready_trials() {
-  std::vector<session::Trial> all;
+Result<std::vector<protocol::Trial>> ready_trials() {
+  std::vector<protocol::Trial> all;
   for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) {
-    auto trials = session::read_experiment(one.text, std::string(one.name) + ".toml");
+    auto trials = protocol::read_experiment(one.text, std::string(one.name) + ".toml", laboratory::read_simulation);
     if (!trials) continue;  // a one-axis machine
     std::ranges::move(*trials, std::back_inserter(all));
   }
@@ -207,8 +207,8 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
         const Job& job = jobs[at];
         const std::uint64_t seed = 100'000 * options.seed + static_cast<std::uint64_t>(i);
         if (job.kind == nullptr) {
-          session::Trial trial = (*ready)[static_cast<std::size_t>(job.run) % ready->size()];
-          trial.scenario.seed = seed;
+          protocol::Trial trial = (*ready)[static_cast<std::size_t>(job.run) % ready->size()];
+          trial.seed = seed;
           const auto rehearsal = session::rehearse(trial);
           if (!rehearsal) return tl::unexpected(rehearsal.error());
           outcomes[at].reason = rehearsal->trip.reason;

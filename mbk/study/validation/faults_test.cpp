@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "mbk/simulate/laboratory/simulation.h"
 #include "mbk/study/validation/fault_kinds.h"
 #include "mbk/study/validation/study.h"
 
@@ -34,13 +35,15 @@ class FaultyRobot : public testing::Test {
  protected:
   FaultyDevice device(DeviceFault fault) { return {*robot_, geometry_, std::move(fault), kOnset, false, 1000}; }
   static constexpr std::uint64_t kOnset = 100;
-  session::Trial trial_ = session::read_experiment(fault_experiment(TrialKind::position), "faults.toml")->front();
-  robot::Geometry geometry_ = trial_.planar().robot.robot.geometry;
-  std::unique_ptr<laboratory::SimulatedDevice> robot_ = laboratory::SimulatedDevice::create(trial_.scenario).value();
+  protocol::Trial trial_ =
+      protocol::read_experiment(fault_experiment(TrialKind::position), "faults.toml", laboratory::read_simulation)
+          ->front();
+  robot::Geometry geometry_ = trial_.robot.geometry;
+  std::unique_ptr<laboratory::SimulatedDevice> robot_ = laboratory::simulated_robot(trial_).value();
 };
 
 TEST_F(FaultyRobot, IsTheSimulatedRobotUntilTheFaultBegins) {
-  auto twin = laboratory::SimulatedDevice::create(trial_.scenario).value();
+  auto twin = laboratory::simulated_robot(trial_).value();
   DeviceFault fault;
   fault.push = [](int) { return Vector2d(20.0, 0.0); };
   FaultyDevice faulty = device(std::move(fault));

@@ -1,4 +1,4 @@
-#include "mbk/experiment/session/live_estimate.h"
+#include "mbk/experiment/console/live_estimate.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "mbk/model/impedance/model.h"
 #include "mbk/simulate/laboratory/make_load.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
-#include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/simulate/laboratory/simulation.h"
 #include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/temporary_folder.h"
 
@@ -25,15 +25,15 @@ constexpr Index kNumbers = 12;                           // of M, B and K
 /// Which of the twelve intervals hold the truth, at each time.
 using Held = std::array<std::array<bool, kNumbers>, kTimes.size()>;
 
-Result<std::vector<session::Trial>> ready_trial() {
+Result<std::vector<protocol::Trial>> ready_trial() {
   const auto* scenario = laboratory::find_ready_scenario("relaxed_sinusoidal");
   if (scenario == nullptr) return bad_usage("there is no ready scenario 'relaxed_sinusoidal'");
-  return session::read_experiment(scenario->text, "relaxed_sinusoidal.toml");
+  return protocol::read_experiment(scenario->text, "relaxed_sinusoidal.toml", laboratory::read_simulation);
 }
 
 Result<std::array<bool, kNumbers>> held_by(const journal::Journal& journal, const measurement::Options& options,
                                            const Vector& truth) {
-  const auto measured = session::estimate(journal, options);
+  const auto measured = console::estimate(journal, options);
   if (!measured) return tl::unexpected(measured.error());
   const Vector error = impedance::stacked(measured->identification.model) - truth;
   const Vector reach = numeric::kNormal95 * impedance::stacked(measured->identification.standard_error);
@@ -42,17 +42,19 @@ Result<std::array<bool, kNumbers>> held_by(const journal::Journal& journal, cons
   return held;
 }
 
-Result<Held> perform(session::Trial trial, std::uint64_t seed, const std::filesystem::path& folder) {
-  trial.scenario.seed = seed;
-  auto robot = laboratory::SimulatedDevice::create(trial.scenario);
+Result<Held> perform(protocol::Trial trial, std::uint64_t seed, const std::filesystem::path& folder) {
+  trial.seed = seed;
+  auto robot = laboratory::simulated_robot(trial);
   if (!robot) return tl::unexpected(robot.error());
   const auto plan = session::make_plan(trial);
   if (!plan) return tl::unexpected(plan.error());
-  const auto load = laboratory::make_load(trial.scenario, trial.planar());
+  const auto scenario = laboratory::scenario_of(trial);
+  if (!scenario) return tl::unexpected(scenario.error());
+  const auto load = laboratory::make_load(*scenario, std::get<laboratory::PlanarTrial>(scenario->trial));
   if (!load) return tl::unexpected(load.error());
-  const Vector truth = impedance::stacked((*load)->impedance(trial.planar().home));
+  const Vector truth = impedance::stacked((*load)->impedance(trial.home));
   measurement::Options options;
-  options.identify.handle_mass = trial.planar().robot.handle_mass;
+  options.identify.handle_mass = trial.handle_mass;
   options.passivity = false;
 
   session::Session session({true, 0.0});

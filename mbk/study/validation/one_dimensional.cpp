@@ -76,7 +76,7 @@ Scenario with_condition(Scenario scenario, const Condition& condition, double sw
   auto& arm = std::get<participant::ArmOptions>(std::get<PlanarTrial>(scenario.trial).load);
   if (!condition.controller) arm.controller.position_gain = 0.0;
   if (!condition.cocontraction) arm.cocontraction = participant::relaxed_arm_options().cocontraction;
-  std::get<laboratory::RandomBinaryPlan>(scenario.perturbation.kind).sequence.switching_time = switching_time;
+  std::get<perturbation::RandomBinaryPlan>(scenario.perturbation.kind).sequence.switching_time = switching_time;
   return scenario;
 }
 

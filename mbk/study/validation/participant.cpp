@@ -85,7 +85,7 @@ Result<std::vector<TrialPlan>> all_plans(const StudyOptions& options) {
   auto crossover = ready("rigid_underdamped_2N");
   if (!crossover) return tl::unexpected(crossover.error());
   for (const double amplitude : kAmplitudes) {
-    std::get<laboratory::PulsePlan>(crossover->front().perturbation.kind).pulses.amplitude = amplitude;
+    std::get<perturbation::PulsePlan>(crossover->front().perturbation.kind).pulses.amplitude = amplitude;
     if (auto ok = add_plans(crossover->front(), options, false, plans); !ok) return tl::unexpected(ok.error());
   }
   return plans;

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "mbk/experiment/session/experiment.h"
+#include "mbk/experiment/protocol/experiment.h"
 
-namespace mbk::session {
+namespace mbk::protocol {
 
 /// What in a text looks as if it said who somebody is.
 enum class PersonalDetail {
@@ -32,4 +32,4 @@ enum class PersonalDetail {
 /// names of trials, the file's own name. Each once.
 [[nodiscard]] std::vector<std::string> personal_warnings(const std::vector<Trial>& trials);
 
-}  // namespace mbk::session
+}  // namespace mbk::protocol

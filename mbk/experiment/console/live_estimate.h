@@ -11,9 +11,9 @@
 #include "mbk/base/core/result.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/measure/measurement/measure.h"
-#include "mbk/present/result/json.h"
+#include "mbk/model/trial/measurement.h"
 
-namespace mbk::session {
+namespace mbk::console {
 
 /// The options for what a session recorded: where ticks were missed it is put on the even clock of `rate`, which the
 /// result then warns of (Warning resampled), with the number and length of what a line bridges.
@@ -64,4 +64,4 @@ class LiveEstimate {
   std::thread thread_;
 };
 
-}  // namespace mbk::session
+}  // namespace mbk::console

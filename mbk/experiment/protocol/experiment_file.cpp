@@ -1,18 +1,20 @@
 #include <fmt/format.h>
 
 #include "mbk/base/config/trials.h"
-#include "mbk/experiment/session/experiment.h"
+#include "mbk/experiment/protocol/experiment.h"
+#include "mbk/experiment/protocol/trial_sections.h"
+#include "mbk/model/robot_file/planar_keys.h"
 
-namespace mbk::session {
+namespace mbk::protocol {
 namespace {
 
 using config::above;
 using config::at_least;
 using config::Section;
 
-control::SequenceOptions read_sequence(const Section& s, const laboratory::PlanarTrial& planar) {
+control::SequenceOptions read_sequence(const Section& s, const control::Mode& control) {
   control::SequenceOptions options;
-  if (const auto* mode = std::get_if<control::PositionMode>(&planar.control)) options.hold = mode->gains;
+  if (const auto* mode = std::get_if<control::PositionMode>(&control)) options.hold = mode->gains;
   options.soft_start = s.number("soft_start_s", options.soft_start, above(0));
   options.move_speed = s.number("move_speed_mm_per_s", options.move_speed, above(0));
   options.shortest_move = s.number("shortest_move_s", options.shortest_move, above(0));
@@ -74,20 +76,36 @@ Person read_person(const Section& s) {
 
 }  // namespace
 
-Result<std::vector<Trial>> read_experiment(std::string_view text, const std::filesystem::path& file) {
+Result<std::vector<Trial>> read_experiment(std::string_view text, const std::filesystem::path& file,
+                                           const ReadSimulation& simulation) {
   return config::read_trials(text, file, [&](const Section& root, const std::string& name) -> Result<Trial> {
     Trial trial;
     trial.name = name;
     trial.protocol = file.stem().string();
-    trial.scenario = laboratory::read_scenario(root);
-    if (!std::holds_alternative<laboratory::PlanarTrial>(trial.scenario.trial)) {
-      return tl::unexpected(
-          root.section("robot").error("kind", "a one-axis machine cannot be run as an experiment yet",
-                                      "take a planar robot; 'mbk simulate' makes recordings of one-axis machines"));
+    const RecordingSection recording = read_recording(root.section("recording"));
+    trial.condition = recording.condition;
+    trial.rate = recording.rate;
+    trial.seed = recording.seed;
+    trial.readers = recording.readers;
+    const Section robot = root.section("robot");
+    if (read_machine(robot) != Machine::planar) {
+      return tl::unexpected(robot.error("kind", "a one-axis machine cannot be run as an experiment yet",
+                                        "take a planar robot; 'mbk simulate' makes recordings of one-axis machines"));
     }
-    trial.scenario.file_name = trial.protocol;
-    trial.scenario.trial_name = name;
-    trial.sequence = read_sequence(root.section("session"), trial.planar());
+    trial.perturbation = read_perturbation(root.section("perturbation"), Machine::planar);
+    trial.robot = robot_file::read_planar_robot(robot);
+    trial.handle_mass = robot.number("handle_mass_kg", trial.handle_mass, at_least(0));
+    trial.home = robot.vector2("home_mm", trial.home);
+    trial.control = read_control(root.section("control"));
+    if (simulation) {
+      auto made = simulation(root, trial);
+      if (!made) return tl::unexpected(made.error());
+      trial.simulation = std::move(*made);
+    } else {
+      for (const char* key : {"steps_per_tick", "capstan"}) robot.leave_to_others(key);
+      for (const char* key : {"participant", "rig", "sensors"}) root.leave_to_others(key);
+    }
+    trial.sequence = read_sequence(root.section("session"), trial.control);
     const Section safety = root.section("safety");
     trial.limits = read_limits(safety);
     trial.from_plan = {!safety.has("speed_mm_per_s"), !safety.has("excursion_mm"), !safety.has("tracking_deg")};
@@ -95,6 +113,24 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     trial.device = read_device(root.section("device"), file.parent_path());
     return trial;
   });
+}
+
+Result<std::unique_ptr<device::Device>> make_device(const Trial& trial) {
+  const auto widened = [](auto made) -> Result<std::unique_ptr<device::Device>> {
+    if (!made) return tl::unexpected(made.error());
+    return std::unique_ptr<device::Device>(std::move(*made));
+  };
+  if (const auto* udp = std::get_if<drivers::UdpOptions>(&trial.device.kind)) {
+    return widened(drivers::UdpDevice::create(*udp, trial.device.fittings));
+  }
+  if (const auto* plugin = std::get_if<drivers::PluginOptions>(&trial.device.kind)) {
+    return widened(drivers::PluginDevice::create(*plugin, trial.device.fittings));
+  }
+  if (trial.simulation == nullptr) {
+    return bad_usage("the experiment names no robot, and there is nothing here that simulates one",
+                     "name the robot in [device], or hand read_experiment a simulation");
+  }
+  return trial.simulation->robot(trial);
 }
 
 std::map<std::string, std::string> metadata_of(const Person& person) {
@@ -114,4 +150,4 @@ std::map<std::string, std::string> metadata_of(const Person& person) {
   return metadata;
 }
 
-}  // namespace mbk::session
+}  // namespace mbk::protocol

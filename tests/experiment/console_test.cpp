@@ -16,7 +16,7 @@
 #include "mbk/experiment/session/plan.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
-#include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::console {
 namespace {
@@ -25,7 +25,6 @@ namespace beast = boost::beast;
 namespace fs = std::filesystem;
 namespace http = beast::http;
 namespace net = boost::asio;
-using laboratory::SimulatedDevice;
 using net::ip::tcp;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
@@ -63,7 +62,7 @@ class ConsoleOfASession : public testing::Test {
               (std::string("mbk_console_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
-    trials_ = session::read_experiment(kExperiment, "experiment.toml").value();
+    trials_ = protocol::read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value();
     open_console();
   }
   void TearDown() override {
@@ -152,11 +151,11 @@ class ConsoleOfASession : public testing::Test {
   std::unique_ptr<Page> open(const std::string& token) { return open(token, "http://" + host()); }
 
   session::TrialOutcome perform(session::Session& session, const fs::path& target) {
-    const session::Trial& trial = trials_.front();
-    auto robot = SimulatedDevice::create(trial.scenario).value();
+    const protocol::Trial& trial = trials_.front();
+    auto robot = laboratory::simulated_robot(trial).value();
     const auto plan = session::make_plan(trial).value();
     measurement::Options options;
-    options.identify.handle_mass = trial.planar().robot.handle_mass;
+    options.identify.handle_mass = trial.handle_mass;
     console_->begin(0, session::header_of(trial, robot->facts(), plan.schedule), options, target,
                     plan.sequence.duration(0.0));
     auto outcome = session.perform(*robot, trial, target, [&](auto ticks) { console_->watch(ticks); });
@@ -167,7 +166,7 @@ class ConsoleOfASession : public testing::Test {
 
   fs::path folder_;
   session::Session session_{session::Pace{true, 0.0}};
-  std::vector<session::Trial> trials_;
+  std::vector<protocol::Trial> trials_;
   std::unique_ptr<Console> console_;
   std::string port_, token_, viewing_token_;
   net::io_context context_;
@@ -345,7 +344,7 @@ TEST_F(ConsoleOfASession, TheLastEstimateIsThatOfTheRecording) {
       page->read_until([](Page& one) { return one.estimate.contains("final") && one.estimate["final"] == true; }));
   const Recording perturbed = preprocess::perturbation_only(recording::read(outcome.recording, {}).value());
   measurement::Options options;
-  options.identify.handle_mass = trials_.front().planar().robot.handle_mass;
+  options.identify.handle_mass = trials_.front().handle_mass;
   const Json offline = Json::parse(result::to_json(measurement::measure({&perturbed, 1}, options).value()));
   const Json& live = page->estimate.at("result");
   EXPECT_NEAR(page->estimate.at("perturbed_s").get<double>(), 12.0, 0.01);
@@ -386,8 +385,8 @@ TEST_F(ConsoleOfASession, AStopFromThePageTripsTheGateAndIsSaidWithItsReason) {
 }
 
 TEST_F(ConsoleOfASession, ATripIsSaidBeforeTheNextBeat) {
-  const session::Trial& trial = trials_.front();
-  auto robot = SimulatedDevice::create(trial.scenario).value();
+  const protocol::Trial& trial = trials_.front();
+  auto robot = laboratory::simulated_robot(trial).value();
   console_->begin(0, session::header_of(trial, robot->facts(), session::make_plan(trial)->schedule), {},
                   folder_ / "trial.h5", 1.0);
   auto page = open(viewing_token_);
@@ -408,8 +407,8 @@ TEST_F(ConsoleOfASession, ATripIsSaidBeforeTheNextBeat) {
 TEST_F(ConsoleOfASession, AStuckViewerCostsABoundedRoomAndHoldsNobodyUp) {
   auto stuck = open(viewing_token_);  // never reads
   ASSERT_TRUE(soon([&] { return console_->status().viewers == 1; }));
-  const session::Trial& trial = trials_.front();
-  auto robot = SimulatedDevice::create(trial.scenario).value();
+  const protocol::Trial& trial = trials_.front();
+  auto robot = laboratory::simulated_robot(trial).value();
   console_->begin(0, session::header_of(trial, robot->facts(), session::make_plan(trial)->schedule), {},
                   folder_ / "trial.h5", 1.0);
   std::vector<journal::Tick> ticks(8192);
@@ -427,8 +426,8 @@ TEST_F(ConsoleOfASession, AStuckViewerCostsABoundedRoomAndHoldsNobodyUp) {
 }
 
 TEST_F(ConsoleOfASession, SamplesThatAreTooManyForAFrameAreLeftOutAndCounted) {
-  const session::Trial& trial = trials_.front();
-  auto robot = SimulatedDevice::create(trial.scenario).value();
+  const protocol::Trial& trial = trials_.front();
+  auto robot = laboratory::simulated_robot(trial).value();
   console_->begin(0, session::header_of(trial, robot->facts(), session::make_plan(trial)->schedule), {},
                   folder_ / "trial.h5", 1.0);
   std::vector<journal::Tick> ticks(1'000'000);

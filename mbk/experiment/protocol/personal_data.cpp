@@ -1,4 +1,4 @@
-#include "mbk/experiment/session/personal_data.h"
+#include "mbk/experiment/protocol/personal_data.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "mbk/base/core/printable.h"
 
-namespace mbk::session {
+namespace mbk::protocol {
 namespace {
 
 /// With its title they make a person.
@@ -214,11 +214,11 @@ std::vector<std::string> personal_warnings(const std::vector<Trial>& trials) {
   };
   for (const Trial& trial : trials) {
     look("[person] consent", trial.person.consent, true);
-    look("[recording] condition", trial.scenario.condition);
+    look("[recording] condition", trial.condition);
     look("the [[trial]] name", trial.name);
     look("the name of the experiment", trial.protocol);
   }
   return warnings;
 }
 
-}  // namespace mbk::session
+}  // namespace mbk::protocol

@@ -1,9 +1,9 @@
-#include "mbk/experiment/session/personal_data.h"
+#include "mbk/experiment/protocol/personal_data.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace mbk::session {
+namespace mbk::protocol {
 namespace {
 
 using testing::ElementsAre;
@@ -88,4 +88,4 @@ TEST(PersonalData, EveryFreeTextOfAnExperimentIsLookedAtOnce) {
 }
 
 }  // namespace
-}  // namespace mbk::session
+}  // namespace mbk::protocol

@@ -1,16 +1,13 @@
+#include "mbk/model/perturbation/schedule_plan.h"
+
 #include <cmath>
 
 #include "mbk/model/perturbation/axis_pair.h"
 #include "mbk/model/perturbation/optimal_power.h"
 #include "mbk/model/perturbation/phases.h"
-#include "mbk/simulate/laboratory/scenario.h"
 
-namespace mbk::laboratory {
+namespace mbk::perturbation {
 namespace {
-
-using perturbation::AxisPair;
-using perturbation::Multisine;
-using perturbation::Schedule;
 
 /// Streams of the seed for the phases of the two axes.
 constexpr std::uint32_t kPhases = 10;
@@ -19,7 +16,7 @@ constexpr std::uint32_t kPhases = 10;
 Result<std::vector<double>> relative_amplitudes(const MultisinePlan& plan) {
   std::vector<double> amplitudes(plan.harmonics.size(), 1.0);
   if (!plan.optimal_power) return amplitudes;
-  const auto power = perturbation::optimal_power(plan.period, plan.harmonics, *plan.optimal_power);
+  const auto power = optimal_power(plan.period, plan.harmonics, *plan.optimal_power);
   if (!power) return tl::unexpected(power.error());
   for (std::size_t k = 0; k < amplitudes.size(); ++k) {
     amplitudes[k] = std::sqrt(power->shares[static_cast<Index>(k)]);
@@ -39,9 +36,9 @@ Result<Multisine> with_phases(const MultisinePlan& plan, const Multisine& signal
     case MultisinePlan::Phases::random:
       break;
     case MultisinePlan::Phases::schroeder:
-      return perturbation::with_schroeder_phases(signal);
+      return with_schroeder_phases(signal);
     case MultisinePlan::Phases::low_crest:
-      return perturbation::with_low_crest_phases(signal, {.seed = seed});
+      return with_low_crest_phases(signal, {.seed = seed});
   }
   return signal;
 }
@@ -51,7 +48,7 @@ Result<AxisPair> both_axes(const MultisinePlan& plan, std::uint64_t seed) {
   auto second = sines(plan, seed, 1);
   if (!first) return tl::unexpected(first.error());
   if (!second) return tl::unexpected(second.error());
-  if (plan.axes == MultisinePlan::Axes::interleaved) return perturbation::interleaved(*first);
+  if (plan.axes == MultisinePlan::Axes::interleaved) return interleaved(*first);
   return AxisPair{*first, *second};
 }
 
@@ -67,13 +64,13 @@ Result<Schedule> schedule_of(const MultisinePlan& plan, std::uint64_t seed) {
 }
 
 Result<Schedule> schedule_of(const PulsePlan& plan, std::uint64_t seed) {
-  perturbation::PulseSchedule::Options pulses = plan.pulses;
+  PulseSchedule::Options pulses = plan.pulses;
   pulses.seed = seed;
   return Schedule::pulses(pulses, plan.quantity, plan.tail, plan.space);
 }
 
 Result<Schedule> schedule_of(const RandomBinaryPlan& plan, std::uint64_t seed) {
-  perturbation::RandomBinaryOptions sequence = plan.sequence;
+  RandomBinaryOptions sequence = plan.sequence;
   sequence.seed = seed;
   return Schedule::random_binary(sequence, plan.angle, plan.quantity, plan.duration, plan.space);
 }
@@ -84,11 +81,11 @@ Result<Schedule> schedule_of(const RestPlan& plan, std::uint64_t /*seed*/) {
 
 }  // namespace
 
-Result<Schedule> make_schedule(const PerturbationPlan& plan, std::uint64_t seed) {
+Result<Schedule> make_schedule(const Plan& plan, std::uint64_t seed) {
   auto schedule = std::visit([&](const auto& kind) { return schedule_of(kind, seed); }, plan.kind);
   if (!schedule) return tl::unexpected(schedule.error().in("perturbation"));
   if (auto ok = schedule->check(plan.limits); !ok) return tl::unexpected(ok.error().in("perturbation"));
   return schedule;
 }
 
-}  // namespace mbk::laboratory
+}  // namespace mbk::perturbation

@@ -1,12 +1,9 @@
-#include "mbk/experiment/session/device_plan.h"
+#include "mbk/experiment/protocol/device_plan.h"
 
 #include <Eigen/LU>
 #include <array>
 
-#include "mbk/base/config/document.h"
-#include "mbk/simulate/laboratory/simulated_device.h"
-
-namespace mbk::session {
+namespace mbk::protocol {
 namespace {
 
 using config::above;
@@ -89,18 +86,4 @@ DevicePlan read_device(const Section& s, const std::filesystem::path& folder) {
   return plan;
 }
 
-Result<std::unique_ptr<device::Device>> make_device(const DevicePlan& plan, const laboratory::Scenario& scenario) {
-  const auto widened = [](auto made) -> Result<std::unique_ptr<device::Device>> {
-    if (!made) return tl::unexpected(made.error());
-    return std::unique_ptr<device::Device>(std::move(*made));
-  };
-  if (const auto* udp = std::get_if<drivers::UdpOptions>(&plan.kind)) {
-    return widened(drivers::UdpDevice::create(*udp, plan.fittings));
-  }
-  if (const auto* plugin = std::get_if<drivers::PluginOptions>(&plan.kind)) {
-    return widened(drivers::PluginDevice::create(*plugin, plan.fittings));
-  }
-  return widened(laboratory::SimulatedDevice::create(scenario));
-}
-
-}  // namespace mbk::session
+}  // namespace mbk::protocol

@@ -1,10 +1,10 @@
-#include "mbk/experiment/session/device_plan.h"
+#include "mbk/experiment/protocol/device_plan.h"
 
 #include <gtest/gtest.h>
 
-#include "mbk/experiment/session/experiment.h"
+#include "mbk/experiment/protocol/experiment.h"
 
-namespace mbk::session {
+namespace mbk::protocol {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -95,11 +95,13 @@ TEST(DevicePlan, RefusalsNameFileLineAndKey) {
 }
 
 TEST(DevicePlan, MakesTheDeviceThatItNames) {
-  const laboratory::Scenario scenario;
-  EXPECT_EQ(make_device(plan("kind = \"udp\"\nport = 4000\n"), scenario).value()->facts().name, "UDP 127.0.0.1:4000");
-  EXPECT_NE(make_device(plan(""), scenario).value()->facts().name.find("simulated"), std::string::npos);
-  EXPECT_FALSE(make_device(plan("kind = \"plugin\"\nlibrary = \"gone.so\"\n"), scenario));
+  const auto made = [](const std::string& device) { return make_device(read(device).value().front()); };
+  EXPECT_EQ(made("kind = \"udp\"\nport = 4000\n").value()->facts().name, "UDP 127.0.0.1:4000");
+  EXPECT_FALSE(made("kind = \"plugin\"\nlibrary = \"gone.so\"\n"));
+  const auto nothing = made("");
+  ASSERT_FALSE(nothing);
+  EXPECT_NE(nothing.error().line().find("nothing here that simulates"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace mbk::session
+}  // namespace mbk::protocol

@@ -1,4 +1,4 @@
-#include "mbk/experiment/session/live_estimate.h"
+#include "mbk/experiment/console/live_estimate.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,16 @@
 
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
-#include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/simulate/laboratory/simulation.h"
 
-namespace mbk::session {
+namespace mbk::console {
 namespace {
+
+using protocol::read_experiment;
+using protocol::Trial;
+using session::header_of;
+using session::make_plan;
+using session::Session;
 
 constexpr const char* kExperiment = R"(
 [robot]
@@ -30,8 +36,8 @@ number = 1
 
 /// The journal of a whole trial.
 journal::Journal recorded() {
-  const Trial trial = read_experiment(kExperiment, "experiment.toml").value().front();
-  const auto robot = laboratory::SimulatedDevice::create(trial.scenario).value();
+  const Trial trial = read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value().front();
+  const auto robot = laboratory::simulated_robot(trial).value();
   journal::Journal journal{header_of(trial, robot->facts(), make_plan(trial)->schedule), {}, {}, {}};
   const auto target = std::filesystem::temp_directory_path() / fmt::format("mbk_live_estimate_{}.h5", getpid());
   std::filesystem::remove(target);
@@ -104,4 +110,4 @@ TEST(LiveEstimate, WaitsForThePerturbation) {
 }
 
 }  // namespace
-}  // namespace mbk::session
+}  // namespace mbk::console

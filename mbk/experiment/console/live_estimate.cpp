@@ -1,4 +1,4 @@
-#include "mbk/experiment/session/live_estimate.h"
+#include "mbk/experiment/console/live_estimate.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 #include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/model/trial/recording.h"
 
-namespace mbk::session {
+namespace mbk::console {
 namespace {
 
 constexpr auto kInterval = std::chrono::seconds(1);
@@ -138,4 +138,4 @@ void LiveEstimate::run() noexcept {
   finished_.notify_all();
 }
 
-}  // namespace mbk::session
+}  // namespace mbk::console

@@ -17,14 +17,16 @@
 #include "mbk/experiment/session/plan.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/write.h"
-#include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/simulate/laboratory/simulation.h"
 #include "tests/support/allocations.h"
 
 namespace mbk::session {
 namespace {
 
+using protocol::read_experiment;
+using protocol::Trial;
+
 namespace fs = std::filesystem;
-using laboratory::SimulatedDevice;
 
 constexpr const char* kExperiment = R"(
 [recording]
@@ -59,7 +61,7 @@ class SessionFolder : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   static Trial trial(std::string_view text = kExperiment) {
-    auto trials = read_experiment(text, "experiment.toml");
+    auto trials = read_experiment(text, "experiment.toml", laboratory::read_simulation);
     EXPECT_TRUE(trials) << trials.error().line();
     return trials->front();
   }
@@ -71,7 +73,7 @@ class SessionFolder : public testing::Test {
 
 TEST_F(SessionFolder, RecordsATrialFromBeginningToEnd) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   std::uint64_t watched = 0;
   const auto outcome =
@@ -92,7 +94,7 @@ TEST_F(SessionFolder, RecordsATrialFromBeginningToEnd) {
 
 TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
     if (ticks.back().time > 1.5) session.signals().operator_stop = true;
@@ -105,7 +107,7 @@ TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
   const Vector& torque = recording->find("torque_1")->values;
   EXPECT_EQ(torque[torque.size() - 1], 0.0);
 
-  auto second = SimulatedDevice::create(t.scenario).value();
+  auto second = laboratory::simulated_robot(t).value();
   const auto refused = session.perform(*second, t, folder_ / "second.h5");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().line().find("reset"), std::string::npos);
@@ -116,7 +118,7 @@ TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
 TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
   const Trial t = trial();
   for (const bool known : {true, false}) {
-    auto robot = SimulatedDevice::create(t.scenario).value();
+    auto robot = laboratory::simulated_robot(t).value();
     Session session(kFast);
     int calls = 0;
     const fs::path target = folder_ / (known ? "known.h5" : "unknown.h5");
@@ -141,7 +143,7 @@ TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
 
 TEST_F(SessionFolder, EndsEarlyWhenAsked) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
     if (ticks.back().time > 4.0) session.signals().end_trial = true;
@@ -153,7 +155,7 @@ TEST_F(SessionFolder, EndsEarlyWhenAsked) {
 
 TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
   Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   const auto refusal = [&](const Trial& one) {
     Session session(kFast);
     const auto outcome = session.perform(*robot, one, target_);
@@ -166,7 +168,7 @@ TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
   t.limits.handle_force = 0.0;
   EXPECT_NE(refusal(t).find("handle force"), std::string::npos);
   t = trial();
-  std::get<laboratory::PlanarTrial>(t.scenario.trial).home = {2.0, 0.0};
+  t.home = {2.0, 0.0};
   EXPECT_NE(refusal(t).find("home"), std::string::npos);
   EXPECT_FALSE(fs::exists(journal_of(target_)));
   t = trial();
@@ -211,7 +213,7 @@ TEST_F(SessionFolder, AStallInsideATickIsLate) {
   t.limits.lateness = 0.25;
   t.limits.link_silence = 1.0;
   t.limits.state_age = 0.0;
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   DisturbedDevice device(*robot);
   device.stall_at = 200;
   Session session;
@@ -224,7 +226,7 @@ TEST_F(SessionFolder, AStallInsideATickIsLate) {
 
 TEST_F(SessionFolder, ATrialWhoseMotorsStayOnIsNotCompleted) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   DisturbedDevice device(*robot);
   device.stuck_on = true;
   realtime::VirtualClock clock(1e-3, 40.0);
@@ -255,7 +257,7 @@ TEST_F(SessionFolder, ATrialWhoseMotorsStayOnIsNotCompleted) {
 
 TEST_F(SessionFolder, AStopButtonThatIsReleasedBetweenTrialsLetsResetThrough) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   DisturbedDevice device(*robot);
   realtime::VirtualClock clock(1e-3, 40.0);
   Session session({true, 0.0, &clock});
@@ -284,7 +286,7 @@ TEST_F(SessionFolder, AStopButtonThatIsReleasedBetweenTrialsLetsResetThrough) {
 
 TEST_F(SessionFolder, NothingBeginsWhileTheStopButtonIsPressed) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   DisturbedDevice device(*robot);
   device.button = true;
   Session session;
@@ -381,8 +383,8 @@ TEST_F(SessionFolder, ARecordingThatDiffersInOneRowOfNaNIsNotTheSame) {
 TEST_F(SessionFolder, WhatASessionWritesIsForItsOwnerUnlessAskedOtherwise) {
   for (const Readers readers : {Readers::owner, Readers::all}) {
     Trial t = trial();
-    t.scenario.readers = readers;
-    auto robot = SimulatedDevice::create(t.scenario).value();
+    t.readers = readers;
+    auto robot = laboratory::simulated_robot(t).value();
     fs::remove(target_);
     Session session(kFast);
     std::atomic<unsigned> seen{0};
@@ -402,7 +404,7 @@ TEST_F(SessionFolder, WhatASessionWritesIsForItsOwnerUnlessAskedOtherwise) {
 TEST_F(SessionFolder, AJournalThatIsRemovedOrReplacedStopsTheTrialAndLosesNothing) {
   for (const bool replaced : {false, true}) {
     const Trial t = trial();
-    auto robot = SimulatedDevice::create(t.scenario).value();
+    auto robot = laboratory::simulated_robot(t).value();
     fs::remove(target_);
     Session session({.virtual_clock = true, .speed = 1.0});
     std::uint64_t watched = 0;
@@ -430,7 +432,7 @@ TEST_F(SessionFolder, AJournalThatIsRemovedOrReplacedStopsTheTrialAndLosesNothin
 /// The disk gives something else back than was written.
 TEST_F(SessionFolder, ATrialWhoseJournalIsDamagedWhileItRunsIsNotCompleted) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   bool done = false;
   const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
@@ -453,7 +455,7 @@ TEST_F(SessionFolder, ATrialWhoseJournalIsDamagedWhileItRunsIsNotCompleted) {
 TEST(ExperimentFile, RefusesNames) {
   for (const char* key : {"name", "initials"}) {
     const std::string text = std::string(kExperiment) + key + " = \"Ann\"\n";
-    const auto trials = read_experiment(text, "experiment.toml");
+    const auto trials = read_experiment(text, "experiment.toml", laboratory::read_simulation);
     ASSERT_FALSE(trials);
     EXPECT_NE(trials.error().line().find(key), std::string::npos);
     EXPECT_NE(trials.error().line().find("line 20"), std::string::npos) << trials.error().line();
@@ -462,7 +464,7 @@ TEST(ExperimentFile, RefusesNames) {
 
 TEST(ExperimentFile, EveryReadyPlanarScenarioIsAnExperiment) {
   for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) {
-    const auto trials = read_experiment(one.text, std::string(one.name) + ".toml");
+    const auto trials = read_experiment(one.text, std::string(one.name) + ".toml", laboratory::read_simulation);
     if (trials) {
       for (const Trial& trial : *trials) EXPECT_TRUE(make_plan(trial)) << one.name;
     } else {
@@ -505,7 +507,7 @@ TEST_F(SessionFolder, TheLoopDoesNotAllocateWhileItIsRecordedAndAPlantedAllocati
   using Plant = CountingDevice::Plant;
   for (const Plant plant : {Plant::nothing, Plant::object, Plant::matrix}) {
     const Trial t = trial();
-    auto robot = SimulatedDevice::create(t.scenario).value();
+    auto robot = laboratory::simulated_robot(t).value();
     CountingDevice counting(*robot, plant);
     fs::remove(target_);
     Session session(kFast);
@@ -520,7 +522,7 @@ TEST_F(SessionFolder, TheLoopDoesNotAllocateWhileItIsRecordedAndAPlantedAllocati
 /// A trip on the way down neither allocates.
 TEST_F(SessionFolder, ATripDoesNotAllocate) {
   const Trial t = trial();
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   CountingDevice counting(*robot, CountingDevice::Plant::nothing);
   Session session(kFast);
   const auto outcome = session.perform(counting, t, target_, [&](std::span<const journal::Tick> ticks) {
@@ -546,7 +548,7 @@ TEST_F(SessionFolder, MemoryStaysFlatAndNothingIsDropped) {
   std::string text = kExperiment;
   text.replace(text.find("duration_s = 6"), 14, fmt::format("duration_s = {}", seconds));
   const Trial t = trial(text);
-  auto robot = SimulatedDevice::create(t.scenario).value();
+  auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   double early = 0.0, late = 0.0;
   const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {

@@ -1,19 +1,17 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <variant>
 
-#include "mbk/base/core/result.h"
+#include "mbk/base/config/document.h"
 #include "mbk/experiment/drivers/fittings.h"
 #include "mbk/experiment/drivers/plugin_device.h"
 #include "mbk/experiment/drivers/udp_device.h"
-#include "mbk/simulate/laboratory/scenario.h"
 
-namespace mbk::session {
+namespace mbk::protocol {
 
-/// The robot of the scenario itself, with whoever it describes at the handle.
+/// A simulated robot (Trial::simulation).
 struct Simulated {};
 
 /// Which robot a trial runs on.
@@ -30,8 +28,4 @@ struct DevicePlan {
 /// @param folder  from which a library's name is taken
 [[nodiscard]] DevicePlan read_device(const config::Section& section, const std::filesystem::path& folder);
 
-/// @fails  as SimulatedDevice, UdpDevice::create, PluginDevice::create
-[[nodiscard]] Result<std::unique_ptr<device::Device>> make_device(const DevicePlan& plan,
-                                                                  const laboratory::Scenario& scenario);
-
-}  // namespace mbk::session
+}  // namespace mbk::protocol

@@ -1,21 +1,19 @@
+#include "mbk/model/perturbation/schedule_plan.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <complex>
 #include <numbers>
 
-#include "mbk/simulate/laboratory/scenario.h"
-
-namespace mbk::laboratory {
+namespace mbk::perturbation {
 namespace {
 
-using perturbation::Schedule;
-
-PerturbationPlan sines(const MultisinePlan& plan = {}) {
+Plan sines(const MultisinePlan& plan = {}) {
   return {plan, {}};
 }
 
-Schedule made(const PerturbationPlan& plan, std::uint64_t seed = 1) {
+Schedule made(const Plan& plan, std::uint64_t seed = 1) {
   auto schedule = make_schedule(plan, seed);
   EXPECT_TRUE(schedule) << schedule.error().line();
   return *schedule;
@@ -81,7 +79,7 @@ Matrix shares(const MultisinePlan& plan) {
 TEST(MakeSchedule, OptimalPowerIsSharedAmongTheLinesAsItSays) {
   MultisinePlan plan;
   plan.optimal_power.emplace();
-  const Vector wanted = perturbation::optimal_power(plan.period, plan.harmonics, *plan.optimal_power)->shares;
+  const Vector wanted = optimal_power(plan.period, plan.harmonics, *plan.optimal_power)->shares;
   EXPECT_GT(wanted.maxCoeff(), 10.0 * wanted.minCoeff());
   for (const auto phases : {MultisinePlan::Phases::random, MultisinePlan::Phases::low_crest}) {
     plan.phases = phases;
@@ -108,7 +106,7 @@ TEST(MakeSchedule, TakesSeedAndSizeOfPulsesAndSequencesFromPlanAndSeed) {
   PulsePlan pulses;
   RandomBinaryPlan binary;
   binary.angle = std::numbers::pi / 6.0;
-  for (const PerturbationPlan& plan : {PerturbationPlan{pulses, {}}, PerturbationPlan{binary, {}}}) {
+  for (const Plan& plan : {Plan{pulses, {}}, Plan{binary, {}}}) {
     EXPECT_EQ(period(made(plan, 3)), period(made(plan, 3)));
   }
   const auto onsets = [&](std::uint64_t seed) { return made({pulses, {}}, seed).events().front().time; };
@@ -122,7 +120,7 @@ TEST(MakeSchedule, TakesSeedAndSizeOfPulsesAndSequencesFromPlanAndSeed) {
 }
 
 TEST(MakeSchedule, SaysWhichLimitIsBroken) {
-  PerturbationPlan plan = sines();
+  Plan plan = sines();
   plan.limits.speed = 0.01;
   const auto outcome = make_schedule(plan, 1);
   ASSERT_FALSE(outcome);
@@ -131,4 +129,4 @@ TEST(MakeSchedule, SaysWhichLimitIsBroken) {
 }
 
 }  // namespace
-}  // namespace mbk::laboratory
+}  // namespace mbk::perturbation

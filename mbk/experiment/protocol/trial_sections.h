@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "mbk/base/config/document.h"
+#include "mbk/base/core/units.h"
+#include "mbk/experiment/control/trial_control.h"
+#include "mbk/model/perturbation/schedule_plan.h"
+#include "mbk/model/trial/readers.h"
+
+namespace mbk::protocol {
+
+/// The sections that scenarios and experiments share. What is wrong in one is an error of its document, with file,
+/// line, key, value and what is allowed.
+
+enum class Machine { planar, one_axis };
+
+/// `kind` of [robot]; a planar one where nothing is said.
+[[nodiscard]] Machine read_machine(const config::Section& robot);
+
+/// [recording]
+struct RecordingSection {
+  std::string condition;  ///< in words
+  Hertz rate{1000.0};
+  std::uint64_t seed = 1;  ///< of phases, decisions and noise
+  Readers readers = Readers::owner;
+};
+[[nodiscard]] RecordingSection read_recording(const config::Section& section);
+
+/// [control] of a planar robot.
+[[nodiscard]] control::Mode read_control(const config::Section& section);
+
+/// [perturbation]; the unit of a size says what is commanded: peak_deg, peak_mm, peak_N.
+[[nodiscard]] perturbation::Plan read_perturbation(const config::Section& section, Machine machine);
+
+}  // namespace mbk::protocol

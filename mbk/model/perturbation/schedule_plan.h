@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/perturbation/optimal_power.h"
+#include "mbk/model/perturbation/random_binary.h"
+#include "mbk/model/perturbation/schedule.h"
+#include "mbk/model/perturbation/underdamped_pulse.h"
+
+namespace mbk::perturbation {
+
+/// Sums of sines, one for each axis or joint, with phases and power by a stated rule.
+struct MultisinePlan {
+  enum class Phases { random, schroeder, low_crest };
+  /// Lines and phases of each axis its own, lines in turn to one and the other, or the first or second of a pair of
+  /// experiments that differ in the second axis's sign (axis_pair.h).
+  enum class Axes { independent, interleaved, hadamard_first, hadamard_second };
+  Quantity quantity = Quantity::position;
+  Space space = Space::joint;
+  double peak = 0.034906585039886591;  ///< of each axis: ±2° by default [rad, m, N or N·m]
+  double period = 10.0;                ///< [s]
+  std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
+  Phases phases = Phases::random;
+  std::optional<OptimalPowerOptions> optimal_power;  ///< absent: the same at every line
+  Axes axes = Axes::independent;
+  double duration = 62.1;  ///< [s]
+  double moving_in = 5.0;  ///< from rest [s]
+};
+
+/// Underdamped pulses in random order.
+struct PulsePlan {
+  Quantity quantity = Quantity::position;
+  Space space = Space::hand;
+  PulseSchedule::Options pulses;
+  double tail = 3.0;  ///< recorded after the last pulse [s]
+};
+
+/// A filtered random binary sequence along one line.
+struct RandomBinaryPlan {
+  Quantity quantity = Quantity::force;
+  Space space = Space::hand;
+  RandomBinaryOptions sequence;
+  double angle = 1.5707963267948966;  ///< of the line from +x [rad]
+  double duration = 62.1;             ///< [s]
+};
+
+/// Nothing is commanded.
+struct RestPlan {
+  double duration = 10.0;  ///< [s]
+};
+
+struct Plan {
+  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan> kind = MultisinePlan{};
+  Limits limits;  ///< what the schedule must keep
+};
+
+/// The schedule that a plan gives with a seed.
+/// @fails  usage: as perturbation's; a limit is broken.
+[[nodiscard]] Result<Schedule> make_schedule(const Plan& plan, std::uint64_t seed);
+
+}  // namespace mbk::perturbation

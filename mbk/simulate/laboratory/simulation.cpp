@@ -1,0 +1,64 @@
+#include "mbk/simulate/laboratory/simulation.h"
+
+#include <utility>
+
+namespace mbk::laboratory {
+namespace {
+
+class ScenarioSimulation : public protocol::Simulation {
+ public:
+  explicit ScenarioSimulation(Scenario scenario) : scenario_(std::move(scenario)) {}
+
+  [[nodiscard]] Scenario scenario(const protocol::Trial& trial) const {
+    Scenario scenario = scenario_;
+    scenario.file_name = trial.protocol;
+    scenario.trial_name = trial.name;
+    scenario.condition = trial.condition;
+    scenario.perturbation = trial.perturbation;
+    scenario.rate = trial.rate;
+    scenario.seed = trial.seed;
+    scenario.readers = trial.readers;
+    auto& planar = std::get<PlanarTrial>(scenario.trial);
+    planar.robot.robot = trial.robot;
+    planar.robot.handle_mass = trial.handle_mass;
+    planar.home = trial.home;
+    planar.control = trial.control;
+    return scenario;
+  }
+
+  [[nodiscard]] Result<std::unique_ptr<device::Device>> robot(const protocol::Trial& trial) const override {
+    auto made = SimulatedDevice::create(scenario(trial));
+    if (!made) return tl::unexpected(made.error());
+    return std::unique_ptr<device::Device>(std::move(*made));
+  }
+
+  [[nodiscard]] std::map<std::string, std::string> metadata(const protocol::Trial& trial) const override {
+    return scenario_metadata(scenario(trial));
+  }
+
+ private:
+  Scenario scenario_;  // planar
+};
+
+}  // namespace
+
+Result<std::shared_ptr<const protocol::Simulation>> read_simulation(const config::Section& root,
+                                                                    const protocol::Trial& /*trial*/) {
+  return std::make_shared<const ScenarioSimulation>(read_scenario(root));
+}
+
+Result<Scenario> scenario_of(const protocol::Trial& trial) {
+  const auto* simulation = dynamic_cast<const ScenarioSimulation*>(trial.simulation.get());
+  if (simulation == nullptr) {
+    return bad_usage("the trial has no scenario to simulate", "hand laboratory::read_simulation to read_experiment");
+  }
+  return simulation->scenario(trial);
+}
+
+Result<std::unique_ptr<SimulatedDevice>> simulated_robot(const protocol::Trial& trial) {
+  const auto scenario = scenario_of(trial);
+  if (!scenario) return tl::unexpected(scenario.error());
+  return SimulatedDevice::create(*scenario);
+}
+
+}  // namespace mbk::laboratory
