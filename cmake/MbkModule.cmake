@@ -17,12 +17,12 @@ endfunction()
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
-# program that is no part of the library.
+# program that is no part of the library. TESTS_WAIT: its tests wait for a socket (label waits).
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "NOT_INSTALLED" "" "DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT" "" "DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -58,18 +58,30 @@ function(mbk_module name)
   endif()
 
   if(MBK_BUILD_TESTS AND tests)
-    mbk_test(${name}_test SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
+    set(wait "")
+    if(ARG_TESTS_WAIT)
+      set(wait WAITS)
+    endif()
+    mbk_test(${name}_test ${wait} SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
   endif()
 endfunction()
 
 # A GoogleTest program whose cases CTest sees one by one. A case skipped for want of MBK_DATA_DIR counts as skipped.
+# WAITS: it waits for a socket, which a busy machine may hold up; only tests with this label have a second chance
+# (.ci/run). OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers.
 function(mbk_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "" "SOURCES;LIBRARIES" ${ARGN})
+  set(labels "")
+  if(ARG_WAITS)
+    set(labels LABELS waits)
+  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE mbk_settings ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   # What is tested is as users have it; the tests themselves compile faster so.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  mbk_precompile(${name} tests)
+  if(NOT ARG_OWN_FLAGS)
+    mbk_precompile(${name} tests)
+  endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  gtest_discover_tests(${name} TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(${name} TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300 ${labels})
 endfunction()

@@ -16,7 +16,6 @@ namespace mbk::app {
 namespace {
 
 using measurement::Examined;
-using mbk::Measurement;
 
 /// A result, with the diagnostics where a report will show them: those of one recording.
 Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
@@ -62,7 +61,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   } else {
     results = measure_each(*recordings, *options, arguments);
   }
-  std::vector<Measured> measured;
+  std::vector<Measurement> measured;
   std::vector<std::optional<Diagnostics>> diagnostics;
   for (Result<Examined>& one : results) {
     if (!one) return report_error(one.error());
@@ -77,7 +76,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   std::optional<Summary> summary;
   if (measured.size() > 1) {
     std::vector<Identification> identifications;
-    for (const Measured& one : measured) identifications.push_back(one.identification);
+    for (const Measurement& one : measured) identifications.push_back(one.identification);
     auto mean = analyse::summarise(identifications);
     if (!mean) return report_error(mean.error());
     summary = std::move(*mean);
@@ -87,7 +86,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   if (arguments.json) {
     text = summary ? result::to_json(measured, summary) : result::to_json(measured.front());
   } else {
-    for (const Measured& one : measured) {
+    for (const Measurement& one : measured) {
       if (!text.empty()) text += "\n";
       text += report::result_text(one.identification, one.findings);
       if (one.alternative && one.disagreement) {
@@ -107,7 +106,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
     if (auto ok = write_page(arguments, document); !ok) return report_error(ok.error());
   }
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
-  for (const Measured& one : measured) {
+  for (const Measurement& one : measured) {
     if (!one.identification.usable) return kNotUsable;
   }
   return kFine;

@@ -14,6 +14,7 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/plan_text.h"
 #include "apps/mbk/readers_option.h"
 #include "apps/mbk/run_console.h"
 #include "apps/mbk/scenario_argument.h"

@@ -106,7 +106,7 @@ TEST(Llewellyn, NeverCallsAPassiveTwoPortUnstableInAnyForm) {
     const TwoPort passive = random_passive(random);
     for (const Form form : kForms) {
       const auto converted = convert(passive, form);
-      if (!converted) continue;
+      ASSERT_TRUE(converted) << trial << text(form) << converted.error().line();
       EXPECT_TRUE(llewellyn(*converted).holds()) << "trial " << trial << " as " << text(form);
       EXPECT_TRUE(is_absolutely_stable(*converted));
     }
@@ -134,7 +134,8 @@ TEST(Llewellyn, AgreesWithADenseGridAndInEveryForm) {
     }
     for (const Form form : kForms) {
       const auto converted = convert(network, form);
-      EXPECT_TRUE(!converted || is_absolutely_stable(*converted) == stability.holds()) << trial << text(form);
+      ASSERT_TRUE(converted) << trial << text(form) << converted.error().line();
+      EXPECT_EQ(is_absolutely_stable(*converted), stability.holds()) << trial << text(form);
     }
   }
   EXPECT_GT(stable, 5);

@@ -14,7 +14,7 @@ TEST(Convert, GoesThereAndBackExactly) {
     const TwoPort z = random_near_passive(random);
     for (const Form form : kForms) {
       const auto there = convert(z, form);
-      if (!there) continue;
+      ASSERT_TRUE(there) << trial << text(form) << there.error().line();
       EXPECT_EQ(convert(*there, Form::z)->matrix, z.matrix) << text(form);
     }
   }

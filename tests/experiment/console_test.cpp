@@ -16,6 +16,7 @@
 #include "mbk/experiment/session/plan.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
+#include "mbk/present/result/json.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::console {

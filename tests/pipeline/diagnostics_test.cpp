@@ -6,6 +6,7 @@
 
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/read.h"
+#include "mbk/present/result/json.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {

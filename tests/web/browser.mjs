@@ -116,6 +116,18 @@ function started(path, args) {
   return running;
 }
 
+/** Waits until the page is as `check` asserts: a test waits for a state, never for a time. */
+export async function eventually(check) {
+  for (const until = Date.now() + 20_000; ;) {
+    try {
+      return await check();
+    } catch (error) {
+      if (Date.now() > until) throw error;
+    }
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+}
+
 /** mbk. */
 export function start(...args) {
   const running = started(program("MBK"), args);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, folder, makeLog, mbk, measure, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
 import { withDiagnostics } from "./diagnostics.mjs";
 
 after(closeBrowser);
@@ -127,11 +127,11 @@ for (const [what, file, prepare] of [
 test("the keyboard reaches the content first, zooms a chart and shows all again", async () => {
   const { page, close: done } = await open(onePage);
   await page.keyboard.press("Tab");
-  assert.equal(await page.evaluate(() => document.activeElement.className), "skip");
+  await eventually(async () => assert.equal(await page.evaluate(() => document.activeElement.className), "skip"));
   await page.keyboard.press("Enter");
-  assert.equal(await page.evaluate(() => document.activeElement.id), "content");
+  await eventually(async () => assert.equal(await page.evaluate(() => document.activeElement.id), "content"));
   await page.keyboard.press("Tab");
-  assert.ok(await page.evaluate(() => document.querySelector("main").contains(document.activeElement)), "after the skip link the contents are skipped");
+  await eventually(async () => assert.ok(await page.evaluate(() => document.querySelector("main").contains(document.activeElement)), "after the skip link the contents are skipped"));
   const figure = page.locator("figure.chart-figure", { has: page.locator("#trial-1-prediction") });
   const ticks = () => figure.locator(".chart svg text").allTextContents();
   await figure.scrollIntoViewIfNeeded();
@@ -143,7 +143,7 @@ test("the keyboard reaches the content first, zooms a chart and shows all again"
   assert.notDeepEqual(await ticks(), whole);
   assert.equal(await figure.locator(".zoom").textContent(), "25–75 %");
   for (let k = 0; k < 4; ++k) await page.keyboard.press("Tab");
-  assert.match(await page.evaluate(() => document.activeElement.ariaLabel ?? document.activeElement.getAttribute("aria-label")), /^Show all/);
+  await eventually(async () => assert.match(await page.evaluate(() => document.activeElement.ariaLabel ?? document.activeElement.getAttribute("aria-label")), /^Show all/));
   await page.keyboard.press("Enter");
   await page.waitForTimeout(100);
   assert.deepEqual(await ticks(), whole);

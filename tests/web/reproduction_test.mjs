@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { assertShown, changed, close, closeBrowser, documentOf, folder, mbk, numbers, open, picture, pictures, scrollThrough, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, mbk, numbers, open, picture, pictures, scrollThrough, violations } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -178,11 +178,11 @@ test("a filter by words and by provenance, with the keyboard alone", () => onPag
   }
   await page.focus("#filter-text");
   await pressed(page, "Control+a", "Delete");
-  assert.deepEqual(await shownArticles(page), ["figure-3.2"]);
+  await eventually(async () => assert.deepEqual(await shownArticles(page), ["figure-3.2"]));
   await page.getByRole("button", { name: "Show all" }).focus();
   await pressed(page, "Enter");
-  assert.deepEqual(await shownArticles(page), all);
-  assert.equal(await focusedId(page), "filter-text");
+  await eventually(async () => assert.deepEqual(await shownArticles(page), all));
+  await eventually(async () => assert.equal(await focusedId(page), "filter-text"));
   // A table of another provenance than its exhibit is found by both.
   await page.getByRole("checkbox", { name: "recomputed", exact: true }).uncheck();
   assert.ok((await shownArticles(page)).includes("table-3.3"));
@@ -191,10 +191,10 @@ test("a filter by words and by provenance, with the keyboard alone", () => onPag
 
 test("the tally leads to where the numbers are", () => onPage(every, async (page) => {
   await page.locator("#tally li.slip button").click();
-  assert.deepEqual(await shownArticles(page), ["table-3.6", "table-a.1"]);
-  assert.equal(await focusedId(page), "table-3.6");
+  await eventually(async () => assert.deepEqual(await shownArticles(page), ["table-3.6", "table-a.1"]));
+  await eventually(async () => assert.equal(await focusedId(page), "table-3.6"));
   await page.locator("#tally li.differs button").click();
-  assert.deepEqual(await shownArticles(page), ["table-a.1"]);
+  await eventually(async () => assert.deepEqual(await shownArticles(page), ["table-a.1"]));
 }));
 
 test("an address leads to an exhibit, and past a filter", async () => {
@@ -251,8 +251,8 @@ test("a cell says everything when it is chosen, and the arrow keys lead from cel
   }
   assert.equal(await page.getAttribute(`${block} td[tabindex="0"]`, "title"), said);
   await pressed(page, "End");
-  assert.match(await page.textContent(`${block} .cell-facts`), new RegExp(`${table.columns.at(-1).name}.*slip 1`));
-  assert.equal(await page.locator(`${block} td[tabindex="0"]`).count(), 1);
+  await eventually(async () => assert.match(await page.textContent(`${block} .cell-facts`), new RegExp(`${table.columns.at(-1).name}.*slip 1`)));
+  await eventually(async () => assert.equal(await page.locator(`${block} td[tabindex="0"]`).count(), 1));
 }));
 
 test("differences are shown where they are asked for, in one table or in all", () => onPage(every, async (page) => {
@@ -262,15 +262,15 @@ test("differences are shown where they are asked for, in one table or in all", (
   const one = page.locator('[id="table-3.6"]').getByRole("button", { name: "Show differences" });
   await one.focus();
   await pressed(page, "Enter");
-  assert.equal(await one.getAttribute("aria-pressed"), "true");
-  assert.equal(await shown(), await page.locator('[id="table-3.6"] td .difference').count());
+  await eventually(async () => assert.equal(await one.getAttribute("aria-pressed"), "true"));
+  await eventually(async () => assert.equal(await shown(), await page.locator('[id="table-3.6"] td .difference').count()));
   const every = page.getByLabel("Show differences in all tables");
   await every.focus();
   await pressed(page, "Space");
-  assert.equal(await shown(), all);
+  await eventually(async () => assert.equal(await shown(), all));
   await pressed(page, "Space");
-  assert.equal(await shown(), 0);
-  assert.equal(await one.getAttribute("aria-pressed"), "false");
+  await eventually(async () => assert.equal(await shown(), 0));
+  await eventually(async () => assert.equal(await one.getAttribute("aria-pressed"), "false"));
 }));
 
 test("the CSV that the page saves is the file beside it", () => onPage(real.file, async (page) => {
@@ -296,21 +296,21 @@ test("a chart opens larger with Enter, the arrow keys go on, Escape leads back",
   await pressed(page, "Enter");
   const dialog = page.locator("dialog");
   const alt = () => dialog.locator("img").getAttribute("alt");
-  assert.equal(await page.locator("dialog[open]").count(), 1);
-  assert.match(await alt(), /^Second pulse\. force \[N\] over time \[s\]\. Series: measured \(3 points, −1.25 to 2 over 0 to 1\); predicted .* Lines: threshold at 2\. One note/);
+  await eventually(async () => assert.equal(await page.locator("dialog[open]").count(), 1));
+  await eventually(async () => assert.match(await alt(), /^Second pulse\. force \[N\] over time \[s\]\. Series: measured \(3 points, −1.25 to 2 over 0 to 1\); predicted .* Lines: threshold at 2\. One note/));
   await pressed(page, "ArrowRight");
-  assert.match(await alt(), /^Third pulse/);
+  await eventually(async () => assert.match(await alt(), /^Third pulse/));
   await pressed(page, "ArrowRight");
-  assert.match(await alt(), /^First pulse/);
+  await eventually(async () => assert.match(await alt(), /^First pulse/));
   await dialog.locator("summary").click();
-  assert.deepEqual(await dialog.locator("tbody tr").nth(4).locator("td").allTextContents(), ["predicted", "0.50000", "−2.2500", "−3.0000", "−2.0000"]);
+  await eventually(async () => assert.deepEqual(await dialog.locator("tbody tr").nth(4).locator("td").allTextContents(), ["predicted", "0.50000", "−2.2500", "−3.0000", "−2.0000"]));
   assert.deepEqual(await violations(page), []);
   const [download] = await Promise.all([page.waitForEvent("download"), dialog.getByRole("button", { name: /^Save CSV/ }).click()]);
   assert.equal(download.suggestedFilename(), "figure-4.3-1.csv");
   assert.match(readFileSync(await download.path(), "utf8"), /^"series","time \[s\]","force \[N\]","low","high"\n"measured",0,0,,\n/);
   await pressed(page, "Escape");
-  assert.equal(await page.locator("dialog").count(), 0);
-  assert.ok(await pictures.nth(1).evaluate((one) => one === document.activeElement), "the focus is back");
+  await eventually(async () => assert.equal(await page.locator("dialog").count(), 0));
+  await eventually(async () => assert.ok(await pictures.nth(1).evaluate((one) => one === document.activeElement), "the focus is back"));
 }));
 
 test("drawings are pictures: nothing in them reaches the page, each loads, and each keeps its place", () => onPage(every, async (page) => {
@@ -348,7 +348,7 @@ test("on a narrow screen nothing is wider than it, and the contents open and clo
   assert.ok(Math.abs(row - box) < 1, "the first column stays");
   await page.locator(".sidebar summary").focus();
   await pressed(page, "Enter", "Tab", "Escape");
-  assert.equal(await page.locator(".sidebar[open]").count(), 0);
+  await eventually(async () => assert.equal(await page.locator(".sidebar[open]").count(), 0));
   await page.locator('[id="table-4.1"] td').nth(1).tap();
   assert.match(await page.textContent('[id="table-4.1"] .cell-facts'), /^P1, m_xy: ours 2\.469/);
   assert.deepEqual(await violations(page), []);

@@ -16,9 +16,11 @@ std::int64_t nanoseconds(double seconds) noexcept {
 }  // namespace
 
 std::int64_t monotonic_ns() noexcept {
+  // A clock that cannot be read stands still for that moment: at zero every deadline would be over, or never come.
+  thread_local std::int64_t last = 0;
   timespec time{};
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return time.tv_sec * kSecond + time.tv_nsec;
+  if (clock_gettime(CLOCK_MONOTONIC, &time) == 0) last = time.tv_sec * kSecond + time.tv_nsec;
+  return last;
 }
 
 WallClock::WallClock(double period) noexcept : period_(nanoseconds(period)) {}

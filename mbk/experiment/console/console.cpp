@@ -217,7 +217,7 @@ void Console::watch_throwing(std::span<const Tick> ticks) {
   live_->add(ticks);
 }
 
-void Console::finish(const protocol::TrialOutcome& outcome) {
+void Console::finish(const session::TrialOutcome& outcome) {
   live_->finish();
   const std::scoped_lock lock(mutex_);
   Listed& listed = trials_[current_];

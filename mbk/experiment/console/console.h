@@ -75,7 +75,7 @@ class Console {
   void watch(std::span<const journal::Tick> ticks) noexcept;
 
   /// The trial is over. Returns once the last estimate is there.
-  void finish(const protocol::TrialOutcome& outcome);
+  void finish(const session::TrialOutcome& outcome);
 
   /// How long the ticks of the last trial took and how late they came, apart for those while pages were open and for
   /// the others.

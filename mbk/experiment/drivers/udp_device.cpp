@@ -63,6 +63,7 @@ Result<void> UdpDevice::start() {
   socket_ = std::move(*socket);
   counts_ = {};
   newest_ = {};
+  alarms_ = {};
   heard_ = broken_ = false;
   last_ = {};
   while (last_.session == 0) last_.session = std::random_device{}();
@@ -132,6 +133,9 @@ void UdpDevice::take_all() noexcept {
     if (heard_) counts_.lost += came.raw.sequence - newest_.raw.sequence - 1;
     newest_ = came;
     heard_ = true;
+    alarms_.stop |= came.raw.stop;
+    alarms_.watchdog_expired |= came.watchdog_expired;
+    if (came.fault != 0) alarms_.fault = came.fault;
   }
 }
 
@@ -163,10 +167,13 @@ bool UdpDevice::read(device::State& state) noexcept {
   state.motors = newest_.enabled ? device::Motors::on : device::Motors::off;
   state.has_force = newest_.has_force;
   state.has_acceleration = newest_.has_acceleration;
-  state.watchdog_expired = newest_.watchdog_expired;
+  state.stop = alarms_.stop;
+  state.watchdog_expired = alarms_.watchdog_expired;
   state.drives_measure = newest_.drives_measure;
   state.drive_torque = fittings_.wiring.torque(newest_.measured);
-  state.fault = newest_.fault;
+  state.fault = alarms_.fault;
+  // Until a newer state comes the newest one goes on saying what it says.
+  alarms_ = {newest_.raw.stop, newest_.watchdog_expired, newest_.fault};
   return !broken_;
 }
 

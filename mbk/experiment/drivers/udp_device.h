@@ -82,6 +82,11 @@ class UdpDevice : public device::Device {
   Counts counts_;
   CommandDatagram last_;
   StateDatagram newest_;
+  /// What a state that came since the last `read` said, though a newer one has come since.
+  struct Alarms {
+    bool stop = false, watchdog_expired = false;
+    decltype(StateDatagram::fault) fault = 0;
+  } alarms_;
   bool heard_ = false, broken_ = false;
   std::array<std::byte, kCommandBytes> last_words_{};
   std::atomic<bool> has_last_words_{false};

@@ -116,6 +116,26 @@ TEST(UdpDevice, ReadsAndCommandsThroughTheWiring) {
   EXPECT_EQ(command.watchdog, 50U);
 }
 
+TEST(UdpDevice, KeepsAStopThatANewerStateNoLongerShows) {
+  Peer peer;
+  auto device = UdpDevice::create(peer.options(), {}).value();
+  ASSERT_TRUE(peer.welcome(*device));
+  StateDatagram pressed = peer.state(11);
+  pressed.raw.stop = pressed.watchdog_expired = true;
+  device::State state;
+  ASSERT_TRUE(device->read(state));
+  peer.say(pressed);
+  peer.say(12);
+  // Both wait in the socket, and one tick reads both.
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  state = read_until(*device, 12);
+  EXPECT_TRUE(state.stop);
+  EXPECT_TRUE(state.watchdog_expired);
+  ASSERT_TRUE(device->read(state));
+  EXPECT_FALSE(state.stop);
+  EXPECT_FALSE(state.watchdog_expired);
+}
+
 TEST(UdpDevice, TakesTheNewestAndCountsWhatIsLostOldOrTwice) {
   Peer peer;
   auto device = UdpDevice::create(peer.options(), {}).value();

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <optional>
 
+#include "mbk/base/realtime/signal_stack.h"
+
 namespace mbk::session {
 namespace {
 
@@ -23,6 +25,7 @@ IdleWatch::~IdleWatch() {
 }
 
 void IdleWatch::watch() noexcept {
+  const realtime::SignalStack stack;
   using Clock = std::chrono::steady_clock;
   device::State state;
   robot_.read(state);

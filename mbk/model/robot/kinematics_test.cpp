@@ -45,13 +45,16 @@ TEST(JointAngles, UndoTheForwardKinematicsAllOverTheWorkspace) {
 }
 
 TEST(JointAngles, BringTheHandToItsPlace) {
+  int reached = 0;
   for (double x = 0.02; x < 0.5; x += 0.04) {
     for (double y = -0.4; y < 0.45; y += 0.05) {
       const auto theta = joint_angles(kGeometry, {x, y});
       if (!theta) continue;
+      ++reached;
       EXPECT_TRUE(hand_position(kGeometry, *theta).isApprox(Vector2d(x, y), 1e-13)) << x << " " << y;
     }
   }
+  EXPECT_GT(reached, 50);
 }
 
 TEST(JointAngles, LieOnTheBranchWhoseElbowIsToTheLeftOfTheHand) {

@@ -21,8 +21,12 @@ TEST(ClosedLoopStudy, FindsThatLeastSquaresCallsAPassiveArmActiveAndInstrumentsA
     ASSERT_NE(row, nullptr) << what;
     EXPECT_GE(row->value, 75.0) << what;  // of four runs; twenty and more by command
   }
-  EXPECT_LT(find(*table, "ls: smallest eigenvalue of M")->value, -100.0);  // its sign is wrong
-  EXPECT_EQ(find(*table, "6 N multisine: verdict active")->value, 0.0);
+  const ValidationRow* const inertia = find(*table, "ls: smallest eigenvalue of M");
+  ASSERT_NE(inertia, nullptr);
+  EXPECT_LT(inertia->value, -100.0);  // its sign is wrong
+  const ValidationRow* const active = find(*table, "6 N multisine: verdict active");
+  ASSERT_NE(active, nullptr);
+  EXPECT_EQ(active->value, 0.0);
 }
 
 TEST(ClosedLoopStudy, IsTheSameOnAnyNumberOfThreads) {
