@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <regex>
 
+#include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 
 namespace mbk::app {
@@ -89,6 +90,10 @@ CommandText describe(CLI::App& app, std::vector<std::string> path) {
 }
 
 }  // namespace
+
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& summary) {
+  return parent.add_subcommand(name, summary);
+}
 
 std::string CommandText::joined(const char* separator) const {
   return fmt::format("{}", fmt::join(path, separator));

@@ -12,6 +12,9 @@ using Action = std::function<int()>;
 /// The command line as it was typed, for whoever wants to run it again: quoted for a shell where it has to be.
 std::string command_line(int argc, char** argv);
 
+/// A subcommand of `parent`. The one place that makes one: what CLI11 needs for it is compiled once.
+CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& summary);
+
 /// Each adds one subcommand to `app` and gives the action to run when it was chosen.
 /// @param typed the command line, which a report repeats
 Action add_measure(CLI::App& app, const std::string& typed);

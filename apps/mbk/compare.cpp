@@ -67,7 +67,7 @@ int run(const MeasureArguments& arguments) {
 
 Action add_compare(CLI::App& app) {
   auto arguments = std::make_shared<MeasureArguments>();
-  CLI::App* command = app.add_subcommand("compare", "what changed between two results: how far M, B and K are apart");
+  CLI::App* command = add_command(app, "compare", "what changed between two results: how far M, B and K are apart");
   command->footer(
       "Examples:\n"
       "  mbk compare relaxed.json rigid.json\n"

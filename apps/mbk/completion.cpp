@@ -34,7 +34,7 @@ std::string single_quoted(const std::string& text) {
 
 Action add_completion(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("completion", "a script that lets the shell complete commands and options");
+  CLI::App* command = add_command(app, "completion", "a script that lets the shell complete commands and options");
   command->footer(
       "Examples:\n"
       "  mbk completion bash --out ~/.local/share/bash-completion/completions/mbk\n"

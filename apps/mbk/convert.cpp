@@ -69,7 +69,7 @@ int run(Arguments arguments) {
 
 Action add_convert(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("convert", "a recording in another format: HDF5, MAT, CSV");
+  CLI::App* command = add_command(app, "convert", "a recording in another format: HDF5, MAT, CSV");
   command->footer(
       "Examples:\n"
       "  mbk convert log.mat log.h5\n"

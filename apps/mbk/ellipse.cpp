@@ -42,7 +42,7 @@ int run(const Arguments& arguments) {
 
 Action add_ellipse(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("ellipse", "impedance ellipses of a stored result, with 95 % intervals");
+  CLI::App* command = add_command(app, "ellipse", "impedance ellipses of a stored result, with 95 % intervals");
   command->footer(
       "Example:\n"
       "  mbk ellipse result.json\n"

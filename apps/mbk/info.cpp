@@ -58,7 +58,7 @@ int run(const MeasureArguments& arguments) {
 
 Action add_info(CLI::App& app) {
   auto arguments = std::make_shared<MeasureArguments>();
-  CLI::App* command = app.add_subcommand("info", "what is in a recording: channels, rate, gaps, problems");
+  CLI::App* command = add_command(app, "info", "what is in a recording: channels, rate, gaps, problems");
   command->footer(
       "Examples:\n"
       "  mbk info log.mat\n"

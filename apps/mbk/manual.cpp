@@ -70,7 +70,7 @@ int run(const Arguments& arguments, CLI::App& app) {
 
 Action add_manual(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("manual", "the manual page of a command, for man");
+  CLI::App* command = add_command(app, "manual", "the manual page of a command, for man");
   command->footer(
       "Examples:\n"
       "  mbk manual measure | man -l -\n"

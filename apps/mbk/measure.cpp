@@ -115,7 +115,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
 Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
            bool with_findings) {
   auto arguments = std::make_shared<MeasureArguments>();
-  CLI::App* command = app.add_subcommand(name, summary);
+  CLI::App* command = add_command(app, name, summary);
   command->footer(footer);
   add_reading_options(*command, *arguments);
   add_sensor_options(*command, arguments->sensor);

@@ -132,7 +132,7 @@ int run(const Arguments& arguments) {
 
 Action add_passivity(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("passivity", "is the limb passive? by the model and by the energy it absorbs");
+  CLI::App* command = add_command(app, "passivity", "is the limb passive? by the model and by the energy it absorbs");
   command->footer(
       "Examples:\n"
       "  mbk passivity log.mat\n"

@@ -61,7 +61,7 @@ int run(const Arguments& arguments) {
 
 Action add_recover(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("recover", "make the recording of a session that was cut off");
+  CLI::App* command = add_command(app, "recover", "make the recording of a session that was cut off");
   command->footer(
       "Examples:\n"
       "  mbk recover p07_relaxed.h5.journal\n"

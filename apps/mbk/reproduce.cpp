@@ -126,7 +126,7 @@ int run(const Arguments& arguments) {
 
 Action add_reproduce(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("reproduce", "the thesis mbk grew from, table by table and figure by figure");
+  CLI::App* command = add_command(app, "reproduce", "the thesis mbk grew from, table by table and figure by figure");
   command->footer(
       "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
       "University of Alberta, 2013) that can be made again, beside the printed numbers: recomputed from\n"

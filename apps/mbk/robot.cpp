@@ -76,7 +76,7 @@ int run_workspace(const Arguments& arguments) {
 
 Action add_workspace(CLI::App& group) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = group.add_subcommand("workspace", "where the hand can be, and the robot at one place");
+  CLI::App* command = add_command(group, "workspace", "where the hand can be, and the robot at one place");
   command->footer(
       "Examples:\n"
       "  mbk robot workspace\n"
@@ -101,7 +101,7 @@ Action add_workspace(CLI::App& group) {
 }  // namespace
 
 Action add_robot(CLI::App& app) {
-  CLI::App* group = app.add_subcommand("robot", "its workspace, its inertia and friction, force without a sensor");
+  CLI::App* group = add_command(app, "robot", "its workspace, its inertia and friction, force without a sensor");
   group->footer(
       "Examples:\n"
       "  mbk robot workspace --at 300,50\n"

@@ -60,7 +60,7 @@ int run(const Arguments& arguments) {
 
 Action add_robot_check(CLI::App& group) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = group.add_subcommand("check", "whether a robot is described, wired and reached as it should be");
+  CLI::App* command = add_command(group, "check", "whether a robot is described, wired and reached as it should be");
   command->footer(
       "Examples:\n"
       "  mbk robot check my_experiment.toml\n"

@@ -32,7 +32,7 @@ int run(const Arguments& arguments) {
 
 Action add_robot_describe(CLI::App& group) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = group.add_subcommand("describe", "what mbk understands of a robot's description or URDF");
+  CLI::App* command = add_command(group, "describe", "what mbk understands of a robot's description or URDF");
   command->footer(
       "Examples:\n"
       "  mbk robot describe my_robot.toml\n"

@@ -57,7 +57,7 @@ int run(const Arguments& arguments) {
 
 Action add_robot_force(CLI::App& group) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = group.add_subcommand("force", "the force at the hand without a force sensor");
+  CLI::App* command = add_command(group, "force", "the force at the hand without a force sensor");
   command->footer(
       "Examples:\n"
       "  mbk robot force log.h5 --robot robot.json\n"

@@ -159,7 +159,7 @@ int run(const Arguments& arguments) {
 Action add_robot_identify(CLI::App& group) {
   auto arguments = std::make_shared<Arguments>();
   arguments->method = "wls";
-  CLI::App* command = group.add_subcommand("identify", "the robot's own inertia and friction, from its motion alone");
+  CLI::App* command = add_command(group, "identify", "the robot's own inertia and friction, from its motion alone");
   command->footer(
       "Examples:\n"
       "  mbk simulate free_motion --out free.h5\n"

@@ -353,7 +353,7 @@ int run(const Arguments& arguments) {
 
 Action add_run(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("run", "run an experiment at 1 kHz: perturb, record, measure");
+  CLI::App* command = add_command(app, "run", "run an experiment at 1 kHz: perturb, record, measure");
   command->footer(
       "Examples:\n"
       "  mbk run relaxed_sinusoidal --out relaxed.h5\n"

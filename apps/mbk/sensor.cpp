@@ -63,7 +63,7 @@ int run_calibrate(const Arguments& arguments) {
 
 Action add_calibrate(CLI::App& sensor) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = sensor.add_subcommand("calibrate", "slope, zero, crosstalk and noise from known loads");
+  CLI::App* command = add_command(sensor, "calibrate", "slope, zero, crosstalk and noise from known loads");
   command->footer(
       "Examples:\n"
       "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10\n"
@@ -110,7 +110,7 @@ Action add_calibrate(CLI::App& sensor) {
 }  // namespace
 
 Action add_sensor(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("sensor", "calibrate a force sensor of your own");
+  CLI::App* command = add_command(app, "sensor", "calibrate a force sensor of your own");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"

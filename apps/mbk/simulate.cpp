@@ -171,7 +171,7 @@ int run(const Arguments& arguments, recording::Format format) {
 Action add_simulate(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   auto shown = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("simulate", "a simulated trial: a recording with the truth in it");
+  CLI::App* command = add_command(app, "simulate", "a simulated trial: a recording with the truth in it");
   command->footer(
       "Examples:\n"
       "  mbk simulate --list\n"

@@ -191,7 +191,7 @@ int run_calibrate(const MeasureArguments& arguments) {
 
 Action add_field(CLI::App& springs) {
   auto arguments = std::make_shared<FieldArguments>();
-  CLI::App* command = springs.add_subcommand("field", "equilibrium and stiffness of an array of springs");
+  CLI::App* command = add_command(springs, "field", "equilibrium and stiffness of an array of springs");
   command->footer(
       "Examples:\n"
       "  mbk springs field rig.toml\n"
@@ -228,7 +228,7 @@ Action add_field(CLI::App& springs) {
 
 Action add_find(CLI::App& springs) {
   auto arguments = std::make_shared<FindArguments>();
-  CLI::App* command = springs.add_subcommand("find", "springs for a wanted stiffness and equilibrium");
+  CLI::App* command = add_command(springs, "find", "springs for a wanted stiffness and equilibrium");
   command->footer(
       "Examples:\n"
       "  mbk springs find --stiffness 443.86,232.34,16.74 --at 393:-55\n"
@@ -275,7 +275,7 @@ Action add_find(CLI::App& springs) {
 
 Action add_calibrate(CLI::App& springs) {
   auto arguments = std::make_shared<MeasureArguments>();
-  CLI::App* command = springs.add_subcommand("calibrate", "spring constants from slow stretches");
+  CLI::App* command = add_command(springs, "calibrate", "spring constants from slow stretches");
   command->footer(
       "Examples:\n"
       "  mbk springs calibrate spring_1.csv spring_2.csv\n"
@@ -296,7 +296,7 @@ Action add_calibrate(CLI::App& springs) {
 
 Action add_springs(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("springs", "spring arrays for tests: their field, their design, their springs");
+      add_command(app, "springs", "spring arrays for tests: their field, their design, their springs");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"

@@ -123,7 +123,7 @@ int run(const Arguments& arguments) {
 
 Action add_teleop(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
+  CLI::App* command = add_command(app, "teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
   command->footer(
       "Examples:\n"
       "  mbk teleop design.toml\n"

@@ -276,7 +276,7 @@ int run(const Arguments& given, const std::string& typed) {
 Action add_tf(CLI::App& app, const std::string& typed) {
   auto arguments = std::make_shared<Arguments>();
   arguments->method = "srivc";
-  CLI::App* command = app.add_subcommand("tf", "a transfer function from one signal to another");
+  CLI::App* command = add_command(app, "tf", "a transfer function from one signal to another");
   command->footer(
       "Examples:\n"
       "  mbk tf arm.csv --input torque_Nm --output acceleration --poles 6 --zeros 5\n"

@@ -117,7 +117,7 @@ int run(const Arguments& arguments) {
 
 Action add_validate(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("validate", "a method against known truth, as a table");
+  CLI::App* command = add_command(app, "validate", "a method against known truth, as a table");
   command->footer("Studies:\n" + study_lines() +
                   "\nExamples:\n"
                   "  mbk validate coverage --runs 2000 --seed 7 --json\n"
