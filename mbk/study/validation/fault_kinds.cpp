@@ -527,7 +527,7 @@ const std::vector<FaultKind>& fault_kinds() {
   return kKinds;
 }
 
-std::string fault_experiment(TrialKind kind, double perturbed, double moving_in) {
+std::string fault_experiment(TrialKind kind, double perturbed, double moving_in, double peak_force) {
   constexpr std::string_view kPosition = R"(
 [recording]
 condition = "relaxed, position perturbation"
@@ -558,7 +558,7 @@ handle_mass_kg = 0.194
 kind = "force"
 [perturbation]
 kind = "multisine"
-peak_N = 6
+peak_N = {:g}
 duration_s = {:g}
 moving_in_s = {:g}
 [participant]
@@ -577,7 +577,8 @@ floor_N = 0.15
 per_force = 0.08
 cutoff_hz = 1.5
 )";
-  return fmt::format(fmt::runtime(kind == TrialKind::position ? kPosition : kForce), perturbed, moving_in);
+  return kind == TrialKind::position ? fmt::format(kPosition, perturbed)
+                                     : fmt::format(kForce, peak_force, perturbed, moving_in);
 }
 
 }  // namespace mbk::validation

@@ -58,8 +58,10 @@ struct FaultKind {
 
 /// The experiment that the faults come into, of 11 s: soft start, move and rest of 1 s each, 6 s of perturbation, way
 /// back and soft stop.
-/// @param perturbed  so long instead [s]   @param moving_in  at its beginning, in a trial of forces [s]
-[[nodiscard]] std::string fault_experiment(TrialKind kind, double perturbed = 6.0, double moving_in = 5.0);
+/// @param perturbed  so long instead [s]   @param moving_in, peak_force  at its beginning [s] and throughout [N], in a
+/// trial of forces
+[[nodiscard]] std::string fault_experiment(TrialKind kind, double perturbed = 6.0, double moving_in = 5.0,
+                                           double peak_force = 6.0);
 inline constexpr int kPerturbationBegins = 3000, kPerturbationEnds = 9000, kTrialEnds = 11000;  // ticks
 
 }  // namespace mbk::validation
