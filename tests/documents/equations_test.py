@@ -33,9 +33,9 @@ def tests_in(*files):
 
 
 def programs():
-    """The tests of each GoogleTest program: mbk/<module> has <module>_test, folders of tests/ what their lists say."""
-    found = {f"{folder.name}_test": tests_in(*folder.glob("*_test.cpp")) for folder in (SOURCE / "mbk").iterdir()
-             if folder.is_dir()}
+    """The tests of each GoogleTest program: a module has <module>_test, folders of tests/ what their lists say."""
+    found = {f"{lists.parent.name}_test": tests_in(*lists.parent.glob("*_test.cpp"))
+             for lists in (SOURCE / "mbk").glob("*/**/CMakeLists.txt")}
     for lists in (SOURCE / "tests").glob("*/CMakeLists.txt"):
         for name in re.findall(r"mbk_test\((\w+)", lists.read_text()):
             found[name] = tests_in(*lists.parent.glob("*_test.cpp"))

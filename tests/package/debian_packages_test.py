@@ -58,7 +58,7 @@ class Packages(unittest.TestCase):
                      "share/doc/mbk/changelog.Debian.gz", "share/doc/mbk/changelog.gz",
                      "share/doc/mbk/THIRD_PARTY_NOTICES.md", "share/doc/mbk/docs/guide/README.md"):
             self.assertIn(f"./usr/{path}", program)
-        for path in ("include/mbk/measurement/measure.h", "share/doc/libmbk-dev/copyright"):
+        for path in ("include/mbk/measure/measurement/measure.h", "share/doc/libmbk-dev/copyright"):
             self.assertIn(f"./usr/{path}", development)
         self.assertFalse([path for path in program if re.search(r"\.(h|a|cmake)$", path)])
         self.assertTrue([path for path in development if path.endswith("/mbkConfig.cmake")])
