@@ -511,6 +511,8 @@ TEST_F(ConsoleOfASession, ANoteNeverTakesThePlaceOfAnAnswer) {
     asking.join();
     ASSERT_EQ(decided, Action::start) << k;
     ASSERT_TRUE(page->read_until(asks("")));
+    // Else a note that is still on its way answers the next question.
+    ASSERT_TRUE(soon([&] { return !console_->take_notes().empty(); }));
   }
 }
 
