@@ -1,5 +1,5 @@
 # The outside headers that most files include, read once for each way of compiling instead of once for each file:
-# cmake/precompiled/library.h, with CLI11 program.h, with GoogleTest tests.h. Every file still includes what it uses, which clang-tidy,
+# cmake/precompiled/library.h, and with GoogleTest tests.h. Every file still includes what it uses, which clang-tidy,
 # that compiles without them, confirms. docs/guide/build.md shows what it saves.
 option(MBK_PRECOMPILE "Precompile the outside headers that most files include" ON)
 
@@ -13,7 +13,7 @@ if(MBK_PRECOMPILE)
 
   add_executable(mbk_precompiled_program ${MBK_PRECOMPILED_FOLDER}/program.cpp)
   target_compile_options(mbk_precompiled_program PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(mbk_precompiled_program PRIVATE ${MBK_PRECOMPILED_FOLDER}/program.h)
+  target_precompile_headers(mbk_precompiled_program PRIVATE ${MBK_PRECOMPILED_FOLDER}/library.h)
   set(holders mbk_precompiled_library mbk_precompiled_program)
 
   if(MBK_BUILD_TESTS)
@@ -24,7 +24,7 @@ if(MBK_PRECOMPILE)
     list(APPEND holders mbk_precompiled_tests)
   endif()
   foreach(holder IN LISTS holders)
-    target_link_libraries(${holder} PRIVATE mbk_settings Eigen3::Eigen fmt::fmt tl::expected nlohmann_json::nlohmann_json)
+    target_link_libraries(${holder} PRIVATE mbk_settings Eigen3::Eigen fmt::fmt tl::expected)
     set_target_properties(${holder} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/precompiled)
   endforeach()
 endif()
