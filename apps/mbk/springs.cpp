@@ -295,8 +295,7 @@ Action add_calibrate(CLI::App& springs) {
 }  // namespace
 
 Action add_springs(CLI::App& app) {
-  CLI::App* command =
-      add_command(app, "springs", "spring arrays for tests: their field, their design, their springs");
+  CLI::App* command = add_command(app, "springs", "spring arrays for tests: their field, their design, their springs");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"

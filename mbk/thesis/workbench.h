@@ -47,7 +47,7 @@ struct TaskResult {
   int participant = 1;
   impedance::Model truth;  ///< of the limb, mean over the trials
   std::vector<TaskTrial> trials;
-  Recording first;          ///< of these
+  Recording first;     ///< of these
   Measurement pooled;  ///< all of them in one fit, by mbk's own procedure
 
   /// Of the pooled trials: the model that a method found, or the only one there is.

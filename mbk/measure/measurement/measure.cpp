@@ -280,7 +280,7 @@ Result<JointDomain> at_joints(const std::vector<Source>& sources, const std::vec
 }
 
 Result<Measurement> measure_prepared(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
-                                          const Options& options) {
+                                     const Options& options) {
   auto identified = identify_by_both(trials, options.identify);
   if (!identified) {
     return sources.size() == 1 ? sources[0].in_file(identified.error()) : tl::unexpected(identified.error());

@@ -37,8 +37,7 @@ laboratory::PrescribedMotionOptions laboratory_of(const CoverageOptions& options
   return lab;
 }
 
-Result<Measurement> measured_of(const laboratory::PrescribedMotionOptions& lab,
-                                     const measurement::Options& options) {
+Result<Measurement> measured_of(const laboratory::PrescribedMotionOptions& lab, const measurement::Options& options) {
   const auto recording = laboratory::record_prescribed_motion(lab, Hertz(1000.0));
   if (!recording) return tl::unexpected(recording.error());
   return measurement::measure({&*recording, 1}, options);
