@@ -9,10 +9,13 @@ import {
 } from "echarts/components";
 import { type ECharts, init, use } from "echarts/core";
 import { SVGRenderer } from "echarts/renderers";
+import { type Chart, type Panel, type Series, type Style, dashes, symbols } from "./chart_data";
 import type { Value } from "./data";
 import { h, svg } from "./dom";
 import { plain, significant, superscript } from "./format";
 import { csv, dataTable, download } from "./sheet";
+
+export type { Chart, Panel, Series, Style } from "./chart_data";
 
 use([LineChart, GridComponent, TooltipComponent, DataZoomComponent, MarkAreaComponent, MarkLineComponent, SVGRenderer]);
 
@@ -26,13 +29,6 @@ export const styles = {
   third: { color: "#009e73", dash: "dotted", width: 2 },
   ideal: { color: "#595959", dash: "dashed", width: 1 },
 } as const;
-const dashes = { solid: "", dashed: "7 4", dotted: "2 3", dashdot: "9 3 2 3" } as const;
-const symbols = { circle: "M 1 5 a 4 4 0 1 0 8 0 a 4 4 0 1 0 -8 0", diamond: "M 5 0 L 10 5 L 5 10 L 0 5 Z", rect: "M 1 1 H 9 V 9 H 1 Z", triangle: "M 5 1 L 9.5 9 H 0.5 Z" } as const;
-export interface Style {
-  color: string;
-  dash: keyof typeof dashes;
-  width: number;
-}
 
 const colors = ["#0072b2", "#d55e00", "#009e73", "#000000", "#cc79a7"];
 const pick = <T>(all: T[], k: number): T => all[k % all.length] as T;
@@ -40,46 +36,6 @@ const pick = <T>(all: T[], k: number): T => all[k % all.length] as T;
 /** For the k-th of several recordings: a line, and a mark, unlike those of its neighbours without colour too. */
 export const styleOf = (k: number): Style => ({ color: pick(colors, k), dash: pick(Object.keys(dashes) as Style["dash"][], k), width: 1.6 });
 export const symbolOf = (k: number): keyof typeof symbols => pick(Object.keys(symbols) as (keyof typeof symbols)[], k);
-
-export interface Series {
-  name: string;
-  x: Value[];
-  y: Value[];
-  style: Style;
-  /** A mark for each value instead of a line. */
-  marks?: keyof typeof symbols;
-  /** What is written beside each value. */
-  labels?: string[];
-  /** What is shaded around the line. */
-  between?: { low: Value[]; high: Value[]; name: string; color?: string };
-}
-
-export interface Panel {
-  title: string;
-  unit: string;
-  series: Series[];
-  log?: boolean;
-  range?: [number, number];
-  /** Between two lines of the grid. */
-  interval?: number;
-  /** Stretch of x that is shaded, with its name. */
-  band?: { from: number; to: number; name: string };
-  /** Stretch of y that is shaded, with its name. */
-  level?: { from: number; to: number; name: string };
-  /** A line at zero. */
-  zero?: boolean;
-}
-
-export interface Chart {
-  id: string;
-  title: string;
-  howToRead: string;
-  /** What the chart shows, for those who cannot see it. */
-  description: string;
-  x: { name: string; unit: string; log?: boolean; range?: [number, number] };
-  panels: Panel[];
-  panelHeight?: number;
-}
 
 const font = '"Inter", system-ui, "Segoe UI", "Helvetica Neue", Arial, "DejaVu Sans", sans-serif';
 const [top, gap, bottom, slider] = [26, 46, 44, 34];

@@ -1,15 +1,8 @@
 // The document of schema mbk.report/1 that stands in the page; docs/guide/report.md describes it.
 import type { Alternative, Bootstrap, Disagreement, Energy, Instrument, Method, Passivity } from "./passivity_data";
+import type { Model, Value } from "./values";
 
-export type Value = number | null;
-export type MatrixName = "M" | "B" | "K";
-
-export interface Model {
-  M: Value[][];
-  B: Value[][];
-  K: Value[][];
-  x0: Value[];
-}
+export type { MatrixName, Model, Value } from "./values";
 
 export interface Ellipse {
   area: Value;
@@ -204,3 +197,9 @@ export const conditionOf = (trial: Trial): string | undefined =>
 /** A recording that knows its own truth comes out of a simulation. */
 export const isSimulated = (trial: Trial): boolean =>
   trial.recordings.some((one) => Object.keys(one.metadata).some((key) => key.startsWith("truth_")));
+
+/** The model that a method found, and how sure it is; none where the document does not hold it. */
+export function modelBy(method: Method, trial: Trial): { model: Model; standard_error: Model } | undefined {
+  const { result } = trial;
+  return result.method === method ? result : result.alternatives?.find((one) => one.method === method);
+}

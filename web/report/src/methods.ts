@@ -1,8 +1,8 @@
 // How far the numbers can be trusted: the other method beside this one, instruments, bootstrap.
-import { type Trial, type Value, axisNames, matrices, unitsOf } from "./data";
+import { type Trial, type Value, axisNames, matrices, modelBy, unitsOf } from "./data";
 import { type HeadingLevel, h, heading, table } from "./dom";
 import { data, decimalsFor, fixed, perAxis, plain, significant, undefinedText, withHalfWidth } from "./format";
-import { type Bootstrap, type Instrument, type Interval, type Method, methodNames, modelBy } from "./passivity_data";
+import { type Bootstrap, type Instrument, type Interval, type Method, methodNames } from "./passivity_data";
 
 const both: Method[] = ["ls", "iv"];
 

@@ -1,7 +1,19 @@
 // The Nyquist plot: a curve in the complex plane, a metre of it as long across as up, in the region that holds it.
+import type { Value } from "./data";
 import { h, svg } from "./dom";
 import { plain, significant } from "./format";
-import type { Response } from "./transfer_function";
+
+export interface Response {
+  frequency_hz: Value[];
+  magnitude: Value[];
+  magnitude_interval95: [Value[], Value[]];
+  phase_deg: Value[];
+  phase_interval95_deg: [Value[], Value[]];
+  real: Value[];
+  real_interval95: [Value[], Value[]];
+  imaginary: Value[];
+  region95: { longer_half_axis: Value[]; shorter_half_axis: Value[]; angle_deg: Value[] };
+}
 
 interface Point {
   f: number;

@@ -1,9 +1,9 @@
 // Is the limb passive? The verdict in plain words, and what it rests on.
 import { type Chart, type Series, figure, styles } from "./charts";
-import { type Trial, type Value, unitsOf } from "./data";
+import { type Trial, type Value, modelBy, unitsOf } from "./data";
 import { type HeadingLevel, h, heading, table } from "./dom";
 import { data, fixed, plain, significant, withInterval } from "./format";
-import { type Condition, type Interval, type ModelPassivity, type Passivity, type Verdict, methodNames, modelBy } from "./passivity_data";
+import { type Condition, type Interval, type ModelPassivity, type Passivity, type Verdict, methodNames } from "./passivity_data";
 import { verdictWords } from "./words";
 
 /** Decimals for three digits of the value. */

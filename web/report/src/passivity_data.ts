@@ -1,5 +1,5 @@
 // What the document says of passivity, of energy and of how sure the numbers are.
-import type { Model, Trial, Value } from "./data";
+import type { Model, Value } from "./values";
 
 export type Verdict = "passive" | "active" | "undecided";
 export type Interval = [Value, Value];
@@ -102,9 +102,3 @@ export interface Bootstrap {
 }
 
 export const methodNames: Record<Method, string> = { ls: "least squares", iv: "instrumental variables" };
-
-/** The model that a method found, and how sure it is; none where the document does not hold it. */
-export function modelBy(method: Method, trial: Trial): { model: Model; standard_error: Model } | undefined {
-  const { result } = trial;
-  return result.method === method ? result : result.alternatives?.find((one) => one.method === method);
-}

@@ -1,5 +1,5 @@
 // The numbers of a chart as a table and as a CSV file.
-import type { Chart } from "./charts";
+import type { Chart } from "./chart_data";
 import type { Value } from "./data";
 import { h, scrolling } from "./dom";
 import { significant } from "./format";

@@ -3,7 +3,7 @@ import { type Chart, type Panel, figure, styles } from "./charts";
 import type { Value, Warning } from "./data";
 import { facts, h, heading, scrolling, table } from "./dom";
 import { data, fixed, plain, significant, superscript, withHalfWidth } from "./format";
-import { nyquist } from "./nyquist";
+import { type Response, nyquist } from "./nyquist";
 import { verdict, warningsSection } from "./summary";
 import { transferFunctionWarnings } from "./words";
 
@@ -16,18 +16,6 @@ interface Root {
   damping: Value;
   damping_standard_error: Value;
   outside_band: boolean;
-}
-
-export interface Response {
-  frequency_hz: Value[];
-  magnitude: Value[];
-  magnitude_interval95: [Value[], Value[]];
-  phase_deg: Value[];
-  phase_interval95_deg: [Value[], Value[]];
-  real: Value[];
-  real_interval95: [Value[], Value[]];
-  imaginary: Value[];
-  region95: { longer_half_axis: Value[]; shorter_half_axis: Value[]; angle_deg: Value[] };
 }
 
 interface Estimate {
