@@ -262,7 +262,7 @@ class Runner {
 enum class Verdict { in_time, late, not_recognised, wrong_reason, stalled, never_began };
 enum class Safe { confirmed, loud, silently_wrong };
 
-bool any_of(const auto& list, std::string_view one) {
+bool contains(const auto& list, std::string_view one) {
   return std::ranges::find(list, one) != list.end();
 }
 
@@ -274,8 +274,8 @@ Verdict verdict_of(const Job& job, const Outcome& outcome) {
   const UdpFaultKind& kind = *job.kind;
   const Said& said = outcome.said;
   const bool tripped = !said.trip.empty();
-  const bool right = any_of(kind.reasons, said.trip);
-  const bool of_stall = tripped && outcome.stalled && any_of(kOfStalls, said.trip);
+  const bool right = contains(kind.reasons, said.trip);
+  const bool of_stall = tripped && outcome.stalled && contains(kOfStalls, said.trip);
   if (!outcome.began) return of_stall ? Verdict::stalled : tripped ? Verdict::wrong_reason : Verdict::never_began;
   switch (kind.expected) {
     case Expected::trip:
@@ -433,7 +433,7 @@ class Summary {
     silent_ += safe == Safe::silently_wrong ? 1 : 0;
     const bool tripped = !outcome.said.trip.empty() || outcome.said.exit_code != 0;
     if (!tripped) return;
-    const bool explained = outcome.stalled && any_of(kOfStalls, outcome.said.trip);
+    const bool explained = outcome.stalled && contains(kOfStalls, outcome.said.trip);
     ++(explained ? stalls_ : trips_);
     table_->notes.push_back(fmt::format("without a fault, {} trial {}: {}{}, exit code {}, after {:.1f} s, motors {}",
                                         name_of(job.trial), job.run, outcome.said.trip,
