@@ -103,6 +103,8 @@ def main():
     parser.add_argument("--command", action="append", choices=[task.name for task in programs.TASKS])
     parser.add_argument("--group", action="append", choices=programs.GROUPS)
     parser.add_argument("--nth", type=int, help="only this n")
+    parser.add_argument("--last", type=float, default=1.0,
+                        help="only the last calls, 0.1: the last tenth, in which the output is written")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=min(4, os.cpu_count() or 1))
     arguments = parser.parse_args()
@@ -120,7 +122,9 @@ def main():
                 path.unlink()
             (folder / "reference").rmdir()
             for one in faults_of(task, arguments.group or programs.GROUPS):
-                lists.append([(kind.name, fault) for fault in one if arguments.nth in (None, fault.nth)])
+                first = (1 - arguments.last) * counted[kind.name][one[0].group] if one else 0
+                lists.append([(kind.name, fault) for fault in one
+                              if arguments.nth in (None, fault.nth) and fault.nth > first])
         wrong, runs, failed = [], collections.Counter(), collections.Counter()
         context = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(arguments.jobs, mp_context=context) as pool:

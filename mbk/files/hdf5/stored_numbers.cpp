@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <string_view>
 #include <type_traits>
 
@@ -77,8 +78,11 @@ std::string shuffled(std::string_view bytes, std::size_t size) {
 std::string deflated(const std::string& bytes) {
   uLongf size = compressBound(bytes.size());
   std::string out(size, '\0');
-  compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
-            kDeflateLevel);
+  // It has room enough: what can be missing is memory of its own.
+  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
+                kDeflateLevel) != Z_OK) {
+    throw std::bad_alloc();
+  }
   out.resize(size);
   return out;
 }

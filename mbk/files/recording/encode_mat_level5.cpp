@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <new>
 
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
@@ -90,8 +91,11 @@ std::string encoded(const std::string& name, const MatVariable::Structure& field
 std::string compressed(const std::string& bytes) {
   uLongf size = compressBound(bytes.size());
   std::string packed(size, '\0');
-  compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
-            Z_BEST_SPEED);
+  // It has room enough: what can be missing is memory of its own.
+  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                bytes.size(), Z_BEST_SPEED) != Z_OK) {
+    throw std::bad_alloc();
+  }
   packed.resize(size);
   return packed;
 }
