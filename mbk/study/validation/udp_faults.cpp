@@ -35,13 +35,13 @@ constexpr int kFaultFreeTrials = 3;  // of a run
 /// Of a trial of forces without a fault [N]. With the 6 N of the others this arm is 80 mm from home within an hour,
 /// where the stop is right.
 constexpr double kFaultFreeForce = 4.0;
-constexpr int kAttempts = 5;        // of a run with a fault, where a recorded stall ends the trial first
-constexpr double kPatience = 30.0;  // for a program beyond its trial [s]
-constexpr double kStall = 0.005;    // between two ticks of the loop, or missed in a row by the robot [s]
-constexpr double kBefore = 1.0;     // a stall explains a trip for so long [s]
-constexpr int kSafetyStop = 5, kNotConfirmedOff = 7;  // exit codes of `mbk run`
-constexpr double kShareWanted = 99.0;                 // lower end of the interval of a share [%]
-constexpr double kHandSpeed = 0.4;                    // with a flipped sign, trial of positions [m/s]
+constexpr int kAttempts = 5;           // of a run with a fault, where a recorded stall ends the trial first
+constexpr double kPatience = 30.0;     // for a program beyond its trial [s]
+constexpr double kStall = 0.005;       // between two ticks of the loop, or missed in a row by the robot [s]
+constexpr double kBefore = 1.0;        // a stall explains a trip for so long [s]
+constexpr int kNotConfirmedOff = 7;    // exit code of `mbk run`
+constexpr double kShareWanted = 99.0;  // lower end of the interval of a share [%]
+constexpr double kHandSpeed = 0.4;     // with a flipped sign, trial of positions [m/s]
 
 /// What a stall of the loop, the link or the robot's program may look like from the other side.
 constexpr std::array<std::string_view, 12> kOfStalls = {"late",
