@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "mbk/measure/identify/regression.h"
 
@@ -118,7 +119,10 @@ Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials,
   }
   const auto fit = nearest(found.model, Z);
   if (!fit) return tl::unexpected(fit.error());
-  const auto check = all && !r.validation.empty() ? nearest(found.judged, rows_of(r.Z, r.identification)) : fit;
+  // Not copied: the copy of a Result must not throw, and this one may want memory.
+  std::optional<Result<ConsistentCoefficients>> of_judged;
+  if (all && !r.validation.empty()) of_judged.emplace(nearest(found.judged, rows_of(r.Z, r.identification)));
+  const Result<ConsistentCoefficients>& check = of_judged ? *of_judged : fit;
   if (!check) return tl::unexpected(check.error());
 
   ConsistentFit result;
