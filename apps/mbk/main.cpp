@@ -67,12 +67,8 @@ constexpr std::string_view kNoMemory = "mbk: not enough memory; of a recording c
 /// Where an exception has nowhere to go: before main begins, and out of a destructor that needs memory, as that of a
 /// JSON tree does. No memory is no error of mbk; anything else is, and ends as it would.
 [[noreturn]] void end_without_memory() noexcept {
-  // Where an exception meets what must not throw, as the copy of a Result, it is under way and not caught yet: what it
-  // is cannot be asked, but malloc has left its mark.
-  const bool refused = errno == ENOMEM && std::uncaught_exceptions() > 0;
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());
-    if (refused) throw std::bad_alloc();
   } catch (const std::bad_alloc&) {
     mbk::app::LastWords::say();
     say_plainly(kNoMemory);

@@ -195,7 +195,10 @@ Result<Identification> Fitter::identify(Method method) {
   }
   const auto check = estimate(method, r_.identification);
   if (!check) return tl::unexpected(check.error());
-  const auto fit = all_ && !r_.validation.empty() ? estimate(method, ranges_) : check;
+  // Not copied: the copy of a Result must not throw, and this one may want memory.
+  std::optional<Result<Estimate>> of_all;
+  if (all_ && !r_.validation.empty()) of_all.emplace(estimate(method, ranges_));
+  const Result<Estimate>& fit = of_all ? *of_all : check;
   if (!fit) return tl::unexpected(fit.error());
   estimates_[static_cast<std::size_t>(method)] = *fit;
 
