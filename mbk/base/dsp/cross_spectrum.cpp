@@ -9,6 +9,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "mbk/base/dsp/spectrum.h"
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::dsp {
 namespace {
@@ -79,8 +80,8 @@ Matrix multiple_coherence(const CrossSpectra& spectra, Index inputs) {
       continue;
     }
     S = size.cwiseInverse().asDiagonal() * S * size.cwiseInverse().asDiagonal();  // of signals of unit power
-    const Eigen::LDLT<Eigen::MatrixXcd> Sxx(S.topLeftCorner(inputs, inputs));
-    const bool apart = Sxx.vectorD().real().minCoeff() > kToldApart;
+    const numeric::HermitianPivotedCholesky Sxx(S.topLeftCorner(inputs, inputs));
+    const bool apart = Sxx.pivots().minCoeff() > kToldApart;
     for (Index j = 0; j < outputs; ++j) {
       const Eigen::VectorXcd Sxy = S.col(inputs + j).head(inputs);
       coherence(line, j) =

@@ -11,6 +11,7 @@
 #include "mbk/base/lti/integer_polynomial.h"
 #include "mbk/base/lti/on_axis.h"
 #include "mbk/base/lti/real_roots.h"
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::lti {
 namespace {
@@ -75,11 +76,9 @@ std::vector<std::complex<double>> complex_roots(const Polynomial& p) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     return std::vector<std::complex<double>>(static_cast<std::size_t>(n), {none, none});
   }
-  const Eigen::EigenSolver<Matrix> solver(companion, false);
-
   std::vector<std::complex<double>> roots;
   const Polynomial slope = scaled.derivative();
-  for (std::complex<double> z : solver.eigenvalues()) {
+  for (std::complex<double> z : numeric::eigenvalues(companion)) {
     for (int step = 0; step < 3; ++step) {
       const std::complex<double> move = evaluate(scaled, z) / evaluate(slope, z);
       if (std::isfinite(std::abs(move)) && std::abs(move) < 1e-3 * std::abs(z)) z -= move;

@@ -13,6 +13,7 @@
 #include "mbk/base/lti/half_planes.h"
 #include "mbk/base/lti/hermitian.h"
 #include "mbk/base/lti/positive_real.h"
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::lti {
 namespace {
@@ -118,9 +119,9 @@ class Infimum {
       quotient(i / n, i % n) = {to_double(re / value.q), to_double(im / value.q)};
     }
     if (!quotient.allFinite()) return;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(quotient, Eigen::EigenvaluesOnly);
-    const double smallest = solver.eigenvalues()[0];
-    scale_ = std::max(scale_, solver.eigenvalues().cwiseAbs().maxCoeff());
+    const Vector eigenvalues = numeric::hermitian_eigenvalues(quotient);
+    const double smallest = eigenvalues[0];
+    scale_ = std::max(scale_, eigenvalues.cwiseAbs().maxCoeff());
     if (smallest < lowest_) {
       lowest_ = smallest;
       at_ = omega;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
@@ -47,8 +48,8 @@ class Solver {
       }
     }
     A = left_.asDiagonal() * A * right_.asDiagonal();
-    const Eigen::PartialPivLU<Matrix> lu(A);
-    if (!(lu.rcond() > kApart)) return std::nullopt;
+    const Lu lu(A);
+    if (!(lu.reciprocal_condition() > kApart)) return std::nullopt;
     const Matrix solution = right_.asDiagonal() * lu.solve(left_.asDiagonal() * b);
     return Vector(solution.reshaped());
   }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "mbk/base/numeric/dense.h"
+
 namespace mbk::numeric {
 namespace {
 
@@ -127,10 +129,10 @@ std::optional<Scaled> scaled(const ConeProgram& program) {
   };
   s.cone_unit.setOnes();
   rescale([](const auto& A) { return A.norm(); });
-  const Eigen::LDLT<Matrix> curvature(s.P + s.A.transpose() * s.A);
+  const PivotedCholesky curvature(s.P + s.A.transpose() * s.A);
   constexpr double kSeen = 1e-14;
-  const auto pivots = curvature.vectorD();
-  if (!curvature.isPositive() || !(pivots.minCoeff() > kSeen * pivots.maxCoeff())) return std::nullopt;
+  const Vector pivots = curvature.pivots();
+  if (!curvature.positive() || !(pivots.minCoeff() > kSeen * pivots.maxCoeff())) return std::nullopt;
   rescale([&](const auto& A) {
     return std::sqrt(A.cwiseProduct(curvature.solve(A.transpose()).transpose()).sum() / static_cast<double>(A.rows()));
   });
@@ -147,9 +149,7 @@ Vector clipped(const Scaled& program, const Vector& z, Matrix* derivative = null
   if (derivative) derivative->setZero(z.size(), z.size());
   program.for_each_cone([&](std::size_t, Index row, Index n) {
     const Index m = packed_size(n);
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(unpacked(z.segment(row, m), n));
-    const Vector& lambda = eigen.eigenvalues();
-    const Matrix& V = eigen.eigenvectors();
+    const auto [lambda, V] = symmetric_eigen(unpacked(z.segment(row, m), n));
     positive.segment(row, m) = packed(V * lambda.cwiseMax(0.0).asDiagonal() * V.transpose());
     if (!derivative) return;
     Matrix share(n, n);  // divided differences of max(λ, 0)
@@ -191,7 +191,7 @@ int polish(const Scaled& p, Point& at) {
   int steps = 0;
   for (; steps < kMostSteps && error.norm() > 0.0; ++steps) {
     J << p.P, -at.weight * (p.A.transpose() * (D - Matrix::Identity(m, m))), p.A, -D;
-    const Vector step = J.completeOrthogonalDecomposition().solve(-error);
+    const Vector step = CompleteOrthogonal(J).solve(-error);
     bool nearer = false;
     double length = 1.0;
     for (int halving = 0; halving < kMostHalvings && !nearer; ++halving, length *= 0.5) {
@@ -241,9 +241,8 @@ Result<ConeSolution> solve_cone_program(const ConeProgram& program) {
   if (!p) return bad_usage("a cone program has a direction that neither its objective nor a cone sees");
 
   Point at{Vector::Zero(p->q.size()), p->b, 1.0};
-  Eigen::LLT<Matrix> factor;
-  const auto refactor = [&] { factor.compute(p->P + at.weight * (p->A.transpose() * p->A)); };
-  refactor();
+  const auto factored = [&] { return Cholesky(p->P + at.weight * (p->A.transpose() * p->A)); };
+  Cholesky factor = factored();
   Vector s = clipped(*p, at.z), u = at.z - s;
   int wait = kBetweenPolishes;
   for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
@@ -271,7 +270,7 @@ Result<ConeSolution> solve_cone_program(const ConeProgram& program) {
       const double change = std::clamp(ratio, 0.1, 10.0);
       at.weight *= change;
       u /= change;
-      refactor();
+      factor = factored();
     }
   }
   return fail(ErrorKind::not_usable, "no point is found that meets every condition of a cone program");

@@ -1,16 +1,12 @@
 #include "mbk/base/numeric/independent_columns.h"
 
-#include <Eigen/QR>
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
 
 IndependentColumns independent_columns(const Matrix& Z, double tolerance) {
   const Index p = Z.cols();
-  Matrix small = Z;
-  if (Z.rows() > 4 * p) {
-    const Eigen::HouseholderQR<Matrix> qr(Z);
-    small = Matrix(qr.matrixQR().topRows(p).triangularView<Eigen::Upper>());
-  }
+  const Matrix small = Z.rows() > 4 * p ? householder_triangle(Z) : Z;
   Matrix directions(small.rows(), p);
   IndependentColumns found;
   for (Index j = 0; j < p; ++j) {
@@ -28,7 +24,7 @@ IndependentColumns independent_columns(const Matrix& Z, double tolerance) {
   found.combination = Matrix::Zero(count, p);
   if (count == 0) return found;
   const Matrix basis = small(Eigen::all, found.kept);
-  found.combination = Eigen::HouseholderQR<Matrix>(basis).solve(small);
+  found.combination = householder_solve(basis, small);
   for (Index k = 0; k < count; ++k)
     found.combination.col(found.kept[static_cast<std::size_t>(k)]) = Vector::Unit(count, k);
   return found;

@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "mbk/base/numeric/dense.h"
+
 namespace mbk::numeric {
 namespace {
 
@@ -39,9 +41,8 @@ Result<InstrumentalFit> fit_instrumental_variables(const Matrix& Z, const Matrix
   const Vector unit_Z = scaling(Z), unit_R = scaling(R);
   const Matrix cross = unit_R.asDiagonal() * (R.transpose() * Z) * unit_Z.asDiagonal();
   const Matrix right = unit_R.asDiagonal() * (R.transpose() * Y);
-  Eigen::ColPivHouseholderQR<Matrix> qr(cross);
-  qr.setThreshold(static_cast<double>(p) * std::numeric_limits<double>::epsilon() * 1e3);
-  fit.rank = static_cast<int>(qr.rank());
+  const double threshold = static_cast<double>(p) * std::numeric_limits<double>::epsilon() * 1e3;
+  fit.rank = static_cast<int>(PivotedQr(cross, threshold).rank());
   const Index k = fit.structure.cols();
   if (fit.rank < p) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -60,10 +61,10 @@ Result<InstrumentalFit> fit_instrumental_variables(const Matrix& Z, const Matrix
   const Matrix system = fit.structure.transpose() * weight * stacked * fit.structure;
   const Vector row_scale = system.rowwise().norm().cwiseInverse(),
                column_scale = system.colwise().norm().cwiseInverse();
-  const Eigen::FullPivLU<Matrix> lu(row_scale.asDiagonal() * system * column_scale.asDiagonal());
+  const FullyPivotedLu lu(row_scale.asDiagonal() * system * column_scale.asDiagonal());
   fit.inverse = column_scale.asDiagonal() * lu.inverse() * row_scale.asDiagonal();
   const Vector target = fit.structure.transpose() * weight * Vector(right.reshaped());
-  fit.free = column_scale.asDiagonal() * lu.solve(Vector(row_scale.asDiagonal() * target));
+  fit.free = column_scale.asDiagonal() * lu.solve(row_scale.asDiagonal() * target);
   fit.coefficients = Vector(fit.structure * fit.free).reshaped(p, q);
   return fit;
 }
@@ -80,7 +81,7 @@ Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<
   const Index m = Z.cols() - 1, excluded = R.cols() - 1;
   const auto freedom = static_cast<double>(excluded - m + 1);
   const Matrix scaled_R = R * scaling(R).asDiagonal(), scaled_Z = Z * scaling(Z).asDiagonal();
-  const Eigen::ColPivHouseholderQR<Matrix> gram(scaled_R.transpose() * scaled_R);
+  const PivotedQr gram(scaled_R.transpose() * scaled_R);
   if (gram.rank() < R.cols()) return Vector::Zero(m);
   const Matrix inverse = gram.inverse();
   const Matrix first = inverse * (scaled_R.transpose() * scaled_Z);  // R first ≈ Z
@@ -92,7 +93,7 @@ Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<
       if (i != j) others.push_back(i);
     }
     const Matrix E = scaled_Z(Eigen::all, others), hat = predicted(Eigen::all, others);
-    const Eigen::ColPivHouseholderQR<Matrix> second(hat.transpose() * hat);
+    const PivotedQr second(hat.transpose() * hat);
     if (second.rank() < m) continue;
     const Vector own = scaled_Z.col(j) - E * second.solve(hat.transpose() * scaled_Z.col(j));
     const Vector coefficients = inverse * (scaled_R.transpose() * own);
@@ -102,7 +103,7 @@ Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<
     });
     const Matrix V = (inverse * omega * inverse).topLeftCorner(excluded, excluded);
     const Vector slope = coefficients.head(excluded);
-    const double wald = slope.dot(V.completeOrthogonalDecomposition().solve(slope));
+    const double wald = slope.dot(CompleteOrthogonal(V).solve(slope));
     strength[j] = std::isfinite(wald) && wald > 0.0 ? wald / freedom : 0.0;
   }
   return strength;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mbk/base/core/vector4.h"
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
 
@@ -60,10 +61,8 @@ Triangle reduce_by_householder(const Matrix& Z, const Matrix& Y, const Vector& l
   const Index p = Z.cols(), q = Y.cols();
   Matrix work(Z.rows(), p + q);
   work << Z * length.cwiseInverse().asDiagonal(), Y;
-  const Eigen::HouseholderQR<Eigen::Ref<Matrix>> qr(work);
-  Triangle triangle{Matrix::Zero(p, p), work.topRightCorner(p, q)};
-  triangle.R.triangularView<Eigen::Upper>() = work.topLeftCorner(p, p).triangularView<Eigen::Upper>();
-  return triangle;
+  const Matrix reduced = householder_triangle(std::move(work));
+  return {reduced.topLeftCorner(p, p), reduced.topRightCorner(p, q)};
 }
 
 /// By the Cholesky factor of the scaled ZᵀZ, with one step of refinement from the residuals (corrected seminormal
@@ -73,13 +72,13 @@ Triangle reduce(const Matrix& Z, const Matrix& Y, const Matrix& gram, const Vect
   const Index p = Z.cols(), q = Y.cols();
   const Vector inverse = length.cwiseInverse();
   const Matrix G = inverse.asDiagonal() * gram.topLeftCorner(p, p) * inverse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(G, Eigen::EigenvaluesOnly);
-  if (!(eigen.eigenvalues()[0] > kModerate * eigen.eigenvalues()[p - 1])) return reduce_by_householder(Z, Y, length);
-  const Eigen::LLT<Matrix> cholesky(G);
+  const Vector eigenvalues = symmetric_eigenvalues(G);
+  if (!(eigenvalues[0] > kModerate * eigenvalues[p - 1])) return reduce_by_householder(Z, Y, length);
+  const Cholesky cholesky(G);
   Matrix scaled = cholesky.solve(inverse.asDiagonal() * gram.topRightCorner(p, q));
   const Matrix residual = Y - Z * (inverse.asDiagonal() * scaled);
   scaled += cholesky.solve(inverse.asDiagonal() * (Z.transpose() * residual));
-  const Matrix R = cholesky.matrixU();
+  const Matrix R = cholesky.upper();
   return {R, R * scaled};
 }
 
@@ -106,8 +105,7 @@ Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matr
   const auto& [R, Qty] = triangle;
 
   LinearFit fit;
-  const Eigen::JacobiSVD<Matrix> svd(R);
-  const Vector& singular = svd.singularValues();
+  const Vector singular = singular_values(R);
   const double smallest_counted = static_cast<double>(p) * std::numeric_limits<double>::epsilon() * singular[0];
   fit.rank = static_cast<int>((singular.array() > smallest_counted).count());
   fit.condition = fit.rank < p ? std::numeric_limits<double>::infinity() : singular[0] / singular[p - 1];
@@ -120,11 +118,11 @@ Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matr
   Vector scale = small.colwise().norm();
   scale = (scale.array() > 0.0).select(scale, 1.0);
   small *= scale.cwiseInverse().asDiagonal();
-  const Eigen::CompleteOrthogonalDecomposition<Matrix> solver(small);
-  fit.free = scale.cwiseInverse().asDiagonal() * solver.solve(Vector(Qty.reshaped()));
+  const CompleteOrthogonal solver(small);
+  fit.free = scale.cwiseInverse().asDiagonal() * solver.solve(Qty.reshaped());
   const Vector theta = fit.structure * fit.free;
   fit.coefficients = theta.reshaped(p, q);
-  const Matrix inverse = scale.cwiseInverse().asDiagonal() * solver.pseudoInverse();
+  const Matrix inverse = scale.cwiseInverse().asDiagonal() * solver.pseudo_inverse();
   fit.inverse_gram = inverse * inverse.transpose();
   return fit;
 }

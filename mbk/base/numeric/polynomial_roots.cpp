@@ -1,9 +1,10 @@
 #include "mbk/base/numeric/polynomial_roots.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
 
@@ -23,7 +24,7 @@ Eigen::VectorXcd polynomial_roots(const Vector& ascending) {
     for (Index k = 0; k < n; ++k) {
       companion(n - 1, k) = -ascending[zeros + k] / leading / std::pow(scale, static_cast<double>(n - k));
     }
-    roots.tail(n) = scale * Eigen::EigenSolver<Matrix>(companion, false).eigenvalues();
+    roots.tail(n) = scale * eigenvalues(companion);
   }
   // Rounding does not part a pair: its moduli are equal to the last digit.
   std::sort(roots.begin(), roots.end(), [](const std::complex<double>& a, const std::complex<double>& b) {

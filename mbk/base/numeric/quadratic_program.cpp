@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/base/numeric/dense.h"
+
 namespace mbk::numeric {
 namespace {
 
@@ -64,7 +66,7 @@ Result<QuadraticSolution> solve_quadratic_program(const QuadraticProgram& progra
     }
     const Vector weight = now.lambda.cwiseQuotient(s);
     kkt.topLeftCorner(n, n) = H + G.transpose() * weight.asDiagonal() * G;
-    const Eigen::PartialPivLU<Matrix> lu(kkt);
+    const Lu lu(kkt);
     Vector dz, dy, ds, dlambda;
     // The Newton step towards s∘λ = target: s dλ + λ ds = −complement.
     const auto newton = [&](const Vector& complement) {

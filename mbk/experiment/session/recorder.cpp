@@ -31,6 +31,7 @@ Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, S
       signals_(signals),
       watch_(std::move(watch)),
       in_real_time_(in_real_time) {
+  pending_.reserve(journal::Writer::kLongest);  // where no more memory comes, ticks still reach the file
   try {
     recording_ = std::thread([this] { record(); });
     syncing_ = std::thread([this] { keep_syncing(); });
@@ -158,6 +159,7 @@ void Recorder::record() noexcept {
   }
   try {
     while (drain()) {
+      write_pending();
     }
     write_pending();
   } catch (const std::exception& error) {
@@ -181,9 +183,11 @@ void Recorder::keep_syncing() noexcept {
 Result<journal::Ending> Recorder::finish(journal::Ending ending) {
   stop_threads();
   while (drain()) {
+    write_pending();
   }
-  look_after_file();
   write_pending();
+  look_after_file();
+  write_pending();  // what failed under the old name
   ending.dropped = ticks_.dropped() + pending_.size() + given_up_;
   if (!remark_.empty()) ending.detail += (ending.detail.empty() ? "" : "; ") + remark_;
   const auto ended = writer_.end(ending);

@@ -159,6 +159,7 @@ Result<Writer> Writer::create(const fs::path& file, const Header& header, std::u
   writer.trial_ = drawn_by_lot();
   writer.header_ = text_of(header);
   writer.readers_ = header.readers;
+  writer.block_.reserve(sizeof(BlockHead) + kLongest * sizeof(Tick));  // no block waits for memory
   const auto size = static_cast<off_t>(expected * sizeof(Tick) * 11 / 10);
   if (size > 0 && fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, size) != 0 && errno != EOPNOTSUPP) {
     const Error error = writer.failure("no space for the trial");

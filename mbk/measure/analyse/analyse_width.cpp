@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/impedance_width.h"
 #include "mbk/model/impedance/passivity_index.h"
@@ -28,7 +29,7 @@ bool differ(const Matrix& first, const Matrix& second, const Matrix& covariance,
   const Matrix change = (second - first).transpose();
   const Vector difference = to_symmetric * Vector(change.reshaped());
   const Matrix spread = to_symmetric * covariance * to_symmetric.transpose();
-  const double distance = difference.dot(spread.ldlt().solve(difference));
+  const double distance = difference.dot(numeric::PivotedCholesky(spread).solve(difference));
   return distance > (axes == 1 ? kChiSquared95One : kChiSquared95Three);
 }
 

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/robot/kinematics.h"
@@ -432,7 +433,7 @@ class Calibrator {
   /// S = C⁻¹, dS = −S dC S;  b = −S a, db = −dS a − S da;  X_ji = C_ji/C_jj.
   void invert() {
     const Index axes = n(), p = axes + data_.runs(), last = p - 1;
-    const Matrix S = C_.inverse();
+    const Matrix S = numeric::inverse(C_);
     const Vector zero = zeros_.col(data_.runs() - 1);
     const auto error_of = [&](const Vector& gradient) {
       return std::sqrt(std::max(0.0, gradient.dot(covariance_ * gradient)));

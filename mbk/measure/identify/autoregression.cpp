@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/base/numeric/dense.h"
+
 namespace mbk::identify {
 
 namespace {
@@ -20,7 +22,7 @@ Vector finite_impulse_response(const Eigen::Ref<const Vector>& r, const Eigen::R
   for (Index i = 0; i < lags; ++i) {
     for (Index j = 0; j < lags; ++j) gram(i, j) = own[std::abs(i - j)] * (i == j ? 1.0 + kRidge : 1.0);
   }
-  return gram.ldlt().solve(cross);
+  return numeric::PivotedCholesky(gram).solve(cross);
 }
 
 }  // namespace

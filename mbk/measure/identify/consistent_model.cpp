@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/measure/identify/regression.h"
 
 namespace mbk::identify {
@@ -18,8 +19,7 @@ namespace {
 constexpr double kZero = 1e-9;  // of the largest eigenvalue: the solver's own numbers are good to 1e-10
 
 double smallest_eigenvalue(const Matrix& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(0.5 * (matrix + matrix.transpose()), Eigen::EigenvaluesOnly)
-      .eigenvalues()[0];
+  return numeric::symmetric_eigenvalues(0.5 * (matrix + matrix.transpose()))[0];
 }
 
 Semidefiniteness compare(const Matrix& free, const Matrix& consistent) {
@@ -62,7 +62,7 @@ Result<ConsistentCoefficients> nearest_consistent(const Matrix& coefficients, co
   if (!coefficients.allFinite() || !gram.allFinite() || !std::isfinite(handle_mass)) {
     return bad_data("a coefficient, its weight or the handle's mass is not finite");
   }
-  if (Eigen::LLT<Matrix>(gram).info() != Eigen::Success) {
+  if (!numeric::Cholesky(gram).positive_definite()) {
     return fail(ErrorKind::not_usable, "the motion does not tell the terms of the model apart",
                 "perturb the limb in more directions and frequencies");
   }
@@ -75,10 +75,11 @@ Result<ConsistentCoefficients> nearest_consistent(const Matrix& coefficients, co
   program.P = S.transpose() * W * S;
   program.q = Vector::Zero(S.cols());
   // What obeys the ties already is left as it is to the last digit but rounding.
-  Vector tied = S.colPivHouseholderQr().solve(theta);
+  Vector tied = numeric::PivotedQr(S).solve(theta);
   const Vector unit = program.P.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix scaled = unit.asDiagonal() * program.P * unit.asDiagonal();
-  tied += unit.asDiagonal() * scaled.ldlt().solve(unit.asDiagonal() * (S.transpose() * (W * (theta - S * tied))));
+  tied += unit.asDiagonal() *
+          numeric::PivotedCholesky(scaled).solve(unit.asDiagonal() * (S.transpose() * (W * (theta - S * tied))));
 
   for (Index part = 0; part < 3; ++part) {  // M, B, K: row j of each belongs to output j
     Matrix A(n * n, S.cols());

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"
 
@@ -162,11 +163,11 @@ class Checker {
   /// @param part 0, 1, 2 for M, B, K: where the matrix stands in the covariance
   [[nodiscard]] Eigenvalues eigenvalues(const Matrix& Z, Index part) const {
     const Index n = axes();
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(impedance::symmetric_part(Z));
-    const Vector v = solver.eigenvectors().col(0);
+    const auto [values, vectors] = numeric::symmetric_eigen(impedance::symmetric_part(Z));
+    const Vector v = vectors.col(0);
     const Vector gradient = (v * v.transpose()).reshaped();
     const double variance = gradient.dot(id_.covariance.block(part * n * n, part * n * n, n * n, n * n) * gradient);
-    return {solver.eigenvalues()[0], solver.eigenvalues()[n - 1], std::sqrt(std::max(0.0, variance))};
+    return {values[0], values[n - 1], std::sqrt(std::max(0.0, variance))};
   }
 
   [[nodiscard]] std::string stated(const Eigenvalues& value, const char* unit) const {
@@ -187,20 +188,20 @@ Excitation measure_excitation(const Matrix& Z, const Matrix& Y, const impedance:
   const Matrix centred = Z.leftCols(3 * n).rowwise() - Z.leftCols(3 * n).colwise().mean();
   const Matrix cov = centred.transpose() * centred / static_cast<double>(std::max<Index>(Z.rows() - 1, 1));
 
-  const Eigen::SelfAdjointEigenSolver<Matrix> motion(cov.block(2 * n, 2 * n, n, n));
-  result.motion = std::sqrt(std::max(0.0, motion.eigenvalues()[n - 1]));
-  result.motion_ratio = result.motion > 0.0 ? std::sqrt(std::max(0.0, motion.eigenvalues()[0])) / result.motion : 0.0;
+  const Vector motion = numeric::symmetric_eigen(cov.block(2 * n, 2 * n, n, n)).values;
+  result.motion = std::sqrt(std::max(0.0, motion[n - 1]));
+  result.motion_ratio = result.motion > 0.0 ? std::sqrt(std::max(0.0, motion[0])) / result.motion : 0.0;
 
   Vector scale = cov.diagonal().cwiseSqrt();
   scale = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Matrix> all(scale.asDiagonal() * cov * scale.asDiagonal());
-  const double smallest = all.eigenvalues()[0], largest = all.eigenvalues()[3 * n - 1];
+  const Vector all = numeric::symmetric_eigen(scale.asDiagonal() * cov * scale.asDiagonal()).values;
+  const double smallest = all[0], largest = all[3 * n - 1];
   result.condition = smallest > 0.0 ? std::sqrt(largest / smallest) : std::numeric_limits<double>::infinity();
 
   // What of ẍ velocity and position cannot imitate: the Schur complement of their covariance.
-  const Eigen::CompleteOrthogonalDecomposition<Matrix> others(cov.bottomRightCorner(2 * n, 2 * n));
+  const numeric::CompleteOrthogonal others(cov.bottomRightCorner(2 * n, 2 * n));
   const Matrix own =
-      cov.topLeftCorner(n, n) - cov.topRightCorner(n, 2 * n) * others.solve(Matrix(cov.bottomLeftCorner(2 * n, n)));
+      cov.topLeftCorner(n, n) - cov.topRightCorner(n, 2 * n) * others.solve(cov.bottomLeftCorner(2 * n, n));
   result.inertia_share = std::numeric_limits<double>::infinity();
   for (Index j = 0; j < n; ++j) {
     const double force = numeric::variance(Y.col(j));

@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <utility>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/model/impedance/ellipse.h"
 
@@ -32,13 +33,12 @@ std::vector<RowRange> packed(const std::vector<RowRange>& ranges) {
 
 /// The symmetric part with eigenvalues of at least `floor`.
 Matrix lifted(const Matrix& Z, double floor) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(impedance::symmetric_part(Z));
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(floor).asDiagonal() * solver.eigenvectors().transpose();
+  const auto [values, vectors] = numeric::symmetric_eigen(impedance::symmetric_part(Z));
+  return vectors * values.cwiseMax(floor).asDiagonal() * vectors.transpose();
 }
 
 double largest_eigenvalue(const Matrix& Z) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(impedance::symmetric_part(Z), Eigen::EigenvaluesOnly);
-  return std::max(solver.eigenvalues().maxCoeff(), 0.0);
+  return std::max(numeric::symmetric_eigenvalues(impedance::symmetric_part(Z)).maxCoeff(), 0.0);
 }
 
 /// A second-order system that is stable, near the one that was found; `coefficients` are of [ẍ ẋ x].
@@ -61,7 +61,7 @@ impedance::Model stable(const Matrix& coefficients, double fastest) {
 Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_time,
                 const std::vector<RowRange>& ranges) {
   const Index n = u.cols();
-  const Eigen::LDLT<Matrix> M(model.M);
+  const numeric::PivotedCholesky M(model.M);
   const Matrix by_position = -M.solve(model.K), by_velocity = -M.solve(model.B);
   const Matrix by_force = M.solve(Matrix::Identity(n, n));
   Matrix generator = Matrix::Zero(4 * n, 4 * n);
@@ -108,7 +108,7 @@ Instruments from_force(const Regression& r, const std::vector<RowRange>& ranges,
   Instruments result;
   result.from = ReferenceQuantity::force;
   const double fastest = 0.5 / r.sample_time;  // [rad/s] about the top of the band that the rows carry
-  Matrix total = Z.colPivHouseholderQr().solve(target);
+  Matrix total = numeric::PivotedQr(Z).solve(target);
   for (int pass = 0; pass <= kPasses; ++pass) {
     result.R = with_constant(simulate(stable(total, fastest), force, r.sample_time, whole), ranges);
     if (pass == kPasses) break;
@@ -171,7 +171,7 @@ Vector answered_share(const Regression& r, const Instruments& instruments, const
     Y.row(k) = residual.row(i);
   }
   Y.rowwise() -= Y.colwise().mean().eval();
-  const Matrix left = Y - X * X.colPivHouseholderQr().solve(Y);
+  const Matrix left = Y - X * numeric::PivotedQr(X).solve(Y);
   // Independent samples: those of the residual's own correlation.
   Vector share(n);
   for (Index j = 0; j < n; ++j) {

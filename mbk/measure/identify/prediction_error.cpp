@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mbk/base/dsp/difference_equation.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/polynomial_roots.h"
@@ -80,17 +81,11 @@ class Projection {
   explicit Projection(const Matrix& columns) {
     if (columns.cols() > 0) qr_.emplace(columns);
   }
-  [[nodiscard]] Vector coefficients(const Vector& of) const { return qr_ ? Vector(qr_->solve(of)) : Vector(); }
-  [[nodiscard]] Matrix rest(Matrix of) const {
-    if (!qr_ || of.cols() == 0) return of;
-    of.applyOnTheLeft(qr_->householderQ().adjoint());
-    of.topRows(qr_->rank()).setZero();
-    of.applyOnTheLeft(qr_->householderQ());
-    return of;
-  }
+  [[nodiscard]] Vector coefficients(const Vector& of) const { return qr_ ? qr_->solve(of) : Vector(); }
+  [[nodiscard]] Matrix rest(Matrix of) const { return qr_ && of.cols() > 0 ? qr_->rest(std::move(of)) : of; }
 
  private:
-  std::optional<Eigen::ColPivHouseholderQR<Matrix>> qr_;
+  std::optional<numeric::PivotedQr> qr_;
 };
 
 struct Model {
@@ -131,12 +126,12 @@ struct Linear {
     scaled << R * scale.asDiagonal(), std::sqrt(damping) * Matrix::Identity(p, p);
     Vector right = Vector::Zero(2 * p);
     right.head(p) = -r;
-    return scale.cwiseProduct(scaled.colPivHouseholderQr().solve(right));
+    return scale.cwiseProduct(numeric::PivotedQr(scaled).solve(right));
   }
   /// (RᵀR)⁻¹
   [[nodiscard]] Matrix inverse() const {
     const Vector scale = R.colwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
-    const Matrix half = scale.asDiagonal() * (R * scale.asDiagonal()).colPivHouseholderQr().inverse();
+    const Matrix half = scale.asDiagonal() * numeric::PivotedQr(R * scale.asDiagonal()).inverse();
     return half * half.transpose();
   }
 };
@@ -146,9 +141,7 @@ void add_rows(const Matrix& rows, Matrix& triangle) {
   Matrix all(triangle.rows() + rows.rows(), rows.cols());
   if (triangle.rows() > 0) all.topRows(triangle.rows()) = triangle;
   all.bottomRows(rows.rows()) = rows;
-  const Eigen::HouseholderQR<Matrix> qr(all);
-  const Index p = std::min(all.rows(), all.cols());
-  triangle = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
+  triangle = numeric::householder_triangle(std::move(all));
 }
 
 class Fitter {
@@ -346,7 +339,7 @@ Vector Fitter::regress(const Vector& filter, const Signals& outputs, const Signa
     ZX += Z.transpose() * columns.leftCols(p);
     Zy += Z.transpose() * columns.col(p);
   }
-  if (instruments != nullptr) return ZX.colPivHouseholderQr().solve(Zy);
+  if (instruments != nullptr) return numeric::PivotedQr(ZX).solve(Zy);
   return Linear{triangle.topLeftCorner(p, p), -triangle.col(p).head(p)}.step(0.0);
 }
 

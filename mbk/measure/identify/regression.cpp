@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::identify {
@@ -143,9 +144,9 @@ impedance::Model model_of(const Matrix& coefficients, const Vector& centre, doub
   model.M = coefficients.topRows(n).transpose() - handle_mass * Matrix::Identity(n, n);
   model.B = coefficients.middleRows(n, n).transpose();
   model.K = coefficients.middleRows(2 * n, n).transpose();
-  const Eigen::FullPivLU<Matrix> lu(model.K);
-  model.x0 = lu.isInvertible() ? Vector(centre - lu.solve(coefficients.row(3 * n).transpose()))
-                               : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  const numeric::FullyPivotedLu lu(model.K);
+  model.x0 = lu.invertible() ? Vector(centre - lu.solve(coefficients.row(3 * n).transpose()))
+                             : Vector::Constant(n, std::numeric_limits<double>::quiet_NaN());
   return model;
 }
 
@@ -157,7 +158,7 @@ Matrix model_covariance(const Matrix& structure, const Matrix& V, const impedanc
       for (Index i = 0; i < n; ++i) J(part * n * n + j * n + i, j * p + part * n + i) = 1.0;
     }
   }
-  const Matrix inverse = model.K.inverse();
+  const Matrix inverse = numeric::inverse(model.K);
   const Vector offset = centre - model.x0;
   for (Index j = 0; j < n; ++j) {
     J.block(3 * n * n, j * p + 3 * n, n, 1) = -inverse.col(j);

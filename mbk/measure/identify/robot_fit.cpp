@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/random.h"
@@ -312,11 +313,11 @@ void RobotFitter::describe(RobotIdentification& found) const {
   const Matrix Z = stacked(rows_.W, kept_, nullptr, sigma_);
   const Vector length = Z.colwise().norm();
   const Matrix scaled = Z * length.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled.transpose() * scaled);
-  found.condition = std::sqrt(eigen.eigenvalues()[kept - 1] / std::max(eigen.eigenvalues()[0], 1e-300));
+  const auto [eigenvalues, eigenvectors] = numeric::symmetric_eigen(scaled.transpose() * scaled);
+  found.condition = std::sqrt(eigenvalues[kept - 1] / std::max(eigenvalues[0], 1e-300));
   for (Index k = 0; k < kept; ++k) {
     constexpr double kShare = 0.3;
-    const double share = eigen.eigenvectors()(k, 0);
+    const double share = eigenvectors(k, 0);
     if (std::abs(share) >= kShare) {
       found.weakest.emplace_back(names[static_cast<std::size_t>(kept_[static_cast<std::size_t>(k)])].name, share);
     }
@@ -342,9 +343,9 @@ void RobotFitter::check_inertia(RobotIdentification& found) const {
     return Matrix(0.5 * (I + I.transpose()));
   };
   for (const robot::JointVector& q : postures) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(inertia_at(q), Eigen::EigenvaluesOnly);
-    if (eigen.eigenvalues()[0] >= found.inertia.smallest) continue;
-    found.inertia.smallest = eigen.eigenvalues()[0];
+    const double smallest = numeric::symmetric_eigenvalues(inertia_at(q))[0];
+    if (smallest >= found.inertia.smallest) continue;
+    found.inertia.smallest = smallest;
     found.inertia.where.assign(q.data(), q.data() + q.size());
   }
   // The middle of the motion: what the hand feels there tells units apart.

@@ -14,6 +14,7 @@
 
 #include "mbk/base/dsp/derivative_filter.h"
 #include "mbk/base/dsp/stretches.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/polynomial_roots.h"
@@ -196,12 +197,11 @@ Matrix pseudo_inverse(const Matrix& gram) {
   constexpr double kSmall = 1e-13;
   Vector scale = gram.diagonal().cwiseSqrt();
   for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
-  const double least = kSmall * std::max(eigen.eigenvalues().maxCoeff(), 0.0);
-  Vector inverse = eigen.eigenvalues();
+  const auto [values, vectors] = numeric::symmetric_eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  const double least = kSmall * std::max(values.maxCoeff(), 0.0);
+  Vector inverse = values;
   for (double& value : inverse) value = value > least ? 1.0 / value : 0.0;
-  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose() *
-         scale.asDiagonal();
+  return scale.asDiagonal() * vectors * inverse.asDiagonal() * vectors.transpose() * scale.asDiagonal();
 }
 
 Reduced reduce(const Matrix& gram, const Layout& at) {
@@ -479,7 +479,7 @@ Vector solved(const Sums& sums) {
   Matrix scaled = z.asDiagonal() * sums.M;
   const Vector x = scaled.colwise().norm().cwiseInverse();
   scaled = scaled * x.asDiagonal();
-  return x.asDiagonal() * scaled.colPivHouseholderQr().solve(z.asDiagonal() * sums.g);
+  return x.asDiagonal() * numeric::PivotedQr(scaled).solve(z.asDiagonal() * sums.g);
 }
 
 /// Roots on the right half plane are reflected, to no less than a damping ratio; false where there was one.
@@ -653,8 +653,8 @@ void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
   const Layout rows = layout(true);
   const Sums& last = best.last;
   const Index p = n_ + q_;
-  const Matrix bread =
-      options_.reference_instruments ? Matrix(last.M.inverse()) : Matrix(last.S.ldlt().solve(Matrix::Identity(p, p)));
+  const Matrix bread = options_.reference_instruments ? numeric::inverse(last.M)
+                                                      : numeric::PivotedCholesky(last.S).solve(Matrix::Identity(p, p));
   made.white_covariance = made.variance * bread * last.S * bread.transpose();
   made.covariance = made.white_covariance;
   if (options_.hac_lag_s > 0.0) {

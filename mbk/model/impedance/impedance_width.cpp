@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::impedance {
@@ -13,8 +14,8 @@ namespace {
 Result<Matrix> positive_definite(const Matrix& Z, const char* which) {
   if (!Z.allFinite()) return bad_data(fmt::format("the {} matrix is not known", which));
   const Matrix symmetric = symmetric_part(Z);
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric, Eigen::EigenvaluesOnly);
-  const double smallest = solver.eigenvalues().minCoeff(), largest = solver.eigenvalues().maxCoeff();
+  const Vector eigenvalues = numeric::symmetric_eigenvalues(symmetric);
+  const double smallest = eigenvalues.minCoeff(), largest = eigenvalues.maxCoeff();
   constexpr double kSingular = 1e-12;  // of the largest: beside that, rounding decides the sign
   if (smallest > kSingular * std::abs(largest)) return symmetric;
   return bad_data(
@@ -38,17 +39,17 @@ Result<Width> impedance_width(const Matrix& first, const Matrix& second) {
   if (!A) return tl::unexpected(A.error());
   const auto B = positive_definite(second, "second");
   if (!B) return tl::unexpected(B.error());
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(*B, *A);
+  const auto [values, vectors] = numeric::generalized_symmetric_eigen(*B, *A);
   const Index n = first.rows();
   Width width;
-  width.ratios = solver.eigenvalues();
-  width.directions = solver.eigenvectors().colwise().normalized();
+  width.ratios = values;
+  width.directions = vectors.colwise().normalized();
   const Vector logarithms = width.ratios.array().log();
   width.distance = logarithms.norm();
   width.ratios_by_first.resize(n, n * n);
   width.ratios_by_second.resize(n, n * n);
   for (Index i = 0; i < n; ++i) {
-    const Eigen::RowVectorXd change = along(solver.eigenvectors().col(i));
+    const Eigen::RowVectorXd change = along(vectors.col(i));
     width.ratios_by_first.row(i) = -change;
     width.ratios_by_second.row(i) = change / width.ratios[i];
   }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::impedance {
@@ -18,9 +19,9 @@ Eigen::RowVectorXd no_gradient(const Model& model) {
 /// `which`-th eigenvalue of a symmetric part, from below.
 Sensitive eigenvalue(const Model& model, int matrix, Index which) {
   const Index n = model.axes();
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric_part(matrix_of(model, matrix)));
-  const Vector v = solver.eigenvectors().col(which);
-  Sensitive result{solver.eigenvalues()[which], no_gradient(model)};
+  const auto [values, vectors] = numeric::symmetric_eigen(symmetric_part(matrix_of(model, matrix)));
+  const Vector v = vectors.col(which);
+  Sensitive result{values[which], no_gradient(model)};
   result.gradient.segment(matrix * n * n, n * n) = Vector((v * v.transpose()).reshaped()).transpose();
   return result;
 }

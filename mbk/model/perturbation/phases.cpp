@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::perturbation {
@@ -75,7 +76,7 @@ Vector minimise_norm(const SampledPeriod& period, Vector phase, double p) {
     // A delay and a change of sign leave the norm as it is, so that the Gram matrix alone is singular.
     while (!improved && damping < 1e6) {
       const Matrix damped = gram + damping * largest * Matrix::Identity(gram.rows(), gram.cols());
-      const Vector step = damped.ldlt().solve(-gradient);
+      const Vector step = numeric::PivotedCholesky(damped).solve(-gradient);
       const Vector trial = period.signal(phase + step);
       if ((trial.array().abs() / scale).pow(p).sum() < e.squaredNorm()) {
         improved = true;
