@@ -73,15 +73,14 @@ std::string seed_option(const Workbench& bench, const laboratory::Scenario& scen
 ReproducedTable claims_table(const char* id) {
   ReproducedTable table;
   table.id = id;
-  table.title = "What the text says of it";
   table.provenance = Provenance::simulated;
   table.what_rows_are = "claim";
   table.columns = {{"the source", "", 0}, {"ours", "", 0}};
   return table;
 }
 
-void add_claim(ReproducedTable& table, const char* claim, const char* in_the_source, std::string ours) {
-  table.rows.push_back({claim, {words(in_the_source), words(std::move(ours))}});
+void add_claim(ReproducedTable& table, const char* claim, std::string ours) {
+  table.rows.push_back({claim, {words(std::move(ours))}});
 }
 
 Result<FreeMotions> make_free_motions(Workbench& bench) {

@@ -25,9 +25,9 @@ inline constexpr const char* kLinearRigs = "rig_table_5_1";
 /// " --seed 1001", or nothing where the scenario's own seed is meant.
 [[nodiscard]] std::string seed_option(const Workbench& bench, const laboratory::Scenario& scenario);
 
-/// What the text of the source says of its numbers, and what ours say.
+/// What the text of the source says of its numbers, which stands in ours (exhibit_text.h), and what ours say.
 [[nodiscard]] ReproducedTable claims_table(const char* id);
-void add_claim(ReproducedTable& table, const char* claim, const char* in_the_source, std::string ours);
+void add_claim(ReproducedTable& table, const char* claim, std::string ours);
 
 /// A free motion of the robot, and what models of it find in the first forty of its last fifty seconds.
 struct FreeMotion {

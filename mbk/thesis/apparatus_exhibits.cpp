@@ -49,13 +49,11 @@ constexpr std::array kCoulomb = {Coefficient{"Coulomb, joint 1", "coulomb_1"},
                                  Coefficient{"Coulomb, joint 2", "coulomb_2"}};
 
 /// What the coefficients of a model are found to be, beside what they are.
-Result<ReproducedTable> coefficient_table(const char* id, const char* title, const FreeMotions& motions, Model model,
-                                          bool coulomb) {
+Result<ReproducedTable> coefficient_table(const char* id, const FreeMotions& motions, Model model, bool coulomb) {
   const auto truth = validation::true_parameters(validation::FrictionModel::full);
   if (!truth) return tl::unexpected(truth.error());
   ReproducedTable table;
   table.id = id;
-  table.title = title;
   table.provenance = Provenance::simulated;
   table.what_rows_are = "coefficient, in kg·m², N·m·s/rad or N·m";
   table.columns = {{"value", "", 5}, {"standard deviation", "", 5}, {"simulated robot", "", 5}, {"error", "%", 2}};
@@ -81,7 +79,6 @@ Result<ReproducedTable> coefficient_table(const char* id, const char* title, con
 ReproducedTable torque_table(const FreeMotions& motions) {
   ReproducedTable table;
   table.id = "A.1 torque";
-  table.title = "How well each model explains the torque of the last ten seconds";
   table.provenance = Provenance::simulated;
   table.what_rows_are = "model";
   table.spread_is = fmt::format("standard deviation over {} trials", kFreeMotions);
@@ -124,44 +121,28 @@ Result<std::vector<std::string>> robot_commands(const Workbench& bench) {
       std::string("mbk robot identify free.h5      # mbk's own procedure")};
 }
 
-Result<void> table_A_1(Workbench& bench, Exhibit& exhibit) {
+Result<void> table_A_1(Workbench& bench, Draft& exhibit) {
   const auto motions = bench.once(make_free_motions);
   if (!motions) return tl::unexpected(motions.error());
   auto commands = robot_commands(bench);
   if (!commands) return tl::unexpected(commands.error());
   exhibit.commands = std::move(*commands);
   exhibit.commands.emplace_back("mbk validate robot --runs 6");
-  exhibit.text = {
-      "The robot of the simulation is that of this table, with 0.03 N·m of Coulomb friction in each joint. So ours "
-      "shows not what the source's robot was but whether its procedure finds a robot: six free motions of fifty "
-      "seconds, each joint by ten sines up to 1.9 Hz over 40°, forty seconds to identify by least squares and ten to "
-      "judge, windows of 151 samples and a low-pass of 4.5 Hz. One thing differs: mbk makes the regressors of the "
-      "motion first and filters them together with the torque.",
-      "With viscous friction alone the inertias come out right to a tenth of a percent, α₂ in a single trial to one, "
-      "and what Coulomb friction takes is put down to viscous friction: an eighth too much. Once it is in the model, "
-      "viscous friction is some percent too small: the motors act half a millisecond after the torque that is "
-      "recorded, and the windows round off what happens at reversals. mbk's own procedure finds that delay and takes "
-      "shorter windows; then everything is right to a hundredth of a percent.",
-      "The Coriolis sign that is printed in (A.6) cannot be that of the robot: with it, and all friction in the model, "
-      "the torque of the second joint is off by tens of times as much. The standard deviations of the source have real "
-      "motors and cables in them; ours have not."};
   exhibit.related = {"figure-A.4", "slip-9", "table-5.4"};
-  for (const auto& [id, title, model, coulomb] :
-       {std::tuple{"A.1", "Viscous friction alone, as published", &FreeMotion::viscous, false},
-        std::tuple{"A.1 with Coulomb", "With Coulomb friction, by the same filters and least squares",
-                   &FreeMotion::full, true},
-        std::tuple{"A.1 by default", "By mbk's own procedure", &FreeMotion::by_default, true}}) {
-    auto table = coefficient_table(id, title, **motions, model, coulomb);
+  for (const auto& [id, model, coulomb] :
+       {std::tuple{"A.1", &FreeMotion::viscous, false}, std::tuple{"A.1 with Coulomb", &FreeMotion::full, true},
+        std::tuple{"A.1 by default", &FreeMotion::by_default, true}}) {
+    auto table = coefficient_table(id, **motions, model, coulomb);
     if (!table) return tl::unexpected(table.error());
     exhibit.tables.push_back(std::move(*table));
   }
   exhibit.tables.push_back(torque_table(**motions));
   ReproducedTable claims = claims_table("A.1 claims");
-  for (const auto& [joint, printed] : {std::pair{0, "above 99 %"}, std::pair{1, "above 90 %"}}) {
+  for (const int joint : {0, 1}) {
     const std::vector<double> vaf = of_motions(**motions, &FreeMotion::viscous, [&](const RobotIdentification& found) {
       return found.fit[static_cast<std::size_t>(joint)].vaf;
     });
-    add_claim(claims, joint == 0 ? "VAF of τ1 in every trial" : "VAF of τ2 in every trial", printed,
+    add_claim(claims, joint == 0 ? "VAF of τ1 in every trial" : "VAF of τ2 in every trial",
               fmt::format("at least {:.2f} %", *std::ranges::min_element(vaf)));
   }
   exhibit.tables.push_back(std::move(claims));
@@ -170,7 +151,7 @@ Result<void> table_A_1(Workbench& bench, Exhibit& exhibit) {
 
 // --- figure A.2
 
-Result<void> figure_A_2(Workbench& /*bench*/, Exhibit& exhibit) {
+Result<void> figure_A_2(Workbench& /*bench*/, Draft& exhibit) {
   const auto scenarios = validation::ready("relaxed_sinusoidal");
   if (!scenarios) return tl::unexpected(scenarios.error());
   laboratory::Scenario scenario = scenarios->front();
@@ -180,15 +161,10 @@ Result<void> figure_A_2(Workbench& /*bench*/, Exhibit& exhibit) {
   if (!workspace) return tl::unexpected(workspace.error());
   const auto posture = robot::posture(robot, trial.home);
   if (!posture) return tl::unexpected(posture.error());
-  exhibit.text = {
-      "Where the hand can be, from the printed link lengths of 10 and 10.5 inches and the printed limits: the outline "
-      "is the edge of the joint space through the forward kinematics, exact but for the number of its points. The area "
-      "is not printed. The test location is that of the ready scenarios; the source gives its own from the shoulder "
-      "only, 52 cm in front of it, and where the shoulder was cannot be recovered."};
   exhibit.commands = {
       fmt::format("mbk robot workspace --at {:g},{:g} --out workspace.svg", 1e3 * trial.home[0], 1e3 * trial.home[1])};
   exhibit.related = {"table-A.1", "slip-8"};
-  Chart chart{.title = "Reachable workspace of the robot", .x = {"x", "mm"}, .y = {"y", "mm"}};
+  Chart chart{.x = {"x", "mm"}, .y = {"y", "mm"}};
   chart.equal_scale = true;
   ChartSeries outline{.name = "limit of the workspace", .drawn = ChartSeries::Drawn::line};
   constexpr std::size_t kPoints = 600;
@@ -206,7 +182,6 @@ Result<void> figure_A_2(Workbench& /*bench*/, Exhibit& exhibit) {
 
   ReproducedTable table;
   table.id = "A.2";
-  table.title = "The workspace in numbers";
   table.provenance = Provenance::recomputed;
   table.what_rows_are = "quantity";
   table.columns = {{"value", "", 1}, {"unit", "", 0}};
@@ -228,17 +203,13 @@ Result<void> figure_A_2(Workbench& /*bench*/, Exhibit& exhibit) {
 
 // --- figure A.4
 
-Result<void> figure_A_4(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_A_4(Workbench& bench, Draft& exhibit) {
   const auto motions = bench.once(make_free_motions);
   if (!motions) return tl::unexpected(motions.error());
   const FreeMotion& first = (*motions)->trials.front();
   auto commands = robot_commands(bench);
   if (!commands) return tl::unexpected(commands.error());
   exhibit.commands = std::move(*commands);
-  exhibit.text = {
-      "The torque of each joint in the last ten seconds of the first free motion, which the identification did not "
-      "see: recorded, and predicted from the motion by the model of table A.1. The curves of the source cannot be had.",
-      "With viscous friction alone little is left; it is Coulomb friction, which changes its sign with the velocity."};
   exhibit.related = {"table-A.1"};
   const auto signals = prepare_free_motion((*motions)->first, first.viscous.model);
   if (!signals) return tl::unexpected(signals.error());
@@ -247,10 +218,8 @@ Result<void> figure_A_4(Workbench& bench, Exhibit& exhibit) {
   for (std::size_t joint = 0; joint < 2; ++joint) {
     const Vector predicted = signals->regressors[joint] * first.viscous.model.parameters;
     const Vector with_coulomb = coulomb->regressors[joint] * first.full.model.parameters;
-    Chart torque{.title = fmt::format("Torque of joint {}", joint + 1), .x = {"time", "s"}, .y = {"torque", "N·m"}};
-    Chart left{.title = fmt::format("What is left of it, joint {}", joint + 1),
-               .x = {"time", "s"},
-               .y = {"recorded − predicted", "mN·m"}};
+    Chart torque{.x = {"time", "s"}, .y = {"torque", "N·m"}};
+    Chart left{.x = {"time", "s"}, .y = {"recorded − predicted", "mN·m"}};
     ChartSeries recorded{.name = "recorded", .drawn = ChartSeries::Drawn::line},
         model{.name = "predicted", .drawn = ChartSeries::Drawn::line},
         viscous{.name = "viscous friction", .drawn = ChartSeries::Drawn::line},
@@ -340,10 +309,9 @@ Result<Gauge> make_gauge(Workbench& bench) {
   return Gauge{std::move(*exact), std::move(*scattered), std::move(*first), std::move(*second)};
 }
 
-ReproducedTable line_table(const char* id, const char* title, int decimals) {
+ReproducedTable line_table(const char* id, int decimals) {
   ReproducedTable table;
   table.id = id;
-  table.title = title;
   table.provenance = Provenance::simulated;
   table.what_rows_are = "axis";
   table.columns = {{"slope", "N/V", decimals},
@@ -355,8 +323,8 @@ ReproducedTable line_table(const char* id, const char* title, int decimals) {
 }
 
 /// Lines of the force on the voltage, as the source drew them.
-ReproducedTable published_lines(const char* id, const char* title, const SensorCalibration& found, int decimals) {
-  ReproducedTable table = line_table(id, title, decimals);
+ReproducedTable published_lines(const char* id, const SensorCalibration& found, int decimals) {
+  ReproducedTable table = line_table(id, decimals);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const ForceOnVoltage& line = found.axes[axis].published;
     table.rows.push_back({kSensorRows[axis],
@@ -367,8 +335,8 @@ ReproducedTable published_lines(const char* id, const char* title, const SensorC
 }
 
 /// Lines of the voltage on the load, turned round.
-ReproducedTable inverted_lines(const char* id, const char* title, const SensorCalibration& found, int decimals) {
-  ReproducedTable table = line_table(id, title, decimals);
+ReproducedTable inverted_lines(const char* id, const SensorCalibration& found, int decimals) {
+  ReproducedTable table = line_table(id, decimals);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto at = static_cast<Index>(axis);
     const SensorAxis& one = found.axes[axis];
@@ -399,7 +367,6 @@ Result<ReproducedTable> resolution_table(std::uint64_t seed) {
   }
   ReproducedTable table;
   table.id = "E.2 resolution";
-  table.title = "What the converter does to a reading";
   table.provenance = Provenance::simulated;
   table.what_rows_are = "axis";
   table.columns = {{"one code", "N", 4},
@@ -425,52 +392,30 @@ constexpr const char* kLoadsCommand =
     "or weights of one's own";
 constexpr const char* kCalibrateCommand = "mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10";
 
-Result<void> table_E_2(Workbench& bench, Exhibit& exhibit) {
+Result<void> table_E_2(Workbench& bench, Draft& exhibit) {
   const auto gauge = bench.once(make_gauge);
   if (!gauge) return tl::unexpected(gauge.error());
   auto resolution = resolution_table(bench.seed(0, 2));
   if (!resolution) return tl::unexpected(resolution.error());
-  exhibit.text = {
-      "Weights of −50 … 50 N on the simulated strain gauge, one axis after the other, up and down, one reading of a "
-      "12-bit converter each. Slope and offset of the simulated sensor are those of (E.2), so what ours can show is "
-      "not them but the procedure: their errors, R², and the regression.",
-      "With loads that are what they are said to be, the standard errors are some fiftieth of the printed ones and R² "
-      "is nearer to 1: neither noise nor converter can have made the scatter of the source. Its loads or their "
-      "directions must have been off by some tenths of a newton, which cannot be recovered. A second calibration has "
-      "loads that scatter by 0.6 N, a guess, and looks like the printed one.",
-      "The source regresses the force on the voltage. Where the voltage scatters and the load is known, the right "
-      "regression is the other one, turned round; the published form is too flat by the factor R², here far less than "
-      "a standard error. Where it is the load that scatters, the published form is the right one.",
-      "One code of ±10 V in 12 bits is 0.042 N in x, and rounding to it is an error of 0.012 N RMS by itself, more "
-      "than the 0.01 N that the source gives for all noise (slip 15)."};
   exhibit.commands = {kLoadsCommand, kCalibrateCommand};
   exhibit.related = {"figure-E.5", "slip-15"};
-  exhibit.tables = {
-      published_lines("E.2", "Loads that are exact: force on voltage, as published", (*gauge)->of_exact, 4),
-      inverted_lines("E.2 inverted", "Loads that are exact: voltage on load, turned round", (*gauge)->of_exact, 4),
-      published_lines("E.2 scattered", "Loads that scatter by 0.6 N: force on voltage, as published",
-                      (*gauge)->of_scattered, 3),
-      inverted_lines("E.2 scattered inverted", "Loads that scatter by 0.6 N: voltage on load, turned round",
-                     (*gauge)->of_scattered, 3),
-      std::move(*resolution)};
+  exhibit.tables = {published_lines("E.2", (*gauge)->of_exact, 4),
+                    inverted_lines("E.2 inverted", (*gauge)->of_exact, 4),
+                    published_lines("E.2 scattered", (*gauge)->of_scattered, 3),
+                    inverted_lines("E.2 scattered inverted", (*gauge)->of_scattered, 3), std::move(*resolution)};
   return {};
 }
 
-Result<void> figure_E_5(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_E_5(Workbench& bench, Draft& exhibit) {
   const auto gauge = bench.once(make_gauge);
   if (!gauge) return tl::unexpected(gauge.error());
-  exhibit.text = {
-      "Load against voltage of both axes with loads that scatter by 0.6 N, and the lines through them. The points of "
-      "the source cannot be had."};
   exhibit.commands = {kLoadsCommand, kCalibrateCommand};
   exhibit.related = {"table-E.2"};
   const calibration::SensorRun& run = (*gauge)->scattered;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto at = static_cast<Index>(axis);
     const ForceOnVoltage& line = (*gauge)->of_scattered.axes[axis].published;
-    Chart chart{.title = fmt::format("Calibration of the strain gauge, {}", kSensorRows[axis]),
-                .x = {"voltage", "V"},
-                .y = {"load", "N"}};
+    Chart chart{.x = {"voltage", "V"}, .y = {"load", "N"}};
     ChartSeries marks{.name = "loads"}, fitted{.name = "line of best fit", .drawn = ChartSeries::Drawn::line};
     const Index loads = run.force.rows() / 2;  // of this axis; the others hang at the other one
     for (Index i = at * loads; i < (at + 1) * loads; ++i) {
@@ -488,15 +433,11 @@ Result<void> figure_E_5(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-constexpr std::array kMakers = {
-    Maker{Exhibit::Kind::figure, 0, "figure-A.2", "Workspace of the robot", Provenance::recomputed, figure_A_2},
-    Maker{Exhibit::Kind::table, 0, "table-A.1", "Dynamics of the robot, from its free motion", Provenance::simulated,
-          table_A_1},
-    Maker{Exhibit::Kind::figure, 0, "figure-A.4", "Torque of the robot, recorded and predicted", Provenance::simulated,
-          figure_A_4},
-    Maker{Exhibit::Kind::table, 0, "table-E.2", "Calibration of the strain gauge", Provenance::simulated, table_E_2},
-    Maker{Exhibit::Kind::figure, 0, "figure-E.5", "Loads against voltages of the strain gauge", Provenance::simulated,
-          figure_E_5}};
+constexpr std::array kMakers = {Maker{Exhibit::Kind::figure, 0, "figure-A.2", Provenance::recomputed, figure_A_2},
+                                Maker{Exhibit::Kind::table, 0, "table-A.1", Provenance::simulated, table_A_1},
+                                Maker{Exhibit::Kind::figure, 0, "figure-A.4", Provenance::simulated, figure_A_4},
+                                Maker{Exhibit::Kind::table, 0, "table-E.2", Provenance::simulated, table_E_2},
+                                Maker{Exhibit::Kind::figure, 0, "figure-E.5", Provenance::simulated, figure_E_5}};
 
 }  // namespace
 

@@ -23,9 +23,8 @@ ChartSeries line(std::string name, const Vector& x, const Vector& y) {
   return series;
 }
 
-Chart over_time(std::string title, ChartAxis y) {
+Chart over_time(ChartAxis y) {
   Chart chart;
-  chart.title = std::move(title);
   chart.x = {"time", "s"};
   chart.y = std::move(y);
   return chart;
@@ -50,10 +49,12 @@ std::vector<Chart> signal_charts(const std::string& what, const Recording& recor
   std::vector<Chart> charts;
   for (const char* axis : {"x", "y"}) {
     if (axes == 1 && axis[0] == 'x') continue;
-    Chart force = over_time(fmt::format("{}: force, {}", what, axis), {fmt::format("force {}", axis), "N"});
+    Chart force = over_time({fmt::format("force {}", axis), "N"});
+    force.title = fmt::format("{}: force, {}", what, axis);
     force.series.push_back(line("of the hand on the robot", time, values("force", axis)));
     if (force_mode) force.series.push_back(line("commanded", time, values("reference", axis)));
-    Chart place = over_time(fmt::format("{}: place of the hand, {}", what, axis), {axis, "mm"});
+    Chart place = over_time({axis, "mm"});
+    place.title = fmt::format("{}: place of the hand, {}", what, axis);
     const Vector hand = values("hand", axis);
     place.series.push_back(line("hand", time, 1e3 * (hand.array() - hand.mean()).matrix()));
     if (!force_mode) {
@@ -66,7 +67,7 @@ std::vector<Chart> signal_charts(const std::string& what, const Recording& recor
 }
 
 Chart energy_chart(const std::vector<TaskResult>& results) {
-  Chart chart = over_time("Energy that the arm absorbed in the first trial", {"energy absorbed", "J"});
+  Chart chart = over_time({"energy absorbed", "J"});
   for (const TaskResult& result : results) {
     const Energy& energy = result.trials.front().energy;
     const auto inside = [&](double t) { return t >= energy.from_s && t <= energy.to_s; };

@@ -16,7 +16,7 @@ inline constexpr Index kDrawnPoints = 600;  ///< of a line, at most about
 [[nodiscard]] ChartSeries line(std::string name, const Vector& x, const Vector& y);
 
 /// An empty chart over time.
-[[nodiscard]] Chart over_time(std::string title, ChartAxis y);
+[[nodiscard]] Chart over_time(ChartAxis y);
 
 /// Samples of a recording, by time from its first sample [s].
 struct Part {

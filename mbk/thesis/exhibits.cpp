@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::thesis {
 
@@ -31,10 +30,6 @@ Result<const TaskResult*> first_of(Workbench& bench, Task task) {
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
   return &(*results)->front();
-}
-
-std::string tuned_gains_note() {
-  return fmt::format("Simulated: {}.", laboratory::kTunedGains);
 }
 
 std::string person(int participant) {

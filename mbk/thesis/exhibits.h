@@ -10,19 +10,20 @@
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/reproduction.h"
+#include "mbk/thesis/exhibit_text.h"
 #include "mbk/thesis/workbench.h"
 
 /// What the exhibits are put together from. For the sources of this module only.
 namespace mbk::thesis {
 
-/// One exhibit: what it is, and what makes its content. `make` fills text, commands, tables, charts and related.
+/// One exhibit: what it is, and what makes its content. `make` fills commands, tables, charts, related and the values
+/// of which its text (exhibit_text.h) speaks.
 struct Maker {
   Exhibit::Kind kind;
   int chapter;
   const char* id;
-  const char* title;
   Provenance provenance;
-  Result<void> (*make)(Workbench& bench, Exhibit& exhibit);
+  Result<void> (*make)(Workbench& bench, Draft& exhibit);
 };
 
 // One span for each source file, in the order of the source.
@@ -70,9 +71,6 @@ inline ReproducedCell words(std::string text) {
 /// @fails  as Workbench::results
 [[nodiscard]] Result<const TaskResult*> first_of(Workbench& bench, Task task);
 
-/// Said where a simulated participant who corrects place or force had a part.
-[[nodiscard]] std::string tuned_gains_note();
-
 /// "P1"
 [[nodiscard]] std::string person(int participant);
 
@@ -82,7 +80,6 @@ inline ReproducedCell words(std::string text) {
 /// Adds a table of M, B, K, x₀, VAF and verdict of everyone who did a task, and the command of its first trial: tables
 /// 3.2, 3.4, 4.1 and 4.2 in form.
 /// @fails  as Workbench::results
-[[nodiscard]] Result<void> add_impedances(Workbench& bench, Task task, const char* id, const char* title,
-                                          Exhibit& exhibit);
+[[nodiscard]] Result<void> add_impedances(Workbench& bench, Task task, const char* id, Draft& exhibit);
 
 }  // namespace mbk::thesis

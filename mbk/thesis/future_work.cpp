@@ -23,11 +23,9 @@
 namespace mbk::thesis {
 namespace {
 
-ReproducedTable table_of(const Exhibit& exhibit, std::string title, std::string rows,
-                         std::vector<ReproducedColumn> columns) {
+ReproducedTable table_of(const Exhibit& exhibit, std::string rows, std::vector<ReproducedColumn> columns) {
   ReproducedTable table;
   table.id = exhibit.id;
-  table.title = std::move(title);
   table.provenance = Provenance::simulated;
   table.what_rows_are = std::move(rows);
   table.columns = std::move(columns);
@@ -68,16 +66,7 @@ Result<ReproducedCell> admissible_stiffness(double a) {
   return words(text.empty() ? "none" : text);
 }
 
-Result<void> teleoperation(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "mbk decides Llewellyn's criterion and the modified one exactly, for a design with numbers or for all values of "
-      "one "
-      "of its parameters, and takes the operator's excess or shortage of passivity from a measurement. Example: by how "
-      "much the slave of a position–position system may be stiffer when its operator is a relaxed arm that was "
-      "measured, "
-      "and what is left when the operator holds on and generates energy.",
-      "Open: a design that uses more of the operator's impedance than its excess, and one for several degrees of "
-      "freedom."};
+Result<void> teleoperation(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.6", "table-4.5", "question-4"};
   exhibit.commands = {fmt::format(
       "mbk simulate relaxed_sinusoidal --seed {} --out p1.h5 && mbk measure p1.h5 --handle-mass {} --json --out "
@@ -90,8 +79,8 @@ Result<void> teleoperation(Workbench& bench, Exhibit& exhibit) {
   if (!rigid) return tl::unexpected(rigid.error());
   const auto& models = (*relaxed)->pooled.passivity->models;
   if (models.empty() || !models.front().excess) return bad_data("the relaxed arm has no excess of passivity");
-  ReproducedTable table = table_of(exhibit, "Stiffness of the slave that is absolutely stable", "operator",
-                                   {{"excess of passivity", "N·s/m", 2}, {"stable k_s, 0 to 5000 N/m", "N/m", 1}});
+  ReproducedTable table =
+      table_of(exhibit, "operator", {{"excess of passivity", "N·s/m", 2}, {"stable k_s, 0 to 5000 N/m", "N/m", 1}});
   for (const auto& [name, excess] :
        {std::pair{"passive, nothing else known", 0.0},
         std::pair{"P1 relaxed: lower end of the 95 % interval", models.front().excess->corrected95.first},
@@ -105,14 +94,7 @@ Result<void> teleoperation(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> cns_model(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "Open. mbk has no model of a participant's will that it could identify: it says that a linear time-invariant one "
-      "does not hold, and lets the energy decide. It has a participant with an intermittent controller to try such "
-      "methods on, whose truth is known. Example: how much of the force along one axis a linear model explains, trial "
-      "by "
-      "trial; the same arm with its controller off is explained to more than 95 %.",
-      tuned_gains_note()};
+Result<void> cns_model(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.4", "table-4.1"};
   exhibit.commands = {"mbk validate one-dimensional", "mbk validate participant"};
   const auto grasps = bench.one_axis_grasps();
@@ -120,8 +102,7 @@ Result<void> cns_model(Workbench& bench, Exhibit& exhibit) {
   Vector vaf(std::ssize(**grasps));
   for (Index k = 0; k < vaf.size(); ++k) vaf[k] = (**grasps)[static_cast<std::size_t>(k)].vaf;
   std::ranges::sort(vaf);
-  ReproducedTable table =
-      table_of(exhibit, "VAF on the last ten seconds of five trials", "of the trials", {{"VAF", "%", 1}});
+  ReproducedTable table = table_of(exhibit, "of the trials", {{"VAF", "%", 1}});
   table.rows = {{"lowest", {cell(vaf[0])}},
                 {"median", {cell(numeric::quantile(vaf, 0.5))}},
                 {"highest", {cell(vaf[vaf.size() - 1])}}};
@@ -144,23 +125,15 @@ double absorbed(const Recording& recording, double from_s, double to_s) {
   return energy;
 }
 
-Result<void> reaction_time(Workbench& bench, Exhibit& exhibit) {
+Result<void> reaction_time(Workbench& bench, Draft& exhibit) {
   constexpr double kReaction = 0.15;  // [s]
-  exhibit.text = {
-      "In the first 150 ms after an onset nobody can react. Example: the energy that each rigid arm absorbed in these, "
-      "and "
-      "from then to the end of the pulse, mean of the sixteen pulses of the first trial. It absorbs before it can "
-      "react "
-      "and generates after, so that what is generated comes from the will.",
-      "Open: M, B and K of these 150 ms alone, from all onsets at once.", tuned_gains_note()};
   exhibit.related = {"figure-4.5", "figure-4.3"};
   exhibit.commands = {fmt::format(
       "mbk simulate rigid_underdamped_2N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {} --json",
       bench.seed(1, 1), kHandleMass)};
   const auto results = bench.results(Task::rigid_underdamped);
   if (!results) return tl::unexpected(results.error());
-  ReproducedTable table = table_of(exhibit, "Energy absorbed before and after a reaction is possible", "participant",
-                                   {{"first 150 ms", "mJ", 1}, {"from then on", "mJ", 1}});
+  ReproducedTable table = table_of(exhibit, "participant", {{"first 150 ms", "mJ", 1}, {"from then on", "mJ", 1}});
   table.spread_is = "standard deviation over the pulses";
   for (const TaskResult& result : **results) {
     std::vector<double> before, after;
@@ -175,12 +148,7 @@ Result<void> reaction_time(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> joint_domain(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "M_q = JᵀMJ, B_q = JᵀBJ, K_q = JᵀKJ − Σ F_k ∂²x_k/∂q², with the arm's own J. The antisymmetric part of K becomes "
-      "det(J) k_a, and without a bias force an arm is passive at its joints exactly where it is at the hand. Example: "
-      "P1 relaxed, four trials in one fit, beside the joint matrices that the simulated arm was given.",
-      "Which muscles are behind it is open: that needs more than two joints' worth of motion."};
+Result<void> joint_domain(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.2"};
   exhibit.commands = {fmt::format(
       "mbk simulate relaxed_sinusoidal --seed {} --out p1.h5 && mbk measure p1.h5 --handle-mass {} --domain joint",
@@ -195,8 +163,8 @@ Result<void> joint_domain(Workbench& bench, Exhibit& exhibit) {
   if (!joints) return tl::unexpected(joints.error());
   const auto limb = participant::participant_limb(1);
   if (!limb) return tl::unexpected(limb.error());
-  ReproducedTable table = table_of(exhibit, "Shoulder (1) and elbow (2)", "element",
-                                   {{"measured", "", 3}, {"standard error", "", 3}, {"given to the arm", "", 3}});
+  ReproducedTable table =
+      table_of(exhibit, "element", {{"measured", "", 3}, {"standard error", "", 3}, {"given to the arm", "", 3}});
   struct Quantity {
     const char *name, *unit;
     const Matrix *value, *error;
@@ -231,19 +199,12 @@ Result<Measured> measured(laboratory::Scenario scenario) {
   return Measured{std::move(*performance), std::move(*found)};
 }
 
-Result<void> force_task(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "A participant who is told to keep the force at zero while the robot moves the hand, by a loop of their own over "
-      "the "
-      "force. Example: the same arm with that loop and without. What is identified with it is no longer the limb's "
-      "impedance: the loop comes a reaction time late, which makes the stiffness negative along one direction and "
-      "leaves more of the force unexplained.",
-      tuned_gains_note(), "Open: a study with people."};
+Result<void> force_task(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.2"};
   exhibit.commands = {"mbk simulate force_task --out force.h5 && mbk measure force.h5 --handle-mass 0.194"};
   auto scenarios = validation::ready("force_task");
   if (!scenarios) return tl::unexpected(scenarios.error());
-  ReproducedTable table = table_of(exhibit, "One arm with and without a force-control task", "task",
+  ReproducedTable table = table_of(exhibit, "task",
                                    {{"λ_min K", "N/m", 0},
                                     {"λ_max K", "N/m", 0},
                                     {"λ_min B", "N·s/m", 1},
@@ -274,18 +235,7 @@ Result<void> force_task(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> pathologies(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "The source proposes to begin with another robot that is programmed to imitate abnormal tone. Example: such a "
-      "robot, "
-      "with stiffness, damping, lead-pipe rigidity and a catch against quick stretch along y, measured as a limb would "
-      "be. "
-      "Its stiffness and mass come back; rigidity and catch are no numbers of M, B and K and appear as damping, most "
-      "in "
-      "the direction of the catch, and in a lower VAF.",
-      "Open: patients, and telling reflex from intrinsic stiffness in the arm. For one joint the laboratory has a limb "
-      "with "
-      "a stretch reflex (mbk simulate ankle_reflex)."};
+Result<void> pathologies(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"future-work-7"};
   exhibit.commands = {"mbk simulate abnormal_tone --out tone.h5 && mbk measure tone.h5 --handle-mass 0.194"};
   auto scenarios = validation::ready("abnormal_tone");
@@ -296,8 +246,8 @@ Result<void> pathologies(Workbench& bench, Exhibit& exhibit) {
   const auto found = measured(scenarios->front());
   if (!found) return tl::unexpected(found.error());
   const Identification& identification = found->result.identification;
-  ReproducedTable table = table_of(exhibit, "A robot that imitates abnormal tone", "element",
-                                   {{"programmed", "", 1}, {"measured", "", 1}, {"standard error", "", 1}});
+  ReproducedTable table =
+      table_of(exhibit, "element", {{"programmed", "", 1}, {"measured", "", 1}, {"standard error", "", 1}});
   struct Quantity {
     const char *name, *unit;
     Matrix programmed;
@@ -322,14 +272,7 @@ Result<void> pathologies(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> impedance_width(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "d = √(Σ ln² λᵢ(Z₁⁻¹Z₂)) of the symmetric parts: the same in whatever axes and units, 0 where both are equal, √2 "
-      "ln 7 "
-      "= 2.75 where one is seven times the other. Example: P1 relaxed and P1 rigid under sines, the latter by "
-      "instrumental "
-      "variables, four trials in one fit each, with 95 % intervals.",
-      "Open: what it is in people, healthy and not.", tuned_gains_note()};
+Result<void> impedance_width(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3", "future-work-6"};
   exhibit.commands = {fmt::format(
       "mbk simulate relaxed_sinusoidal --seed {0} --out relaxed.h5 && mbk simulate rigid_sinusoidal_6N --seed {0} "
@@ -342,7 +285,7 @@ Result<void> impedance_width(Workbench& bench, Exhibit& exhibit) {
   const auto widths =
       analyse::analyse_width((*relaxed)->pooled.identification, (*rigid)->by(Method::instrumental_variables));
   if (!widths) return tl::unexpected(widths.error());
-  ReproducedTable table = table_of(exhibit, "P1, relaxed to rigid", "matrix",
+  ReproducedTable table = table_of(exhibit, "matrix",
                                    {{"width", "", 2},
                                     {"95 %, low", "", 2},
                                     {"95 %, high", "", 2},
@@ -363,15 +306,13 @@ Result<void> impedance_width(Workbench& bench, Exhibit& exhibit) {
 }
 
 constexpr auto kFuture = Exhibit::Kind::future_work;
-constexpr std::array kMakers = {
-    Maker{kFuture, 6, "future-work-1", "Teleoperation designed around the operator", Provenance::simulated,
-          teleoperation},
-    Maker{kFuture, 6, "future-work-2", "A model of the participant's will: open", Provenance::simulated, cns_model},
-    Maker{kFuture, 6, "future-work-3", "Before anyone can react", Provenance::simulated, reaction_time},
-    Maker{kFuture, 6, "future-work-4", "Impedance and passivity at the joints", Provenance::simulated, joint_domain},
-    Maker{kFuture, 6, "future-work-5", "Impedance in a force-control task", Provenance::simulated, force_task},
-    Maker{kFuture, 6, "future-work-6", "Abnormal tone, imitated by a robot", Provenance::simulated, pathologies},
-    Maker{kFuture, 6, "future-work-7", "Impedance width", Provenance::simulated, impedance_width}};
+constexpr std::array kMakers = {Maker{kFuture, 6, "future-work-1", Provenance::simulated, teleoperation},
+                                Maker{kFuture, 6, "future-work-2", Provenance::simulated, cns_model},
+                                Maker{kFuture, 6, "future-work-3", Provenance::simulated, reaction_time},
+                                Maker{kFuture, 6, "future-work-4", Provenance::simulated, joint_domain},
+                                Maker{kFuture, 6, "future-work-5", Provenance::simulated, force_task},
+                                Maker{kFuture, 6, "future-work-6", Provenance::simulated, pathologies},
+                                Maker{kFuture, 6, "future-work-7", Provenance::simulated, impedance_width}};
 
 }  // namespace
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "mbk/model/impedance/passivity_index.h"
-#include "mbk/simulate/laboratory/scenario.h"
 #include "mbk/teleop/admissible.h"
 #include "mbk/teleop/architectures.h"
 #include "mbk/thesis/slips.h"
@@ -60,9 +59,8 @@ std::string of(int part, int whole) {
   return fmt::format("{} of {}", part, whole);
 }
 
-ReproducedTable simulated_table(const char* id, const char* title, const char* what_rows_are,
-                                std::vector<ReproducedColumn> columns) {
-  ReproducedTable table = computed_table(id, title, what_rows_are, std::move(columns));
+ReproducedTable simulated_table(const char* id, const char* what_rows_are, std::vector<ReproducedColumn> columns) {
+  ReproducedTable table = computed_table(id, what_rows_are, std::move(columns));
   table.provenance = Provenance::simulated;
   return table;
 }
@@ -72,14 +70,13 @@ std::string simulate_command(const Workbench& bench, Task task) {
                      scenario_of(task), bench.seed(1, 1));
 }
 
-Result<void> with_dynamics(Workbench& bench, Exhibit& exhibit) {
-  ReproducedTable table = simulated_table(
-      "question-1", "Relaxed arms, four trials each in one fit, by mbk's own procedure", "participant, perturbation",
-      {{"smallest index in the band", "N·s/m", 2},
-       {"its lower 95 %", "N·s/m", 2},
-       {"band", "", 0},
-       {"energy of all trials", "J", 2},
-       {"verdict", "", 0}});
+Result<void> with_dynamics(Workbench& bench, Draft& exhibit) {
+  ReproducedTable table = simulated_table("question-1", "participant, perturbation",
+                                          {{"smallest index in the band", "N·s/m", 2},
+                                           {"its lower 95 %", "N·s/m", 2},
+                                           {"band", "", 0},
+                                           {"energy of all trials", "J", 2},
+                                           {"verdict", "", 0}});
   int passive = 0, people = 0, by_theorem = 0, trials = 0;
   for (const Task task : {Task::relaxed_sinusoidal, Task::relaxed_underdamped}) {
     const auto results = bench.results(task);
@@ -103,37 +100,28 @@ Result<void> with_dynamics(Workbench& bench, Exhibit& exhibit) {
   const double k_a = antisymmetric_stiffness(bench.given());
   p1.K(0, 1) += k_a;
   p1.K(1, 0) -= k_a;
-  exhibit.text = {
-      "The question: does the passivity of the relaxed arm, known of its stiffness, hold for a model with inertia and "
-      "damping?",
-      fmt::format("Yes, in a band that has to be named. Of the simulated relaxed arms {} are passive by mbk's verdict, "
-                  "with intervals and antisymmetric parts; by theorem 3.2 as it was applied, estimates and symmetric "
-                  "parts only, {} trials are.",
-                  of(passive, people), of(by_theorem, trials)),
-      fmt::format(
-          "Damping adds what stiffness alone cannot show: it makes up for an antisymmetric stiffness, but not at "
-          "every frequency. With the printed antisymmetry P1 is passive only above {:.2f} Hz (slip 4).",
-          impedance::nonpassive_below(p1).value_or(0.0)),
-      "Simulated: arms rebuilt from the printed ellipses, whose antisymmetric parts are zero; recomputed: the "
-      "frequency."};
+  exhibit.values = {{"passive", passive},
+                    {"people", people},
+                    {"by_theorem", by_theorem},
+                    {"trials", trials},
+                    {"passive_above", impedance::nonpassive_below(p1).value_or(0.0)}};
   exhibit.commands = {simulate_command(bench, Task::relaxed_sinusoidal)};
   exhibit.related = {"table-3.2", "table-3.4", "slip-2", "slip-4", "question-3"};
   exhibit.tables = {std::move(table)};
   return {};
 }
 
-Result<void> with_a_task(Workbench& bench, Exhibit& exhibit) {
+Result<void> with_a_task(Workbench& bench, Draft& exhibit) {
   const auto results = bench.results(Task::rigid_underdamped);
   if (!results) return tl::unexpected(results.error());
-  ReproducedTable table =
-      simulated_table("question-2", "Holding the hand in place against pulses of 2 N, four trials each", "participant",
-                      {{"energy of all trials", "J", 2},
-                       {"low", "J", 2},
-                       {"high", "J", 2},
-                       {"largest shortage", "N·s/m", 1},
-                       {"VAF, published procedure", "%", 1},
-                       {"decided by", "", 0},
-                       {"verdict", "", 0}});
+  ReproducedTable table = simulated_table("question-2", "participant",
+                                          {{"energy of all trials", "J", 2},
+                                           {"low", "J", 2},
+                                           {"high", "J", 2},
+                                           {"largest shortage", "N·s/m", 1},
+                                           {"VAF, published procedure", "%", 1},
+                                           {"decided by", "", 0},
+                                           {"verdict", "", 0}});
   int active = 0;
   double explained = 0.0;
   for (const TaskResult& result : **results) {
@@ -150,24 +138,16 @@ Result<void> with_a_task(Workbench& bench, Exhibit& exhibit) {
                            words(std::string(text(passivity.verdict)))}});
   }
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
-  exhibit.text = {
-      "The question: is the arm still passive while it carries out a motor task?",
-      fmt::format(
-          "Not necessarily. Of the simulated participants who hold their hand in place against pulses of 2 N {} "
-          "are active: they give back more than they took. M, B and K explain {:.0f} % of such forces, "
-          "so the energy decides.",
-          of(active, static_cast<int>((*results)->size())), explained / static_cast<double>((*results)->size())),
-      fmt::format("What is active is the answer, not the limb: the same limb without its will is passive (question 1). "
-                  "Simulated; {}.",
-                  laboratory::kTunedGains)};
+  const auto people = static_cast<int>((*results)->size());
+  exhibit.values = {{"active", active}, {"people", people}, {"explained", explained / people}};
   exhibit.commands = {simulate_command(bench, Task::rigid_underdamped)};
   exhibit.related = {"table-4.1", "table-4.5", "figure-4.3", "question-3"};
   exhibit.tables = {std::move(table)};
   return {};
 }
 
-Result<void> with_other_protocols(Workbench& bench, Exhibit& exhibit) {
-  ReproducedTable table = simulated_table("question-3", "Task and perturbation, all simulated participants", "task",
+Result<void> with_other_protocols(Workbench& bench, Draft& exhibit) {
+  ReproducedTable table = simulated_table("question-3", "task",
                                           {{"passive by theorem 3.2", "", 0},
                                            {"absorbed energy", "", 0},
                                            {"least of a trial", "J", 2},
@@ -185,24 +165,19 @@ Result<void> with_other_protocols(Workbench& bench, Exhibit& exhibit) {
           cell(outcome->least_energy), cell(outcome->most_energy), cell(outcome->mean_vaf),
           words(fmt::format("{}, {}, {}", outcome->verdicts[0], outcome->verdicts[1], outcome->verdicts[2]))}});
   }
-  const Outcome &sines = outcomes[2], &pulses = outcomes[3];
-  exhibit.text = {
-      "The question: how does the protocol influence the analysis? Can other perturbations elicit passive or active "
-      "behaviour?",
-      fmt::format(
-          "They can, in the same arm. Against a lasting multisine the rigid simulated arms absorb energy in {} "
-          "trials, against pulses in {}: a pulse has a direction that can be answered, a multisine has none for "
-          "long. The relaxed ones absorb in {} and {}.",
-          of(sines.absorbing, sines.trials), of(pulses.absorbing, pulses.trials),
-          of(outcomes[0].absorbing, outcomes[0].trials), of(outcomes[1].absorbing, outcomes[1].trials)),
-      fmt::format(
-          "The method matters as much. Of the rigid multisine trials least squares and theorem 3.2 call {} "
-          "passive, where the energy says that {} absorb: position and force come from a closed loop, and least "
-          "squares is drawn towards minus the robot. mbk's verdict, from instruments and energy, is passive for "
-          "{}, active for {} and undecided for {} of {} people.",
-          of(sines.passive_by_theorem, sines.trials), of(sines.absorbing, sines.trials), sines.verdicts[0],
-          sines.verdicts[1], sines.verdicts[2], sines.people),
-      fmt::format("Simulated; {}.", laboratory::kTunedGains)};
+  for (const auto& [of_whom, outcome] : {std::pair{"relaxed_sines", &outcomes[0]},
+                                         {"relaxed_pulses", &outcomes[1]},
+                                         {"rigid_sines", &outcomes[2]},
+                                         {"rigid_pulses", &outcomes[3]}}) {
+    exhibit.values[fmt::format("{}_absorbing", of_whom)] = outcome->absorbing;
+    exhibit.values[fmt::format("{}_trials", of_whom)] = outcome->trials;
+  }
+  const Outcome& sines = outcomes[2];
+  exhibit.values.insert({{"by_theorem", sines.passive_by_theorem},
+                         {"passive", sines.verdicts[0]},
+                         {"active", sines.verdicts[1]},
+                         {"undecided", sines.verdicts[2]},
+                         {"people", sines.people}});
   exhibit.commands = {simulate_command(bench, Task::rigid_sinusoidal), simulate_command(bench, Task::rigid_underdamped),
                       "mbk validate closed-loop --runs 4"};
   exhibit.related = {"table-4.3", "figure-4.3", "figure-4.4", "figure-4.5", "question-2"};
@@ -241,9 +216,8 @@ Result<double> stiffest_slave(double excess) {
 }
 
 Result<ReproducedTable> bought(Workbench& bench, double least_excess, double published, double shortage) {
-  ReproducedTable table =
-      computed_table("question-4 teleoperation", "The stiffest slave that stays stable with every passive environment",
-                     "the operator is taken to have", {{"excess", "N·s/m", 2}, {"stiffest slave", "N/m", 1}});
+  ReproducedTable table = computed_table("question-4 teleoperation", "the operator is taken to have",
+                                         {{"excess", "N·s/m", 2}, {"stiffest slave", "N/m", 1}});
   for (const auto& [name, excess] :
        {std::pair{"none: passive, as by convention", 0.0},
         {"the least that was said to be useful", bench.given().number("setup", "excess said to be useful, N·s/m")},
@@ -258,14 +232,13 @@ Result<ReproducedTable> bought(Workbench& bench, double least_excess, double pub
 }
 
 Result<ReproducedTable> measured_excess(Workbench& bench) {
-  ReproducedTable table = simulated_table(
-      "question-4", "How passive or active: simulated participants, four trials each in one fit", "participant",
-      {{"excess, relaxed", "N·s/m", 2},
-       {"excess, low", "N·s/m", 2},
-       {"excess, high", "N·s/m", 2},
-       {"largest shortage, rigid, 2 N pulses", "N·s/m", 1},
-       {"shortage, low", "N·s/m", 1},
-       {"shortage, high", "N·s/m", 1}});
+  ReproducedTable table = simulated_table("question-4", "participant",
+                                          {{"excess, relaxed", "N·s/m", 2},
+                                           {"excess, low", "N·s/m", 2},
+                                           {"excess, high", "N·s/m", 2},
+                                           {"largest shortage, rigid, 2 N pulses", "N·s/m", 1},
+                                           {"shortage, low", "N·s/m", 1},
+                                           {"shortage, high", "N·s/m", 1}});
   const auto relaxed = bench.results(Task::relaxed_sinusoidal);
   if (!relaxed) return tl::unexpected(relaxed.error());
   const auto rigid = bench.results(Task::rigid_underdamped);
@@ -288,7 +261,7 @@ Result<ReproducedTable> measured_excess(Workbench& bench) {
   return table;
 }
 
-Result<void> how_much(Workbench& bench, Exhibit& exhibit) {
+Result<void> how_much(Workbench& bench, Draft& exhibit) {
   double least = std::numeric_limits<double>::infinity(), published = least, shortage = least;
   for (const auto* arms : {&bench.given().sinusoidal, &bench.given().underdamped}) {
     for (const PrintedArm& arm : *arms) {
@@ -308,18 +281,12 @@ Result<void> how_much(Workbench& bench, Exhibit& exhibit) {
     const auto& value = teleoperation->rows[row].cells[1].ours;
     return value ? fmt::format("{:.0f} N/m", *value) : std::string("none");
   };
-  exhibit.text = {
-      "The question: can it be measured how passive or active an operator is, and be used in teleoperation?",
-      fmt::format("Yes. The excess of a relaxed arm is the smallest eigenvalue of its damping, {:.2f} N·s/m or more by "
-                  "the printed ellipses ({:.2f} by the published formula, slip 1); the shortage of a rigid one is what "
-                  "its energy lacks, with an interval from the trials.",
-                  least, published),
-      fmt::format("What it buys: with a position–position teleoperator the slave may be as stiff as {} for an operator "
-                  "who is only known to be passive, {} with the least corrected excess. The published one would allow "
-                  "{}, more than is proved. An operator with the least shortage of table 4.5 leaves: {}.",
-                  shown(0), shown(2), shown(3), shown(4)),
-      fmt::format("Simulated: the first table; {}. Recomputed: the second, exactly, from the printed numbers.",
-                  laboratory::kTunedGains)};
+  exhibit.values = {{"least", least},
+                    {"published", published},
+                    {"slave_if_passive", shown(0)},
+                    {"slave_with_least", shown(2)},
+                    {"slave_as_published", shown(3)},
+                    {"slave_with_shortage", shown(4)}};
   exhibit.commands = {"mbk teleop examples/teleop/position_position.toml --parameter slave.k=0:2000 --excess 0:10:6",
                       simulate_command(bench, Task::relaxed_sinusoidal)};
   exhibit.related = {"table-3.6", "table-4.5", "slip-1", "slip-5", "slip-11"};
@@ -327,15 +294,12 @@ Result<void> how_much(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-constexpr Maker question(const char* id, const char* title, Result<void> (*make)(Workbench& bench, Exhibit& exhibit)) {
-  return {Exhibit::Kind::question, 3, id, title, Provenance::simulated, make};
+constexpr Maker question(const char* id, Result<void> (*make)(Workbench& bench, Draft& exhibit)) {
+  return {Exhibit::Kind::question, 3, id, Provenance::simulated, make};
 }
 
-constexpr std::array kMakers = {
-    question("question-1", "Is the relaxed arm passive with inertia and damping in the model?", with_dynamics),
-    question("question-2", "Is the arm passive while it carries out a task?", with_a_task),
-    question("question-3", "How does the protocol influence the answer?", with_other_protocols),
-    question("question-4", "How passive or active is an operator, and what is that good for?", how_much)};
+constexpr std::array kMakers = {question("question-1", with_dynamics), question("question-2", with_a_task),
+                                question("question-3", with_other_protocols), question("question-4", how_much)};
 
 }  // namespace
 

@@ -25,6 +25,10 @@ constexpr std::array<const char*, 3> kMatrices = {"inertia", "damping", "stiffne
 /// scales of figures 3.11 and 3.16.
 constexpr std::array<double, 3> kReference = {1.5, 10.0, 75.0};
 
+TextValues references() {
+  return {{"inertia", kReference[0]}, {"damping", kReference[1]}, {"stiffness", kReference[2]}};
+}
+
 /// z_mean of participant P1's stiffness [%], from the caption of figure 3.12.
 constexpr double kAntisymmetryOfP1 = 11.5;
 
@@ -33,10 +37,7 @@ std::string simulate_command(Task task, const Workbench& bench) {
                      scenario_of(task), bench.seed(1, 1), kHandleMass);
 }
 
-Result<void> figure_3_4(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "Ten seconds of sines and twenty of pulses, as recorded, of the first trial of P1. The source shows "
-      "them behind its low-pass."};
+Result<void> figure_3_4(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {simulate_command(Task::relaxed_sinusoidal, bench),
                       simulate_command(Task::relaxed_underdamped, bench)};
   for (const auto& [task, from, to] :
@@ -56,11 +57,7 @@ Result<PreparedTrial> prepared(const Recording& recording, preprocess::Accelerat
   return preprocess::prepare(recording, recording::inspect(recording), options);
 }
 
-Result<void> figure_3_5(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "Gain of the Savitzky–Golay filter of order 6 over 101 samples at 1 kHz, times that of the zero-phase "
-      "Butterworth filter of order 5 at 5 Hz: of the signal itself, and of its derivatives beside the ideal "
-      "ones. Nothing here is measured or simulated."};
+Result<void> figure_3_5(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"slip-7", "figure-3.6"};
   exhibit.commands = {simulate_command(Task::relaxed_sinusoidal, bench) + "      # the report draws its filters"};
   const auto result = first_of(bench, Task::relaxed_sinusoidal);
@@ -71,9 +68,8 @@ Result<void> figure_3_5(Workbench& bench, Exhibit& exhibit) {
   if (!response) return tl::unexpected(response.error());
   // Above it every gain is below what can be drawn.
   constexpr double kHighest = 40.0, kLeastGain = 1e-6;
-  const auto chart = [&](const char* title, const char* unit, const Vector& gain, const Vector* ideal) {
+  const auto chart = [&](const char* unit, const Vector& gain, const Vector* ideal) {
     Chart drawing;
-    drawing.title = title;
     drawing.x = {"frequency", "Hz", true};
     drawing.y = {"gain", unit, true};
     const Index count = (response->frequency.array() <= kHighest).count();
@@ -84,9 +80,8 @@ Result<void> figure_3_5(Workbench& bench, Exhibit& exhibit) {
     }
     return drawing;
   };
-  exhibit.charts = {chart("Smoothing filter", "", response->smoothing, nullptr),
-                    chart("First derivative filter", "1/s", response->first, &response->first_ideal),
-                    chart("Second derivative filter", "1/s²", response->second, &response->second_ideal)};
+  exhibit.charts = {chart("", response->smoothing, nullptr), chart("1/s", response->first, &response->first_ideal),
+                    chart("1/s²", response->second, &response->second_ideal)};
   return {};
 }
 
@@ -106,11 +101,7 @@ Vector on_line_of(const Vector& y, const Vector& target) {
   return y + line * line.colPivHouseholderQr().solve(target - y);
 }
 
-Result<void> figure_3_6(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "Ten seconds of x: the place and the acceleration integrated twice, the velocity and the acceleration integrated "
-      "once, the acceleration from the place and that of the accelerometer, all behind the filters of figure 3.5. A "
-      "straight line, which no integral can know, is taken off."};
+Result<void> figure_3_6(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {simulate_command(Task::relaxed_sinusoidal, bench)};
   const auto result = first_of(bench, Task::relaxed_sinusoidal);
   if (!result) return tl::unexpected(result.error());
@@ -124,8 +115,7 @@ Result<void> figure_3_6(Workbench& bench, Exhibit& exhibit) {
   const Vector time = trial->time.segment(begin, count), acceleration = x(trial->acceleration);
   const Vector once = integral(acceleration, trial->sample_time), twice = integral(once, trial->sample_time);
   const Vector place = 1e3 * (x(trial->position).array() - x(trial->position).mean()).matrix();
-  Chart position = over_time("Place", {"x", "mm"}), velocity = over_time("Velocity", {"ẋ", "mm/s"}),
-        second = over_time("Acceleration", {"ẍ", "m/s²"});
+  Chart position = over_time({"x", "mm"}), velocity = over_time({"ẋ", "mm/s"}), second = over_time({"ẍ", "m/s²"});
   position.series = {line("from the encoders", time, place),
                      line("acceleration integrated twice", time, on_line_of(1e3 * twice, place))};
   const Vector speed = 1e3 * x(trial->velocity);
@@ -137,9 +127,8 @@ Result<void> figure_3_6(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Chart plane(std::string title, ChartAxis x, ChartAxis y) {
+Chart plane(ChartAxis x, ChartAxis y) {
   Chart chart;
-  chart.title = std::move(title);
   chart.x = std::move(x);
   chart.y = std::move(y);
   chart.equal_scale = true;
@@ -164,19 +153,15 @@ std::vector<Eigen::Vector2d> mapped(const Matrix& Z, const std::vector<Eigen::Ve
 
 const Eigen::Vector2d kOrigin(0.0, 0.0);
 
-Result<void> figure_3_9(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "A unit vector that goes once round, and the restoring forces −K e towards the middle, whose origins "
-      "lie on the ellipse. Force and displacement are collinear along the axes of the ellipse alone. Drawn "
-      "of P1's stiffness, rebuilt from table 3.3."};
+Result<void> figure_3_9(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.3"};
   const Matrix K = symmetric_matrix(bench.given().sinusoidal.front().ellipses[2]);
   const auto around = directions(16);
   const std::vector<Eigen::Vector2d> middle(around.size(), kOrigin);
-  Chart unit = plane("Displacement", {"e_x", "m"}, {"e_y", "m"});
+  Chart unit = plane({"e_x", "m"}, {"e_y", "m"});
   unit.series = {ellipse_curve("unit circle", Matrix::Identity(2, 2), kOrigin, 1.0),
                  rays("displacements", middle, around)};
-  Chart force = plane("Restoring force", {"K_xx e_x + K_xy e_y", "N"}, {"K_yx e_x + K_yy e_y", "N"});
+  Chart force = plane({"K_xx e_x + K_xy e_y", "N"}, {"K_yx e_x + K_yy e_y", "N"});
   force.series = {ellipse_curve("ellipse", K, kOrigin, 1.0),
                   rays("forces, towards the middle", mapped(K, around), middle)};
   const impedance::Ellipse ellipse = impedance::ellipse(K);
@@ -196,20 +181,15 @@ Matrix mean_matrix(const TaskResult& result, int matrix) {
   return mean / static_cast<double>(result.trials.size());
 }
 
-Result<void> figure_3_10(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {fmt::format(
-      "P1's arm with the hand at the test location, seen from above, and the ellipses of M, B and K at the "
-      "hand: whole lines as rebuilt from table 3.3. The circle at the left is that of an isotropic {:g} kg, "
-      "{:g} N·s/m or {:g} N/m. The links of 0.31 and 0.34 m are ours; the source does not give the "
-      "participant's.",
-      kReference[0], kReference[1], kReference[2])};
+Result<void> figure_3_10(Workbench& bench, Draft& exhibit) {
+  exhibit.values = references();
   exhibit.related = {"table-3.3", "figure-3.11"};
   const auto limb = participant::participant_limb(1);
   if (!limb) return tl::unexpected(limb.error());
   const auto angles = participant::joint_angles(limb->geometry, limb->equilibrium);
   const Eigen::Vector2d shoulder = limb->geometry.shoulder, hand = limb->equilibrium;
   const Eigen::Vector2d elbow = participant::elbow_position(limb->geometry, angles);
-  Chart chart = plane("Arm and ellipses", {"x from the shoulder", "m"}, {"y from the shoulder", "m"});
+  Chart chart = plane({"x from the shoulder", "m"}, {"y from the shoulder", "m"});
   constexpr double kRadius = 0.08;  // of the reference circle [m]
   Vector x(3), y(3);
   x << 0.0, elbow[0] - shoulder[0], hand[0] - shoulder[0];
@@ -225,16 +205,13 @@ Result<void> figure_3_10(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> ellipses_figure(Workbench& bench, Task task, const std::vector<PrintedArm>& arms, Exhibit& exhibit) {
-  exhibit.text = {fmt::format(
-      "One drawing for each participant: the ellipses of the matrices rebuilt from the printed A, R and θ, and those "
-      "that the simulated participant was measured to have, mean of four trials. A unit is {:g} kg, {:g} N·s/m and "
-      "{:g} N/m.",
-      kReference[0], kReference[1], kReference[2])};
+Result<void> ellipses_figure(Workbench& bench, Task task, const std::vector<PrintedArm>& arms, Draft& exhibit) {
+  exhibit.values = references();
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
   for (const TaskResult& result : **results) {
-    Chart chart = plane(person(result.participant), {"x", "of the reference"}, {"y", "of the reference"});
+    Chart chart = plane({"x", "of the reference"}, {"y", "of the reference"});
+    chart.title = person(result.participant);
     const auto arm = std::ranges::find(arms, person(result.participant), &PrintedArm::name);
     for (std::size_t k = 0; k < 3; ++k) {
       if (arm == arms.end()) continue;
@@ -250,34 +227,27 @@ Result<void> ellipses_figure(Workbench& bench, Task task, const std::vector<Prin
   return {};
 }
 
-Result<void> figure_3_11(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_3_11(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.3"};
   return ellipses_figure(bench, Task::relaxed_sinusoidal, bench.given().sinusoidal, exhibit);
 }
 
-Result<void> figure_3_16(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_3_16(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.5"};
   const auto made = ellipses_figure(bench, Task::relaxed_underdamped, bench.given().underdamped, exhibit);
-  exhibit.text.emplace_back(
-      "The simulated arms are those of table 3.3: one linear limb cannot have more damping against pulses than against "
-      "sines, as the source found its participants to have.");
   return made;
 }
 
-Result<void> figure_3_12(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_3_12(Workbench& bench, Draft& exhibit) {
   const Matrix K = symmetric_matrix(bench.given().sinusoidal.front().ellipses[2]);
   const impedance::Ellipse ellipse = impedance::ellipse(K);
   const double k_a = kAntisymmetryOfP1 / 100.0 * std::sqrt(ellipse.lambda_max * ellipse.lambda_min);
+  exhibit.values = {{"share", kAntisymmetryOfP1}, {"k_a", k_a}};
   const Matrix curl = (Eigen::Matrix2d() << 0.0, k_a, -k_a, 0.0).finished();
-  exhibit.text = {
-      fmt::format("Forces at unit displacements, from P1's symmetric stiffness (rebuilt from table 3.3) and from an "
-                  "antisymmetric part of {:g} %, which is |k_a| = {:.2f} N/m. Its sign is not printed; drawn is +. The "
-                  "forces are small, but over all frequencies they decide: see slip 4.",
-                  kAntisymmetryOfP1, k_a)};
   exhibit.related = {"slip-4", "figure-3.13"};
   const auto around = directions(16);
-  for (const auto& [title, Z] : {std::pair{"(a) symmetric part", K}, std::pair{"(b) antisymmetric part", curl}}) {
-    Chart chart = plane(title, {"x and force x", "m, 60 N"}, {"y and force y", "m, 60 N"});
+  for (const Matrix& Z : {K, curl}) {
+    Chart chart = plane({"x and force x", "m, 60 N"}, {"y and force y", "m, 60 N"});
     std::vector<Eigen::Vector2d> ends;
     for (const Eigen::Vector2d& from : around) ends.emplace_back(from - Z * from / 60.0);
     ChartSeries places;
@@ -293,18 +263,16 @@ Result<void> figure_3_12(Workbench& bench, Exhibit& exhibit) {
 }
 
 /// z_mean of everyone, from the pooled trials, with 95 % intervals.
-Result<void> antisymmetry_figure(Workbench& bench, std::size_t which, const char* what, Exhibit& exhibit) {
+Result<void> antisymmetry_figure(Workbench& bench, std::size_t which, Draft& exhibit) {
   const auto results = bench.results(Task::relaxed_sinusoidal);
   if (!results) return tl::unexpected(results.error());
   Chart chart;
-  chart.title = fmt::format("Antisymmetry of the relaxed arm's {}", what);
   chart.x = {"participant", ""};
   chart.y = {"z_mean", "%"};
   ChartSeries marks;
   marks.name = "simulated participants, four trials in one fit, with 95 % intervals";
   ReproducedTable table;
   table.id = exhibit.id;
-  table.title = chart.title;
   table.provenance = Provenance::simulated;
   table.what_rows_are = "participant";
   table.columns = {{"z_mean", "%", 1}, {"95 %, low", "%", 1}, {"95 %, high", "%", 1}};
@@ -324,24 +292,17 @@ Result<void> antisymmetry_figure(Workbench& bench, std::size_t which, const char
   return {};
 }
 
-Result<void> figure_3_13(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "The simulated limbs have symmetric stiffness, for the signs of the participants' antisymmetric parts are not "
-      "printed: all that is seen here is noise and the bend of the arm's geometry. Noise alone gives values of many "
-      "percent in one trial, so that a value without an interval proves nothing. The source found less than 15 %, and "
-      "11.5 % for P1.",
-      "Part (b) of the figure shows other people's data, which this program does not hold."};
+Result<void> figure_3_13(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"slip-4", "figure-3.12"};
-  return antisymmetry_figure(bench, 1, "stiffness", exhibit);
+  return antisymmetry_figure(bench, 1, exhibit);
 }
 
-Result<void> figure_3_14(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {"As figure 3.13, of the inertia."};
+Result<void> figure_3_14(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"figure-3.13"};
-  return antisymmetry_figure(bench, 0, "inertia", exhibit);
+  return antisymmetry_figure(bench, 0, exhibit);
 }
 
-Result<void> energy_figure(Workbench& bench, Task task, Exhibit& exhibit) {
+Result<void> energy_figure(Workbench& bench, Task task, Draft& exhibit) {
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
   exhibit.charts = {energy_chart(**results)};
@@ -350,39 +311,29 @@ Result<void> energy_figure(Workbench& bench, Task task, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> figure_3_15(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "E(t) = −∫ F_h·v dt from the beginning of the published window. It rises throughout: the arm absorbs."};
+Result<void> figure_3_15(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3"};
   return energy_figure(bench, Task::relaxed_sinusoidal, exhibit);
 }
 
-Result<void> figure_3_17(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {"As figure 3.15, with pulses: a step up at each."};
+Result<void> figure_3_17(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"figure-3.15"};
   return energy_figure(bench, Task::relaxed_underdamped, exhibit);
 }
 
 constexpr auto kFigure = Exhibit::Kind::figure;
-constexpr std::array kMakers = {
-    Maker{kFigure, 3, "figure-3.4", "Typical signals of the relaxed arm", Provenance::simulated, figure_3_4},
-    Maker{kFigure, 3, "figure-3.5", "Gain of the filters", Provenance::recomputed, figure_3_5},
-    Maker{kFigure, 3, "figure-3.6", "The derivatives agree with integrals and accelerometer", Provenance::simulated,
-          figure_3_6},
-    Maker{kFigure, 3, "figure-3.9", "From a matrix to its ellipse", Provenance::recomputed, figure_3_9},
-    Maker{kFigure, 3, "figure-3.10", "Ellipses and arm of P1", Provenance::recomputed, figure_3_10},
-    Maker{kFigure, 3, "figure-3.11", "Ellipses of the six relaxed arms, sinusoidal perturbations",
-          Provenance::recomputed, figure_3_11},
-    Maker{kFigure, 3, "figure-3.12", "Forces of P1's symmetric and antisymmetric stiffness", Provenance::recomputed,
-          figure_3_12},
-    Maker{kFigure, 3, "figure-3.13", "Antisymmetry of the stiffness", Provenance::simulated, figure_3_13},
-    Maker{kFigure, 3, "figure-3.14", "Antisymmetry of the inertia", Provenance::simulated, figure_3_14},
-    Maker{kFigure, 3, "figure-3.15", "Energy that relaxed arms absorb, sinusoidal perturbations", Provenance::simulated,
-          figure_3_15},
-    Maker{kFigure, 3, "figure-3.16", "Ellipses of two relaxed arms, underdamped perturbations", Provenance::recomputed,
-          figure_3_16},
-    Maker{kFigure, 3, "figure-3.17", "Energy that relaxed arms absorb, underdamped perturbations",
-          Provenance::simulated, figure_3_17}};
+constexpr std::array kMakers = {Maker{kFigure, 3, "figure-3.4", Provenance::simulated, figure_3_4},
+                                Maker{kFigure, 3, "figure-3.5", Provenance::recomputed, figure_3_5},
+                                Maker{kFigure, 3, "figure-3.6", Provenance::simulated, figure_3_6},
+                                Maker{kFigure, 3, "figure-3.9", Provenance::recomputed, figure_3_9},
+                                Maker{kFigure, 3, "figure-3.10", Provenance::recomputed, figure_3_10},
+                                Maker{kFigure, 3, "figure-3.11", Provenance::recomputed, figure_3_11},
+                                Maker{kFigure, 3, "figure-3.12", Provenance::recomputed, figure_3_12},
+                                Maker{kFigure, 3, "figure-3.13", Provenance::simulated, figure_3_13},
+                                Maker{kFigure, 3, "figure-3.14", Provenance::simulated, figure_3_14},
+                                Maker{kFigure, 3, "figure-3.15", Provenance::simulated, figure_3_15},
+                                Maker{kFigure, 3, "figure-3.16", Provenance::recomputed, figure_3_16},
+                                Maker{kFigure, 3, "figure-3.17", Provenance::simulated, figure_3_17}};
 
 }  // namespace
 

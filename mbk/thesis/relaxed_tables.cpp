@@ -50,12 +50,11 @@ ReproducedRow impedance_row(const TaskResult& result) {
 
 }  // namespace
 
-Result<void> add_impedances(Workbench& bench, Task task, const char* id, const char* title, Exhibit& exhibit) {
+Result<void> add_impedances(Workbench& bench, Task task, const char* id, Draft& exhibit) {
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
   ReproducedTable table;
   table.id = id;
-  table.title = title;
   table.provenance = Provenance::simulated;
   table.what_rows_are = "participant";
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
@@ -76,29 +75,19 @@ Result<void> add_impedances(Workbench& bench, Task task, const char* id, const c
 
 namespace {
 
-Result<void> table_3_2(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "The body of this table is lost. Ours are six simulated participants, whose relaxed arms were rebuilt from "
-      "tables "
-      "3.3 and 3.5, so that their impedance is that of the source's participants up to its rounding and to the "
-      "antisymmetric parts, which cannot be had. Four trials each, identified by the published procedure, sample for "
-      "sample; x₀ is in the robot's frame."};
+Result<void> table_3_2(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.3", "figure-3.11"};
-  return add_impedances(bench, Task::relaxed_sinusoidal, "3.2", "Relaxed arm, sinusoidal perturbations", exhibit);
+  return add_impedances(bench, Task::relaxed_sinusoidal, "3.2", exhibit);
 }
 
-Result<void> table_3_4(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "The body of this table is lost. The parameters are from all sixteen pulses, the VAF from eight against "
-      "eight, as in the source."};
+Result<void> table_3_4(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.5", "figure-3.16"};
-  return add_impedances(bench, Task::relaxed_underdamped, "3.4", "Relaxed arm, underdamped perturbations", exhibit);
+  return add_impedances(bench, Task::relaxed_underdamped, "3.4", exhibit);
 }
 
-ReproducedTable ellipse_table(const char* id, const char* title, Provenance provenance) {
+ReproducedTable ellipse_table(const char* id, Provenance provenance) {
   ReproducedTable table;
   table.id = id;
-  table.title = title;
   table.provenance = provenance;
   table.what_rows_are = "participant";
   constexpr std::array<const char*, 3> kAreas = {"kg²", "N²s²/m²", "N²/m²"};
@@ -145,49 +134,37 @@ ReproducedRow measured_row(const TaskResult& result) {
 }
 
 Result<void> ellipse_exhibit(Workbench& bench, Task task, const std::vector<PrintedArm>& arms, const char* id,
-                             Exhibit& exhibit) {
-  exhibit.text = {
-      "A, R and θ of matrices that the source does not print. First, the symmetric parts of M, B and K rebuilt from "
-      "the "
-      "printed A, R and θ (λ_max = √(A R/π), λ_min = √(A/(π R))), through (3.14) to (3.17) as corrected: they must "
-      "come "
-      "back. They are the arms of the simulated participants.",
-      "Second, those participants measured: four trials each, by the published procedure. What they are off by is the "
-      "error of the procedure on a robot with friction, and chance."};
+                             Draft& exhibit) {
   exhibit.commands = {
       fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk measure p1.h5 --mode reference --handle-mass {} --json "
                   "--out p1.json && "
                   "mbk ellipse p1.json      # the first trial of P1",
                   scenario_of(task), bench.seed(1, 1), kHandleMass)};
-  exhibit.tables.push_back(ellipse_table(id, "Rebuilt from the printed numbers, and back", Provenance::recomputed));
+  exhibit.tables.push_back(ellipse_table(id, Provenance::recomputed));
   for (const PrintedArm& arm : arms) exhibit.tables.back().rows.push_back(rebuilt_row(arm));
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
-  exhibit.tables.push_back(ellipse_table(id, "Simulated participants, measured", Provenance::simulated));
+  exhibit.tables.push_back(ellipse_table(id, Provenance::simulated));
   exhibit.tables.back().spread_is = fmt::format("standard error over {} trials", kTrials);
   for (const TaskResult& result : **results) exhibit.tables.back().rows.push_back(measured_row(result));
   return {};
 }
 
-Result<void> table_3_3(Workbench& bench, Exhibit& exhibit) {
+Result<void> table_3_3(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.2", "figure-3.10", "figure-3.11", "slip-6"};
   return ellipse_exhibit(bench, Task::relaxed_sinusoidal, bench.given().sinusoidal, "3.3", exhibit);
 }
 
-Result<void> table_3_5(Workbench& bench, Exhibit& exhibit) {
+Result<void> table_3_5(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.4", "figure-3.16"};
   return ellipse_exhibit(bench, Task::relaxed_underdamped, bench.given().underdamped, "3.5", exhibit);
 }
 
 constexpr std::array kMakers = {
-    Maker{Exhibit::Kind::table, 3, "table-3.2", "Impedance of the relaxed arm, sinusoidal perturbations",
-          Provenance::simulated, table_3_2},
-    Maker{Exhibit::Kind::table, 3, "table-3.3", "Ellipses of the relaxed arm, sinusoidal perturbations",
-          Provenance::recomputed, table_3_3},
-    Maker{Exhibit::Kind::table, 3, "table-3.4", "Impedance of the relaxed arm, underdamped perturbations",
-          Provenance::simulated, table_3_4},
-    Maker{Exhibit::Kind::table, 3, "table-3.5", "Ellipses of the relaxed arm, underdamped perturbations",
-          Provenance::recomputed, table_3_5},
+    Maker{Exhibit::Kind::table, 3, "table-3.2", Provenance::simulated, table_3_2},
+    Maker{Exhibit::Kind::table, 3, "table-3.3", Provenance::recomputed, table_3_3},
+    Maker{Exhibit::Kind::table, 3, "table-3.4", Provenance::simulated, table_3_4},
+    Maker{Exhibit::Kind::table, 3, "table-3.5", Provenance::recomputed, table_3_5},
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mbk/simulate/laboratory/scenario.h"
 #include "mbk/thesis/exhibits.h"
 
 namespace mbk::thesis {
@@ -33,17 +34,35 @@ Result<std::vector<Maker>> chosen(const std::vector<std::string>& only) {
   return makers;
 }
 
+/// Read once.
+const Result<std::vector<ExhibitText>>& texts() {
+  static const Result<std::vector<ExhibitText>> all = read_text(text_files());
+  return all;
+}
+
+/// nullptr where it has none.
+const ExhibitText* text_of(std::string_view id) {
+  if (!texts()) return nullptr;
+  const auto found = std::ranges::find(*texts(), id, &ExhibitText::id);
+  return found == texts()->end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 std::vector<ExhibitName> exhibit_names() {
   std::vector<ExhibitName> names;
-  for (const Maker& maker : all_makers()) names.push_back({maker.id, maker.title});
+  for (const Maker& maker : all_makers()) {
+    const ExhibitText* text = text_of(maker.id);
+    names.push_back({maker.id, text == nullptr ? "" : std::string_view(text->title)});
+  }
   return names;
 }
 
 Result<Reproduction> reproduce(const Source& source, const ReproduceOptions& options) {
   const auto makers = chosen(options.only);
   if (!makers) return tl::unexpected(makers.error());
+  if (!texts()) return tl::unexpected(texts().error());
+  const TextValues common = {{"tuned_gains", laboratory::kTunedGains}};
   Workbench bench(source.given, {options.seed, options.threads});
   Reproduction reproduction;
   reproduction.source = source.name;
@@ -51,13 +70,15 @@ Result<Reproduction> reproduce(const Source& source, const ReproduceOptions& opt
     if (options.progress) {
       options.progress(static_cast<int>(reproduction.exhibits.size()), static_cast<int>(makers->size()), maker.id);
     }
-    Exhibit exhibit;
+    const ExhibitText* text = text_of(maker.id);
+    if (text == nullptr) return bad_data("there is no text of it", "", maker.id);
+    Draft exhibit;
     exhibit.id = maker.id;
-    exhibit.title = maker.title;
     exhibit.kind = maker.kind;
     exhibit.chapter = maker.chapter;
     exhibit.provenance = maker.provenance;
     if (auto ok = maker.make(bench, exhibit); !ok) return tl::unexpected(ok.error().in(maker.id));
+    if (auto ok = put_text(*text, common, exhibit); !ok) return tl::unexpected(ok.error().in(maker.id));
     exhibit.commands.insert(exhibit.commands.begin(), fmt::format("mbk reproduce --only {} --out folder", maker.id));
     compare(source, exhibit);
     reproduction.exhibits.push_back(std::move(exhibit));

@@ -83,10 +83,9 @@ std::vector<ReproducedCell> field_cells(const Eigen::Matrix2d& K, const Eigen::V
           cell(kMillimetres * x0[1])};
 }
 
-ReproducedTable rig_table(const char* id, const char* title, bool places = true) {
+ReproducedTable rig_table(const char* id, bool places = true) {
   ReproducedTable table;
   table.id = id;
-  table.title = title;
   table.provenance = Provenance::simulated;
   table.what_rows_are = "rig";
   if (places) {
@@ -98,7 +97,7 @@ ReproducedTable rig_table(const char* id, const char* title, bool places = true)
 
 /// K and x₀ from forces on a grid, as the source found its own.
 ReproducedTable grid_table(const char* id, const std::vector<Rig>& rigs) {
-  ReproducedTable table = rig_table(id, "The same springs by the published procedure, forces on a grid of 0.15 mm");
+  ReproducedTable table = rig_table(id);
   for (const Rig& rig : rigs)
     table.rows.push_back({rig.name, field_cells(rig.field.grid->K, rig.field.grid->equilibrium)});
   return table;
@@ -106,7 +105,7 @@ ReproducedTable grid_table(const char* id, const std::vector<Rig>& rigs) {
 
 /// What a linear model leaves out.
 ReproducedTable straightness_table(const char* id, const std::vector<Rig>& rigs) {
-  ReproducedTable table = rig_table(id, "How straight the force is within 25 mm of rest", false);
+  ReproducedTable table = rig_table(id, false);
   table.columns = {{"springs", "", 0},
                    {"largest force", "N", 2},
                    {"largest deviation from K (x − x₀)", "N", 3},
@@ -122,21 +121,13 @@ ReproducedTable straightness_table(const char* id, const std::vector<Rig>& rigs)
   return table;
 }
 
-constexpr const char* kNotPublished =
-    "The table cannot be had from what it came from: the constants, the rest lengths and the places of its springs "
-    "were never published. Ours are springs that mbk found by itself, with constants and lengths that can be bought, "
-    "in the published frame, so that stiffness and equilibrium at rest are those of the table (mbk springs find). What "
-    "is shown is the field of those springs, rounded as they stand in the ready scenario: K = −∂F/∂x where the force "
-    "is zero. They are one of many answers; the source's own may bend more or less over the motion.";
-
-Result<void> table_3_1(Workbench& /*bench*/, Exhibit& exhibit) {
+Result<void> table_3_1(Workbench& /*bench*/, Draft& exhibit) {
   const auto rigs = rigs_3_1();
   if (!rigs) return tl::unexpected(rigs.error());
-  exhibit.text = {kNotPublished, "The masses are weights on a balance: ours are as printed."};
   exhibit.commands = {"mbk springs field rig_springs_table_3_1 --trial config_1 --grid-step 0.15 --radius 25",
                       "mbk springs find --disc --stiffness 443.86,232.34,16.74 --at 393:-55"};
   exhibit.related = {"figure-3.8", "table-5.1"};
-  ReproducedTable table = rig_table("3.1", "Stiffness, equilibrium and mass of the rigs, of reconstructed springs");
+  ReproducedTable table = rig_table("3.1");
   table.columns.push_back({"m", "kg", 3});
   for (const Rig& rig : *rigs) {
     ReproducedRow row{rig.name, field_cells(rig.field.K, rig.field.equilibrium)};
@@ -147,20 +138,18 @@ Result<void> table_3_1(Workbench& /*bench*/, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> table_5_1(Workbench& /*bench*/, Exhibit& exhibit) {
+Result<void> table_5_1(Workbench& /*bench*/, Draft& exhibit) {
   const auto stiffnesses = rigs_5_1(true), masses = rigs_5_1(false);
   if (!stiffnesses) return tl::unexpected(stiffnesses.error());
   if (!masses) return tl::unexpected(masses.error());
-  exhibit.text = {kNotPublished,
-                  "Five arrays by five payloads make twenty-five rigs, on which tables 5.4 and 5.5 rest."};
   exhibit.commands = {"mbk springs field rig_springs_table_5_1 --trial K5_M5 --grid-step 0.15 --radius 25",
                       "mbk springs find --disc --stiffness 373.81,377.10,73.16 --at 332:-61"};
   exhibit.related = {"table-3.1", "table-5.3", "table-5.4"};
-  ReproducedTable stiffness = rig_table("5.1 stiffness", "Stiffness and equilibrium, of reconstructed springs");
+  ReproducedTable stiffness = rig_table("5.1 stiffness");
   for (const Rig& rig : *stiffnesses) {
     stiffness.rows.push_back({rig.name, field_cells(rig.field.K, rig.field.equilibrium)});
   }
-  ReproducedTable mass = rig_table("5.1 mass", "Payloads", false);
+  ReproducedTable mass = rig_table("5.1 mass", false);
   mass.columns = {{"m", "kg", 3}};
   for (const Rig& rig : *masses) mass.rows.push_back({rig.name, {cell(rig.mass)}});
   exhibit.tables = {std::move(stiffness), std::move(mass), grid_table("5.1 by grid", *stiffnesses),
@@ -193,7 +182,7 @@ ReproducedCell with_error(double value, double standard_error) {
 }
 
 ReproducedTable identified_table(const std::vector<Rig>& rigs, const Identifications& found) {
-  ReproducedTable table = rig_table("3.8", "Identified by the published procedure, one trial of sixteen pulses each");
+  ReproducedTable table = rig_table("3.8");
   table.spread_is = "standard error";
   table.columns.push_back({"m", "kg", 3});
   table.columns.push_back({"VAF x", "%", 2});
@@ -212,7 +201,7 @@ ReproducedTable identified_table(const std::vector<Rig>& rigs, const Identificat
 
 /// Identified − theoretical, both of ours.
 ReproducedTable error_table(const std::vector<Rig>& rigs, const Identifications& found) {
-  ReproducedTable table = rig_table("3.8 errors", "Identified − theoretical, both ours");
+  ReproducedTable table = rig_table("3.8 errors");
   table.columns[3].decimals = table.columns[4].decimals = 3;
   table.columns.push_back({"m", "kg", 4});
   for (std::size_t i = 0; i < rigs.size(); ++i) {
@@ -235,10 +224,9 @@ ReproducedTable claims_3_8(const std::vector<Rig>& rigs, const Identifications& 
     heavier += model.M(0, 0) > rigs[i].mass ? 1 : 0;
   }
   const auto all = rigs.size();
-  add_claim(table, "identified x₀ from the theoretical", "always within 21 mm",
-            fmt::format("at most {:.2f} mm", kMillimetres * furthest));
-  add_claim(table, "k_yy overestimated", "always, slightly", fmt::format("{} of {}", stiffer, all));
-  add_claim(table, "m overestimated", "always, slightly", fmt::format("{} of {}", heavier, all));
+  add_claim(table, "identified x₀ from the theoretical", fmt::format("at most {:.2f} mm", kMillimetres * furthest));
+  add_claim(table, "k_yy overestimated", fmt::format("{} of {}", stiffer, all));
+  add_claim(table, "m overestimated", fmt::format("{} of {}", heavier, all));
   return table;
 }
 
@@ -290,7 +278,7 @@ ReproducedRow mean_errors(const char* name, const std::vector<Rig>& rigs, const 
 Result<ReproducedTable> cause_table(Workbench& bench, const std::vector<Rig>& rigs, const Identifications& found) {
   const auto scenarios = validation::ready("rig_table_3_1");
   if (!scenarios) return tl::unexpected(scenarios.error());
-  ReproducedTable table = rig_table("3.8 causes", "Identified − theoretical, mean over the six rigs", false);
+  ReproducedTable table = rig_table("3.8 causes", false);
   table.what_rows_are = "what is simulated";
   table.spread_is = "standard deviation over the rigs";
   table.columns.assign(kStiffnessColumns.begin(), kStiffnessColumns.end());
@@ -320,24 +308,13 @@ ChartSeries series_of(const char* name, const std::vector<Rig>& rigs, const Iden
   return series;
 }
 
-Result<void> figure_3_8(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_3_8(Workbench& bench, Draft& exhibit) {
   const auto rigs = rigs_3_1();
   if (!rigs) return tl::unexpected(rigs.error());
   const auto found = identify_all(bench, *rigs);
   if (!found) return tl::unexpected(found.error());
   auto causes = cause_table(bench, *rigs, *found);
   if (!causes) return tl::unexpected(causes.error());
-  exhibit.text = {
-      "Mass and stiffness of the six rigs of table 3.1 under pulses of 5 mm, identified by the published procedure "
-      "with M = m I, no damping and a symmetric K, against what they are. The points of the source's figure cannot be "
-      "had; ours are the reconstructed springs on the simulated robot, with a damper of 1 N·s/m that the model leaves "
-      "out.",
-      "The source finds k_yy and m always slightly too large and suspects unmodelled dynamics, friction above all, and "
-      "spring constants that were measured with bending hooks. Ours shows the same sign, smaller: m is too large for "
-      "every rig, by a gram or two, and this is the damper, for linear fields without one have no such error. The "
-      "stiffness errs both ways by a few newtons per metre, mostly upwards in y: the springs' field bends, and the "
-      "disc turns with the last link and winds the springs around the hand. Our spring constants are known and our "
-      "load cell is right, so equilibria agree far better than the 21 mm of the source, which cannot be traced."};
   exhibit.commands = {fmt::format("mbk simulate rig_springs_table_3_1 --trial config_1{} --out rig.h5 && mbk measure "
                                   "rig_config_1.h5 --mode reference --structure mass-spring --parameters-from all",
                                   seed_option(bench, rigs->front().scenario)),
@@ -345,7 +322,7 @@ Result<void> figure_3_8(Workbench& bench, Exhibit& exhibit) {
   exhibit.related = {"table-3.1", "figure-5.4"};
   exhibit.tables = {identified_table(*rigs, *found), error_table(*rigs, *found), claims_3_8(*rigs, *found),
                     std::move(*causes)};
-  Chart stiffness = validation::identified_against_true("Stiffness of the rigs under pulses of 5 mm", "N/m");
+  Chart stiffness = validation::identified_against_true("", "N/m");
   stiffness.x.label = "theoretical stiffness";
   stiffness.y.label = "identified stiffness";
   stiffness.series = {series_of(
@@ -357,25 +334,19 @@ Result<void> figure_3_8(Workbench& bench, Exhibit& exhibit) {
                       series_of(
                           "k_s", *rigs, *found, [](const Rig& rig) { return rig.field.K(0, 1); },
                           [](const impedance::Model& model) { return model.K(0, 1); })};
-  Chart mass = validation::identified_against_true("Mass of the rigs under pulses of 5 mm", "kg");
+  Chart mass = validation::identified_against_true("", "kg");
   mass.x.label = "theoretical mass";
   mass.y.label = "identified mass";
   mass.series = {series_of(
       "m", *rigs, *found, [](const Rig& rig) { return rig.mass; },
       [](const impedance::Model& model) { return model.M(0, 0); })};
-  for (Chart* chart : {&stiffness, &mass}) {
-    chart->notes = {"Intervals are 95 %, mostly smaller than the marks."};
-    exhibit.charts.push_back(std::move(*chart));
-  }
+  exhibit.charts = {std::move(stiffness), std::move(mass)};
   return {};
 }
 
-constexpr std::array kMakers = {
-    Maker{Exhibit::Kind::table, 3, "table-3.1", "Rigs of springs and payloads, chapter 3", Provenance::simulated,
-          table_3_1},
-    Maker{Exhibit::Kind::figure, 3, "figure-3.8", "Rigs identified under pulses", Provenance::simulated, figure_3_8},
-    Maker{Exhibit::Kind::table, 5, "table-5.1", "Rigs of springs and payloads, chapter 5", Provenance::simulated,
-          table_5_1}};
+constexpr std::array kMakers = {Maker{Exhibit::Kind::table, 3, "table-3.1", Provenance::simulated, table_3_1},
+                                Maker{Exhibit::Kind::figure, 3, "figure-3.8", Provenance::simulated, figure_3_8},
+                                Maker{Exhibit::Kind::table, 5, "table-5.1", Provenance::simulated, table_5_1}};
 
 }  // namespace
 

@@ -17,11 +17,7 @@
 namespace mbk::thesis {
 namespace {
 
-Result<void> figure_4_1(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "Twenty seconds of pulses and ten of sines, as recorded, of the first trial of P1, with the force that "
-      "the robot was commanded to exert.",
-      tuned_gains_note()};
+Result<void> figure_4_1(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"figure-3.4"};
   for (const auto& [task, from, to] :
        {std::tuple{Task::rigid_underdamped, 16.0, 36.0}, std::tuple{Task::rigid_sinusoidal, 20.0, 30.0}}) {
@@ -36,7 +32,7 @@ Result<void> figure_4_1(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> energy_figure(Workbench& bench, Task task, Exhibit& exhibit) {
+Result<void> energy_figure(Workbench& bench, Task task, Draft& exhibit) {
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
   exhibit.charts = {energy_chart(**results)};
@@ -47,20 +43,18 @@ Result<void> energy_figure(Workbench& bench, Task task, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> figure_4_3(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {"It falls: against small pulses the arm generates energy, whoever's arm it is.", tuned_gains_note()};
+Result<void> figure_4_3(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3", "table-4.5", "figure-4.5"};
   return energy_figure(bench, Task::rigid_underdamped, exhibit);
 }
 
-Result<void> figure_4_4(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {"It rises: the same participants absorb where no instant is left to answer to.", tuned_gains_note()};
+Result<void> figure_4_4(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3", "figure-4.3"};
   return energy_figure(bench, Task::rigid_sinusoidal, exhibit);
 }
 
 /// Energy and distance from where it began, of one pulse, from half a second before its onset on.
-void add_pulse(const std::string& what, const Recording& recording, const Energy& energy, Exhibit& exhibit) {
+void add_pulse(const Recording& recording, const Energy& energy, Draft& exhibit) {
   constexpr double kBefore = 0.2, kAfter = 1.5;  // [s]
   // The pulse whose energy is in the middle of all.
   std::vector<const EnergyPart*> parts;
@@ -82,23 +76,18 @@ void add_pulse(const std::string& what, const Recording& recording, const Energy
   }
   absorbed.array() -= absorbed[onset];
   const Vector distance = (place.rowwise() - place.row(onset)).rowwise().norm();
-  Chart joules = over_time(what + ": energy absorbed since the onset", {"energy absorbed", "J"});
+  Chart joules = over_time({"energy absorbed", "J"});
   joules.series = {line("energy", time, absorbed)};
   joules.horizontal = {{0.0, "as at the onset"}};
   joules.vertical = {{0.0, "onset"}};
-  Chart millimetres = over_time(what + ": distance from where the hand was", {"distance", "mm"});
+  Chart millimetres = over_time({"distance", "mm"});
   millimetres.series = {line("distance", time, 1e3 * distance)};
   millimetres.vertical = {{0.0, "onset"}};
   exhibit.charts.push_back(std::move(joules));
   exhibit.charts.push_back(std::move(millimetres));
 }
 
-Result<void> figure_4_5(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "The pulse with the median energy of P1's first trial, relaxed, rigid at 2 N, and rigid at 8 N. The rigid arm "
-      "absorbs while it is pushed away, before it can react, and generates on the way back. At 2 N it gives back more "
-      "than it took, at 8 N less. The two rigid trials differ in the amplitude alone.",
-      tuned_gains_note()};
+Result<void> figure_4_5(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"figure-4.3", "future-work-3"};
   exhibit.commands = {fmt::format(
       "mbk simulate rigid_underdamped_8N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {} --json",
@@ -114,37 +103,30 @@ Result<void> figure_4_5(Workbench& bench, Exhibit& exhibit) {
   if (!strong) return tl::unexpected(strong.error());
   const auto measured = measurement::measure({&strong->recording, 1}, {});
   if (!measured) return tl::unexpected(measured.error());
-  const auto add = [&](const char* what, const TaskResult& result) {
-    add_pulse(what, result.first, result.trials.front().energy, exhibit);
-  };
-  add("(a) relaxed", (*relaxed)->front());
-  add("(b) rigid, 2 N", (*rigid)->front());
-  add_pulse("(c) rigid, 8 N", strong->recording, measured->energies.front(), exhibit);
+  const auto add = [&](const TaskResult& result) { add_pulse(result.first, result.trials.front().energy, exhibit); };
+  add((*relaxed)->front());
+  add((*rigid)->front());
+  add_pulse(strong->recording, measured->energies.front(), exhibit);
   return {};
 }
 
-Result<void> figure_4_6(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_4_6(Workbench& bench, Draft& exhibit) {
   const auto grasps = bench.one_axis_grasps();
   if (!grasps) return tl::unexpected(grasps.error());
-  exhibit.text = {"Thirty seconds of the first trial along the y axis.", tuned_gains_note()};
   exhibit.related = {"table-4.4", "figure-4.7"};
   exhibit.commands = {"mbk simulate one_axis_random_binary --out binary.h5"};
   exhibit.charts = signal_charts("one axis", (*grasps)->front().recording, 12.0, 42.0, 1);
   return {};
 }
 
-Result<void> figure_4_7(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_4_7(Workbench& bench, Draft& exhibit) {
   const auto grasps = bench.one_axis_grasps();
   if (!grasps) return tl::unexpected(grasps.error());
   const OneAxisGrasp& first = (*grasps)->front();
-  exhibit.text = {
-      fmt::format("The last 10 s of the first trial, which the model has not seen: measured, and by a model of "
-                  "four poles and three zeros from the measured motion. VAF {:.1f} %.",
-                  first.vaf),
-      tuned_gains_note()};
+  exhibit.values = {{"vaf", first.vaf}};
   exhibit.related = {"table-4.4"};
   exhibit.commands = {"mbk validate one-dimensional --charts charts"};
-  Chart chart = over_time("Force along one axis", {"force of the hand on the robot", "N"});
+  Chart chart = over_time({"force of the hand on the robot", "N"});
   chart.series = {line("measured", first.output.time, first.output.measured),
                   line("model", first.output.time, first.output.modelled)};
   exhibit.charts = {std::move(chart)};
@@ -152,11 +134,10 @@ Result<void> figure_4_7(Workbench& bench, Exhibit& exhibit) {
 }
 
 /// The curve Z(jω) in the plane of Re and Im, from `low` to `high` Hz.
-Chart nyquist(const char* title, const char* border, double at, double low, double high,
+Chart nyquist(const char* border, double at, double low, double high,
               const std::function<std::complex<double>(std::complex<double>)>& Z) {
   constexpr int kPoints = 400;
   Chart chart;
-  chart.title = title;
   chart.x = {"Re Z(jω)", "N·s/m"};
   chart.y = {"Im Z(jω)", "N·s/m"};
   Vector re(kPoints), im(kPoints);
@@ -172,7 +153,7 @@ Chart nyquist(const char* title, const char* border, double at, double low, doub
   return chart;
 }
 
-Result<void> figure_4_8(Workbench& bench, Exhibit& exhibit) {
+Result<void> figure_4_8(Workbench& bench, Draft& exhibit) {
   // P1 along y: the arm, and the same with a delayed correction of its place, k g e^(−sT)/s, as a rigid grasp has it.
   const auto& ellipses = bench.given().sinusoidal.front().ellipses;
   const double m = symmetric_matrix(ellipses[0])(1, 1), b = symmetric_matrix(ellipses[1])(1, 1),
@@ -188,34 +169,21 @@ Result<void> figure_4_8(Workbench& bench, Exhibit& exhibit) {
   for (double omega = 0.1; omega < 60.0; omega += 0.001) {
     shortage = std::max(shortage, -corrected({0.0, omega}).real());
   }
-  exhibit.text = {
-      fmt::format(
-          "Three one-axis impedances made of P1's numbers along y (m = {:.2f} kg, b = {:.1f} N·s/m, k = {:.0f} "
-          "N/m, rebuilt from table 3.3): a damper behind a spring, which is passive and no more; the arm itself, "
-          "Re Z = b at every frequency, an excess of b; and the arm with a correction of its place that comes "
-          "{:g} s late, whose real part falls to −{:.1f} N·s/m as the frequency goes to 0: that is its shortage.",
-          m, b, k, kDelay, shortage),
-      "The linear correction stands for the participant's controller, which is not linear; only its delay is taken "
-      "over."};
+  exhibit.values = {{"m", m}, {"b", b}, {"k", k}, {"delay", kDelay}, {"shortage", shortage}};
   exhibit.related = {"table-3.6", "table-4.5"};
-  exhibit.charts = {nyquist("(a) passive", "passive to the right", 0.0, 0.01, 20.0, behind_spring),
-                    nyquist("(b) an excess of passivity δ", "δ", b, 0.5, 6.0, relaxed),
-                    nyquist("(c) a shortage of passivity λ", "−λ", -shortage, 0.2, 6.0, corrected)};
+  exhibit.charts = {nyquist("passive to the right", 0.0, 0.01, 20.0, behind_spring), nyquist("δ", b, 0.5, 6.0, relaxed),
+                    nyquist("−λ", -shortage, 0.2, 6.0, corrected)};
   return {};
 }
 
 constexpr auto kFigure = Exhibit::Kind::figure;
-constexpr std::array kMakers = {
-    Maker{kFigure, 4, "figure-4.1", "Typical signals of the rigid arm", Provenance::simulated, figure_4_1},
-    Maker{kFigure, 4, "figure-4.3", "Energy of rigid arms, underdamped perturbations", Provenance::simulated,
-          figure_4_3},
-    Maker{kFigure, 4, "figure-4.4", "Energy of rigid arms, sinusoidal perturbations", Provenance::simulated,
-          figure_4_4},
-    Maker{kFigure, 4, "figure-4.5", "Energy in one pulse: relaxed, 2 N, 8 N", Provenance::simulated, figure_4_5},
-    Maker{kFigure, 4, "figure-4.6", "Typical signals along one axis", Provenance::simulated, figure_4_6},
-    Maker{kFigure, 4, "figure-4.7", "Force along one axis, measured and by a model", Provenance::simulated, figure_4_7},
-    Maker{kFigure, 4, "figure-4.8", "Where Nyquist curves run: passive, with an excess, with a shortage",
-          Provenance::recomputed, figure_4_8}};
+constexpr std::array kMakers = {Maker{kFigure, 4, "figure-4.1", Provenance::simulated, figure_4_1},
+                                Maker{kFigure, 4, "figure-4.3", Provenance::simulated, figure_4_3},
+                                Maker{kFigure, 4, "figure-4.4", Provenance::simulated, figure_4_4},
+                                Maker{kFigure, 4, "figure-4.5", Provenance::simulated, figure_4_5},
+                                Maker{kFigure, 4, "figure-4.6", Provenance::simulated, figure_4_6},
+                                Maker{kFigure, 4, "figure-4.7", Provenance::simulated, figure_4_7},
+                                Maker{kFigure, 4, "figure-4.8", Provenance::recomputed, figure_4_8}};
 
 }  // namespace
 

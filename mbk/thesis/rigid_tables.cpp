@@ -11,27 +11,14 @@
 namespace mbk::thesis {
 namespace {
 
-Result<void> table_4_1(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "The body of this table is lost. Ours are the six simulated participants, holding the hand at the test location "
-      "against pulses of 2 N. As in the source, no model explains half of the force, and its numbers scatter from "
-      "trial "
-      "to trial: the participant's own corrections are no impedance. Judge by the energy instead (figure 4.3).",
-      tuned_gains_note()};
+Result<void> table_4_1(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3", "figure-4.3"};
-  return add_impedances(bench, Task::rigid_underdamped, "4.1", "Rigid arm, underdamped force perturbations", exhibit);
+  return add_impedances(bench, Task::rigid_underdamped, "4.1", exhibit);
 }
 
-Result<void> table_4_2(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = {
-      "The body of this table is lost; its text says VAF from 62.9 to 80.4 %, and that the models were active. Which "
-      "three "
-      "participants did it is not said; ours are P1, P4 and P5. Least squares finds them active here too, because it "
-      "is "
-      "drawn towards minus the robot's impedance: see table 4.3.",
-      tuned_gains_note()};
+Result<void> table_4_2(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3", "figure-4.4"};
-  return add_impedances(bench, Task::rigid_sinusoidal, "4.2", "Rigid arm, sinusoidal force perturbations", exhibit);
+  return add_impedances(bench, Task::rigid_sinusoidal, "4.2", exhibit);
 }
 
 /// "passive in 24 of 24"
@@ -100,7 +87,7 @@ void add_bias_rows(const TaskResult& result, ReproducedTable& table) {
   table.rows.push_back(std::move(energy));
 }
 
-Result<void> table_4_3(Workbench& bench, Exhibit& exhibit) {
+Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
   const auto relaxed_sines = bench.results(Task::relaxed_sinusoidal);
   if (!relaxed_sines) return tl::unexpected(relaxed_sines.error());
   const auto relaxed_pulses = bench.results(Task::relaxed_underdamped);
@@ -110,21 +97,6 @@ Result<void> table_4_3(Workbench& bench, Exhibit& exhibit) {
   const auto rigid_pulses = bench.results(Task::rigid_underdamped);
   if (!rigid_pulses) return tl::unexpected(rigid_pulses.error());
 
-  exhibit.text = {
-      "Trial by trial, by theorem 3.2 as the source applied it (estimates of the published procedure, symmetric parts) "
-      "and by the sign of the energy at the end. In the cell of rigid grasping under sines the source has model and "
-      "energy contradict each other, and puts it down to limited model validity.",
-      "The second table shows the mechanism. In a closed loop in which the person adds noise of their own, least "
-      "squares "
-      "tends to (Z_h S_uu − Z_r S_ww)/(S_uu + S_ww), Z_h the limb, Z_r the robot, u the drive, w the person's force: "
-      "it "
-      "is drawn towards minus the robot's impedance, whose inertia is large. Instrumental variables from the known "
-      "commanded force are not, and find the passive limb that the energy says is there. What they still miss is the "
-      "participant's own answer to the perturbation.",
-      "Under 2 N pulses the participant answers each pulse itself: no instrument is valid, no model explains half of "
-      "the "
-      "force, and the energy decides: active.",
-      tuned_gains_note()};
   exhibit.related = {"table-4.1", "table-4.2", "figure-4.3", "figure-4.4"};
   exhibit.commands = {
       fmt::format("mbk simulate rigid_sinusoidal_6N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}",
@@ -133,7 +105,6 @@ Result<void> table_4_3(Workbench& bench, Exhibit& exhibit) {
 
   ReproducedTable verdicts;
   verdicts.id = "4.3";
-  verdicts.title = "Passivity by model and by energy";
   verdicts.provenance = Provenance::simulated;
   verdicts.what_rows_are = "task, approach";
   verdicts.columns = {{"sinusoidal", "", 0}, {"underdamped", "", 0}};
@@ -146,7 +117,6 @@ Result<void> table_4_3(Workbench& bench, Exhibit& exhibit) {
 
   ReproducedTable bias;
   bias.id = "4.3 mechanism";
-  bias.title = "Rigid arm under sines, four trials in one fit: eigenvalues of the symmetric parts";
   bias.provenance = Provenance::simulated;
   bias.what_rows_are = "participant, method";
   for (const auto& [name, unit] : {std::pair{"M", "kg"}, std::pair{"B", "N·s/m"}, std::pair{"K", "N/m"}}) {
@@ -159,7 +129,6 @@ Result<void> table_4_3(Workbench& bench, Exhibit& exhibit) {
 
   ReproducedTable pulses;
   pulses.id = "4.3 pulses";
-  pulses.title = "Rigid arm under 2 N pulses, four trials in one: why the energy decides";
   pulses.provenance = Provenance::simulated;
   pulses.what_rows_are = "participant";
   pulses.columns = {{"force that the best model explains", "%", 1},
@@ -179,24 +148,13 @@ Result<void> table_4_3(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> table_4_4(Workbench& bench, Exhibit& exhibit) {
+Result<void> table_4_4(Workbench& bench, Draft& exhibit) {
   const auto trials = bench.one_axis_grasps();
   if (!trials) return tl::unexpected(trials.error());
-  exhibit.text = {
-      "Rigid grasp along the y axis alone under a random binary force of ±2 N, four poles and three zeros from place "
-      "to "
-      "force, 40 s to identify and 10 s to judge. Ours is an output-error model at 50 Hz, for in continuous time an "
-      "impedance has more zeros than poles (slip 16). As in the source the fit varies from trial to trial and is too "
-      "low "
-      "to be a model; the same arm without its controller is explained to 95 % and more (mbk validate "
-      "one-dimensional).",
-      "How long the force keeps its sign is not published: 4 s at least here, as in the last rows of that study.",
-      tuned_gains_note()};
   exhibit.related = {"figure-4.6", "figure-4.7", "slip-16"};
   exhibit.commands = {"mbk validate one-dimensional"};
   ReproducedTable table;
   table.id = "4.4";
-  table.title = "How much of the force a linear model explains";
   table.provenance = Provenance::simulated;
   table.what_rows_are = "trial";
   table.columns = {{"VAF", "%", 1}};
@@ -207,20 +165,15 @@ Result<void> table_4_4(Workbench& bench, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> table_4_5(Workbench& bench, Exhibit& exhibit) {
+Result<void> table_4_5(Workbench& bench, Draft& exhibit) {
   const auto results = bench.results(Task::rigid_underdamped);
   if (!results) return tl::unexpected(results.error());
-  exhibit.text = {
-      "The shortage of passivity λ(t) = −E(t)/∫v·v dt, from the data alone. (4.3) asks for the smallest λ that holds "
-      "up to every instant, the largest of λ(t); the source prints \"largest\" (slip 5). Mean of four trials.",
-      tuned_gains_note()};
   exhibit.related = {"figure-4.3", "slip-5"};
   exhibit.commands = {
       fmt::format("mbk simulate rigid_underdamped_2N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}",
                   bench.seed(1, 1), kHandleMass)};
   ReproducedTable table;
   table.id = "4.5";
-  table.title = "Shortage of passivity of the rigid arm";
   table.provenance = Provenance::simulated;
   table.what_rows_are = "participant";
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
@@ -238,15 +191,11 @@ Result<void> table_4_5(Workbench& bench, Exhibit& exhibit) {
 }
 
 constexpr auto kTable = Exhibit::Kind::table;
-constexpr std::array kMakers = {
-    Maker{kTable, 4, "table-4.1", "Impedance of the rigid arm, underdamped perturbations", Provenance::simulated,
-          table_4_1},
-    Maker{kTable, 4, "table-4.2", "Impedance of the rigid arm, sinusoidal perturbations", Provenance::simulated,
-          table_4_2},
-    Maker{kTable, 4, "table-4.3", "Is the arm passive, by model and by energy? And why they disagree",
-          Provenance::simulated, table_4_3},
-    Maker{kTable, 4, "table-4.4", "Linear models of the rigid arm along one axis", Provenance::simulated, table_4_4},
-    Maker{kTable, 4, "table-4.5", "Shortage of passivity of the rigid arm", Provenance::simulated, table_4_5}};
+constexpr std::array kMakers = {Maker{kTable, 4, "table-4.1", Provenance::simulated, table_4_1},
+                                Maker{kTable, 4, "table-4.2", Provenance::simulated, table_4_2},
+                                Maker{kTable, 4, "table-4.3", Provenance::simulated, table_4_3},
+                                Maker{kTable, 4, "table-4.4", Provenance::simulated, table_4_4},
+                                Maker{kTable, 4, "table-4.5", Provenance::simulated, table_4_5}};
 
 }  // namespace
 

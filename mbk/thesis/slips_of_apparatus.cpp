@@ -42,18 +42,7 @@ Matrix2d differences(const Function& function, const Vector2d& at) {
 
 }  // namespace
 
-Result<void> jacobian_in_one_column(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = account(
-      "Where: (A.3). Printed: two rows with one entry each, −d₁ sin θ₁ + d₂ cos θ₂ and d₁ cos θ₁ + d₂ sin θ₂.",
-      "Right: J = [[−d₁ sin θ₁, d₂ cos θ₂], [d₁ cos θ₁, d₂ sin θ₂]], det J = −d₁d₂ cos(θ₁ − θ₂). What is printed is "
-      "the "
-      "sum of its columns: the velocity of the hand when both joints turn at 1 rad/s.",
-      "What shows it: derivatives of the forward kinematics (A.1) by central differences, entry by entry.",
-      "What moves: nothing, if the program used the matrix; (5.2) and (5.3) need its inverse, which one column does "
-      "not "
-      "have.",
-      "Tests: Slips.JacobianIsThatOfTheKinematics; mbk/model/robot/kinematics_test.cpp, "
-      "Jacobian.AgreesWithFiniteDifferences.");
+Result<void> jacobian_in_one_column(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.commands = {"mbk robot workspace --at 300,-50      # the posture there"};
   exhibit.related = {"slip-9", "figure-A.2"};
   const robot::Geometry geometry;
@@ -62,7 +51,7 @@ Result<void> jacobian_in_one_column(Workbench& /*bench*/, Exhibit& exhibit) {
       differences([&](const Vector2d& theta) { return robot::hand_position(geometry, theta); }, kTheta);
   const Vector2d printed(-geometry.d1 * std::sin(kTheta[0]) + geometry.d2 * std::cos(kTheta[1]),
                          geometry.d1 * std::cos(kTheta[0]) + geometry.d2 * std::sin(kTheta[1]));
-  ReproducedTable table = computed_table("slip-8", "At θ = (0.4, 0.9) rad", "derivative",
+  ReproducedTable table = computed_table("slip-8", "derivative",
                                          {{"by differences", "m", 5}, {"J", "m", 5}, {"its row as printed", "m", 5}});
   for (Index row = 0; row < 2; ++row) {
     for (Index column = 0; column < 2; ++column) {
@@ -89,7 +78,6 @@ Matrix2d printed_coriolis(const robot::Inertia& inertia, const Vector2d& theta, 
 /// ½ θ̇ᵀ(İ − 2C)θ̇ over one turn of joint 1, joint 2 going to and fro.
 Chart power_chart(const robot::Inertia& inertia) {
   Chart chart;
-  chart.title = "Power that the links gain from nowhere";
   chart.x = {"time", "s"};
   chart.y = {"½ θ̇ᵀ(İ − 2C)θ̇", "W"};
   ChartSeries printed{"C as printed", {}, {}, {}, ChartSeries::Drawn::line};
@@ -114,27 +102,14 @@ Chart power_chart(const robot::Inertia& inertia) {
 
 }  // namespace
 
-Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
-  exhibit.text = account(
-      "Where: (A.6), the lower left entry of C. Printed: +½ α₂ cos(θ₁ − θ₂) θ̇₁.",
-      "Right: −½ α₂ cos(θ₁ − θ₂) θ̇₁, with I₁₂ = −½ α₂ sin(θ₁ − θ₂). Only so is İ − 2C skew, and the work of the motors "
-      "is what the links gain.",
-      "What shows it: İ by differences along a motion, and the symmetric part of İ − 2C, which has to vanish. The "
-      "chart "
-      "is the power that the links would gain from nowhere while both joints swing by 20° at 1 Hz. The second table "
-      "checks α₁ to α₃ besides: a payload at the handle adds m JᵀJ.",
-      "What moves: if the program has the printed sign, the identified α and the virtual force of table 5.3 by as much "
-      "as the Coriolis torque, which is small at 2 Hz and 10°.",
-      "Tests: Slips.CoriolisMatrixMakesInertiaRateSkew; mbk/model/robot/dynamics_test.cpp, "
-      "Coriolis.MakesTheRateOfTheInertiaLessTwiceItselfSkew.");
+Result<void> coriolis_sign(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.commands = {"mbk robot describe examples/robots/thesis.toml"};
   exhibit.related = {"slip-8", "table-A.1"};
   const robot::Inertia inertia;
   const Matrix2d I_rate =
       (inertia.matrix(kTheta + kStep * kRate) - inertia.matrix(kTheta - kStep * kRate)) / (2.0 * kStep);
-  ReproducedTable table =
-      computed_table("slip-9", "Symmetric part of N = İ − 2C at θ = (0.4, 0.9) rad, θ̇ = (1.2, −0.7) rad/s", "C",
-                     {{"N₁₁", "N·m·s", 6}, {"N₁₂ + N₂₁", "N·m·s", 6}, {"N₂₂", "N·m·s", 6}, {"½ θ̇ᵀNθ̇", "W", 6}});
+  ReproducedTable table = computed_table(
+      "slip-9", "C", {{"N₁₁", "N·m·s", 6}, {"N₁₂ + N₂₁", "N·m·s", 6}, {"N₂₂", "N·m·s", 6}, {"½ θ̇ᵀNθ̇", "W", 6}});
   for (const auto& [name, C] : {std::pair{"as printed", printed_coriolis(inertia, kTheta, kRate)},
                                 {"with −½ α₂ cos(θ₁ − θ₂) θ̇₁", inertia.coriolis(kTheta, kRate)}}) {
     const Matrix2d N = I_rate - 2.0 * C;
@@ -146,8 +121,8 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
   const Matrix2d J = robot::jacobian(geometry, kTheta);
   const Matrix2d wanted = inertia.matrix(kTheta) + kPayload * J.transpose() * J;
   const Matrix2d got = inertia.with_payload(geometry, kPayload).matrix(kTheta);
-  ReproducedTable payload = computed_table("slip-9 payload", "A payload of 1.5 kg at the handle", "entry",
-                                           {{"I + m JᵀJ", "kg·m²", 6}, {"I with the changed α", "kg·m²", 6}});
+  ReproducedTable payload =
+      computed_table("slip-9 payload", "entry", {{"I + m JᵀJ", "kg·m²", 6}, {"I with the changed α", "kg·m²", 6}});
   for (const auto& [name, row, column] : {std::tuple{"I₁₁", 0, 0}, {"I₁₂", 0, 1}, {"I₂₂", 1, 1}}) {
     payload.rows.push_back({name, {cell(wanted(row, column)), cell(got(row, column))}});
   }
@@ -156,17 +131,7 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Exhibit& exhibit) {
   return {};
 }
 
-Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = account(
-      "Where: (D.3). Printed: K is the gradient of F_ext, and its lower left entry ∂f_x/∂y.",
-      "Right: K = −grad F, as the program in appendix D has it, and the lower left entry is ∂f_y/∂x.",
-      "What shows it: four springs in the frame of appendix D, off their equilibrium, by central differences of (D.1); "
-      "and P1's arm with an antisymmetric stiffness. Springs have a potential, so that ∂f_x/∂y and ∂f_y/∂x are equal "
-      "and "
-      "only the sign is wrong; in the arm the printed entry hides the antisymmetry.",
-      "What moves: nothing that is printed.",
-      "Tests: Slips.StiffnessIsMinusTheGradient; mbk/measure/calibration/spring_array_test.cpp, "
-      "Springs.StiffnessIsMinusTheGradientOfTheForceAndSymmetric.");
+Result<void> gradient_of_springs(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk springs field --spring k=120,l=90,anchor=565:183 --spring k=120,l=90,anchor=565:-183 --spring "
       "k=150,l=80,anchor=215:0 --grid-step 0.15"};
@@ -178,9 +143,9 @@ Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
                                                        {150.0, 0.1, {-d2, -d1}, {0.0, 0.0}},
                                                        {60.0, 0.07, {d2, 0.0}, {0.0, 0.0}}});
   if (!array) return tl::unexpected(array.error());
-  const auto table_of = [](const char* id, const char* title, const Matrix2d& gradient, const Matrix2d& K) {
+  const auto table_of = [](const char* id, const Matrix2d& gradient, const Matrix2d& K) {
     ReproducedTable table =
-        computed_table(id, title, "entry", {{"K", "N/m", 2}, {"−grad F", "N/m", 2}, {"(D.3), as printed", "N/m", 2}});
+        computed_table(id, "entry", {{"K", "N/m", 2}, {"−grad F", "N/m", 2}, {"(D.3), as printed", "N/m", 2}});
     for (Index row = 0; row < 2; ++row) {
       for (Index column = 0; column < 2; ++column) {
         const double printed = row == 1 && column == 0 ? gradient(0, 1) : gradient(row, column);
@@ -198,23 +163,11 @@ Result<void> gradient_of_springs(Workbench& bench, Exhibit& exhibit) {
   K(0, 1) += k_a;
   K(1, 0) -= k_a;
   const Matrix2d of_arm = differences([&](const Vector2d& x) { return Vector2d(-K * x); }, hand);
-  exhibit.tables = {table_of("slip-10", "Four springs, the hand at (20, −30) mm", of_springs, array->stiffness(hand)),
-                    table_of("slip-10 arm", "P1's arm with the antisymmetry of figure 3.12", of_arm, K)};
+  exhibit.tables = {table_of("slip-10", of_springs, array->stiffness(hand)), table_of("slip-10 arm", of_arm, K)};
   return {};
 }
 
-Result<void> majority_of_the_workspace(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = account(
-      "Where: section A.2. Printed: each joint moves through 40°, so that the hand covers the majority of the "
-      "workspace.",
-      "Right: what two joints of 40° sweep is d₁d₂ ∫∫ |cos(θ₁ − θ₂)| dθ₁dθ₂ ≤ d₁d₂ (40°)², a small share of the area "
-      "that the limits of the joints leave.",
-      "What shows it: the outline of the workspace by the limits of (A.2) and its area, and the largest area that any "
-      "40° of both joints sweep; joint ranges that would sweep half of it.",
-      "What moves: no number. The α of table A.1 are identified in a part of the workspace; their model holds in all "
-      "of "
-      "it as far as its form does.",
-      "Tests: Slips.FortyDegreesAreAPartOfTheWorkspace; mbk/model/robot/workspace_test.cpp.");
+Result<void> majority_of_the_workspace(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {"mbk robot workspace --at 300,-50      # its area"};
   exhibit.related = {"table-A.1", "figure-A.2", "statements"};
   const robot::Geometry geometry;
@@ -224,8 +177,7 @@ Result<void> majority_of_the_workspace(Workbench& bench, Exhibit& exhibit) {
   const auto swept = [&](double range) { return geometry.d1 * geometry.d2 * 2.0 * (1.0 - std::cos(range)); };
   const double range = bench.given().number("setup", "joint range of appendix A, °") * std::numbers::pi / 180.0;
   const double half = std::acos(1.0 - 0.25 * workspace->area / (geometry.d1 * geometry.d2));
-  ReproducedTable table =
-      computed_table("slip-20", "Swept by both joints, at most", "", {{"area", "m²", 4}, {"of the workspace", "%", 1}});
+  ReproducedTable table = computed_table("slip-20", "", {{"area", "m²", 4}, {"of the workspace", "%", 1}});
   const auto add = [&](std::string name, double area) {
     table.rows.push_back({std::move(name), {cell(area), cell(100.0 * area / workspace->area)}});
   };
@@ -256,29 +208,13 @@ Result<Vector> errors_of_converter(double from, double to) {
 
 }  // namespace
 
-Result<void> gauge_and_converter(Workbench& bench, Exhibit& exhibit) {
-  exhibit.text = account(
-      "Where: (E.3), the sentence on intercepts below (E.2), and the noise. Printed: the force of (E.2) is scaled with "
-      "the lever arm; its intercept is tuned for each experiment; 0.01 N of noise on each axis.",
-      "Right: the voltage V₀ of no force has no moment, so the lever arm scales the slope alone, F = (L₀/L) · slope · "
-      "(V − V₀). The 12-bit converter over ±10 V has steps of 4.9 mV or 0.042 N: 0.01 N is a quarter of one.",
-      "What shows it: a voltage with the hand pulling at 100 mm, turned into force. With the intercept of the "
-      "calibration, "
-      "which is −slope · V₀, (E.3) is the same. With an intercept that was tuned in newtons on the scaled force, so "
-      "that "
-      "nothing reads zero, (E.3) scales it once more; with the slope scaled and the calibration's intercept kept, it "
-      "is "
-      "not scaled at all. Both are off by a constant. The readings of a slow ramp show the converter's rounding alone.",
-      "What moves: nothing that is printed, for forces were measured with a load cell and only spring constants with "
-      "this sensor, at L₀; a slope does not see an offset.",
-      "Tests: Slips.LeverArmScalesTheSlopeAlone, Slips.ConverterIsCoarserThanTheNoise; "
-      "mbk/measure/calibration/sensor_force_test.cpp, ForceFromVoltage.LeverArmScalesTheSlopeAlone.");
+Result<void> gauge_and_converter(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {"mbk sensor calibrate --help      # --lever-arm-mm, --bits, --range"};
   exhibit.related = {"figure-E.5", "statements"};
   const Given& given = bench.given();
   const double slope = given.number("setup", "slope of Fx, N/V"), offset = given.number("setup", "offset of Fx, N");
   const double L0 = given.number("setup", "lever arm L0, m"), L = 0.1;
-  ReproducedTable table = computed_table("slip-15", "Force from the voltage, the hand pulling at 100 mm", "force on x",
+  ReproducedTable table = computed_table("slip-15", "force on x",
                                          {{"voltage", "V", 3},
                                           {"(L₀/L) slope (V − V₀)", "N", 3},
                                           {"(E.3), intercept of (E.2)", "N", 3},
@@ -299,15 +235,14 @@ Result<void> gauge_and_converter(Workbench& bench, Exhibit& exhibit) {
   options.converter_bits = 0;
   auto gauge = laboratory::StrainGauge::create(options, 1e-3, 1);
   if (!gauge) return tl::unexpected(gauge.error());
-  ReproducedTable chain = computed_table("slip-15 gauge", "The simulated gauge at 100 mm, which scales the slope alone",
-                                         "force on x", {{"reading", "N", 3}});
+  ReproducedTable chain = computed_table("slip-15 gauge", "force on x", {{"reading", "N", 3}});
   for (const double force : {0.0, 5.0, -5.0}) {
     chain.rows.push_back({fmt::format("{:g} N", force), {cell(gauge->read({force, 0.0})[0] + 0.0)}});
   }
   const calibration::Converter converter;
   const auto errors = errors_of_converter(-20.0, 20.0);
   if (!errors) return tl::unexpected(errors.error());
-  ReproducedTable steps = computed_table("slip-15 converter", "Twelve bits over ±10 V", "", {{"value", "", 4}});
+  ReproducedTable steps = computed_table("slip-15 converter", "", {{"value", "", 4}});
   steps.rows = {{"step [V]", {cell(converter.step())}},
                 {"step [N]", {cell(std::abs(slope) * converter.step())}},
                 {"step/√12 [N]", {cell(std::abs(slope) * converter.step() / std::sqrt(12.0))}},
