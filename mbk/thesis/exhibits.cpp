@@ -32,6 +32,11 @@ Result<const TaskResult*> first_of(Workbench& bench, Task task) {
   return &(*results)->front();
 }
 
+std::string report_command(const Workbench& bench, Task task) {
+  return fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk measure p1.h5 --handle-mass {} --report p1.html",
+                     scenario_of(task), bench.seed(1, 1), kHandleMass);
+}
+
 std::string person(int participant) {
   return fmt::format("P{}", participant);
 }

@@ -28,6 +28,7 @@ struct Maker {
 
 // One span for each source file, in the order of the source.
 [[nodiscard]] std::span<const Maker> relaxed_tables();
+[[nodiscard]] std::span<const Maker> signal_figures();
 [[nodiscard]] std::span<const Maker> relaxed_figures();
 [[nodiscard]] std::span<const Maker> rigid_tables();
 [[nodiscard]] std::span<const Maker> rigid_figures();
@@ -70,6 +71,9 @@ inline ReproducedCell words(std::string text) {
 /// What the first participant did at a task.
 /// @fails  as Workbench::results
 [[nodiscard]] Result<const TaskResult*> first_of(Workbench& bench, Task task);
+
+/// The command that makes the first trial of P1 at a task, and its report.
+[[nodiscard]] std::string report_command(const Workbench& bench, Task task);
 
 /// "P1"
 [[nodiscard]] std::string person(int participant);

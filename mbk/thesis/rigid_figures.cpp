@@ -25,9 +25,7 @@ Result<void> figure_4_1(Workbench& bench, Draft& exhibit) {
     if (!results) return tl::unexpected(results.error());
     const auto charts = signal_charts(text(task), (*results)->front().first, from, to);
     exhibit.charts.insert(exhibit.charts.end(), charts.begin(), charts.end());
-    exhibit.commands.push_back(
-        fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk measure p1.h5 --handle-mass {} --report p1.html",
-                    scenario_of(task), bench.seed(1, 1), kHandleMass));
+    exhibit.commands.push_back(report_command(bench, task));
   }
   return {};
 }

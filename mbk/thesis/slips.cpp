@@ -1,7 +1,6 @@
 // The slips of the source, in the order of docs/theory/sources-slips.md.
 #include "mbk/thesis/slips.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,14 +33,6 @@ const PrintedArm& arm_of(const std::vector<PrintedArm>& arms, const std::string&
 double antisymmetric_stiffness(const Given& given) {
   const double share = 0.01 * given.number("setup", "antisymmetry of the stiffness of P1, %");
   return share * std::sqrt(arm_of(given.sinusoidal, "P1").ellipses[2].area.value / std::numbers::pi);
-}
-
-Vector symmetric_eigenvalues(const Matrix& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-Vector hermitian_eigenvalues(const Eigen::MatrixXcd& hermitian) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(hermitian, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 std::string yes(bool is) {

@@ -22,10 +22,6 @@ namespace mbk::thesis {
 /// k_a with the printed share of 11.5 % for P1 (Dyck 2013, fig. 3.12): z_mean √(λ_max λ_min) = z_mean √(A/π) [N/m].
 [[nodiscard]] double antisymmetric_stiffness(const Given& given);
 
-/// Eigenvalues, ascending.
-[[nodiscard]] Vector symmetric_eigenvalues(const Matrix& symmetric);
-[[nodiscard]] Vector hermitian_eigenvalues(const Eigen::MatrixXcd& hermitian);
-
 /// "yes" or "no".
 [[nodiscard]] std::string yes(bool is);
 

@@ -11,6 +11,7 @@
 
 #include "mbk/base/lti/positive_real.h"
 #include "mbk/base/lti/rational_passivity_index.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/measure/analyse/energy_blocks.h"
 #include "mbk/model/impedance/passivity_index.h"
 #include "mbk/model/robot/dynamics.h"
@@ -36,7 +37,7 @@ Result<bool> is_positive_real(const impedance::Model& model) {
 double smallest_of_hermitian_part(const impedance::Model& model, double omega) {
   const std::complex<double> s(0.0, omega);
   const Eigen::MatrixXcd Z = (model.M * s + model.B + model.K / s).eval();
-  return hermitian_eigenvalues(Z + Z.adjoint())[0];
+  return numeric::hermitian_eigenvalues(Z + Z.adjoint())[0];
 }
 
 impedance::Model with_antisymmetry(impedance::Model model, double k_a) {
@@ -205,7 +206,8 @@ Result<void> hermitian_part(Workbench& bench, Draft& exhibit) {
   const Eigen::MatrixXcd printed = Z(s) + Z(s).transpose(), right = Z(s) + Z(-s).transpose();
   for (const auto& [name, H] : {std::pair{"Z(jω) + Zᵀ(jω), as printed", &printed}, {"Z(jω) + Zᵀ(−jω)", &right}}) {
     const Eigen::MatrixXcd half = 0.5 * (*H + H->adjoint());
-    table.rows.push_back({name, {cell((*H - H->adjoint()).norm()), cell(0.5 * hermitian_eigenvalues(half)[0])}});
+    table.rows.push_back(
+        {name, {cell((*H - H->adjoint()).norm()), cell(0.5 * numeric::hermitian_eigenvalues(half)[0])}});
   }
   ReproducedTable lemma = computed_table("slip-5 lemma", "s", {{"Re Z", "N·s/m"}});
   const auto one = [&](std::complex<double> at) { return (p1.M(1, 1) * at + p1.B(1, 1) + p1.K(1, 1) / at).real(); };

@@ -11,6 +11,7 @@
 
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/passivity_index.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
@@ -390,7 +391,7 @@ Result<ReproducedTable> appendices(const Given& given, TextValues& values) {
     const Matrix Z = symmetric_matrix(arm.ellipses[2]);
     const double sum = Z(0, 0) + Z(1, 1);
     const double largest = 0.5 * (sum + std::sqrt(sum * sum + 4.0 * (Z(0, 1) * Z(0, 1) - Z(0, 0) * Z(1, 1))));
-    eigenvalues = std::max(eigenvalues, std::abs(largest / symmetric_eigenvalues(Z)[1] - 1.0));
+    eigenvalues = std::max(eigenvalues, std::abs(largest / numeric::symmetric_eigenvalues(Z)[1] - 1.0));
   }
   table.value("eigenvalue_error", eigenvalues);
   table.text("(3.14) gives the eigenvalues", yes(eigenvalues < kRounding));
