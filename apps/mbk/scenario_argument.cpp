@@ -36,11 +36,11 @@ std::vector<std::string> ready_scenario_names() {
 }
 
 Result<laboratory::Scenario> find_trial(const std::vector<laboratory::Scenario>& scenarios, const std::string& name) {
-  const auto found = std::ranges::find(scenarios, name, &laboratory::Scenario::trial_name);
+  const auto found = std::ranges::find(scenarios, name, &laboratory::Scenario::name);
   if (found != scenarios.end()) return *found;
   std::string known;
-  for (const laboratory::Scenario& one : scenarios) known += (known.empty() ? "" : ", ") + one.trial_name;
-  return bad_usage(fmt::format("there is no trial '{}' in {}", name, scenarios.front().file_name),
+  for (const laboratory::Scenario& one : scenarios) known += (known.empty() ? "" : ", ") + one.name;
+  return bad_usage(fmt::format("there is no trial '{}' in {}", name, scenarios.front().protocol),
                    known.empty() ? "it has no [[trial]]" : "there are: " + known);
 }
 

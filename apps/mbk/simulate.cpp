@@ -63,7 +63,7 @@ Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
     for (int k = 0; k < arguments.seeds; ++k) {
       Job job{scenario, {}};
       job.scenario.seed = arguments.seed.value_or(scenario.seed) + static_cast<std::uint64_t>(k);
-      job.file = file_name(arguments, scenarios->size() > 1 ? scenario.trial_name : "",
+      job.file = file_name(arguments, scenarios->size() > 1 ? scenario.name : "",
                            arguments.seeds > 1 ? std::optional(job.scenario.seed) : std::nullopt);
       jobs.push_back(std::move(job));
     }
@@ -73,7 +73,7 @@ Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
 
 /// The scenario as it was asked for, and the trial in it: where an experiment that cannot be is described.
 std::string place_of(const Arguments& arguments, const Job& job) {
-  const std::string& trial = job.scenario.trial_name;
+  const std::string& trial = job.scenario.name;
   return trial.empty() ? arguments.scenario : fmt::format("{}, trial '{}'", arguments.scenario, trial);
 }
 
@@ -127,8 +127,8 @@ int show_facts(const Arguments& arguments) {
   for (const Job& job : *jobs) {
     const auto schedule = perturbation::make_schedule(job.scenario.perturbation, job.scenario.seed);
     if (!schedule) return report_error(schedule.error().in(place_of(arguments, job)));
-    text += fmt::format("{}{}{}, seed {}\n", job.scenario.file_name, job.scenario.trial_name.empty() ? "" : " ",
-                        job.scenario.trial_name, job.scenario.seed) +
+    text += fmt::format("{}{}{}, seed {}\n", job.scenario.protocol, job.scenario.name.empty() ? "" : " ",
+                        job.scenario.name, job.scenario.seed) +
             report::schedule_text(*schedule);
   }
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());

@@ -64,7 +64,7 @@ Result<std::vector<Rig>> rigs_5_1(bool stiffnesses) {
   if (!scenarios) return tl::unexpected(scenarios.error());
   std::vector<Rig> rigs;
   for (laboratory::Scenario& scenario : *scenarios) {
-    const auto [stiffness, mass] = validation::rig_names(scenario.trial_name);
+    const auto [stiffness, mass] = validation::rig_names(scenario.name);
     if (stiffnesses ? mass != "M1" : stiffness != "K1") continue;
     auto rig = rig_of(std::move(scenario), stiffnesses ? stiffness : mass);
     if (!rig) return tl::unexpected(rig.error());
@@ -240,7 +240,7 @@ std::vector<Rig> linear_rigs(const std::vector<laboratory::Scenario>& scenarios,
     field.K = plan.stiffness;
     field.equilibrium = plan.equilibrium;
     const double mass = plan.mass;
-    rigs.push_back({scenario.trial_name, std::move(scenario), mass, std::move(field)});
+    rigs.push_back({scenario.name, std::move(scenario), mass, std::move(field)});
   }
   return rigs;
 }

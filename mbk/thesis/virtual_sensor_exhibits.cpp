@@ -59,7 +59,7 @@ Result<RigTrials> make_rig_trials(Workbench& bench) {
   if (!springs) return tl::unexpected(springs.error());
   if (!linear) return tl::unexpected(linear.error());
   std::erase_if(*linear, [](const laboratory::Scenario& scenario) {
-    return validation::rig_names(scenario.trial_name).second != "M3";
+    return validation::rig_names(scenario.name).second != "M3";
   });
   const auto count = static_cast<std::ptrdiff_t>(springs->size());
   springs->insert(springs->end(), linear->begin(), linear->end());
@@ -135,7 +135,7 @@ ReproducedTable error_table(const char* id, const Trials& trials, char letter, c
 Result<std::string> trial_seed(const Workbench& bench, const char* file, std::string_view trial) {
   const auto scenarios = validation::ready(file);
   if (!scenarios) return tl::unexpected(scenarios.error());
-  return seed_option(bench, *std::ranges::find(*scenarios, trial, &laboratory::Scenario::trial_name));
+  return seed_option(bench, *std::ranges::find(*scenarios, trial, &laboratory::Scenario::name));
 }
 
 /// What makes robot.json.
@@ -323,7 +323,7 @@ Result<void> figure_5_3(Workbench& bench, Draft& exhibit) {
   if (!robots) return tl::unexpected(robots.error());
   auto scenarios = validation::ready(kSpringRigs);
   if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario& scenario = *std::ranges::find(*scenarios, "K5_M5", &laboratory::Scenario::trial_name);
+  laboratory::Scenario& scenario = *std::ranges::find(*scenarios, "K5_M5", &laboratory::Scenario::name);
   scenario.seed = rig_seed(bench, scenario);
   const auto performance = laboratory::simulate(scenario);
   if (!performance) return tl::unexpected(performance.error());

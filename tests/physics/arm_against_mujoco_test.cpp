@@ -60,9 +60,9 @@ TEST(ArmAgainstMujoco, PutsTheHandAndAcceleratesItAlike) {
     mj_applyFT(model.get(), data.get(), at_hand, no_torque, data->site_xpos, forearm, data->qfrc_applied);
     mj_forward(model.get(), data.get());
 
-    const HandState hand = {hand_position(options.geometry, q), jacobian(options.geometry, q) * q_rate};
+    const HandState<2> hand = {hand_position(options.geometry, q), jacobian(options.geometry, q) * q_rate};
     ASSERT_LE((hand.position - Vector2d(data->site_xpos[0], data->site_xpos[1])).norm(), kRounding) << q.transpose();
-    const LoadDynamics load = arm.dynamics(hand);
+    const LoadDynamics<2> load = arm.dynamics(hand);
     const Vector2d ours = load.inertia.inverse() * (force_on_hand - load.bias);
     const Vector2d theirs = jacobian(options.geometry, q) * Vector2d(data->qacc[0], data->qacc[1]) +
                             jacobian_rate(options.geometry, q, q_rate) * q_rate;

@@ -78,7 +78,7 @@ struct Watched {
 Watched watched(const laboratory::Scenario& scenario) {
   Watched trial;
   laboratory::SimulateOptions options;
-  options.watch = [&](const laboratory::TrueState& state) { trial.absorbed.push_back(state.energy.absorbed); };
+  options.watch = [&](const laboratory::TrueState<2>& state) { trial.absorbed.push_back(state.energy.absorbed); };
   auto performance = laboratory::simulate(scenario, options).value();
   trial.recording = std::move(performance.recording);
   trial.exchanged = performance.energy_exchanged;
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlanarScenario,
 
 TEST_P(PlanarScenario, HasTheEnergyThatTheLaboratoryIntegrated) {
   laboratory::Scenario scenario = ready(GetParam(), 7);
-  std::get<laboratory::PlanarTrial>(scenario.trial).sensors = laboratory::SensorOptions::perfect();
+  std::get<laboratory::PlanarTrial>(scenario.trial).sensors = laboratory::SensorOptions<2>::perfect();
   const Watched trial = watched(scenario);
   const Energy energy = absorbed_energy(trial.recording, prepared(trial.recording)).value();
   EXPECT_NEAR(energy.curve.end, trial.absorbed.back(), kTrapezoids * trial.exchanged);
@@ -110,7 +110,7 @@ TEST_P(PlanarScenario, HasItThroughSensorsUpToTheNoiseOfTheForce) {
   const double truth = trial.between(energy.from_s, energy.to_s);
   // White noise w of the load cell adds Σ w·(x_{i+1} − x_{i−1})/2, of deviation σ √(T ∫ v·v dt).
   const double deviation =
-      laboratory::LoadCellOptions{}.white_noise * std::sqrt(energy.account.squared_velocity / rows.recording_rate);
+      laboratory::LoadCellOptions<2>{}.white_noise * std::sqrt(energy.account.squared_velocity / rows.recording_rate);
   EXPECT_NEAR(energy.account.absorbed, truth, 4.0 * deviation + kTrapezoids * trial.exchanged);
   // Through the filters of the fit, which take some of the motion, it errs by more than a hundredth of a joule where
   // the perturbation lasts, so that the same samples are asked.

@@ -9,8 +9,8 @@
 
 #include "mbk/measure/analyse/compare_forces.h"
 #include "mbk/model/robot/planar_mechanism.h"
-#include "mbk/simulate/laboratory/planar_experiment.h"
 #include "mbk/simulate/laboratory/scenario.h"
+#include "mbk/simulate/laboratory/simulated_experiment.h"
 
 namespace mbk::pipeline {
 namespace {
@@ -30,10 +30,10 @@ Watched watched(bool perfect) {
           .front();
   auto& trial = std::get<laboratory::PlanarTrial>(scenario.trial);
   for (robot::JointFriction& joint : trial.robot.robot.friction) joint.coulomb = 0.11;
-  if (perfect) trial.sensors = laboratory::SensorOptions::perfect();
-  std::vector<laboratory::TrueState> states;
+  if (perfect) trial.sensors = laboratory::SensorOptions<2>::perfect();
+  std::vector<laboratory::TrueState<2>> states;
   laboratory::SimulateOptions options;
-  options.watch = [&](const laboratory::TrueState& state) { states.push_back(state); };
+  options.watch = [&](const laboratory::TrueState<2>& state) { states.push_back(state); };
   Watched result{laboratory::simulate(scenario, options).value().recording, {}, {}};
   const auto samples = static_cast<Index>(states.size());
   result.force.resize(samples, 2);

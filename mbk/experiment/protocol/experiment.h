@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -11,15 +10,13 @@
 
 #include "mbk/base/config/document.h"
 #include "mbk/base/core/result.h"
-#include "mbk/base/core/units.h"
 #include "mbk/experiment/control/sequencer.h"
 #include "mbk/experiment/control/trial_control.h"
 #include "mbk/experiment/device/device.h"
 #include "mbk/experiment/protocol/device_plan.h"
+#include "mbk/experiment/protocol/trial_plan.h"
 #include "mbk/experiment/safety/limits.h"
-#include "mbk/model/perturbation/schedule_plan.h"
 #include "mbk/model/robot/dynamics.h"
-#include "mbk/model/trial/readers.h"
 
 namespace mbk::protocol {
 
@@ -62,18 +59,11 @@ class Simulation {
 
 /// One trial of an experiment with a planar robot: what is done, which robot it runs on, how that is driven, and what
 /// the gate allows.
-struct Trial {
-  std::string name;       ///< of the [[trial]]; empty where the file has none
-  std::string protocol;   ///< name of the file without folder and ending
-  std::string condition;  ///< in words
+struct Trial : TrialPlan {
   robot::PlanarRobot robot;
   double handle_mass = 0.0;             ///< beyond the force sensor [kg]
   Eigen::Vector2d home = {0.3, -0.05};  ///< of the hand, base frame [m]
   control::Mode control;
-  perturbation::Plan perturbation;
-  Hertz rate{1000.0};
-  std::uint64_t seed = 1;            ///< of the schedule's phases and order, and of what is simulated
-  Readers readers = Readers::owner;  ///< of the recording
   control::SequenceOptions sequence;
   safety::Limits limits;
   LimitsFromPlan from_plan;

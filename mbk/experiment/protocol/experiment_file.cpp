@@ -80,13 +80,9 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
                                            const ReadSimulation& simulation) {
   return config::read_trials(text, file, [&](const Section& root, const std::string& name) -> Result<Trial> {
     Trial trial;
+    static_cast<TrialPlan&>(trial) = read_recording(root.section("recording"));
     trial.name = name;
     trial.protocol = file.stem().string();
-    const RecordingSection recording = read_recording(root.section("recording"));
-    trial.condition = recording.condition;
-    trial.rate = recording.rate;
-    trial.seed = recording.seed;
-    trial.readers = recording.readers;
     const Section robot = root.section("robot");
     if (read_machine(robot) != Machine::planar) {
       return tl::unexpected(robot.error("kind", "a one-axis machine cannot be run as an experiment yet",

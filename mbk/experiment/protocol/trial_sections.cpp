@@ -170,8 +170,8 @@ Machine read_machine(const Section& robot) {
   return robot.choice("kind", {{"planar", Machine::planar}, {"one_axis", Machine::one_axis}}, Machine::planar);
 }
 
-RecordingSection read_recording(const Section& s) {
-  RecordingSection r;
+TrialPlan read_recording(const Section& s) {
+  TrialPlan r;
   r.condition = s.text("condition", "");
   r.rate = Hertz(s.number("rate_hz", r.rate.value, between(10, 100'000)));
   r.seed = s.integer<std::uint64_t>("seed", r.seed, 0, std::numeric_limits<std::int64_t>::max());

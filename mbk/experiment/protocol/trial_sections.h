@@ -1,13 +1,8 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "mbk/base/config/document.h"
-#include "mbk/base/core/units.h"
 #include "mbk/experiment/control/trial_control.h"
-#include "mbk/model/perturbation/schedule_plan.h"
-#include "mbk/model/trial/readers.h"
+#include "mbk/experiment/protocol/trial_plan.h"
 
 namespace mbk::protocol {
 
@@ -19,14 +14,8 @@ enum class Machine { planar, one_axis };
 /// `kind` of [robot]; a planar one where nothing is said.
 [[nodiscard]] Machine read_machine(const config::Section& robot);
 
-/// [recording]
-struct RecordingSection {
-  std::string condition;  ///< in words
-  Hertz rate{1000.0};
-  std::uint64_t seed = 1;  ///< of phases, decisions and noise
-  Readers readers = Readers::owner;
-};
-[[nodiscard]] RecordingSection read_recording(const config::Section& section);
+/// What [recording] says of a trial: condition, rate, seed, readers. All else stays as it is by itself.
+[[nodiscard]] TrialPlan read_recording(const config::Section& section);
 
 /// [control] of a planar robot.
 [[nodiscard]] control::Mode read_control(const config::Section& section);

@@ -1,32 +1,44 @@
 #include "mbk/simulate/laboratory/accelerometer.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "mbk/base/core/option_limits.h"
 
 namespace mbk::laboratory {
 namespace {
 
-Result<void> check(const AccelerometerOptions& o) {
+template <int Axes>
+Result<void> check(const AccelerometerOptions<Axes>& o) {
   if (auto ok = not_negative({{"noise of the accelerometer", o.noise, "m/s²"},
                               {"bandwidth of the accelerometer", o.bandwidth.value, "Hz"}});
       !ok) {
     return ok;
   }
-  if (auto ok = finite({{"misalignment of the accelerometer", o.misalignment, "rad"},
-                        {"bias of the accelerometer", o.bias[0], "m/s²"},
-                        {"bias of the accelerometer", o.bias[1], "m/s²"}});
-      !ok) {
-    return ok;
+  std::vector<Choice> numbers = {{"misalignment of the accelerometer", o.misalignment, "rad"}}, gains;
+  for (int axis = 0; axis < Axes; ++axis) {
+    numbers.push_back({"bias of the accelerometer", o.bias[axis], "m/s²"});
+    gains.push_back({"1 + gain error of the accelerometer", 1.0 + o.gain_error[axis], ""});
   }
-  return above_zero({{"1 + gain error of the accelerometer", 1.0 + o.gain_error[0], ""},
-                     {"1 + gain error of the accelerometer", 1.0 + o.gain_error[1], ""}});
+  if (auto ok = finite(numbers); !ok) return ok;
+  return above_zero(gains);
+}
+
+/// turn(−δ): what a sensor's axes that are turned by δ see of those of the link.
+template <int Axes>
+AxisMatrix<Axes> turned(double misalignment) {
+  if constexpr (Axes == 1) {
+    return AxisMatrix<1>(std::cos(misalignment));
+  } else {
+    return Eigen::Rotation2Dd(-misalignment).toRotationMatrix();
+  }
 }
 
 }  // namespace
 
-Result<Accelerometer> Accelerometer::create(const AccelerometerOptions& options, double sample_time,
-                                            std::uint64_t seed) {
+template <int Axes>
+Result<Accelerometer<Axes>> Accelerometer<Axes>::create(const Options& options, double sample_time,
+                                                        std::uint64_t seed) {
   if (auto ok = check(options); !ok) return tl::unexpected(ok.error());
   if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
   dsp::SectionCascade filter;
@@ -38,24 +50,30 @@ Result<Accelerometer> Accelerometer::create(const AccelerometerOptions& options,
   return Accelerometer(options, filter, seed);
 }
 
-Accelerometer::Accelerometer(const AccelerometerOptions& o, const dsp::SectionCascade& filter, std::uint64_t seed)
-    : gain_((Eigen::Vector2d::Ones() + o.gain_error).asDiagonal() *
-            Eigen::Rotation2Dd(-o.misalignment).toRotationMatrix()),
+template <int Axes>
+Accelerometer<Axes>::Accelerometer(const Options& o, const dsp::SectionCascade& filter, std::uint64_t seed)
+    : gain_((AxisVector<Axes>::Ones() + o.gain_error).asDiagonal() * turned<Axes>(o.misalignment)),
       bias_(o.bias),
-      noise_{WhiteNoise(o.noise, noise_stream(seed, NoiseSource::acceleration, 0)),
-             WhiteNoise(o.noise, noise_stream(seed, NoiseSource::acceleration, 1))},
-      filters_{dsp::CausalFilter(filter), dsp::CausalFilter(filter)} {}
+      noise_(per_axis<Axes>([&](std::uint32_t axis) {
+        return WhiteNoise(o.noise, noise_stream(seed, NoiseSource::acceleration, axis));
+      })),
+      filters_(per_axis<Axes>([&](std::uint32_t /*axis*/) { return dsp::CausalFilter(filter); })) {}
 
-Eigen::Vector2d Accelerometer::added(const Eigen::Vector2d& acceleration) noexcept {
-  Eigen::Vector2d reading = gain_ * acceleration;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
+template <int Axes>
+AxisVector<Axes> Accelerometer<Axes>::added(const AxisVector<Axes>& acceleration) noexcept {
+  AxisVector<Axes> reading = gain_ * acceleration, noise;
+  for (std::size_t axis = 0; axis < Axes; ++axis) {
     double& value = reading[static_cast<Eigen::Index>(axis)];
     if (!settled_) filters_[axis].settle(value);
     value = filters_[axis].step(value);
+    noise[static_cast<Eigen::Index>(axis)] = noise_[axis].next();
   }
   settled_ = true;
   reading -= acceleration;
-  return reading + bias_ + Eigen::Vector2d(noise_[0].next(), noise_[1].next());
+  return reading + bias_ + noise;
 }
+
+template class Accelerometer<1>;
+template class Accelerometer<2>;
 
 }  // namespace mbk::laboratory

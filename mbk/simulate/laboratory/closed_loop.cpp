@@ -10,29 +10,23 @@
 namespace mbk::laboratory {
 namespace {
 
-Result<void> check(const ClosedLoop::Options& options) {
-  const robot::PlanarRobot& robot = options.robot;
-  std::vector<Choice> at_least_zero = {{"handle mass", options.handle_mass, "kg"}};
-  std::vector<Choice> positive = {{"link length", robot.geometry.d1, "m"}, {"link length", robot.geometry.d2, "m"}};
-  for (const robot::JointFriction& joint : robot.friction) {
-    at_least_zero.push_back({"viscous friction", joint.viscous, "N·m·s/rad"});
-    at_least_zero.push_back({"Coulomb friction", joint.coulomb, "N·m"});
-    at_least_zero.push_back({"breakaway friction", joint.breakaway, "N·m"});
-    positive.push_back({"Stribeck velocity", joint.stribeck_velocity, "rad/s"});
-    positive.push_back({"smoothing of dry friction", joint.smoothing, "rad/s"});
+std::vector<Choice> lengths(const robot::OneAxisGeometry& /*none*/) {
+  return {};
+}
+
+std::vector<Choice> lengths(const robot::Geometry& geometry) {
+  return {{"link length", geometry.d1, "m"}, {"link length", geometry.d2, "m"}};
+}
+
+/// Whether the inertia leaves the links some of their own, wherever they are.
+Result<void> check_links(const robot::OneAxisInertia& inertia, const AxisVector<1>& motor) {
+  if (const double link = inertia.mass - motor[0]; !(link > 0.0 && std::isfinite(link))) {
+    return bad_usage(fmt::format("inertia {:g} of the machine is not above zero", link));
   }
-  Vector2d motors = {0.0, 0.0};
-  if (options.capstan) {
-    motors = options.capstan->motor_inertia;
-    for (int joint = 0; joint < 2; ++joint) {
-      positive.push_back({"capstan stiffness", options.capstan->stiffness[joint], "N·m/rad"});
-      at_least_zero.push_back({"capstan damping", options.capstan->damping[joint], "N·m·s/rad"});
-      positive.push_back({"motor inertia", motors[joint], "kg·m²"});
-    }
-  }
-  if (auto ok = not_negative(at_least_zero); !ok) return ok;
-  if (auto ok = above_zero(positive); !ok) return ok;
-  const robot::Inertia& inertia = robot.inertia;
+  return {};
+}
+
+Result<void> check_links(const robot::Inertia& inertia, const AxisVector<2>& motors) {
   const double links1 = inertia.alpha1 - motors[0], links2 = inertia.alpha3 - motors[1];
   if (!(links1 > 0.0 && links2 > 0.0 && links1 * links2 > 0.25 * inertia.alpha2 * inertia.alpha2)) {
     return bad_usage(
@@ -41,69 +35,118 @@ Result<void> check(const ClosedLoop::Options& options) {
                     inertia.alpha1, inertia.alpha2, inertia.alpha3, motors[0], motors[1]),
         "alpha1·alpha3 must be above alpha2²/4");
   }
+  return {};
+}
+
+template <int Axes>
+Result<void> check(const typename ClosedLoop<Axes>::Options& options) {
+  std::vector<Choice> at_least_zero = {{"handle mass", options.handle_mass, "kg"}};
+  std::vector<Choice> positive = lengths(options.robot.geometry);
+  for (const robot::JointFriction& joint : options.robot.friction) {
+    at_least_zero.push_back({"viscous friction", joint.viscous, "N·m·s/rad"});
+    at_least_zero.push_back({"Coulomb friction", joint.coulomb, "N·m"});
+    at_least_zero.push_back({"breakaway friction", joint.breakaway, "N·m"});
+    positive.push_back({"Stribeck velocity", joint.stribeck_velocity, "rad/s"});
+    positive.push_back({"smoothing of dry friction", joint.smoothing, "rad/s"});
+  }
+  AxisVector<Axes> motors = AxisVector<Axes>::Zero();
+  if (options.capstan) {
+    motors = options.capstan->motor_inertia;
+    for (int joint = 0; joint < Axes; ++joint) {
+      positive.push_back({"capstan stiffness", options.capstan->stiffness[joint], "N·m/rad"});
+      at_least_zero.push_back({"capstan damping", options.capstan->damping[joint], "N·m·s/rad"});
+      positive.push_back({"motor inertia", motors[joint], "kg·m²"});
+    }
+  }
+  if (auto ok = not_negative(at_least_zero); !ok) return ok;
+  if (auto ok = above_zero(positive); !ok) return ok;
+  if (auto ok = check_links(options.robot.inertia, motors); !ok) return ok;
   if (options.steps_per_tick < 1) return bad_usage(fmt::format("{} steps per tick", options.steps_per_tick));
   return {};
 }
 
+/// I⁻¹ τ.
+AxisVector<1> accelerated(const AxisMatrix<1>& inertia, const AxisVector<1>& torque) {
+  return torque / inertia(0, 0);
+}
+
+AxisVector<2> accelerated(const AxisMatrix<2>& inertia, const AxisVector<2>& torque) {
+  return inertia.inverse() * torque;
+}
+
+/// The last link is the last axis.
+template <int Axes>
+participant::HandState<Axes> hand_of(const TrueState<Axes>& state) {
+  return {state.position, state.velocity, state.theta[Axes - 1], state.theta_rate[Axes - 1]};
+}
+
 }  // namespace
 
-Result<ClosedLoop> ClosedLoop::create(const Options& options, const Vector2d& home, participant::Load& load,
-                                      double start_time) {
-  if (auto ok = check(options); !ok) return tl::unexpected(ok.error());
-  const auto theta = robot::joint_angles(options.robot.geometry, home);
+template <int Axes>
+Result<ClosedLoop<Axes>> ClosedLoop<Axes>::create(const Options& options, const Values& home,
+                                                  participant::Load<Axes>& load, double start_time) {
+  if (auto ok = check<Axes>(options); !ok) return tl::unexpected(ok.error());
+  const auto theta = joint_angles(options.robot.geometry, home);
   if (!theta) return tl::unexpected(theta.error());
   return ClosedLoop(options, *theta, load, start_time);
 }
 
-ClosedLoop::ClosedLoop(const Options& options, const Vector2d& theta, participant::Load& load, double start_time)
+template <int Axes>
+ClosedLoop<Axes>::ClosedLoop(const Options& options, const Values& theta, participant::Load<Axes>& load,
+                             double start_time)
     : options_(options), load_(&load), time_(start_time) {
-  state_.segment<2>(kTheta) = theta;
-  state_.segment<2>(kMotorAngle) = theta;
+  state_.template segment<Axes>(kTheta) = theta;
+  state_.template segment<Axes>(kMotorAngle) = theta;
 }
 
-ClosedLoop::State ClosedLoop::derivative(const State& state, TrueState* seen) const {
-  const robot::PlanarRobot& robot = options_.robot;
-  const Vector2d theta = state.segment<2>(kTheta), rate = state.segment<2>(kRate);
-  const Vector2d motor_rate = options_.capstan ? Vector2d(state.segment<2>(kMotorRate)) : rate;
-  const Matrix2d J = robot::jacobian(robot.geometry, theta);
-  const Matrix2d J_rate = robot::jacobian_rate(robot.geometry, theta, rate);
-  const participant::HandState hand = {robot::hand_position(robot.geometry, theta), J * rate, theta[1], rate[1]};
+template <int Axes>
+auto ClosedLoop<Axes>::derivative(const State& state, TrueState<Axes>* seen) const -> State {
+  using Matrix = AxisMatrix<Axes>;
+  const RobotOf<Axes>& robot = options_.robot;
+  const Values theta = state.template segment<Axes>(kTheta), rate = state.template segment<Axes>(kRate);
+  const Values motor_rate = options_.capstan ? Values(state.template segment<Axes>(kMotorRate)) : rate;
+  const Matrix J = jacobian(robot.geometry, theta);
+  const Matrix J_rate = jacobian_rate(robot.geometry, theta, rate);
+  const participant::HandState<Axes> hand = {hand_position(robot.geometry, theta), J * rate, theta[Axes - 1],
+                                             rate[Axes - 1]};
 
-  const Vector2d friction = robot.friction_torque(motor_rate);
-  Matrix2d I = robot.inertia.matrix(theta);
-  Vector2d drive = torque_ - friction, motor_acceleration = {0.0, 0.0};
+  const Values friction = robot.friction_torque(motor_rate);
+  Matrix I = robot.inertia.matrix(theta);
+  Values drive = torque_ - friction, motor_acceleration = Values::Zero();
   double cable_loss = 0.0;
   if (options_.capstan) {
-    const Vector2d twist = state.segment<2>(kMotorAngle) - theta, twist_rate = motor_rate - rate;
-    const Vector2d cable = options_.capstan->torque(twist, twist_rate);
+    const Values twist = state.template segment<Axes>(kMotorAngle) - theta, twist_rate = motor_rate - rate;
+    const Values cable = options_.capstan->torque(twist, twist_rate);
     motor_acceleration = (drive - cable).cwiseQuotient(options_.capstan->motor_inertia);
     I.diagonal() -= options_.capstan->motor_inertia;
     drive = cable;
     cable_loss = twist_rate.dot(options_.capstan->damping.cwiseProduct(twist_rate));
   }
 
-  const participant::LoadDynamics load = load_->dynamics(hand);
-  const Matrix2d beyond = load.inertia + options_.handle_mass * Matrix2d::Identity();
-  const Vector2d convective = J_rate * rate;
-  const Vector2d torque = drive - robot.inertia.coriolis(theta, rate) * rate + Vector2d(0.0, load.moment) -
-                          J.transpose() * (beyond * convective + load.bias);
-  const Vector2d acceleration = (I + J.transpose() * beyond * J).inverse() * torque;
-  const Vector2d hand_acceleration = J * acceleration + convective;
-  const Vector2d force = -(beyond * hand_acceleration + load.bias);
+  const participant::LoadDynamics<Axes> load = load_->dynamics(hand);
+  const Matrix beyond = load.inertia + options_.handle_mass * Matrix::Identity();
+  const Values convective = J_rate * rate, moment = load.moment * Values::Unit(Axes - 1);
+  const Values torque =
+      drive - robot.inertia.coriolis(theta, rate) * rate + moment - J.transpose() * (beyond * convective + load.bias);
+  const Values acceleration = accelerated(I + J.transpose() * beyond * J, torque);
+  const Values hand_acceleration = J * acceleration + convective;
+  const Values force = -(beyond * hand_acceleration + load.bias);
 
   double viscous = 0.0;
-  for (int joint = 0; joint < 2; ++joint) {
+  for (int joint = 0; joint < Axes; ++joint) {
     viscous += robot.friction[static_cast<std::size_t>(joint)].viscous * motor_rate[joint] * motor_rate[joint];
   }
   if (!options_.capstan) motor_acceleration = acceleration;
   State change;
   change << rate, acceleration, motor_rate, motor_acceleration, torque_.dot(motor_rate),
-      -force.dot(hand.velocity) - load.moment * rate[1], viscous, friction.dot(motor_rate) - viscous, cable_loss;
+      -force.dot(hand.velocity) - load.moment * hand.rotation_rate, viscous, friction.dot(motor_rate) - viscous,
+      cable_loss;
 
   if (seen != nullptr) {
+    seen->time = time_;
     seen->theta = theta;
     seen->theta_rate = rate;
-    seen->motor_angle = state.segment<2>(kMotorAngle);
+    seen->motor_angle = state.template segment<Axes>(kMotorAngle);
     seen->position = hand.position;
     seen->velocity = hand.velocity;
     seen->acceleration = hand_acceleration;
@@ -112,31 +155,37 @@ ClosedLoop::State ClosedLoop::derivative(const State& state, TrueState* seen) co
     seen->kinetic_energy = 0.5 * rate.dot(I * rate);
     seen->elastic_energy = 0.0;
     if (options_.capstan) {
-      const Vector2d twist = seen->motor_angle - theta;
+      const Values twist = seen->motor_angle - theta;
       seen->kinetic_energy += 0.5 * motor_rate.dot(options_.capstan->motor_inertia.cwiseProduct(motor_rate));
       seen->elastic_energy = 0.5 * twist.dot(options_.capstan->stiffness.cwiseProduct(twist));
     }
-    const auto energy = state.segment<5>(kEnergy);
+    const auto energy = state.template segment<5>(kEnergy);
     seen->energy = {energy[0], energy[1], energy[2], energy[3], energy[4]};
   }
   return change;
 }
 
-const TrueState& ClosedLoop::hold(const Vector2d& motor_torque, double sample_time) {
-  TrueState before;
-  derivative(state_, &before);
-  load_->tick(time_, sample_time, {before.position, before.velocity, before.theta[1], before.theta_rate[1]},
-              true_state_.force_hand_on_robot);
+template <int Axes>
+TrueState<Axes> ClosedLoop<Axes>::state() const {
+  TrueState<Axes> now;
+  derivative(state_, &now);
+  return now;
+}
+
+template <int Axes>
+const TrueState<Axes>& ClosedLoop<Axes>::hold(const Values& motor_torque, double sample_time) {
+  const TrueState<Axes> before = state();
+  load_->tick(time_, sample_time, hand_of(before), true_state_.force_hand_on_robot);
   torque_ = motor_torque;
   sample_time_ = sample_time;
-  true_state_.time = time_;
-  derivative(state_, &true_state_);
+  true_state_ = state();
   true_state_.acceleration = 0.5 * (before.acceleration + true_state_.acceleration);
   true_state_.force_hand_on_robot = 0.5 * (before.force_hand_on_robot + true_state_.force_hand_on_robot);
   return true_state_;
 }
 
-void ClosedLoop::advance() {
+template <int Axes>
+void ClosedLoop<Axes>::advance() {
   const double step = sample_time_ / options_.steps_per_tick;
   for (int k = 0; k < options_.steps_per_tick; ++k) {
     const State first = derivative(state_);
@@ -147,5 +196,8 @@ void ClosedLoop::advance() {
   }
   time_ += sample_time_;
 }
+
+template class ClosedLoop<1>;
+template class ClosedLoop<2>;
 
 }  // namespace mbk::laboratory

@@ -22,7 +22,7 @@ Result<Scenario> find_scenario(const std::string& name_or_file, const std::strin
   auto scenarios = read_scenarios(text, name_or_file);
   if (!scenarios) return tl::unexpected(scenarios.error());
   for (Scenario& one : *scenarios) {
-    if (trial.empty() || one.trial_name == trial) return std::move(one);
+    if (trial.empty() || one.name == trial) return std::move(one);
   }
   return bad_usage(fmt::format("there is no trial '{}' in {}", trial, name_or_file), "see the [[trial]] names in it");
 }

@@ -12,31 +12,31 @@ using Eigen::Vector2d;
 
 constexpr double kTick = 1e-3;
 
-LoadCellOptions silent() {
+LoadCellOptions<2> silent() {
   return {.white_noise = 0.0};
 }
 
 TEST(LoadCell, AddsGainErrorCrosstalkAndOffset) {
-  LoadCellOptions options = silent();
+  LoadCellOptions<2> options = silent();
   options.gain << 1.02, 0.01, -0.03, 0.97;
   options.offset = {0.5, -0.25};
-  LoadCell cell = LoadCell::create(options, kTick, 1).value();
+  LoadCell<2> cell = LoadCell<2>::create(options, kTick, 1).value();
   const Vector2d added = cell.added({10.0, 20.0});
   EXPECT_NEAR(added[0], 0.02 * 10.0 + 0.01 * 20.0 + 0.5, 1e-14);
   EXPECT_NEAR(added[1], -0.03 * 10.0 - 0.03 * 20.0 - 0.25, 1e-14);
 }
 
 TEST(LoadCell, WithEverythingOffAddsNothing) {
-  LoadCell cell = LoadCell::create(silent(), kTick, 1).value();
+  LoadCell<2> cell = LoadCell<2>::create(silent(), kTick, 1).value();
   EXPECT_EQ(cell.added({12.3, -4.5}), Vector2d::Zero());
 }
 
 TEST(LoadCell, EachAxisHasTheSumOfItsNoises) {
-  LoadCellOptions options;
+  LoadCellOptions<2> options;
   options.white_noise = 0.3;
   options.coloured_noise = 0.4;
   options.coloured_bandwidth = Hertz(100.0);
-  LoadCell cell = LoadCell::create(options, kTick, 1).value();
+  LoadCell<2> cell = LoadCell<2>::create(options, kTick, 1).value();
   constexpr int kCount = 200000;
   Vector2d square = Vector2d::Zero();
   double product = 0.0;
@@ -53,21 +53,22 @@ TEST(LoadCell, EachAxisHasTheSumOfItsNoises) {
 }
 
 TEST(LoadCell, DriftsSteadilyWithoutNoise) {
-  LoadCellOptions options = silent();
+  LoadCellOptions<2> options = silent();
   options.drift_rate = {0.1, -0.2};
-  LoadCell cell = LoadCell::create(options, kTick, 1).value();
+  LoadCell<2> cell = LoadCell<2>::create(options, kTick, 1).value();
   Vector2d added = Vector2d::Zero();
   for (int k = 0; k <= 2000; ++k) added = cell.added({5.0, 5.0});
   EXPECT_LT((added - Vector2d(0.2, -0.4)).norm(), 1e-14);
 }
 
 TEST(LoadCell, OneNoiseLeavesTheOthersAsTheyWere) {
-  LoadCellOptions walking = silent(), noisy = silent();
+  LoadCellOptions<2> walking = silent(), noisy = silent();
   walking.drift_walk = noisy.drift_walk = 0.1;
   noisy.white_noise = 0.02;
-  LoadCellOptions white;
-  LoadCell drift = LoadCell::create(walking, kTick, 5).value(), both = LoadCell::create(noisy, kTick, 5).value(),
-           only_white = LoadCell::create(white, kTick, 5).value();
+  LoadCellOptions<2> white;
+  LoadCell<2> drift = LoadCell<2>::create(walking, kTick, 5).value(),
+              both = LoadCell<2>::create(noisy, kTick, 5).value(),
+              only_white = LoadCell<2>::create(white, kTick, 5).value();
   for (int k = 0; k < 1000; ++k) {
     const Vector2d parts = drift.added({1.0, 2.0}) + only_white.added({1.0, 2.0});
     ASSERT_LT((both.added({1.0, 2.0}) - parts).norm(), 1e-15) << k;
@@ -75,18 +76,18 @@ TEST(LoadCell, OneNoiseLeavesTheOthersAsTheyWere) {
 }
 
 TEST(LoadCell, RefusesNegativeNoise) {
-  LoadCellOptions options;
+  LoadCellOptions<2> options;
   options.white_noise = -0.1;
-  EXPECT_EQ(LoadCell::create(options, kTick, 1).error().message,
+  EXPECT_EQ(LoadCell<2>::create(options, kTick, 1).error().message,
             "white noise of the load cell -0.1 N is below zero or not finite");
   options = {};
   options.coloured_bandwidth = Hertz(0.0);
-  EXPECT_EQ(LoadCell::create(options, kTick, 1).error().message,
+  EXPECT_EQ(LoadCell<2>::create(options, kTick, 1).error().message,
             "bandwidth of the load cell's coloured noise 0 Hz is not above zero");
   options = {};
   options.gain(1, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(LoadCell::create(options, kTick, 1));
-  EXPECT_FALSE(LoadCell::create({}, 0.0, 1));
+  EXPECT_FALSE(LoadCell<2>::create(options, kTick, 1));
+  EXPECT_FALSE(LoadCell<2>::create({}, 0.0, 1));
 }
 
 }  // namespace

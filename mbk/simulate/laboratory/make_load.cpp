@@ -8,36 +8,46 @@ namespace {
 using participant::Load;
 
 /// Nothing at the handle.
-class EmptyHandle : public Load {
+class EmptyHandle : public Load<2> {
  public:
-  [[nodiscard]] participant::LoadDynamics dynamics(const participant::HandState& /*hand*/) const override { return {}; }
+  [[nodiscard]] participant::LoadDynamics<2> dynamics(const participant::HandState<2>& /*hand*/) const override {
+    return {};
+  }
   [[nodiscard]] impedance::Model impedance(const Vector2d& hand) const override {
     return {Matrix2d::Zero(), Matrix2d::Zero(), Matrix2d::Zero(), hand};
   }
 };
 
-template <class Kind>
-Result<std::unique_ptr<Load>> owned(Result<Kind> load, const char* section) {
-  if (!load) return tl::unexpected(load.error().in(section));
-  return std::make_unique<Kind>(std::move(*load));
-}
-
+/// Each plan of LoadPlan<Axes> has its operator.
+template <int Axes>
 struct MakeLoad {
+  using Made = Result<std::unique_ptr<Load<Axes>>>;
   const Scenario& scenario;
-  const PlanarTrial& trial;
+  const SimulatedTrial<Axes>& trial;
 
-  Result<std::unique_ptr<Load>> operator()(const NoLoad& /*nothing*/) const { return std::make_unique<EmptyHandle>(); }
+  template <class Kind>
+  static Made owned(Result<Kind> load, const char* section) {
+    if (!load) return tl::unexpected(load.error().in(section));
+    return std::make_unique<Kind>(std::move(*load));
+  }
 
-  Result<std::unique_ptr<Load>> operator()(participant::ArmOptions arm) const {
+  Made operator()(const NoLoad& /*nothing*/) const { return std::make_unique<EmptyHandle>(); }
+
+  Made operator()(participant::OneAxisJoint::Options joint) const {
+    joint.seed = scenario.seed;
+    return owned(participant::OneAxisJoint::create(joint, 1.0 / scenario.rate.value), "participant");
+  }
+
+  Made operator()(participant::ArmOptions arm) const {
     arm.seed = scenario.seed;
     return owned(participant::Arm::create(arm, 1.0 / scenario.rate.value), "participant");
   }
 
-  Result<std::unique_ptr<Load>> operator()(const participant::ToneRobot::Options& tone) const {
+  Made operator()(const participant::ToneRobot::Options& tone) const {
     return owned(participant::ToneRobot::create(tone), "participant");
   }
 
-  Result<std::unique_ptr<Load>> operator()(const RigPlan& rig) const {
+  Made operator()(const RigPlan& rig) const {
     if (!rig.springs.empty()) {
       const auto angles = robot::joint_angles(trial.robot.robot.geometry, trial.home);
       if (!angles) return tl::unexpected(angles.error().in("home"));
@@ -50,8 +60,12 @@ struct MakeLoad {
 
 }  // namespace
 
-Result<std::unique_ptr<participant::Load>> make_load(const Scenario& scenario, const PlanarTrial& trial) {
-  return std::visit(MakeLoad{scenario, trial}, trial.load);
+template <int Axes>
+Result<std::unique_ptr<Load<Axes>>> make_load(const Scenario& scenario, const SimulatedTrial<Axes>& trial) {
+  return std::visit(MakeLoad<Axes>{scenario, trial}, trial.load);
 }
+
+template Result<std::unique_ptr<Load<1>>> make_load(const Scenario&, const SimulatedTrial<1>&);
+template Result<std::unique_ptr<Load<2>>> make_load(const Scenario&, const SimulatedTrial<2>&);
 
 }  // namespace mbk::laboratory

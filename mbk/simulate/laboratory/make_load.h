@@ -6,8 +6,13 @@
 
 namespace mbk::laboratory {
 
-/// What hangs at the handle of a planar trial, with the scenario's seed and rate.
+/// What hangs at the handle in a trial, with the scenario's seed and rate.
 /// @fails  usage: as the loads.
-[[nodiscard]] Result<std::unique_ptr<participant::Load>> make_load(const Scenario& scenario, const PlanarTrial& trial);
+template <int Axes>
+[[nodiscard]] Result<std::unique_ptr<participant::Load<Axes>>> make_load(const Scenario& scenario,
+                                                                         const SimulatedTrial<Axes>& trial);
+
+extern template Result<std::unique_ptr<participant::Load<1>>> make_load(const Scenario&, const SimulatedTrial<1>&);
+extern template Result<std::unique_ptr<participant::Load<2>>> make_load(const Scenario&, const SimulatedTrial<2>&);
 
 }  // namespace mbk::laboratory

@@ -42,19 +42,19 @@ ArmOptions with_limb(ArmOptions options, int arm) {
 }
 
 /// What the motors do at a time, given the loop.
-using Drive = std::function<Vector2d(const ClosedLoop&, double)>;
+using Drive = std::function<Vector2d(const ClosedLoop<2>&, double)>;
 
 /// E, the energy that the arm has absorbed at the end of a trial: what passed the sensor less what the handle keeps
 /// [J].
 double energy_absorbed(const ArmOptions& options, double dry_friction, double duration, const Drive& drive) {
   participant::Arm arm = participant::Arm::create(options, kTick).value();
-  ClosedLoop::Options loop_options;
+  ClosedLoop<2>::Options loop_options;
   loop_options.handle_mass = kHandleMass;
   for (robot::JointFriction& joint : loop_options.robot.friction) {
     joint.coulomb = dry_friction * loop_options.robot.geometry.d1;
   }
-  ClosedLoop loop = ClosedLoop::create(loop_options, kHome, arm).value();
-  TrueState last;
+  ClosedLoop<2> loop = ClosedLoop<2>::create(loop_options, kHome, arm).value();
+  TrueState<2> last;
   for (int i = 0; i * kTick < duration; ++i) {
     last = loop.hold(drive(loop, i * kTick), kTick);
     loop.advance();
@@ -92,7 +92,7 @@ std::array<perturbation::Multisine, 2> ten_lines(double peak, std::uint64_t seed
 double force_pulses(const ArmOptions& options, double amplitude, std::uint64_t seed, double friction = kDryFriction) {
   const auto pulses = pulse_schedule(amplitude, seed);
   const control::ForceControl force{robot::Geometry{}};
-  return energy_absorbed(options, friction, duration_of(pulses), [&](const ClosedLoop& loop, double t) {
+  return energy_absorbed(options, friction, duration_of(pulses), [&](const ClosedLoop<2>& loop, double t) {
     return force.step(loop.motor_angle(), pulses.at(t).value);
   });
 }
@@ -100,7 +100,7 @@ double force_pulses(const ArmOptions& options, double amplitude, std::uint64_t s
 double force_multisine(const ArmOptions& options, double peak, std::uint64_t seed) {
   const auto lines = ten_lines(peak, seed);
   const control::ForceControl force{robot::Geometry{}};
-  return energy_absorbed(options, kDryFriction, 50.0, [&](const ClosedLoop& loop, double t) {
+  return energy_absorbed(options, kDryFriction, 50.0, [&](const ClosedLoop<2>& loop, double t) {
     return force.step(loop.motor_angle(), {lines[0].at(t).value, lines[1].at(t).value});
   });
 }
@@ -109,7 +109,7 @@ double position_multisine(const ArmOptions& options, std::uint64_t seed) {
   const auto lines = ten_lines(2.0 * std::numbers::pi / 180.0, seed);  // a range of 4° at each joint
   auto position = control::JointPositionControl::create({}, kTick).value();
   const Vector2d home = robot::joint_angles({}, kHome).value();
-  return energy_absorbed(options, kDryFriction, 50.0, [&](const ClosedLoop& loop, double t) {
+  return energy_absorbed(options, kDryFriction, 50.0, [&](const ClosedLoop<2>& loop, double t) {
     const auto first = lines[0].at(t), second = lines[1].at(t);
     return position.step(loop.motor_angle(), home + Vector2d(first.value, second.value), {first.first, second.first});
   });
@@ -118,7 +118,7 @@ double position_multisine(const ArmOptions& options, std::uint64_t seed) {
 double position_pulses(const ArmOptions& options, std::uint64_t seed) {
   const auto pulses = pulse_schedule(0.005, seed);
   auto position = control::JointPositionControl::create({}, kTick).value();
-  return energy_absorbed(options, kDryFriction, duration_of(pulses), [&](const ClosedLoop& loop, double t) {
+  return energy_absorbed(options, kDryFriction, duration_of(pulses), [&](const ClosedLoop<2>& loop, double t) {
     const auto pulse = pulses.at(t);
     const Vector2d theta = robot::joint_angles({}, kHome + pulse.value).value();
     return position.step(loop.motor_angle(), theta, robot::jacobian({}, theta).inverse() * pulse.first);

@@ -1,22 +1,18 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
-#include "mbk/model/perturbation/schedule_plan.h"
-#include "mbk/model/trial/readers.h"
+#include "mbk/experiment/protocol/trial_plan.h"
 #include "mbk/model/trial/springs.h"
-#include "mbk/simulate/laboratory/one_axis_experiment.h"
-#include "mbk/simulate/laboratory/one_axis_sensors.h"
-#include "mbk/simulate/laboratory/planar_experiment.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
+#include "mbk/simulate/laboratory/simulated_experiment.h"
 #include "mbk/simulate/participant/arm.h"
 #include "mbk/simulate/participant/one_axis_joint.h"
 #include "mbk/simulate/participant/tone_robot.h"
@@ -39,34 +35,27 @@ struct RigPlan {
 /// Nothing at the handle.
 struct NoLoad {};
 
-/// A trial of the planar robot.
-struct PlanarTrial {
-  ClosedLoop::Options robot;
-  Vector2d home = {0.3, -0.05};
-  control::Mode control;
-  std::variant<NoLoad, participant::ArmOptions, participant::ToneRobot::Options, RigPlan> load;
-  SensorOptions sensors;
-};
+/// What may hang at the handle of a robot of so many axes.
+template <int Axes>
+using LoadPlan =
+    std::conditional_t<Axes == 1, std::variant<participant::OneAxisJoint::Options>,
+                       std::variant<NoLoad, participant::ArmOptions, participant::ToneRobot::Options, RigPlan>>;
 
-/// A trial of a one-axis machine.
-struct OneAxisTrial {
-  OneAxisLoop::Machine machine;
-  perturbation::Quantity controlled = perturbation::Quantity::position;  ///< what the schedule must command
-  OneAxisLoop::Servo servo;                                              ///< where that is the position
-  participant::OneAxisJoint::Options joint;
-  OneAxisSensorOptions sensors;
+/// The apparatus of a trial, and who holds it.
+template <int Axes>
+struct SimulatedTrial {
+  typename ClosedLoop<Axes>::Options robot;
+  AxisVector<Axes> home = AxisVector<Axes>::Zero();
+  ModeOf<Axes> control;
+  LoadPlan<Axes> load;
+  SensorOptions<Axes> sensors;
 };
+using PlanarTrial = SimulatedTrial<2>;
+using OneAxisTrial = SimulatedTrial<1>;
 
 /// Everything that one simulated recording is made of.
-struct Scenario {
-  std::string file_name;   ///< without its folder and ending
-  std::string trial_name;  ///< of the [[trial]]; empty where the file has none
-  std::string condition;   ///< in words
+struct Scenario : protocol::TrialPlan {
   std::variant<PlanarTrial, OneAxisTrial> trial;
-  perturbation::Plan perturbation;
-  Hertz rate{1000.0};
-  std::uint64_t seed = 1;            ///< of phases, decisions and noise
-  Readers readers = Readers::owner;  ///< of the recording
 };
 
 /// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors. The
@@ -75,7 +64,7 @@ struct Scenario {
 /// @fails  data: with file, line, key, value and what is allowed.
 [[nodiscard]] Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file);
 
-/// One trial out of its sections; who asks calls finish() of the document. file_name and trial_name stay empty.
+/// One trial out of its sections; who asks calls finish() of the document. Its name and protocol stay empty.
 [[nodiscard]] Scenario read_scenario(const config::Section& root);
 
 /// What a recording of the scenario says of it: truth_scenario, truth_trial, truth_condition, truth_seed and
@@ -87,14 +76,13 @@ struct Scenario {
 inline constexpr const char* kTunedGains = "the gains of the participant's will are tuned, not fitted to anyone";
 
 struct SimulateOptions {
-  std::function<void(double fraction)> progress;  ///< of this recording
-  std::function<void(const TrueState&)> watch;    ///< of a planar trial
+  std::function<void(double fraction)> progress;   ///< of this recording
+  std::function<void(const TrueState<2>&)> watch;  ///< of a planar trial
 };
 
 /// Runs a scenario. The same scenario and seed give the same recording, to the bit. To what `perform` writes into the
 /// metadata comes scenario_metadata.
-/// @fails  usage: control and perturbation speak of different quantities; as perturbation::make_schedule and both
-/// `perform`.
+/// @fails  usage: control and perturbation speak of different quantities; as perturbation::make_schedule and `perform`.
 [[nodiscard]] Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options = {});
 
 /// The recording without what only a simulation can know: the truth, and the scenario's name and words.

@@ -24,11 +24,14 @@ using perturbation::Quantity;
 /// What an experiment file says beside the scenario (protocol/experiment.h): for whoever runs it.
 constexpr std::array kSectionsOfExperiments = {"session", "safety", "person", "device"};
 
+/// The test location of the planar robot, where the file does not give one [m].
+const Vector2d kHome(0.3, -0.05);
+
 /// From the shoulder to the test location (Dyck 2013, §3.4.2) [m].
 constexpr double kShoulderDistance = 0.52;
 
-ClosedLoop::Options read_robot(const Section& s) {
-  ClosedLoop::Options options;
+ClosedLoop<2>::Options read_robot(const Section& s) {
+  ClosedLoop<2>::Options options;
   options.robot = robot_file::read_planar_robot(s);
   options.handle_mass = s.number("handle_mass_kg", options.handle_mass, at_least(0));
   options.steps_per_tick = s.integer("steps_per_tick", options.steps_per_tick, 1, 100);
@@ -168,8 +171,8 @@ participant::OneAxisJoint::Options read_joint(const Section& s) {
   return joint;
 }
 
-LoadCellOptions read_load_cell(const Section& s) {
-  LoadCellOptions cell;
+LoadCellOptions<2> read_load_cell(const Section& s) {
+  LoadCellOptions<2> cell;
   cell.white_noise = s.number("white_noise_N", cell.white_noise, at_least(0));
   cell.coloured_noise = s.number("coloured_noise_N", cell.coloured_noise, at_least(0));
   cell.coloured_bandwidth = Hertz(s.number("coloured_bandwidth_hz", cell.coloured_bandwidth.value, above(0)));
@@ -197,8 +200,8 @@ StrainGaugeOptions read_strain_gauge(const Section& s) {
   return gauge;
 }
 
-AccelerometerOptions read_accelerometer(const Section& s) {
-  AccelerometerOptions meter;
+AccelerometerOptions<2> read_accelerometer(const Section& s) {
+  AccelerometerOptions<2> meter;
   meter.noise = s.number("noise_m_per_s2", meter.noise, at_least(0));
   meter.bias = s.vector2("bias_m_per_s2", meter.bias);
   meter.gain_error = s.vector2("gain_error_percent", meter.gain_error, above(-100));
@@ -207,10 +210,10 @@ AccelerometerOptions read_accelerometer(const Section& s) {
   return meter;
 }
 
-SensorOptions read_sensors(const Section& s) {
+SensorOptions<2> read_sensors(const Section& s) {
   enum class Force { load_cell, strain_gauge, perfect };
   enum class Acceleration { accelerometer, perfect };
-  SensorOptions sensors;
+  SensorOptions<2> sensors;
   sensors.encoder_resolution = s.number("encoder_resolution_rad", sensors.encoder_resolution, at_least(0));
 
   const Section force = s.section("force");
@@ -235,7 +238,7 @@ SensorOptions read_sensors(const Section& s) {
     sensors.acceleration = read_accelerometer(acceleration);
   }
   if (const Section motor = s.section("motor_current"); motor.given()) {
-    MotorCurrentOptions current;
+    MotorCurrentOptions<2> current;
     current.torque_constant = motor.vector2("torque_constant_Nm_per_A", current.torque_constant, above(0));
     current.torque_constant_error =
         motor.vector2("torque_constant_error_percent", current.torque_constant_error, above(-100));
@@ -250,36 +253,43 @@ SensorOptions read_sensors(const Section& s) {
   return sensors;
 }
 
-OneAxisSensorOptions read_one_axis_sensors(const Section& s) {
-  OneAxisSensorOptions sensors;
-  sensors.position_resolution = s.number("position_resolution_rad", sensors.position_resolution, at_least(0));
-  sensors.reaction_noise = s.number("reaction_noise_Nm", sensors.reaction_noise, at_least(0));
-  sensors.coloured_noise = s.number("coloured_noise_Nm", sensors.coloured_noise, at_least(0));
-  sensors.coloured_bandwidth = Hertz(s.number("coloured_bandwidth_hz", sensors.coloured_bandwidth.value, above(0)));
-  sensors.drift_walk = s.number("drift_walk_Nm_per_sqrt_s", sensors.drift_walk, at_least(0));
-  sensors.drift_rate = s.number("drift_rate_Nm_per_s", sensors.drift_rate);
-  sensors.acceleration_noise = s.number("acceleration_noise_rad_per_s2", sensors.acceleration_noise, at_least(0));
+SensorOptions<1> read_one_axis_sensors(const Section& s) {
+  SensorOptions<1> sensors;
+  sensors.encoder_resolution = s.number("position_resolution_rad", sensors.encoder_resolution, at_least(0));
+  LoadCellOptions<1> cell;
+  cell.white_noise = s.number("reaction_noise_Nm", cell.white_noise, at_least(0));
+  cell.coloured_noise = s.number("coloured_noise_Nm", cell.coloured_noise, at_least(0));
+  cell.coloured_bandwidth = Hertz(s.number("coloured_bandwidth_hz", cell.coloured_bandwidth.value, above(0)));
+  cell.drift_walk = s.number("drift_walk_Nm_per_sqrt_s", cell.drift_walk, at_least(0));
+  cell.drift_rate[0] = s.number("drift_rate_Nm_per_s", cell.drift_rate[0]);
+  sensors.force = cell;
+  AccelerometerOptions<1> meter;
+  meter.noise = s.number("acceleration_noise_rad_per_s2", meter.noise, at_least(0));
+  sensors.acceleration = meter;
   return sensors;
 }
 
 OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   OneAxisTrial trial;
-  OneAxisLoop::Machine& machine = trial.machine;
-  machine.inertia = robot.number("inertia_kg_m2", machine.inertia, above(0));
-  machine.friction.viscous = robot.number("viscous_Nms_per_rad", machine.friction.viscous, at_least(0));
-  machine.friction.coulomb = robot.number("coulomb_Nm", machine.friction.coulomb, at_least(0));
-  machine.friction.smoothing = robot.number("smoothing_rad_per_s", machine.friction.smoothing, above(0));
-  machine.steps_per_tick = robot.integer("steps_per_tick", machine.steps_per_tick, 1, 100);
+  double& inertia = trial.robot.robot.inertia.mass;
+  inertia = robot.number("inertia_kg_m2", inertia, above(0));
+  robot::JointFriction& friction = trial.robot.robot.friction[0];
+  friction.viscous = robot.number("viscous_Nms_per_rad", friction.viscous, at_least(0));
+  friction.coulomb = robot.number("coulomb_Nm", friction.coulomb, at_least(0));
+  friction.smoothing = robot.number("smoothing_rad_per_s", friction.smoothing, above(0));
+  trial.robot.steps_per_tick = robot.integer("steps_per_tick", trial.robot.steps_per_tick, 1, 100);
   const Section control = root.section("control");
-  trial.controlled =
-      control.required_choice<Quantity>("kind", {{"position", Quantity::position}, {"force", Quantity::force}});
-  if (trial.controlled == Quantity::position) {
-    trial.servo.proportional = control.number("proportional_Nm_per_rad", trial.servo.proportional, at_least(0));
-    trial.servo.derivative = control.number("derivative_Nms_per_rad", trial.servo.derivative, at_least(0));
-    trial.servo.velocity_cutoff =
-        Hertz(control.number("velocity_cutoff_hz", trial.servo.velocity_cutoff.value, above(0)));
+  if (control.required_choice<Quantity>("kind", {{"position", Quantity::position}, {"force", Quantity::force}}) ==
+      Quantity::position) {
+    ServoMode servo;
+    servo.proportional = control.number("proportional_Nm_per_rad", servo.proportional, at_least(0));
+    servo.derivative = control.number("derivative_Nms_per_rad", servo.derivative, at_least(0));
+    servo.velocity_cutoff = Hertz(control.number("velocity_cutoff_hz", servo.velocity_cutoff.value, above(0)));
+    trial.control = servo;
+  } else {
+    trial.control = ForceMode{};
   }
-  trial.joint = read_joint(root.section("participant"));
+  trial.load = read_joint(root.section("participant"));
   trial.sensors = read_one_axis_sensors(root.section("sensors"));
   return trial;
 }
@@ -287,7 +297,7 @@ OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
 PlanarTrial read_planar(const Section& root, const Section& robot) {
   PlanarTrial trial;
   trial.robot = read_robot(robot);
-  trial.home = robot.vector2("home_mm", trial.home);
+  trial.home = robot.vector2("home_mm", kHome);
   trial.control = protocol::read_control(root.section("control"));
   trial.sensors = read_sensors(root.section("sensors"));
   const Section person = root.section("participant"), rig = root.section("rig");
@@ -325,11 +335,7 @@ void along_one_axis(perturbation::Plan& plan) {
 
 Scenario read_scenario(const Section& root) {
   Scenario scenario;
-  const protocol::RecordingSection recording = protocol::read_recording(root.section("recording"));
-  scenario.condition = recording.condition;
-  scenario.rate = recording.rate;
-  scenario.seed = recording.seed;
-  scenario.readers = recording.readers;
+  static_cast<protocol::TrialPlan&>(scenario) = protocol::read_recording(root.section("recording"));
   const Section robot = root.section("robot");
   const protocol::Machine machine = protocol::read_machine(robot);
   scenario.perturbation = protocol::read_perturbation(root.section("perturbation"), machine);
@@ -346,8 +352,8 @@ Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::f
   return config::read_trials(text, file, [&](const Section& root, const std::string& name) -> Result<Scenario> {
     for (const char* section : kSectionsOfExperiments) root.leave_to_others(section);
     Scenario scenario = read_scenario(root);
-    scenario.file_name = file.stem().string();
-    scenario.trial_name = name;
+    scenario.protocol = file.stem().string();
+    scenario.name = name;
     return scenario;
   });
 }

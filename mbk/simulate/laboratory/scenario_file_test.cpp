@@ -38,8 +38,8 @@ PlanarTrial planar(const Scenario& scenario) {
 
 TEST(ScenarioFile, TheShortestOneHasTheApparatusOfTheThesis) {
   const Scenario scenario = read(with("")).front();
-  EXPECT_EQ(scenario.file_name, "mine");
-  EXPECT_EQ(scenario.trial_name, "");
+  EXPECT_EQ(scenario.protocol, "mine");
+  EXPECT_EQ(scenario.name, "");
   const PlanarTrial trial = planar(scenario);
   EXPECT_EQ(trial.robot.robot.inertia.alpha2, 0.04217);
   EXPECT_EQ(trial.robot.robot.friction[1].viscous, 0.07389);
@@ -96,7 +96,7 @@ TEST(ScenarioFile, TrialsChangeWhatTheySay) {
                 "[[trial]]\nname = \"light\"\nrig.mass_kg = 0.5\n"
                 "[[trial]]\nname = \"heavy\"\nrig.mass_kg = 2\nrecording.seed = 5\n"));
   ASSERT_EQ(scenarios.size(), 2u);
-  EXPECT_EQ(scenarios[0].trial_name, "light");
+  EXPECT_EQ(scenarios[0].name, "light");
   EXPECT_EQ(std::get<RigPlan>(planar(scenarios[0]).load).mass, 0.5);
   EXPECT_EQ(std::get<RigPlan>(planar(scenarios[1]).load).mass, 2.0);
   EXPECT_EQ(std::get<RigPlan>(planar(scenarios[1]).load).stiffness(1, 1), 200.0);
@@ -109,7 +109,7 @@ TEST(ScenarioFile, OneAxisMachinesMoveToAndFro) {
                 "stiffness_Nm_per_rad = 30\n",
                 "kind = \"position\"", "kind = \"random_binary\""))
           .front();
-  EXPECT_EQ(std::get<OneAxisTrial>(scenario.trial).joint.stiffness, 30.0);
+  EXPECT_EQ(std::get<participant::OneAxisJoint::Options>(std::get<OneAxisTrial>(scenario.trial).load).stiffness, 30.0);
   EXPECT_EQ(std::get<perturbation::RandomBinaryPlan>(scenario.perturbation.kind).angle, 0.0);
 }
 
@@ -351,7 +351,7 @@ TEST(ScenarioFile, EveryKeyOfOtherLoadsBecomesItsOption) {
 
 TEST(ScenarioFile, EveryKeyOfTheSensorsBecomesItsOption) {
   const auto sensors = [](const std::string& text) { return planar(read(with(text)).front()).sensors; };
-  const SensorOptions first = sensors(
+  const SensorOptions<2> first = sensors(
       "[sensors]\nencoder_resolution_rad = 1e-5\n"
       "[sensors.force]\nkind = \"load_cell\"\nwhite_noise_N = 0.03\ncoloured_noise_N = 0.04\n"
       "coloured_bandwidth_hz = 2\ngain = [[1.01, 0.02], [0.03, 0.99]]\noffset_N = [0.1, 0.2]\n"
@@ -362,7 +362,7 @@ TEST(ScenarioFile, EveryKeyOfTheSensorsBecomesItsOption) {
       "torque_constant_error_percent = [4, 5]\nnoise_A = 0.06\n"
       "[sensors.clock]\njitter_us = 30\ntimestamps = \"nominal\"\n");
   EXPECT_EQ(first.encoder_resolution, 1e-5);
-  const auto& cell = std::get<LoadCellOptions>(first.force);
+  const auto& cell = std::get<LoadCellOptions<2>>(first.force);
   EXPECT_EQ(cell.white_noise, 0.03);
   EXPECT_EQ(cell.coloured_noise, 0.04);
   EXPECT_EQ(cell.coloured_bandwidth.value, 2.0);
@@ -370,20 +370,20 @@ TEST(ScenarioFile, EveryKeyOfTheSensorsBecomesItsOption) {
   EXPECT_EQ(cell.offset, Vector2d(0.1, 0.2));
   EXPECT_EQ(cell.drift_walk, 0.005);
   EXPECT_EQ(cell.drift_rate, Vector2d(0.006, 0.007));
-  const auto& meter = std::get<AccelerometerOptions>(first.acceleration);
+  const auto& meter = std::get<AccelerometerOptions<2>>(first.acceleration);
   EXPECT_EQ(meter.noise, 0.05);
   EXPECT_EQ(meter.bias, Vector2d(0.1, 0.2));
   EXPECT_EQ(meter.gain_error, Vector2d(0.01, 0.02));
   EXPECT_NEAR(meter.misalignment, 3.0 * kDegree, kRounding);
   EXPECT_EQ(meter.bandwidth.value, 100.0);
-  const auto& current = std::get<MotorCurrentOptions>(first.torque);
+  const auto& current = std::get<MotorCurrentOptions<2>>(first.torque);
   EXPECT_EQ(current.torque_constant, Vector2d(0.2, 0.3));
   EXPECT_EQ(current.torque_constant_error, Vector2d(0.04, 0.05));
   EXPECT_EQ(current.noise, 0.06);
   EXPECT_NEAR(first.clock.jitter, 30e-6, kRounding);
   EXPECT_EQ(first.clock.timestamps, ClockOptions::Timestamps::nominal);
 
-  const SensorOptions second = sensors(
+  const SensorOptions<2> second = sensors(
       "[sensors.force]\nkind = \"strain_gauge\"\nslope_N_per_V = [-8, -9]\noffset_N = [0.5, 2]\n"
       "calibration_arm_mm = 60\narm_mm = 61\ncrosstalk_percent = [1, 2]\n"
       "bridge_noise_V_per_sqrt_hz = 1e-4\ncutoff_hz = 50\nfilter_order = 2\nconverter_bits = 16\n"
@@ -424,41 +424,42 @@ TEST(ScenarioFile, EveryKeyOfAOneAxisMachineBecomesItsOption) {
                 "kind = \"random_binary\""))
           .front();
   const auto trial = std::get<OneAxisTrial>(scenario.trial);
-  EXPECT_EQ(trial.machine.inertia, 0.03);
-  EXPECT_EQ(trial.machine.friction.viscous, 0.2);
-  EXPECT_EQ(trial.machine.friction.coulomb, 0.1);
-  EXPECT_EQ(trial.machine.friction.smoothing, 0.03);
-  EXPECT_EQ(trial.machine.steps_per_tick, 2);
-  EXPECT_EQ(trial.controlled, perturbation::Quantity::position);
-  EXPECT_EQ(trial.servo.proportional, 700.0);
-  EXPECT_EQ(trial.servo.derivative, 11.0);
-  EXPECT_EQ(trial.servo.velocity_cutoff.value, 150.0);
-  EXPECT_EQ(trial.joint.inertia, 0.016);
-  EXPECT_EQ(trial.joint.viscosity, 0.9);
-  EXPECT_EQ(trial.joint.stiffness, 46.0);
-  EXPECT_NEAR(trial.joint.rest, kDegree, kRounding);
-  EXPECT_EQ(trial.joint.reflex.gain, 4.0);
-  EXPECT_NEAR(trial.joint.reflex.delay, 0.045, kRounding);
-  EXPECT_NEAR(Hertz(trial.joint.reflex.natural_frequency).value, 6.0, 8 * kRounding);
-  EXPECT_EQ(trial.joint.reflex.damping_ratio, 0.8);
-  EXPECT_FALSE(trial.joint.reflex.stretched_by_positive_velocity);
-  EXPECT_EQ(trial.joint.remnant.floor, 0.06);
-  EXPECT_EQ(trial.joint.remnant.cutoff.value, 2.0);
-  EXPECT_EQ(trial.sensors.position_resolution, 1e-6);
-  EXPECT_EQ(trial.sensors.reaction_noise, 0.01);
-  EXPECT_EQ(trial.sensors.coloured_noise, 0.02);
-  EXPECT_EQ(trial.sensors.coloured_bandwidth.value, 3.0);
-  EXPECT_EQ(trial.sensors.drift_walk, 0.04);
-  EXPECT_EQ(trial.sensors.drift_rate, 0.05);
-  EXPECT_EQ(trial.sensors.acceleration_noise, 0.06);
+  EXPECT_EQ(trial.robot.robot.inertia.mass, 0.03);
+  EXPECT_EQ(trial.robot.robot.friction[0].viscous, 0.2);
+  EXPECT_EQ(trial.robot.robot.friction[0].coulomb, 0.1);
+  EXPECT_EQ(trial.robot.robot.friction[0].smoothing, 0.03);
+  EXPECT_EQ(trial.robot.steps_per_tick, 2);
+  const auto& servo = std::get<ServoMode>(trial.control);
+  EXPECT_EQ(servo.proportional, 700.0);
+  EXPECT_EQ(servo.derivative, 11.0);
+  EXPECT_EQ(servo.velocity_cutoff.value, 150.0);
+  const auto& joint = std::get<participant::OneAxisJoint::Options>(trial.load);
+  EXPECT_EQ(joint.inertia, 0.016);
+  EXPECT_EQ(joint.viscosity, 0.9);
+  EXPECT_EQ(joint.stiffness, 46.0);
+  EXPECT_NEAR(joint.rest, kDegree, kRounding);
+  EXPECT_EQ(joint.reflex.gain, 4.0);
+  EXPECT_NEAR(joint.reflex.delay, 0.045, kRounding);
+  EXPECT_NEAR(Hertz(joint.reflex.natural_frequency).value, 6.0, 8 * kRounding);
+  EXPECT_EQ(joint.reflex.damping_ratio, 0.8);
+  EXPECT_FALSE(joint.reflex.stretched_by_positive_velocity);
+  EXPECT_EQ(joint.remnant.floor, 0.06);
+  EXPECT_EQ(joint.remnant.cutoff.value, 2.0);
+  EXPECT_EQ(trial.sensors.encoder_resolution, 1e-6);
+  const auto& cell = std::get<LoadCellOptions<1>>(trial.sensors.force);
+  EXPECT_EQ(cell.white_noise, 0.01);
+  EXPECT_EQ(cell.coloured_noise, 0.02);
+  EXPECT_EQ(cell.coloured_bandwidth.value, 3.0);
+  EXPECT_EQ(cell.drift_walk, 0.04);
+  EXPECT_EQ(cell.drift_rate[0], 0.05);
+  EXPECT_EQ(std::get<AccelerometerOptions<1>>(trial.sensors.acceleration).noise, 0.06);
 }
 
 TEST(ScenarioFile, EveryReadyScenarioReadsAndSaysItsCondition) {
   for (const ReadyScenario& one : ready_scenarios()) {
     const auto scenarios = read(std::string(one.text));
     EXPECT_FALSE(scenarios.front().condition.empty()) << one.name;
-    for (const Scenario& scenario : scenarios)
-      EXPECT_EQ(scenario.trial_name.empty(), scenarios.size() == 1) << one.name;
+    for (const Scenario& scenario : scenarios) EXPECT_EQ(scenario.name.empty(), scenarios.size() == 1) << one.name;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -18,24 +19,24 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kTick = 1e-3;
 const robot::Geometry kGeometry;
 
-SensorSuite suite(const SensorOptions& options, std::uint64_t seed = 1) {
-  return SensorSuite::create(options, kGeometry, kTick, seed).value();
+SensorSuite<2> suite(const SensorOptions<2>& options, std::uint64_t seed = 1) {
+  return SensorSuite<2>::create(options, kGeometry, kTick, seed).value();
 }
 
 /// Every part switched off, one by one.
-SensorOptions silent() {
-  SensorOptions options;
+SensorOptions<2> silent() {
+  SensorOptions<2> options;
   options.encoder_resolution = 0.0;
-  options.force = LoadCellOptions{.white_noise = 0.0};
-  options.acceleration = AccelerometerOptions{.noise = 0.0};
-  options.torque = MotorCurrentOptions{};
+  options.force = LoadCellOptions<2>{.white_noise = 0.0};
+  options.acceleration = AccelerometerOptions<2>{.noise = 0.0};
+  options.torque = MotorCurrentOptions<2>{};
   return options;
 }
 
 /// Some state of a rigid drive in motion.
-TrueState state(int k) {
+TrueState<2> state(int k) {
   const double t = k * kTick;
-  TrueState s;
+  TrueState<2> s;
   s.time = t;
   s.theta = {0.2 + 0.3 * std::sin(3.0 * t), 1.1 + 0.4 * std::sin(4.0 * t)};
   s.motor_angle = s.theta;
@@ -46,7 +47,8 @@ TrueState state(int k) {
   return s;
 }
 
-void expect_truth(const SensorSuite::Reading& reading, const TrueState& truth) {
+template <int Axes>
+void expect_truth(const typename SensorSuite<Axes>::Reading& reading, const TrueState<Axes>& truth) {
   EXPECT_EQ(reading.time, truth.time);
   EXPECT_EQ(reading.joint, truth.theta);
   EXPECT_EQ(reading.hand, truth.position);
@@ -56,8 +58,8 @@ void expect_truth(const SensorSuite::Reading& reading, const TrueState& truth) {
 }
 
 TEST(SensorSuite, PerfectOrSilentReadsTheTruthToTheLastBit) {
-  for (const SensorOptions& options : {SensorOptions::perfect(), silent()}) {
-    SensorSuite sensors = suite(options);
+  for (const SensorOptions<2>& options : {SensorOptions<2>::perfect(), silent()}) {
+    SensorSuite<2> sensors = suite(options);
     for (int k = 0; k < 500; ++k) expect_truth(sensors.read(state(k)), state(k));
     EXPECT_EQ(sensors.next_interval(), kTick);
     EXPECT_EQ(sensors.clipped_samples(), 0);
@@ -66,9 +68,9 @@ TEST(SensorSuite, PerfectOrSilentReadsTheTruthToTheLastBit) {
 }
 
 TEST(SensorSuite, EncodersCountInStepsOfTwoMicrometresAtTheFirstLink) {
-  const double count = SensorOptions{}.encoder_resolution;
+  const double count = SensorOptions<2>{}.encoder_resolution;
   EXPECT_NEAR(count * kGeometry.d1, 2e-6, 1e-20);
-  SensorSuite sensors = suite({});
+  SensorSuite<2> sensors = suite({});
   double square = 0.0;
   constexpr int kCount = 20000;
   for (int k = 0; k < kCount; ++k) {
@@ -80,10 +82,10 @@ TEST(SensorSuite, EncodersCountInStepsOfTwoMicrometresAtTheFirstLink) {
 }
 
 TEST(SensorSuite, HandIsTheForwardKinematicsOfWhatTheControllerSees) {
-  SensorSuite sensors = suite({});
-  TrueState truth = state(100);
+  SensorSuite<2> sensors = suite({});
+  TrueState<2> truth = state(100);
   truth.motor_angle += Vector2d(0.003, -0.002);  // elastic cables
-  const SensorSuite::Reading reading = sensors.read(truth);
+  const SensorSuite<2>::Reading reading = sensors.read(truth);
   EXPECT_EQ(reading.joint, sensors.encoders(truth.motor_angle));
   EXPECT_EQ(reading.hand, robot::hand_position(kGeometry, reading.joint));
 }
@@ -102,9 +104,9 @@ TEST(LinkAxes, AreThePhysicalRotationOfTheLastLink) {
 }
 
 TEST(SensorSuite, ForceErrorsTurnWithTheLastLink) {
-  SensorOptions options = silent();
-  options.force = LoadCellOptions{.white_noise = 0.0, .offset = {1.0, 0.0}};
-  SensorSuite sensors = suite(options);
+  SensorOptions<2> options = silent();
+  options.force = LoadCellOptions<2>{.white_noise = 0.0, .offset = {1.0, 0.0}};
+  SensorSuite<2> sensors = suite(options);
   for (const int k : {0, 300, 700}) {
     const Vector2d error = sensors.read(state(k)).force - state(k).force_hand_on_robot;
     const double theta2 = state(k).theta[1];
@@ -113,53 +115,53 @@ TEST(SensorSuite, ForceErrorsTurnWithTheLastLink) {
 }
 
 TEST(SensorSuite, WrongAngleTurnsForceAndAcceleration) {
-  SensorSuite sensors = suite(silent());
-  TrueState truth = state(100);
+  SensorSuite<2> sensors = suite(silent());
+  TrueState<2> truth = state(100);
   truth.motor_angle[1] += 0.01;  // what the cable hides from the encoder
-  const SensorSuite::Reading reading = sensors.read(truth);
+  const SensorSuite<2>::Reading reading = sensors.read(truth);
   const Matrix2d turn = Eigen::Rotation2Dd(0.01).toRotationMatrix();
   EXPECT_LT((reading.force - turn * truth.force_hand_on_robot).norm(), 1e-13);
   EXPECT_LT((reading.acceleration - turn * truth.acceleration).norm(), 1e-13);
 }
 
 TEST(SensorSuite, AccelerometerIsTurnedToTheBaseFrame) {
-  SensorOptions options = silent();
-  options.acceleration = AccelerometerOptions{.noise = 0.0, .gain_error = {0.1, 0.0}};
-  SensorSuite sensors = suite(options);
-  const TrueState truth = state(100);
+  SensorOptions<2> options = silent();
+  options.acceleration = AccelerometerOptions<2>{.noise = 0.0, .gain_error = {0.1, 0.0}};
+  SensorSuite<2> sensors = suite(options);
+  const TrueState<2> truth = state(100);
   const Matrix2d axes = link_axes(truth.theta[1]);
   const Vector2d expected = axes * Vector2d(1.1, 1.0).asDiagonal() * axes.transpose() * truth.acceleration;
   EXPECT_LT((sensors.read(truth).acceleration - expected).norm(), 1e-14);
 }
 
 TEST(SensorSuite, StrainGaugeWithoutItsFilterReadsWithinHalfAStepOfEachAxis) {
-  SensorOptions options = silent();
+  SensorOptions<2> options = silent();
   options.force = StrainGaugeOptions{.bridge_noise = 0.0, .cutoff = Hertz(0.0)};
-  SensorSuite sensors = suite(options);
+  SensorSuite<2> sensors = suite(options);
   const double half_steps = 0.5 * std::hypot(8.56, 8.15) * 20.0 / 4096.0;
   for (int k = 0; k < 1000; ++k) {
-    const TrueState truth = state(k);
+    const TrueState<2> truth = state(k);
     ASSERT_LE((sensors.read(truth).force - truth.force_hand_on_robot).norm(), half_steps * (1.0 + 1e-9)) << k;
   }
 }
 
 TEST(SensorSuite, PassesOnDelayAndClippedSamplesOfTheStrainGauge) {
-  SensorOptions options;
+  SensorOptions<2> options;
   options.force = StrainGaugeOptions{};
-  SensorSuite sensors = suite(options);
+  SensorSuite<2> sensors = suite(options);
   EXPECT_NEAR(sensors.force_delay(), 8.56e-3, 5e-6);
-  TrueState truth = state(0);
+  TrueState<2> truth = state(0);
   truth.force_hand_on_robot = {300.0, 0.0};
   for (int k = 0; k < 3; ++k) (void)sensors.read(truth);
   EXPECT_EQ(sensors.clipped_samples(), 3);
 }
 
 TEST(SensorSuite, TorqueFromTheCurrentHasTheErrorOfItsConstantAndNoise) {
-  SensorOptions options = silent();
+  SensorOptions<2> options = silent();
   options.torque =
-      MotorCurrentOptions{.torque_constant = {0.5, 0.25}, .torque_constant_error = {0.1, -0.2}, .noise = 0.04};
-  SensorSuite sensors = suite(options);
-  TrueState truth = state(0);
+      MotorCurrentOptions<2>{.torque_constant = {0.5, 0.25}, .torque_constant_error = {0.1, -0.2}, .noise = 0.04};
+  SensorSuite<2> sensors = suite(options);
+  TrueState<2> truth = state(0);
   truth.motor_torque = {2.0, -1.0};
   constexpr int kCount = 100000;
   Vector2d mean = Vector2d::Zero(), square = Vector2d::Zero();
@@ -174,13 +176,13 @@ TEST(SensorSuite, TorqueFromTheCurrentHasTheErrorOfItsConstantAndNoise) {
 }
 
 TEST(SensorSuite, TimestampsAreWhenTheTickWasOrWhenItShouldHaveBeen) {
-  SensorOptions actual, nominal;
+  SensorOptions<2> actual, nominal;
   actual.clock.jitter = nominal.clock.jitter = 5e-5;
   nominal.clock.timestamps = ClockOptions::Timestamps::nominal;
-  SensorSuite first = suite(actual), second = suite(nominal);
+  SensorSuite<2> first = suite(actual), second = suite(nominal);
   double time = kTick;
   for (int k = 0; k < 1000; ++k) {
-    TrueState truth = state(0);
+    TrueState<2> truth = state(0);
     truth.time = time;
     ASSERT_EQ(first.read(truth).time, time);
     ASSERT_NEAR(second.read(truth).time, (k + 1) * kTick, 1e-15 * (k + 1));
@@ -192,12 +194,12 @@ TEST(SensorSuite, TimestampsAreWhenTheTickWasOrWhenItShouldHaveBeen) {
 
 /// What two suites with the same seed read in some ticks, one column each.
 using Signals = std::vector<std::pair<std::string, std::vector<double>>>;
-Signals record(const SensorOptions& options) {
-  SensorSuite sensors = suite(options, 11);
+Signals record(const SensorOptions<2>& options) {
+  SensorSuite<2> sensors = suite(options, 11);
   Signals signals = {{"clock", {}}, {"force", {}}, {"acceleration", {}}, {"torque", {}}, {"hand", {}}};
   for (int k = 0; k < 50; ++k) {
     signals[0].second.push_back(sensors.next_interval());
-    const SensorSuite::Reading reading = sensors.read(state(k));
+    const SensorSuite<2>::Reading reading = sensors.read(state(k));
     signals[1].second.push_back(reading.force[0]);
     signals[2].second.push_back(reading.acceleration[0]);
     signals[3].second.push_back(reading.torque[0]);
@@ -207,17 +209,17 @@ Signals record(const SensorOptions& options) {
 }
 
 TEST(SensorSuite, OneNoiseLeavesEveryOtherSignalAsItWas) {
-  SensorOptions loud;
+  SensorOptions<2> loud;
   loud.clock.jitter = 1e-5;
-  loud.torque = MotorCurrentOptions{.noise = 0.01};
+  loud.torque = MotorCurrentOptions<2>{.noise = 0.01};
   const Signals all = record(loud);
-  const auto same_but = [&](const std::string& changed, const SensorOptions& options) {
+  const auto same_but = [&](const std::string& changed, const SensorOptions<2>& options) {
     const Signals other = record(options);
     for (std::size_t i = 0; i < all.size(); ++i) {
       EXPECT_EQ(all[i].second != other[i].second, all[i].first == changed) << all[i].first << " without " << changed;
     }
   };
-  SensorOptions options = loud;
+  SensorOptions<2> options = loud;
   options.clock.jitter = 0.0;
   same_but("clock", options);
   options = loud;
@@ -232,21 +234,21 @@ TEST(SensorSuite, OneNoiseLeavesEveryOtherSignalAsItWas) {
 }
 
 TEST(SensorSuite, SameSeedReadsTheSameAndAnotherSeedOtherwise) {
-  SensorSuite first = suite({}, 4), again = suite({}, 4), other = suite({}, 5);
+  SensorSuite<2> first = suite({}, 4), again = suite({}, 4), other = suite({}, 5);
   const Vector2d force = first.read(state(3)).force;
   EXPECT_EQ(force, again.read(state(3)).force);
   EXPECT_NE(force, other.read(state(3)).force);
 }
 
 TEST(SensorSuite, ReadsWithoutAllocating) {
-  SensorOptions strain_gauge;
+  SensorOptions<2> strain_gauge;
   strain_gauge.force = StrainGaugeOptions{};
-  strain_gauge.acceleration = AccelerometerOptions{.bandwidth = Hertz(100.0)};
-  strain_gauge.torque = MotorCurrentOptions{.noise = 0.01};
+  strain_gauge.acceleration = AccelerometerOptions<2>{.bandwidth = Hertz(100.0)};
+  strain_gauge.torque = MotorCurrentOptions<2>{.noise = 0.01};
   strain_gauge.clock.jitter = 1e-5;
-  for (const SensorOptions& options : {SensorOptions{}, strain_gauge}) {
+  for (const SensorOptions<2>& options : {SensorOptions<2>{}, strain_gauge}) {
     const long before_making = testing_support::allocations();
-    SensorSuite sensors = suite(options);
+    SensorSuite<2> sensors = suite(options);
     EXPECT_GT(testing_support::allocations(), before_making);  // the counter counts
     const long before = testing_support::allocations();
     double sum = 0.0;
@@ -261,9 +263,9 @@ TEST(SensorSuite, ReadsWithoutAllocating) {
 
 TEST(SensorSuite, RefusesWhatHasNoMeaning) {
   const auto message = [](auto change, double sample_time = kTick) {
-    SensorOptions options;
+    SensorOptions<2> options;
     change(options);
-    const auto sensors = SensorSuite::create(options, kGeometry, sample_time, 1);
+    const auto sensors = SensorSuite<2>::create(options, kGeometry, sample_time, 1);
     return sensors ? std::string() : sensors.error().message;
   };
   EXPECT_EQ(message([](auto&) {}), "");
@@ -273,13 +275,95 @@ TEST(SensorSuite, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(message([](auto& o) { o.clock.jitter = 5e-4; }),
             "jitter 0.0005 s is not below a third of the sample time 0.001 s");
   EXPECT_EQ(message([](auto& o) {
-              o.torque = MotorCurrentOptions{.torque_constant = {0.1, 0.0}};
+              o.torque = MotorCurrentOptions<2>{.torque_constant = {0.1, 0.0}};
             }),
             "torque constant 0 N·m/A is not above zero");
-  EXPECT_NE(message([](auto& o) { o.torque = MotorCurrentOptions{.noise = -1.0}; }), "");
-  EXPECT_NE(message([](auto& o) { o.force = LoadCellOptions{.white_noise = -1.0}; }), "");
+  EXPECT_NE(message([](auto& o) { o.torque = MotorCurrentOptions<2>{.noise = -1.0}; }), "");
+  EXPECT_NE(message([](auto& o) { o.force = LoadCellOptions<2>{.white_noise = -1.0}; }), "");
   EXPECT_NE(message([](auto& o) { o.force = StrainGaugeOptions{.arm = 0.0}; }), "");
-  EXPECT_NE(message([](auto& o) { o.acceleration = AccelerometerOptions{.noise = -1.0}; }), "");
+  EXPECT_NE(message([](auto& o) { o.acceleration = AccelerometerOptions<2>{.noise = -1.0}; }), "");
+}
+
+SensorOptions<1> silent_axis() {
+  SensorOptions<1> options;
+  options.encoder_resolution = 0.0;
+  options.force = LoadCellOptions<1>{.white_noise = 0.0};
+  options.acceleration = AccelerometerOptions<1>{.noise = 0.0};
+  options.torque = MotorCurrentOptions<1>{};
+  return options;
+}
+
+TrueState<1> axis_state() {
+  TrueState<1> s;
+  s.time = 1.5;
+  s.theta[0] = s.motor_angle[0] = s.position[0] = 0.1234567;
+  s.acceleration[0] = 3.0;
+  s.force_hand_on_robot[0] = -1.7;
+  s.motor_torque[0] = 0.4;
+  return s;
+}
+
+SensorSuite<1> axis_suite(const SensorOptions<1>& options) {
+  return SensorSuite<1>::create(options, {}, kTick, 1).value();
+}
+
+TEST(SensorSuiteOfOneAxis, PerfectOrSilentReadsTheTruthToTheLastBit) {
+  for (const SensorOptions<1>& options : {SensorOptions<1>::perfect(), silent_axis()}) {
+    SensorSuite<1> sensors = axis_suite(options);
+    expect_truth(sensors.read(axis_state()), axis_state());
+    EXPECT_EQ(sensors.next_interval(), kTick);
+    EXPECT_EQ(sensors.clipped_samples(), 0);
+    EXPECT_EQ(sensors.force_delay(), 0.0);
+  }
+}
+
+TEST(SensorSuiteOfOneAxis, RecordsThePositionThatTheServoSees) {
+  SensorOptions<1> options = silent_axis();
+  options.encoder_resolution = 1e-3;
+  SensorSuite<1> sensors = axis_suite(options);
+  EXPECT_NEAR(sensors.encoders(axis_state().motor_angle)[0], 0.123, 1e-15);
+  EXPECT_EQ(sensors.read(axis_state()).joint, sensors.encoders(axis_state().motor_angle));
+}
+
+TEST(SensorSuiteOfOneAxis, NoisesHaveTheirDeviations) {
+  SensorOptions<1> options = silent_axis();
+  options.force = LoadCellOptions<1>{.white_noise = 0.3, .coloured_noise = 0.4, .coloured_bandwidth = Hertz(100.0)};
+  options.acceleration = AccelerometerOptions<1>{.noise = 0.05};
+  SensorSuite<1> sensors = axis_suite(options);
+  constexpr int kCount = 200000;
+  double force = 0.0, acceleration = 0.0;
+  for (int k = 0; k < kCount; ++k) {
+    const SensorSuite<1>::Reading reading = sensors.read(axis_state());
+    force += std::pow(reading.force[0] + 1.7, 2) / kCount;
+    acceleration += std::pow(reading.acceleration[0] - 3.0, 2) / kCount;
+  }
+  EXPECT_NEAR(force, 0.25, 5.0 * 0.25 * std::sqrt(4.0 / kCount));
+  EXPECT_NEAR(acceleration, 0.0025, 5.0 * 0.0025 * std::sqrt(2.0 / kCount));
+}
+
+TEST(SensorSuiteOfOneAxis, AccelerometerThatIsTurnedAwaySeesTheCosine) {
+  SensorOptions<1> options = silent_axis();
+  options.acceleration = AccelerometerOptions<1>{.noise = 0.0, .misalignment = 0.2};
+  EXPECT_NEAR(axis_suite(options).read(axis_state()).acceleration[0], 3.0 * std::cos(0.2), 1e-15);
+}
+
+TEST(SensorSuiteOfOneAxis, DriftsSteadilyWithoutNoise) {
+  SensorOptions<1> options = silent_axis();
+  options.force = LoadCellOptions<1>{.white_noise = 0.0, .drift_rate = AxisVector<1>(0.1)};
+  SensorSuite<1> sensors = axis_suite(options);
+  double force = 0.0;
+  for (int k = 0; k <= 3000; ++k) force = sensors.read(axis_state()).force[0];
+  EXPECT_NEAR(force, -1.7 + 0.3, 1e-14);
+}
+
+TEST(SensorSuiteOfOneAxis, RefusesWhatHasNoMeaning) {
+  SensorOptions<1> options;
+  options.force = LoadCellOptions<1>{.white_noise = -0.5};
+  EXPECT_EQ(SensorSuite<1>::create(options, {}, kTick, 1).error().message,
+            "white noise of the load cell -0.5 N is below zero or not finite");
+  options.force = LoadCellOptions<1>{.drift_rate = AxisVector<1>(std::numeric_limits<double>::infinity())};
+  EXPECT_FALSE(SensorSuite<1>::create(options, {}, kTick, 1));
+  EXPECT_FALSE(SensorSuite<1>::create({}, {}, -1.0, 1));
 }
 
 }  // namespace

@@ -7,28 +7,15 @@
 namespace mbk::laboratory {
 namespace {
 
-Result<Performance> run(const PlanarTrial& trial, const Scenario& scenario, const SimulateOptions& options,
+template <int Axes>
+Result<Performance> run(const SimulatedTrial<Axes>& trial, const Scenario& scenario, const SimulateOptions& options,
                         perturbation::Schedule schedule) {
   auto load = make_load(scenario, trial);
   if (!load) return tl::unexpected(load.error());
-  return perform(Experiment{trial.robot, trial.home, std::move(schedule), trial.control, trial.sensors, scenario.rate,
-                            scenario.seed, options.progress, options.watch},
-                 **load);
-}
-
-Result<Performance> run(const OneAxisTrial& trial, const Scenario& scenario, const SimulateOptions& options,
-                        perturbation::Schedule schedule) {
-  if (trial.controlled != schedule.quantity()) {
-    return bad_usage("control and perturbation speak of different quantities",
-                     "let both be of positions, or both of torques");
-  }
-  participant::OneAxisJoint::Options person = trial.joint;
-  person.seed = scenario.seed;
-  auto joint = participant::OneAxisJoint::create(person, 1.0 / scenario.rate.value);
-  if (!joint) return tl::unexpected(joint.error().in("participant"));
-  return perform(OneAxisExperiment{trial.machine, trial.servo, std::move(schedule), trial.sensors, scenario.rate,
-                                   scenario.seed, options.progress},
-                 *joint);
+  Experiment<Axes> experiment{trial.robot,   trial.home,    std::move(schedule), trial.control, trial.sensors,
+                              scenario.rate, scenario.seed, options.progress,    /*watch=*/{}};
+  if constexpr (Axes == 2) experiment.watch = options.watch;
+  return perform(experiment, **load);
 }
 
 /// The arm at the handle, where there is one.
@@ -69,8 +56,8 @@ Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& op
 std::map<std::string, std::string> scenario_metadata(const Scenario& scenario) {
   std::map<std::string, std::string> metadata;
   if (const auto* arm = arm_of(scenario)) add_geometry(*arm, metadata);
-  metadata["truth_scenario"] = scenario.file_name;
-  if (!scenario.trial_name.empty()) metadata["truth_trial"] = scenario.trial_name;
+  metadata["truth_scenario"] = scenario.protocol;
+  if (!scenario.name.empty()) metadata["truth_trial"] = scenario.name;
   if (!scenario.condition.empty()) metadata["truth_condition"] = scenario.condition;
   if (has_will(scenario)) metadata["truth_note"] = kTunedGains;
   metadata["truth_seed"] = std::to_string(scenario.seed);

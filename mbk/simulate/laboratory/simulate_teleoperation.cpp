@@ -14,7 +14,7 @@
 #include "mbk/base/lti/rational.h"
 #include "mbk/experiment/control/passivity_control.h"
 #include "mbk/simulate/laboratory/axis_loads.h"
-#include "mbk/simulate/laboratory/one_axis_loop.h"
+#include "mbk/simulate/laboratory/closed_loop.h"
 #include "mbk/simulate/participant/arm.h"
 #include "mbk/teleop/sampled.h"
 #include "mbk/teleop/worst_terminations.h"
@@ -63,9 +63,9 @@ Robot robot(const teleop::Teleoperator& teleoperator, std::size_t which) {
   return result;
 }
 
-Packet packet(const OneAxisLoop& loop) {
-  const OneAxisLoop::Reading reading = loop.read();
-  return {reading.position, reading.velocity, reading.acceleration, reading.reaction};
+Packet packet(const ClosedLoop<1>& loop) {
+  const TrueState<1> now = loop.state();
+  return {now.position[0], now.velocity[0], now.acceleration[0], now.force_hand_on_robot[0]};
 }
 
 Result<void> check(const TeleoperationSetup& setup, const std::array<Robot, 2>& robots) {
@@ -86,15 +86,17 @@ Result<void> check(const TeleoperationSetup& setup, const std::array<Robot, 2>& 
 
 }  // namespace
 
-Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participant::OneAxisLoad& hand,
-                                     participant::OneAxisLoad& environment) {
+Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participant::Load<1>& hand,
+                                     participant::Load<1>& environment) {
   const double T = setup.sample_time;
   const std::array<Robot, 2> robots = {robot(setup.teleoperator, 0), robot(setup.teleoperator, 1)};
   if (auto ok = check(setup, robots); !ok) return tl::unexpected(ok.error());
-  const auto loop_of = [&](const Robot& robot, participant::OneAxisLoad& load) {
-    OneAxisLoop::Machine machine{robot.mass, {}, setup.steps_per_tick};
-    machine.friction.viscous = robot.damping;
-    return OneAxisLoop::create(machine, 0.0, load, 0.0);
+  const auto loop_of = [&](const Robot& robot, participant::Load<1>& load) {
+    ClosedLoop<1>::Options options;
+    options.robot.inertia.mass = robot.mass;
+    options.robot.friction[0].viscous = robot.damping;
+    options.steps_per_tick = setup.steps_per_tick;
+    return ClosedLoop<1>::create(options, AxisVector<1>(0.0), load);
   };
   auto master = loop_of(robots[0], hand), slave = loop_of(robots[1], environment);
   if (!master) return tl::unexpected(master.error());
@@ -136,8 +138,8 @@ Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participan
       motion.lowest_energy = std::min(*motion.lowest_energy, controller->energy());
     }
     if (n == 0) u_master += setup.kick / T;
-    master->hold(u_master, T);
-    slave->hold(u_slave, T);
+    master->hold(AxisVector<1>(u_master), T);
+    slave->hold(AxisVector<1>(u_slave), T);
     master->advance();
     slave->advance();
   }
@@ -205,7 +207,7 @@ std::string words(const Termination& termination) {
 /// An arm that holds a port, and what it is in words.
 struct HeldBy {
   std::unique_ptr<participant::Arm> arm;  ///< that `load` leads along a line
-  std::unique_ptr<participant::OneAxisLoad> load;
+  std::unique_ptr<participant::Load<1>> load;
   std::string words;
 };
 

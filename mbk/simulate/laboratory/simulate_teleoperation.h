@@ -7,7 +7,7 @@
 
 #include "mbk/model/trial/teleoperation.h"
 #include "mbk/simulate/laboratory/packet_line.h"
-#include "mbk/simulate/participant/one_axis_load.h"
+#include "mbk/simulate/participant/load.h"
 #include "mbk/teleop/design.h"
 
 namespace mbk::laboratory {
@@ -41,8 +41,8 @@ inline constexpr double kFurthest = 10.0;  ///< [m]
 
 /// @param hand, environment  at the master and at the slave, at rest at 0 [m, N]
 /// @fails  usage: a robot has no mass; a number is out of its range; as PacketLine and the passivity controller.
-[[nodiscard]] Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participant::OneAxisLoad& hand,
-                                                   participant::OneAxisLoad& environment);
+[[nodiscard]] Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participant::Load<1>& hand,
+                                                   participant::Load<1>& environment);
 
 /// Whether a motion dies out, by its own numbers: root mean square speed of both robots in the last quarter of the time
 /// over that in the second. Below 1/2 it dies out, above 2, or where it ran away, it grows. A quarter of the time must

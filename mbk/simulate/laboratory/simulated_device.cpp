@@ -4,10 +4,10 @@
 
 namespace mbk::laboratory {
 
-SimulatedDevice::SimulatedDevice(const Scenario& scenario, std::unique_ptr<participant::Load> load, ClosedLoop loop,
-                                 SensorSuite sensors)
+SimulatedDevice::SimulatedDevice(const Scenario& scenario, std::unique_ptr<participant::Load<2>> load,
+                                 ClosedLoop<2> loop, SensorSuite<2> sensors)
     : load_(std::move(load)), loop_(std::move(loop)), sensors_(std::move(sensors)) {
-  facts_.name = "simulated robot, " + (scenario.condition.empty() ? scenario.file_name : scenario.condition);
+  facts_.name = "simulated robot, " + (scenario.condition.empty() ? scenario.protocol : scenario.condition);
   facts_.keeps_time = false;
   facts_.acknowledges = true;
   facts_.force_latency = 1;
@@ -23,9 +23,9 @@ Result<std::unique_ptr<SimulatedDevice>> SimulatedDevice::create(const Scenario&
   auto load = make_load(scenario, *trial);
   if (!load) return tl::unexpected(load.error());
   const double sample_time = 1.0 / scenario.rate.value;
-  auto loop = ClosedLoop::create(trial->robot, trial->home, **load, sample_time);
+  auto loop = ClosedLoop<2>::create(trial->robot, trial->home, **load, sample_time);
   if (!loop) return tl::unexpected(loop.error());
-  auto sensors = SensorSuite::create(trial->sensors, trial->robot.robot.geometry, sample_time, scenario.seed);
+  auto sensors = SensorSuite<2>::create(trial->sensors, trial->robot.robot.geometry, sample_time, scenario.seed);
   if (!sensors) return tl::unexpected(sensors.error());
   return std::unique_ptr<SimulatedDevice>(
       new SimulatedDevice(scenario, std::move(*load), std::move(*loop), std::move(*sensors)));

@@ -28,18 +28,18 @@ class SimulatedDevice : public device::Device {
   [[nodiscard]] Vector2d motor_angle() const { return loop_.motor_angle(); }
 
   /// Everything in truth at the beginning of the last tick.
-  [[nodiscard]] const TrueState& truth() const { return truth_; }
+  [[nodiscard]] const TrueState<2>& truth() const { return truth_; }
 
  private:
-  SimulatedDevice(const Scenario& scenario, std::unique_ptr<participant::Load> load, ClosedLoop loop,
-                  SensorSuite sensors);
+  SimulatedDevice(const Scenario& scenario, std::unique_ptr<participant::Load<2>> load, ClosedLoop<2> loop,
+                  SensorSuite<2> sensors);
 
   device::Facts facts_;
-  std::unique_ptr<participant::Load> load_;
-  ClosedLoop loop_;
-  SensorSuite sensors_;
-  SensorSuite::Reading reading_{};
-  TrueState truth_;
+  std::unique_ptr<participant::Load<2>> load_;
+  ClosedLoop<2> loop_;
+  SensorSuite<2> sensors_;
+  SensorSuite<2>::Reading reading_{};
+  TrueState<2> truth_;
   std::uint64_t sequence_ = 0;
   bool enabled_ = false;
 };

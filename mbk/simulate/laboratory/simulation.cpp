@@ -11,13 +11,7 @@ class ScenarioSimulation : public protocol::Simulation {
 
   [[nodiscard]] Scenario scenario(const protocol::Trial& trial) const {
     Scenario scenario = scenario_;
-    scenario.file_name = trial.protocol;
-    scenario.trial_name = trial.name;
-    scenario.condition = trial.condition;
-    scenario.perturbation = trial.perturbation;
-    scenario.rate = trial.rate;
-    scenario.seed = trial.seed;
-    scenario.readers = trial.readers;
+    static_cast<protocol::TrialPlan&>(scenario) = trial;
     auto& planar = std::get<PlanarTrial>(scenario.trial);
     planar.robot.robot = trial.robot;
     planar.robot.handle_mass = trial.handle_mass;

@@ -26,7 +26,7 @@ SpringRig::SpringRig(calibration::SpringArray springs, const impedance::Model& a
       damping_(at_rest.B),
       disc_zero_(disc_zero) {}
 
-participant::LoadDynamics SpringRig::dynamics(const participant::HandState& hand) const {
+participant::LoadDynamics<2> SpringRig::dynamics(const participant::HandState<2>& hand) const {
   const double turn = hand.rotation - disc_zero_;
   return {mass_ * Eigen::Matrix2d::Identity(), damping_ * hand.velocity - springs_.force(hand.position, turn),
           springs_.moment(hand.position, turn)};

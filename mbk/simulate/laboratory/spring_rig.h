@@ -11,7 +11,7 @@ namespace mbk::laboratory {
 /// A payload of mass m held at the handle by an array of springs on the disc, with dampers (Dyck 2013, appendix D):
 ///   Λ = m I,   h = B ẋ − F_springs(x, θ₂)
 /// The disc turns with the last link, so that springs in its holes also exert a moment.
-class SpringRig : public participant::Load {
+class SpringRig : public participant::Load<2> {
  public:
   /// @param disc_zero  θ₂ at which the holes stand as they are given [rad]
   /// @fails  usage: the mass is negative, a number is not finite; the springs hold the hand nowhere near `rest`; as
@@ -20,7 +20,7 @@ class SpringRig : public participant::Load {
                                                 const Eigen::Matrix2d& damping, double disc_zero,
                                                 const Eigen::Vector2d& rest);
 
-  [[nodiscard]] participant::LoadDynamics dynamics(const participant::HandState& hand) const override;
+  [[nodiscard]] participant::LoadDynamics<2> dynamics(const participant::HandState<2>& hand) const override;
 
   /// About the equilibrium of the springs, wherever the hand is: m, B, K = −∂F/∂x with the disc as given, and x₀.
   [[nodiscard]] impedance::Model impedance(const Eigen::Vector2d& hand) const override;

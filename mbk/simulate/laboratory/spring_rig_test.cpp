@@ -30,8 +30,8 @@ SpringRig rig(double damping = 0.0, double disc_zero = 0.5) {
 TEST(SpringRig, ExertsTheForceAndMomentOfItsSpringsAndTheDrag) {
   const SpringRig load = rig(2.0);
   const auto array = calibration::SpringArray::create(springs()).value();
-  const participant::HandState hand{kRest + Vector2d(0.01, -0.02), {0.1, 0.3}, 0.57, 0.2};
-  const participant::LoadDynamics dynamics = load.dynamics(hand);
+  const participant::HandState<2> hand{kRest + Vector2d(0.01, -0.02), {0.1, 0.3}, 0.57, 0.2};
+  const participant::LoadDynamics<2> dynamics = load.dynamics(hand);
   EXPECT_EQ(dynamics.inertia, 0.8 * Matrix2d::Identity());
   EXPECT_LT((dynamics.bias - (2.0 * hand.velocity - array.force(hand.position, 0.57 - 0.5))).norm(), 1e-14);
   EXPECT_EQ(dynamics.moment, array.moment(hand.position, 0.57 - 0.5));
@@ -50,9 +50,9 @@ TEST(SpringRig, TruthIsTheStiffnessWhereTheSpringsRest) {
 TEST(SpringRig, EnergyBalancesWithADiscThatTurnsWithTheLink) {
   SpringRig load = rig(1.0);
   const auto array = calibration::SpringArray::create(springs()).value();
-  ClosedLoop loop = ClosedLoop::create({}, kRest, load).value();
+  ClosedLoop<2> loop = ClosedLoop<2>::create({}, kRest, load).value();
   const control::ForceControl force(robot::Geometry{});
-  TrueState first, last;
+  TrueState<2> first, last;
   double dragged = 0.0;
   for (int i = 0; i < 10000; ++i) {
     const double t = loop.time();
@@ -64,7 +64,7 @@ TEST(SpringRig, EnergyBalancesWithADiscThatTurnsWithTheLink) {
   const EnergyLedger& e = last.energy;
   EXPECT_NEAR(e.absorbed, e.motors - e.viscous - last.kinetic_energy, 1e-6 * e.motors);
   // What was absorbed is in the springs, the payload and the dampers: only so if the moment does its work too
-  const auto stored = [&](const TrueState& state) {
+  const auto stored = [&](const TrueState<2>& state) {
     return array.energy(state.position, state.theta[1] - 0.5) + 0.5 * 0.8 * state.velocity.squaredNorm();
   };
   EXPECT_NEAR(e.absorbed, stored(last) - stored(first) + dragged, 2e-4 * e.motors);  // rectangles for the dampers

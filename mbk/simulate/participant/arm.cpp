@@ -93,7 +93,7 @@ void Arm::tense() {
              limb_);
 }
 
-void Arm::tick(double /*t*/, double /*sample_time*/, const HandState& hand, const Vector2d& force_on_robot) {
+void Arm::tick(double /*t*/, double /*sample_time*/, const HandState<2>& hand, const Vector2d& force_on_robot) {
   cocontraction_.step(hand.velocity.norm());
   tense();
   const Matrix2d K = std::visit([&](const auto& limb) { return limb.stiffness(hand.position); }, limb_);
@@ -101,8 +101,8 @@ void Arm::tick(double /*t*/, double /*sample_time*/, const HandState& hand, cons
   noise_ = remnant_.step(voluntary.norm());
 }
 
-LoadDynamics Arm::dynamics(const HandState& hand) const {
-  LoadDynamics dynamics = std::visit([&](const auto& limb) { return limb.dynamics(hand); }, limb_);
+LoadDynamics<2> Arm::dynamics(const HandState<2>& hand) const {
+  LoadDynamics<2> dynamics = std::visit([&](const auto& limb) { return limb.dynamics(hand); }, limb_);
   dynamics.bias -= controller_.force() + noise_;
   return dynamics;
 }

@@ -42,14 +42,14 @@ struct ArmOptions {
 /// A person's arm: a passive limb, and what the person adds to it,
 ///   F_h = passive limb (stiffness and damping scaled by co-contraction) + F_v + n
 /// F_v of an intermittent controller, n a remnant. All three are decided once a tick and held over it.
-class Arm : public Load {
+class Arm : public Load<2> {
  public:
   /// @param sample_time  T [s] of the ticks that will follow
   /// @fails  as the parts.
   [[nodiscard]] static Result<Arm> create(const ArmOptions& options, double sample_time);
 
-  void tick(double t, double sample_time, const HandState& hand, const Vector2d& force_on_robot) override;
-  [[nodiscard]] LoadDynamics dynamics(const HandState& hand) const override;
+  void tick(double t, double sample_time, const HandState<2>& hand, const Vector2d& force_on_robot) override;
+  [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;
 
   /// Of the limb, with the co-contraction of the last tick.
   [[nodiscard]] impedance::Model impedance(const Vector2d& hand) const override;

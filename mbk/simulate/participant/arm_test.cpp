@@ -20,12 +20,12 @@ void wait(Arm& arm, const Vector2d& hand, int ticks) {
 
 TEST(Arm, IsItsLimbLessVoluntaryForceAndRemnant) {
   Arm arm = Arm::create(rigid_arm_options(), kTick).value();
-  const HandState hand = {kHome + Vector2d(0.02, -0.01), {0.1, 0.05}};
+  const HandState<2> hand = {kHome + Vector2d(0.02, -0.01), {0.1, 0.05}};
   wait(arm, hand.position, 1000);
   ASSERT_GT(arm.voluntary_force().norm(), 1.0);
   TwoLinkArm limb = TwoLinkArm::create({}).value();
   limb.scale(1.0 + 6.0 * 0.4, 1.0 + 3.0 * 0.4);  // at rest c is 0.4
-  const LoadDynamics passive = limb.dynamics(hand), all = arm.dynamics(hand);
+  const LoadDynamics<2> passive = limb.dynamics(hand), all = arm.dynamics(hand);
   EXPECT_EQ(all.inertia, passive.inertia);
   EXPECT_LT((passive.bias - all.bias - arm.voluntary_force() - arm.remnant()).norm(), 1e-12);
 }
@@ -78,7 +78,7 @@ TEST(Arm, DoesNotAllocateInItsTicks) {
   const long before = testing_support::allocations();
   Vector2d sum = {0.0, 0.0};
   for (int i = 0; i < 2000; ++i) {
-    const HandState hand = {kHome + Vector2d(0.02, -0.01), {0.1, 0.0}};
+    const HandState<2> hand = {kHome + Vector2d(0.02, -0.01), {0.1, 0.0}};
     arm.tick(i * kTick, kTick, hand, {1.0, 0.0});
     sum += arm.dynamics(hand).bias;
   }

@@ -18,7 +18,7 @@ Result<LinearLimb> LinearLimb::create(const impedance::Model& model) {
   return LinearLimb(M, model.B, model.K, model.x0);
 }
 
-LoadDynamics LinearLimb::dynamics(const HandState& hand) const {
+LoadDynamics<2> LinearLimb::dynamics(const HandState<2>& hand) const {
   return {M_, damping_scale_ * B_ * hand.velocity + stiffness_scale_ * K_ * (hand.position - x0_), 0.0};
 }
 

@@ -7,7 +7,7 @@ namespace mbk::participant {
 
 /// A limb whose hand impedance is the same everywhere, M ẍ + B ẋ + K (x − x₀) = −F_h (Dyck 2013, eq. 3.2): exactly
 /// what the estimators assume. M symmetric; B and K any.
-class LinearLimb : public Load {
+class LinearLimb : public Load<2> {
  public:
   /// @fails  usage: not two axes, not finite, M not symmetric positive semidefinite.
   [[nodiscard]] static Result<LinearLimb> create(const impedance::Model& model);
@@ -18,7 +18,7 @@ class LinearLimb : public Load {
     damping_scale_ = damping;
   }
 
-  [[nodiscard]] LoadDynamics dynamics(const HandState& hand) const override;
+  [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;
   [[nodiscard]] impedance::Model impedance(const Eigen::Vector2d& hand) const override;
 
   /// Its K alone; does not allocate.

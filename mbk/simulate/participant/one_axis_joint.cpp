@@ -72,17 +72,19 @@ Result<OneAxisJoint> OneAxisJoint::create(const Options& options, double sample_
 OneAxisJoint::OneAxisJoint(const Options& options, StretchReflex reflex, const Remnant<1>& remnant)
     : options_(options), reflex_(std::move(reflex)), remnant_(remnant) {}
 
-void OneAxisJoint::tick(double /*t*/, double /*sample_time*/, const JointState& joint, double /*reaction*/) {
-  reflex_torque_ = reflex_.step(joint.velocity);
+void OneAxisJoint::tick(double /*t*/, double /*sample_time*/, const HandState<1>& joint,
+                        const AxisVector<1>& /*reaction*/) {
+  reflex_torque_ = reflex_.step(joint.velocity[0]);
   noise_ = remnant_.step(0.0)[0];
 }
 
-OneAxisDynamics OneAxisJoint::dynamics(const JointState& joint) const {
-  return {options_.inertia, options_.viscosity * joint.velocity +
-                                options_.stiffness * (joint.position - options_.rest) + reflex_torque_ - noise_};
+LoadDynamics<1> OneAxisJoint::dynamics(const HandState<1>& joint) const {
+  const double bias = options_.viscosity * joint.velocity[0] +
+                      options_.stiffness * (joint.position[0] - options_.rest) + reflex_torque_ - noise_;
+  return {AxisMatrix<1>(options_.inertia), AxisVector<1>(bias), 0.0};
 }
 
-impedance::Model OneAxisJoint::impedance(double /*position*/) const {
+impedance::Model OneAxisJoint::impedance(const AxisVector<1>& /*position*/) const {
   const auto one = [](double value) { return Matrix::Constant(1, 1, value); };
   return {one(options_.inertia), one(options_.viscosity), one(options_.stiffness), Vector::Constant(1, options_.rest)};
 }

@@ -6,7 +6,7 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
-#include "mbk/simulate/participant/one_axis_load.h"
+#include "mbk/simulate/participant/load.h"
 #include "mbk/simulate/participant/remnant.h"
 
 namespace mbk::participant {
@@ -46,7 +46,7 @@ class StretchReflex {
 /// A joint of one axis with its reflex and a remnant,
 ///   I θ̈ + B θ̇ + K (θ − θ₀) + u τ_r − n = −reaction
 /// the parallel cascade of Kearney et al. (1997). The defaults are an ankle's order of magnitude.
-class OneAxisJoint : public OneAxisLoad {
+class OneAxisJoint : public Load<1> {
  public:
   struct Options {
     double inertia = 0.015;   ///< I [kg·m²] > 0
@@ -62,9 +62,9 @@ class OneAxisJoint : public OneAxisLoad {
   /// @fails  usage: a limit named at Options is not kept; as the parts.
   [[nodiscard]] static Result<OneAxisJoint> create(const Options& options, double sample_time);
 
-  void tick(double t, double sample_time, const JointState& joint, double reaction) override;
-  [[nodiscard]] OneAxisDynamics dynamics(const JointState& joint) const override;
-  [[nodiscard]] impedance::Model impedance(double position) const override;
+  void tick(double t, double sample_time, const HandState<1>& joint, const AxisVector<1>& reaction) override;
+  [[nodiscard]] LoadDynamics<1> dynamics(const HandState<1>& joint) const override;
+  [[nodiscard]] impedance::Model impedance(const AxisVector<1>& position) const override;
 
   [[nodiscard]] double reflex_torque() const { return reflex_torque_; }  ///< u τ_r [N·m]
 

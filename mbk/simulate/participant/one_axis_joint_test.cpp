@@ -9,6 +9,10 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
+HandState<1> moving(double position, double velocity) {
+  return {AxisVector<1>(position), AxisVector<1>(velocity)};
+}
+
 OneAxisJoint::Options calm() {
   OneAxisJoint::Options options;
   options.remnant.floor = 0.0;
@@ -19,11 +23,11 @@ TEST(OneAxisJoint, WithoutReflexIsInertiaViscosityAndStiffness) {
   OneAxisJoint::Options options = calm();
   options.rest = 0.1;
   OneAxisJoint joint = OneAxisJoint::create(options, kTick).value();
-  joint.tick(0.0, kTick, {0.3, 2.0}, 0.0);
-  const OneAxisDynamics load = joint.dynamics({0.3, 2.0});
-  EXPECT_EQ(load.inertia, 0.015);
-  EXPECT_NEAR(load.bias, 0.8 * 2.0 + 45.0 * 0.2, 1e-14);
-  const impedance::Model model = joint.impedance(0.3);
+  joint.tick(0.0, kTick, moving(0.3, 2.0), AxisVector<1>(0.0));
+  const LoadDynamics<1> load = joint.dynamics(moving(0.3, 2.0));
+  EXPECT_EQ(load.inertia(0, 0), 0.015);
+  EXPECT_NEAR(load.bias[0], 0.8 * 2.0 + 45.0 * 0.2, 1e-14);
+  const impedance::Model model = joint.impedance(AxisVector<1>(0.3));
   EXPECT_EQ(model.M(0, 0), 0.015);
   EXPECT_EQ(model.B(0, 0), 0.8);
   EXPECT_EQ(model.K(0, 0), 45.0);
@@ -67,9 +71,9 @@ TEST(OneAxisJoint, ReflexResistsTheStretchThatCausedIt) {
   OneAxisJoint::Options options = calm();
   options.reflex.gain = 3.0;
   OneAxisJoint joint = OneAxisJoint::create(options, kTick).value();
-  for (int i = 0; i < 1000; ++i) joint.tick(i * kTick, kTick, {0.0, 1.0}, 0.0);
+  for (int i = 0; i < 1000; ++i) joint.tick(i * kTick, kTick, moving(0.0, 1.0), AxisVector<1>(0.0));
   EXPECT_NEAR(joint.reflex_torque(), 3.0, 1e-9);
-  EXPECT_NEAR(joint.dynamics({0.0, 0.0}).bias, joint.reflex_torque(), 1e-14);
+  EXPECT_NEAR(joint.dynamics({}).bias[0], joint.reflex_torque(), 1e-14);
 }
 
 TEST(OneAxisJoint, RefusesWhatIsNoJoint) {

@@ -35,7 +35,7 @@ Result<ToneRobot> ToneRobot::create(const Options& options) {
 ToneRobot::ToneRobot(const Options& options)
     : options_(options), stretch_(std::cos(options.stretch_angle), std::sin(options.stretch_angle)) {}
 
-Vector2d ToneRobot::programmed(const HandState& hand) {
+Vector2d ToneRobot::programmed(const HandState<2>& hand) {
   const Vector2d& v = hand.velocity;
   Vector2d force = options_.stiffness * (hand.position - options_.rest) + options_.damping * v +
                    options_.rigidity / std::hypot(v.norm(), options_.rigidity_speed) * v;
@@ -51,13 +51,13 @@ Vector2d ToneRobot::programmed(const HandState& hand) {
   return size > options_.largest_force ? Vector2d(options_.largest_force / size * force) : force;
 }
 
-void ToneRobot::tick(double /*t*/, double sample_time, const HandState& hand, const Vector2d& /*force_on_robot*/) {
+void ToneRobot::tick(double /*t*/, double sample_time, const HandState<2>& hand, const Vector2d& /*force_on_robot*/) {
   const double keep = options_.motor_lag > 0.0 ? std::exp(-sample_time / options_.motor_lag) : 0.0;
   force_ = keep * force_ + (1.0 - keep) * command_;
   command_ = programmed(hand);
 }
 
-LoadDynamics ToneRobot::dynamics(const HandState& /*hand*/) const {
+LoadDynamics<2> ToneRobot::dynamics(const HandState<2>& /*hand*/) const {
   return {options_.inertia * Matrix2d::Identity(), force_, 0.0};
 }
 

@@ -17,7 +17,7 @@ using Eigen::Vector2d;
 /// (spasticity). With a clasp-knife limit the catch lets go once u·f exceeds it, until that stretch is over
 /// (u·ẋ ≤ 0). f is computed once a tick from the state at its beginning, acts from the next tick on, and reaches the
 /// hand behind the motors' first-order lag. No energy is checked: a stiff programme with a slow lag is not passive.
-class ToneRobot : public Load {
+class ToneRobot : public Load<2> {
  public:
   struct Options {
     double inertia = 0.3;                                                   ///< of the device at the hand [kg] ≥ 0
@@ -37,8 +37,8 @@ class ToneRobot : public Load {
   /// @fails  usage: a limit named at Options is not kept.
   [[nodiscard]] static Result<ToneRobot> create(const Options& options);
 
-  void tick(double t, double sample_time, const HandState& hand, const Vector2d& force_on_robot) override;
-  [[nodiscard]] LoadDynamics dynamics(const HandState& hand) const override;
+  void tick(double t, double sample_time, const HandState<2>& hand, const Vector2d& force_on_robot) override;
+  [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;
 
   /// The device's inertia with the programmed K and B: what slow, small motions without rigidity, catch, delay and lag
   /// would show. x₀ is NaN where K has no inverse.
@@ -49,7 +49,7 @@ class ToneRobot : public Load {
 
  private:
   explicit ToneRobot(const Options& options);
-  [[nodiscard]] Vector2d programmed(const HandState& hand);
+  [[nodiscard]] Vector2d programmed(const HandState<2>& hand);
 
   Options options_;
   Vector2d stretch_;  // u

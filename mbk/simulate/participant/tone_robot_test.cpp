@@ -20,14 +20,14 @@ ToneRobot::Options quiet() {
 }
 
 /// What the device resists with after the hand has been in a state for some ticks.
-Vector2d resistance(ToneRobot& device, const HandState& hand, int ticks = 50) {
+Vector2d resistance(ToneRobot& device, const HandState<2>& hand, int ticks = 50) {
   for (int i = 0; i < ticks; ++i) device.tick(i * kTick, kTick, hand, {0.0, 0.0});
   return device.dynamics(hand).bias;
 }
 
 TEST(ToneRobot, HasItsProgrammedStiffnessAndDamping) {
   ToneRobot device = ToneRobot::create({}).value();
-  const HandState hand = {kHome + Vector2d(0.02, -0.01), {0.04, 0.03}};
+  const HandState<2> hand = {kHome + Vector2d(0.02, -0.01), {0.04, 0.03}};
   const impedance::Model model = device.impedance(kHome);
   const Vector2d expected = model.B * hand.velocity + model.K * (hand.position - kHome);
   EXPECT_LT((resistance(device, hand) - expected).norm(), 1e-9);  // e^(−50/2) of the lag is left
@@ -40,7 +40,7 @@ TEST(ToneRobot, ForceComesOneTickLateAndBehindItsLag) {
   options.stiffness *= 100.0;
   options.motor_lag = 0.005;
   ToneRobot device = ToneRobot::create(options).value();
-  const HandState hand = {kHome + Vector2d(0.05, 0.0)};
+  const HandState<2> hand = {kHome + Vector2d(0.05, 0.0)};
   for (int tick = 0; tick < 20; ++tick) {
     device.tick(tick * kTick, kTick, hand, {0.0, 0.0});
     EXPECT_NEAR(device.dynamics(hand).bias.x(), 5.0 * (1.0 - std::exp(-tick * kTick / 0.005)), 1e-12) << tick;

@@ -99,7 +99,7 @@ Vector2d TwoLinkArm::elastic_torque(const Vector2d& q) const {
   return stiffness_scale_ * options_.joints.stiffness * (q - q0_);
 }
 
-LoadDynamics TwoLinkArm::dynamics(const HandState& hand) const {
+LoadDynamics<2> TwoLinkArm::dynamics(const HandState<2>& hand) const {
   const Vector2d q = joint_angles(options_.geometry, hand.position);
   const Matrix2d J_inverse = jacobian(options_.geometry, q).inverse();
   const Vector2d q_rate = J_inverse * hand.velocity;
@@ -132,7 +132,7 @@ impedance::Model TwoLinkArm::impedance(const Vector2d& hand) const {
           damping_scale_ * J_inverse.transpose() * options_.joints.damping * J_inverse, K, x0};
 }
 
-double TwoLinkArm::kinetic_energy(const HandState& hand) const {
+double TwoLinkArm::kinetic_energy(const HandState<2>& hand) const {
   const Vector2d q = joint_angles(options_.geometry, hand.position);
   const Vector2d q_rate = jacobian(options_.geometry, q).inverse() * hand.velocity;
   return 0.5 * q_rate.dot(inertia_.matrix(q[1]) * q_rate);

@@ -44,7 +44,7 @@ struct JointParameters {
 ///   I(q) q̈ + C(q, q̇) q̇ + s_D D_q q̇ + s_K K_q (q − q₀) = −Jᵀ F_h
 /// F_h the force that the hand exerts on the robot. Beyond reach the arm keeps its last possible posture
 /// (`joint_angles`).
-class TwoLinkArm : public Load {
+class TwoLinkArm : public Load<2> {
  public:
   struct Options {
     ArmGeometry geometry;
@@ -62,7 +62,7 @@ class TwoLinkArm : public Load {
     damping_scale_ = damping;
   }
 
-  [[nodiscard]] LoadDynamics dynamics(const HandState& hand) const override;
+  [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;
 
   /// Linearised about a place at which the arm is held at rest, with today's s_K and s_D:
   ///   M = J⁻ᵀ I J⁻¹,  B = J⁻ᵀ s_D D_q J⁻¹,  K = J⁻ᵀ (s_K K_q + Σ F_k ∂²x_k/∂q²) J⁻¹,  F = −J⁻ᵀ s_K K_q (q − q₀)
@@ -73,7 +73,7 @@ class TwoLinkArm : public Load {
   [[nodiscard]] Matrix2d stiffness(const Vector2d& hand) const;
 
   /// ½ q̇ᵀ I q̇ and, for symmetric K_q, ½ s_K (q − q₀)ᵀ K_q (q − q₀) [J].
-  [[nodiscard]] double kinetic_energy(const HandState& hand) const;
+  [[nodiscard]] double kinetic_energy(const HandState<2>& hand) const;
   [[nodiscard]] double elastic_energy(const Vector2d& hand) const;
 
   [[nodiscard]] const ArmGeometry& geometry() const { return options_.geometry; }

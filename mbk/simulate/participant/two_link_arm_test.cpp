@@ -20,8 +20,8 @@ TwoLinkArm::Options asymmetric() {
 }
 
 /// What the hand exerts on the robot in a motion.
-Vector2d force(const TwoLinkArm& arm, const HandState& hand, const Vector2d& acceleration) {
-  const LoadDynamics load = arm.dynamics(hand);
+Vector2d force(const TwoLinkArm& arm, const HandState<2>& hand, const Vector2d& acceleration) {
+  const LoadDynamics<2> load = arm.dynamics(hand);
   return -(load.inertia * acceleration + load.bias);
 }
 
@@ -99,7 +99,7 @@ TEST(TwoLinkArm, WithoutDampingAFreeHandKeepsItsEnergy) {
   const TwoLinkArm arm = TwoLinkArm::create(options).value();
   using State = Eigen::Vector4d;
   const auto derivative = [&](const State& s) -> State {
-    const LoadDynamics load = arm.dynamics({s.head<2>(), s.tail<2>()});
+    const LoadDynamics<2> load = arm.dynamics({s.head<2>(), s.tail<2>()});
     return (State() << s.tail<2>(), -load.inertia.inverse() * load.bias).finished();
   };
   const auto energy = [&](const State& s) {
@@ -123,7 +123,7 @@ TEST(TwoLinkArm, ObeysItsEquationOfMotionInTheJoints) {
   const TwoLinkArm::Options options = asymmetric();
   const Vector2d q(0.9, 1.5), q_rate(1.2, -2.0), q_acceleration(-7.0, 11.0);
   const Matrix2d J = jacobian(arm.geometry(), q);
-  const HandState hand = {hand_position(arm.geometry(), q), J * q_rate};
+  const HandState<2> hand = {hand_position(arm.geometry(), q), J * q_rate};
   const Vector2d acceleration = J * q_acceleration + jacobian_rate(arm.geometry(), q, q_rate) * q_rate;
   const Vector2d q0 = joint_angles(arm.geometry(), kHome);
   const Vector2d torque = arm.inertia().matrix(q[1]) * q_acceleration + arm.inertia().coriolis_torque(q[1], q_rate) +

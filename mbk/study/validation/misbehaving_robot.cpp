@@ -77,7 +77,7 @@ class MisbehavingRobot::Drives : public device::Device {
       all_->say(off ? "torque off" : "torque on");
     }
     if (truth.fault_began < 0) return;
-    const laboratory::TrueState& now = robot_->truth();
+    const laboratory::TrueState<2>& now = robot_->truth();
     truth.speed = std::max(truth.speed, now.velocity.norm());
     truth.force = std::max(truth.force, now.force_hand_on_robot.norm());
   }

@@ -39,7 +39,7 @@ laboratory::PlanarTrial& planar(laboratory::Scenario& scenario) {
 }
 
 void measure_currents(laboratory::Scenario& scenario) {
-  laboratory::MotorCurrentOptions current;
+  laboratory::MotorCurrentOptions<2> current;
   current.noise = kTorqueNoise / current.torque_constant[0];
   planar(scenario).sensors.torque = current;
 }

@@ -95,8 +95,8 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
       return all.emplace_back(what, Errors{}).second;
     };
     for (std::size_t i = 0; i < plans.size(); ++i) {
-      if (plans[i].scenario.file_name != file.file) continue;
-      const auto [stiffness, mass] = rig_names(plans[i].scenario.trial_name);
+      if (plans[i].scenario.protocol != file.file) continue;
+      const auto [stiffness, mass] = rig_names(plans[i].scenario.name);
       const impedance::Model& truth = (*trials)[i].truth;
       const impedance::Model& model = (*trials)[i].identification.model;
       const std::pair<const char*, std::pair<Index, Index>> elements[] = {

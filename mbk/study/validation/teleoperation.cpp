@@ -15,9 +15,9 @@
 #include "mbk/base/numeric/random.h"
 #include "mbk/experiment/control/passivity_control.h"
 #include "mbk/simulate/laboratory/axis_loads.h"
-#include "mbk/simulate/laboratory/one_axis_loop.h"
+#include "mbk/simulate/laboratory/closed_loop.h"
 #include "mbk/simulate/laboratory/simulate_teleoperation.h"
-#include "mbk/simulate/participant/one_axis_load.h"
+#include "mbk/simulate/participant/load.h"
 #include "mbk/study/validation/robot_trials.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
@@ -306,14 +306,13 @@ void add_controlled(const Cases& cases, ValidationTable& table) {
 }
 
 /// A hand that pushes with a constant force [N].
-class Push : public participant::OneAxisLoad {
+class Push : public participant::Load<1> {
  public:
   explicit Push(double force) : force_(force) {}
-  void tick(double, double, const participant::JointState&, double) override {}
-  [[nodiscard]] participant::OneAxisDynamics dynamics(const participant::JointState&) const override {
-    return {0.0, -force_};
+  [[nodiscard]] participant::LoadDynamics<1> dynamics(const participant::HandState<1>& /*hand*/) const override {
+    return {AxisMatrix<1>::Zero(), AxisVector<1>(-force_), 0.0};
   }
-  [[nodiscard]] impedance::Model impedance(double) const override { return {}; }
+  [[nodiscard]] impedance::Model impedance(const AxisVector<1>& /*position*/) const override { return {}; }
 
  private:
   double force_;
@@ -323,20 +322,22 @@ class Push : public participant::OneAxisLoad {
 Result<double> wall_energy(bool with_controller) {
   constexpr double kWall = 30e3, kMass = 0.8, kDamping = 0.2, kPush = 2.0, kStart = -0.02, kDuration = 3.0;
   Push hand(kPush);
-  laboratory::OneAxisLoop::Machine device{kMass, {}, 4};
-  device.friction.viscous = kDamping;
-  auto loop = laboratory::OneAxisLoop::create(device, kStart, hand, 0.0);
+  laboratory::ClosedLoop<1>::Options device;
+  device.robot.inertia.mass = kMass;
+  device.robot.friction[0].viscous = kDamping;
+  device.steps_per_tick = 4;
+  auto loop = laboratory::ClosedLoop<1>::create(device, AxisVector<1>(kStart), hand);
   if (!loop) return tl::unexpected(loop.error());
   auto controller = control::SeriesPassivityController::create(kTick, 0.5 * kMass / kTick);
   if (!controller) return tl::unexpected(controller.error());
   control::PassivityObserver observer;
   double lowest = 0.0;
   while (loop->time() <= kDuration) {
-    const double x = loop->position(), asked = x > 0.0 ? kWall * x : 0.0;
+    const double x = loop->motor_angle()[0], asked = x > 0.0 ? kWall * x : 0.0;
     const double force = with_controller ? controller->step(x, asked) : asked;
     observer.step(x, force);
     lowest = std::min(lowest, observer.energy());
-    loop->hold(-force, kTick);
+    loop->hold(AxisVector<1>(-force), kTick);
     loop->advance();
   }
   return lowest;

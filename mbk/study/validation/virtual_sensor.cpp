@@ -205,7 +205,7 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
   for (const bool elastic : {false, true}) {
     for (std::size_t run = 0; run < runs; ++run) {
       for (const laboratory::Scenario& scenario : *scenarios) {
-        if (elastic && rig_names(scenario.trial_name).second != "M3") continue;
+        if (elastic && rig_names(scenario.name).second != "M3") continue;
         auto& [plan, robot] = plans.emplace_back(scenario, elastic ? runs + run : run);
         plan.seed = scenario.seed + 1000 * (options.seed + run);
         measure_currents(plan);

@@ -108,7 +108,7 @@ Result<ForceTrial> perform(const laboratory::Scenario& scenario, const Robots& r
                            const ForceMeasurement& measurement) {
   std::vector<Eigen::Vector2d> force;
   laboratory::SimulateOptions watching;
-  watching.watch = [&](const laboratory::TrueState& state) { force.push_back(state.force_hand_on_robot); };
+  watching.watch = [&](const laboratory::TrueState<2>& state) { force.push_back(state.force_hand_on_robot); };
   const auto performance = laboratory::simulate(scenario, watching);
   if (!performance) return tl::unexpected(performance.error());
   const Recording& recording = performance->recording;
@@ -118,11 +118,11 @@ Result<ForceTrial> perform(const laboratory::Scenario& scenario, const Robots& r
   if (!truth) return tl::unexpected(truth.error());
 
   ForceTrial trial;
-  std::tie(trial.stiffness, trial.mass) = rig_names(scenario.trial_name);
+  std::tie(trial.stiffness, trial.mass) = rig_names(scenario.name);
   trial.truth = performance->truth;
   for (const Force source : measurement.forces) {
     auto outcome = measured(recording, source, robots, *truth, measurement.options);
-    if (!outcome) return tl::unexpected(outcome.error().in(scenario.trial_name));
+    if (!outcome) return tl::unexpected(outcome.error().in(scenario.name));
     trial.by[static_cast<std::size_t>(source)] = std::move(*outcome);
   }
   return trial;

@@ -1,0 +1,178 @@
+#include "mbk/simulate/laboratory/simulated_experiment.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mbk/model/robot/workspace.h"
+#include "mbk/simulate/laboratory/truth_text.h"
+
+namespace mbk::laboratory {
+namespace {
+
+using perturbation::Quantity;
+
+/// The truth is asked for at every so many ticks.
+constexpr Index kTruthTicks = 100;
+
+/// Average of what an arm is while it tenses and relaxes.
+class MeanImpedance {
+ public:
+  void add(const impedance::Model& model) {
+    const Vector row = impedance::stacked(model);
+    sum_ = count_ == 0 ? row : Vector(sum_ + row);
+    axes_ = model.axes();
+    ++count_;
+  }
+  [[nodiscard]] impedance::Model mean() const { return impedance::unstacked(sum_ / count_, axes_); }
+
+ private:
+  Vector sum_;
+  Index axes_ = 0;
+  double count_ = 0;
+};
+
+/// One sample of the recording.
+template <int Axes>
+struct Sample : SensorSuite<Axes>::Reading {
+  AxisVector<Axes> reference;
+};
+
+/// The channels of one quantity, one for each axis.
+template <int Axes>
+struct ChannelGroup {
+  std::array<const char*, Axes> names;
+  const char* unit;
+  const char* frame;
+  AxisVector<Axes> Sample<Axes>::*values;
+};
+
+/// In the order of the recording.
+std::vector<ChannelGroup<1>> groups(const Experiment<1>& experiment) {
+  using S = Sample<1>;
+  const char* reference_unit = experiment.schedule.quantity() == Quantity::force ? "N.m" : "rad";
+  return {{{"position"}, "rad", "joint", &S::joint},
+          {{"reaction"}, "N.m", "joint", &S::force},
+          {{"reference"}, reference_unit, "joint", &S::reference},
+          {{"acceleration"}, "rad/s2", "joint", &S::acceleration}};
+}
+
+std::vector<ChannelGroup<2>> groups(const Experiment<2>& experiment) {
+  using S = Sample<2>;
+  const char* reference_unit = experiment.schedule.quantity() == Quantity::force ? "N" : "m";
+  return {{{"hand_x", "hand_y"}, "m", "base", &S::hand},
+          {{"joint_1", "joint_2"}, "rad", "joint", &S::joint},
+          {{"force_x", "force_y"}, "N", "base", &S::force},
+          {{"reference_x", "reference_y"}, reference_unit, "base", &S::reference},
+          {{"torque_1", "torque_2"}, "N.m", "joint", &S::torque},
+          {{"acceleration_x", "acceleration_y"}, "m/s2", "base", &S::acceleration}};
+}
+
+/// The channels of the recording, filled sample by sample.
+template <int Axes>
+class Channels {
+ public:
+  Channels(std::vector<ChannelGroup<Axes>> groups, Index samples) : groups_(std::move(groups)) {
+    for (const ChannelGroup<Axes>& group : groups_) {
+      for (const char* name : group.names) channels.push_back({name, group.unit, group.frame, Vector(samples)});
+    }
+  }
+
+  void set(Index i, const Sample<Axes>& sample) {
+    std::size_t next = 0;
+    for (const ChannelGroup<Axes>& group : groups_) {
+      for (const double value : sample.*group.values) channels[next++].values[i] = value;
+    }
+  }
+
+  std::vector<Channel> channels;
+
+ private:
+  std::vector<ChannelGroup<Axes>> groups_;
+};
+
+/// Whether the joints are where they can be. A robot of one axis has no limits.
+Result<void> check_joints(const robot::OneAxisGeometry& /*none*/, const AxisVector<1>& /*theta*/) {
+  return {};
+}
+
+Result<void> check_joints(const robot::Geometry& geometry, const AxisVector<2>& theta) {
+  return robot::check_joints(geometry.limits, theta);
+}
+
+/// What a recording says of the apparatus; of one axis nothing.
+void add_apparatus(const Experiment<1>& /*experiment*/, const SensorSuite<1>& /*sensors*/, Recording& /*recording*/) {}
+
+void add_apparatus(const Experiment<2>& experiment, const SensorSuite<2>& sensors, Recording& recording) {
+  recording.metadata["handle_mass_kg"] = exact_text(experiment.robot.handle_mass);
+  recording.metadata["truth_force_delay_s"] = exact_text(sensors.force_delay());
+  if (sensors.clipped_samples() > 0) {
+    recording.metadata["force_samples_clipped"] = std::to_string(sensors.clipped_samples());
+  }
+}
+
+}  // namespace
+
+template <int Axes>
+Result<Performance> perform(const Experiment<Axes>& experiment, participant::Load<Axes>& load) {
+  using Control = std::conditional_t<Axes == 1, OneAxisControl, control::TrialControl>;
+  if (!(experiment.rate.value > 0.0 && std::isfinite(experiment.rate.value))) {
+    return bad_usage(fmt::format("sample rate {:g} Hz is not above 0", experiment.rate.value));
+  }
+  const double sample_time = 1.0 / experiment.rate.value;
+  const GeometryOf<Axes>& geometry = experiment.robot.robot.geometry;
+  auto command = Control::create(experiment.control, experiment.schedule, geometry, experiment.home, sample_time);
+  if (!command) return tl::unexpected(command.error());
+  auto loop = ClosedLoop<Axes>::create(experiment.robot, experiment.home, load, sample_time);
+  if (!loop) return tl::unexpected(loop.error());
+  auto sensors = SensorSuite<Axes>::create(experiment.sensors, geometry, sample_time, experiment.seed);
+  if (!sensors) return tl::unexpected(sensors.error());
+
+  const auto samples = static_cast<Index>(std::llround(experiment.schedule.duration() * experiment.rate.value));
+  if (samples < 1) return bad_usage("the trial has no samples", "give it a duration");
+  Performance result;
+  Recording& recording = result.recording;
+  recording.time.resize(samples);
+  Channels<Axes> channels(groups(experiment), samples);
+  MeanImpedance truth;
+  for (Index i = 0; i < samples; ++i) {
+    const double t = loop->time(), interval = sensors->next_interval();
+    const TrueState<Axes>& state = loop->hold(command->torque(t, sensors->encoders(loop->motor_angle())), interval);
+    if (!state.position.allFinite() || !state.force_hand_on_robot.allFinite()) {
+      return bad_data(fmt::format("the motion is not finite any more at {:.3f} s", t),
+                      "lower the gains, or raise robot.steps_per_tick", "simulation");
+    }
+    if (auto ok = check_joints(geometry, state.theta); !ok) {
+      return bad_data(fmt::format("the hand leaves the workspace at {:.3f} s: {}", t, ok.error().message),
+                      "perturb it less, or choose another home", "simulation");
+    }
+    const Sample<Axes> sample = {sensors->read(state), command->reference(t)};
+    recording.time[i] = sample.time;
+    channels.set(i, sample);
+    result.energy_exchanged += std::abs(state.force_hand_on_robot.dot(state.velocity)) * interval;
+    if (i % kTruthTicks == 0) truth.add(load.impedance(experiment.home));
+    if (experiment.watch) experiment.watch(state);
+    result.energy_absorbed = state.energy.absorbed - 0.5 * experiment.robot.handle_mass * state.velocity.squaredNorm();
+    loop->advance();
+    if (experiment.progress && i % 1000 == 0) {
+      experiment.progress(static_cast<double>(i) / static_cast<double>(samples));
+    }
+  }
+  recording.channels = std::move(channels.channels);
+  for (const auto& event : experiment.schedule.events())
+    recording.events.push_back({event.time, event.name, event.value});
+
+  result.truth = truth.mean();
+  recording.metadata = truth_metadata(result.truth, experiment.rate, result.energy_absorbed);
+  add_apparatus(experiment, *sensors, recording);
+  return result;
+}
+
+template Result<Performance> perform(const Experiment<1>& experiment, participant::Load<1>& load);
+template Result<Performance> perform(const Experiment<2>& experiment, participant::Load<2>& load);
+
+}  // namespace mbk::laboratory
