@@ -101,6 +101,7 @@ CycleRecord empty_loop(const std::atomic<bool>& over) {
 bool perform(double seconds, bool real_time, const fs::path& folder) {
   const auto trial =
       protocol::read_experiment(experiment(seconds), "bench.toml", laboratory::read_simulation).value().front();
+  const auto plan = session::make_plan(trial).value();
   const auto robot = laboratory::simulated_robot(trial).value();
   constexpr std::size_t kRing = 1 << 16;
   TimedDevice device(*robot, kRing);
@@ -126,7 +127,7 @@ bool perform(double seconds, bool real_time, const fs::path& folder) {
   if (real_time) empty.emplace([&] { noise = empty_loop(over); });
   const fs::path target = folder / "bench_session.h5";
   const std::int64_t begin = monotonic_ns();
-  const auto outcome = session.perform(device, trial, target, watch);
+  const auto outcome = session.perform(device, plan, target, watch);
   const double took = 1e-9 * static_cast<double>(monotonic_ns() - begin);
   over = true;
   if (empty) empty->join();

@@ -14,7 +14,8 @@ std::string limit_line(const char* what, double value, double limit, const char*
 
 }  // namespace
 
-std::string plan_text(const protocol::Trial& trial, const session::Plan& plan, const session::Rehearsal& rehearsal) {
+std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehearsal) {
+  const protocol::Trial& trial = plan.trial;
   const safety::Limits& limits = plan.limits;
   const double perturbation = plan.schedule.duration();
   std::string text = fmt::format("{}{}{}\n", trial.protocol, trial.name.empty() ? "" : ", trial " + trial.name,

@@ -7,7 +7,6 @@
 namespace mbk::app {
 
 /// Schedule, times, limits and what a rehearsal came to, for people.
-[[nodiscard]] std::string plan_text(const protocol::Trial& trial, const session::Plan& plan,
-                                    const session::Rehearsal& rehearsal);
+[[nodiscard]] std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehearsal);
 
 }  // namespace mbk::app

@@ -20,12 +20,10 @@
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/stop_keys.h"
 #include "apps/mbk/stop_signals.h"
-#include "mbk/experiment/console/live_estimate.h"
+#include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
-#include "mbk/files/recording/read.h"
-#include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/present/report/text.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
@@ -33,6 +31,7 @@ namespace mbk::app {
 namespace {
 
 namespace fs = std::filesystem;
+using conduct::Next;
 using protocol::Trial;
 using session::Session;
 
@@ -70,13 +69,6 @@ Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
     if (arguments.readers) trial.readers = *arguments.readers;
   }
   return chosen;
-}
-
-/// relaxed.h5 → relaxed_NAME.h5 where there are several trials.
-fs::path target_of(const Arguments& arguments, const Trial& trial, bool several) {
-  const fs::path out = arguments.out.empty() ? fs::path(trial.protocol + ".h5") : arguments.out;
-  if (!several) return out;
-  return out.parent_path() / fmt::format("{}_{}{}", out.stem().string(), trial.name, out.extension().string());
 }
 
 /// One line on standard error, written over itself where that is a terminal; else one a second.
@@ -136,33 +128,12 @@ int dry_run(const std::vector<Trial>& trials, const std::string& experiment) {
   for (const Trial& trial : trials) {
     const auto plan = session::make_plan(trial);
     if (!plan) return report_error(plan.error().in(experiment));
-    const auto rehearsal = session::rehearse(trial);
+    const auto rehearsal = session::rehearse(*plan);
     if (!rehearsal) return report_error(rehearsal.error().in(experiment));
-    if (auto ok = Output().write(plan_text(trial, *plan, *rehearsal)); !ok) return report_error(ok.error());
+    if (auto ok = Output().write(plan_text(*plan, *rehearsal)); !ok) return report_error(ok.error());
     if (rehearsal->trip.reason != safety::Reason::none) return kSafetyStop;
   }
   return kFine;
-}
-
-/// Share of the force's variance that a model has to explain on every axis before nobody is asked to repeat [%].
-constexpr double kPoor = 50.0;
-
-/// What was measured in a trial, and whether it is worth repeating.
-struct Measured {
-  std::string text;
-  bool poor = false;
-};
-
-Measured measure(const session::TrialOutcome& outcome, const Trial& trial, RunConsole& console) {
-  auto recording = recording::read(outcome.recording, {});
-  if (!recording) return {recording.error().line() + "\n", true};
-  const Recording perturbed = preprocess::perturbation_only(std::move(*recording));
-  const auto measured =
-      console.measured(perturbed, console::across_missed_ticks(perturbed, trial.rate, measurement_options_of(trial)));
-  if (!measured) return {fmt::format("not measured: {}\n", measured.error().line()), true};
-  const Identification& identification = measured->identification;
-  return {report::result_text(identification, std::nullopt),
-          !identification.usable || identification.fit.vaf.minCoeff() < kPoor};
 }
 
 /// At a terminal. What was typed before the question is no answer to it.
@@ -190,16 +161,6 @@ std::string lost_messages_text(std::vector<std::string>& notes) {
   return fmt::format("  {}\n", notes.back());
 }
 
-/// relaxed.h5 → relaxed_2.h5, the first that is not there yet.
-fs::path next_free(const fs::path& target) {
-  fs::path free = target;
-  std::error_code ignored;  // a name that cannot be looked at is refused where it is made
-  for (int k = 2; fs::exists(free, ignored); ++k) {
-    free = target.parent_path() / fmt::format("{}_{}{}", target.stem().string(), k, target.extension().string());
-  }
-  return free;
-}
-
 /// The loudest thing that this program says.
 std::string alarm(const safety::MotorsOff& motors) {
   constexpr std::size_t kColumns = 78;  // any terminal's
@@ -210,113 +171,120 @@ std::string alarm(const safety::MotorsOff& motors) {
       line, report::wrapped("The motors are " + safety::sentence(motors) + ".", kColumns));
 }
 
-/// Whatever else went wrong.   @returns  whether there was reason to
-bool sound_alarm(const Session& session) {
-  const safety::Gate* const gate = session.gate();
-  if (gate == nullptr || gate->motors().state != safety::MotorsOff::State::missing) return false;
-  say("{}", alarm(gate->motors()));
-  return true;
+/// Exit code of what was performed; what is worst counts.
+int code_of(const conduct::Conclusion& conclusion) {
+  const int code = conclusion.failure ? report_error(*conclusion.failure) : kFine;
+  if (conclusion.motors.state == safety::MotorsOff::State::missing) return kMotorsNotOff;
+  return conclusion.trip.reason != safety::Reason::none ? kSafetyStop : code;
 }
 
-/// Exit code of a trial after which none follows; what is worst counts.
-int code_of(const session::TrialOutcome& outcome) {
-  if (outcome.motors.state == safety::MotorsOff::State::missing) return kMotorsNotOff;
-  if (outcome.trip.reason != safety::Reason::none) return kSafetyStop;
-  return outcome.incomplete ? kBadData : kFine;
-}
+/// Signals and keys that stop a trial while it runs, and a line that shows how far it is, beside the page.
+class TrialWatcher : public conduct::Watcher {
+ public:
+  TrialWatcher(std::unique_ptr<conduct::Watcher> page, const conduct::Attempt& attempt, session::Signals& signals,
+               bool quiet)
+      : page_(std::move(page)), last_words_(attempt.robot), keys_(signals), line_(attempt.plan.trial.name, quiet) {}
 
-/// One trial: on the robot, into the file, and measured.
-/// @returns  an exit code where no trial may follow
-std::optional<int> perform(Session& session, const Trial& trial, std::size_t index, const fs::path& target,
-                           const session::Pace& pace, const Arguments& arguments, RunConsole& console, bool& repeat) {
-  repeat = false;
-  auto robot = protocol::make_device(trial);
-  if (!robot) return report_error(robot.error());
-  if (auto ok = console.begin(index, trial, (*robot)->facts(), target); !ok) return report_error(ok.error());
-  session::Signals& signals = session.signals();
-  std::optional<StopSignals::Trial> running(std::in_place);
-  if (signals.end_session) return kFine;
-  const auto outcome = [&] {
-    const LastWords last_words(**robot);
-    const StopKeys keys(signals);
-    StatusLine line(trial.name, arguments.quiet);
-    return session.perform(**robot, trial, target, [&](std::span<const journal::Tick> ticks) {
-      line.show(ticks);
-      console.watch(ticks);
-    });
-  }();
-  running.reset();
-  const bool alarming = sound_alarm(session);
-  const auto failed = [&](const Error& error) {
-    const int code = report_error(error);
-    if (alarming) return kMotorsNotOff;
-    return outcome && outcome->trip.reason != safety::Reason::none ? kSafetyStop : code;
-  };
-  if (!outcome) return failed(outcome.error());
-  console.show_robot(outcome->motors);
-  std::optional<session::IdleWatch> idle;
-  if (!trial.device.simulated()) idle.emplace(**robot, console.watching(session));
-  std::vector<std::string> notes;
-  std::string text = outcome_text(*outcome, pace) + console.finish(*outcome) + lost_messages_text(notes);
-  const bool stopped = outcome->trip.reason != safety::Reason::none;
-  text += damage_text(*outcome);
-  Measured measured;
-  if (!stopped && arguments.measure && !signals.end_session) {
-    measured = measure(*outcome, trial, console);
-    text += measured.text;
+  void watch(std::span<const journal::Tick> ticks) override {
+    line_.show(ticks);
+    if (page_) page_->watch(ticks);
   }
-  const auto written = Output().write(text);
-  if (!notes.empty()) {
-    if (auto ok = session::annotate(outcome->recording, notes); !ok) return failed(ok.error());
+
+ private:
+  std::unique_ptr<conduct::Watcher> page_;
+  const StopSignals::Trial running_;
+  const LastWords last_words_;
+  const StopKeys keys_;
+  StatusLine line_;
+};
+
+/// The operator at the terminal, and at the page where there is one: it is asked where it decides.
+class TerminalOperator : public conduct::Operator {
+ public:
+  TerminalOperator(const RunConsole& console, session::Signals& signals, const session::Pace& pace, bool quiet)
+      : page_(console.page()), console_(console), signals_(signals), pace_(pace), quiet_(quiet) {}
+
+  std::unique_ptr<conduct::Watcher> begin(const conduct::Attempt& attempt) override {
+    return std::make_unique<TrialWatcher>(page_ != nullptr ? page_->begin(attempt) : nullptr, attempt, signals_,
+                                          quiet_);
   }
-  if (auto ok = console.keep_notes(); !ok) return failed(ok.error());
-  if (!written) return failed(written.error());
-  if (outcome->incomplete) {
-    report_error({ErrorKind::data, outcome->ending.how, "look at the disk before the next trial; the journal is kept",
-                  target.string()});
-    return code_of(*outcome);
+
+  void motors(const safety::MotorsOff& motors) override {
+    if (motors.state == safety::MotorsOff::State::missing) say("{}", alarm(motors));
+    if (page_ != nullptr) page_->motors(motors);
   }
-  if (signals.end_session) return code_of(*outcome);
-  if (console.decides(stopped || measured.poor)) {
-    const auto then = console.after_trial(session, stopped);
-    repeat = then == AfterTrial::repeat;
-    if (then == AfterTrial::end) return code_of(*outcome);
-    return std::nullopt;
+
+  void idle(const session::IdleState& seen) override {
+    if (page_ != nullptr) page_->idle(seen);
   }
-  const bool terminal = isatty(STDIN_FILENO) == 1;
-  if (stopped) {
-    if (!terminal) return code_of(*outcome);
-    while (!repeat) {
-      if (!ask("Is the reason gone? Reset the gate and do the trial again?", signals)) return code_of(*outcome);
-      if (auto ok = session.reset(); !ok) {
-        report_error(ok.error());
-      } else {
-        repeat = true;
-      }
+
+  void recorded(const session::TrialOutcome& outcome) override {
+    if (page_ != nullptr) page_->recorded(outcome);
+    notes_.clear();
+    text_ = outcome_text(outcome, pace_) + console_.times_text();
+    text_ += lost_messages_text(notes_) + damage_text(outcome);
+  }
+
+  Result<void> judged(const conduct::Performed& performed) override {
+    if (const auto& measured = performed.measured) {
+      text_ += *measured ? report::result_text((*measured)->identification, std::nullopt)
+                         : fmt::format("not measured: {}\n", measured->error().line());
     }
-  } else if (measured.poor && terminal) {
-    repeat = ask("The data are poor. Do the trial again?", signals);
-  } else if (measured.poor) {
-    say("mbk: the data of {} are poor; think of repeating the trial\n", target.string());
+    const auto written = Output().write(text_);
+    if (!notes_.empty()) {
+      if (auto ok = session::annotate(performed.outcome.recording, notes_); !ok) return ok;
+    }
+    if (page_ != nullptr) {
+      if (auto ok = page_->judged(performed); !ok) return ok;
+    }
+    return written;
   }
-  return std::nullopt;
-}
+
+  conduct::Next next(Session& session, const conduct::Performed& performed) override {
+    if (page_ != nullptr && page_->decides(performed)) return page_->next(session, performed);
+    const bool terminal = isatty(STDIN_FILENO) == 1;
+    if (performed.stopped()) return terminal ? after_stop(session) : Next::end;
+    if (!performed.poor()) return Next::go_on;
+    if (terminal) return ask("The data are poor. Do the trial again?", signals_) ? Next::repeat : Next::go_on;
+    say("mbk: the data of {} are poor; think of repeating the trial\n", performed.attempt.target.string());
+    return Next::go_on;
+  }
+
+ private:
+  Next after_stop(Session& session) {
+    while (ask("Is the reason gone? Reset the gate and do the trial again?", signals_)) {
+      const auto reset = session.reset();
+      if (reset) return Next::repeat;
+      report_error(reset.error());
+    }
+    return Next::end;
+  }
+
+  console::PageOperator* page_;
+  const RunConsole& console_;
+  session::Signals& signals_;
+  session::Pace pace_;
+  bool quiet_;
+  std::string text_;                // of the trial that is being judged
+  std::vector<std::string> notes_;  // that belong into its recording
+};
 
 /// @returns  the exit code, where no signal ended the session outside of a trial
-int perform_all(Session& session, const std::vector<Trial>& trials, const session::Pace& pace,
-                const Arguments& arguments) {
-  auto console = RunConsole::open(arguments.console, trials, session.signals());
+int perform(Session& session, const conduct::Experiment& experiment, const session::Pace& pace,
+            const Arguments& arguments) {
+  const auto console = RunConsole::open(arguments.console, experiment, session.signals());
   if (!console) return report_error(console.error());
-  if (!console->may_begin(session, trials.front())) return kFine;
-  std::optional<int> code;
-  for (std::size_t index = 0; index < trials.size() && !code; ++index) {
-    const fs::path target = target_of(arguments, trials[index], trials.size() > 1);
-    for (bool repeat = true; repeat && !code && !session.signals().end_session;) {
-      code = perform(session, trials[index], index, next_free(target), pace, arguments, *console, repeat);
-    }
+  if (auto* const page = console->page(); page != nullptr && !page->may_begin(session, experiment)) return kFine;
+  TerminalOperator conductor(*console, session.signals(), pace, arguments.quiet);
+  conduct::Measure measure;
+  if (arguments.measure) {
+    measure = [&](const Recording& recording, const measurement::Options& options) {
+      return console->measured(recording, options);
+    };
   }
+  const int code = code_of(conduct::run(experiment, session, conductor, measure));
   if (auto ok = console->end(); !ok) return report_error(ok.error());
-  return code.value_or(kFine);
+  return code;
 }
 
 int run(const Arguments& arguments) {
@@ -329,20 +297,14 @@ int run(const Arguments& arguments) {
   session::Pace pace;
   pace.virtual_clock = arguments.as_fast_as_possible || arguments.speed.has_value();
   pace.speed = arguments.speed.value_or(0.0);
-  for (const Trial& trial : *trials) {
-    if (auto plan = session::make_plan(trial); !plan) return report_error(plan.error().in(arguments.experiment));
-    const fs::path target = target_of(arguments, trial, trials->size() > 1);
-    if (std::error_code ignored; fs::exists(target, ignored)) {
-      return report_error(
-          {ErrorKind::usage, "is there already", "choose another --out, or move it away", target.string()});
-    }
-  }
+  const auto experiment = conduct::plan_experiment(*trials, arguments.out, arguments.experiment);
+  if (!experiment) return report_error(experiment.error());
   Session session(pace);
   int code = kFine, ended_by = 0;
   {
     const StopSignals signals(session.signals());
     const BackgroundMessages messages;
-    code = perform_all(session, *trials, pace, arguments);
+    code = perform(session, *experiment, pace, arguments);
     ended_by = signals.ended_by();
   }
   if (ended_by != 0 && code == kFine) end_by(ended_by);

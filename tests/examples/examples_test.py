@@ -237,6 +237,20 @@ class UseTheLibrary(unittest.TestCase):
         for name, found, within, true in rows:
             self.assertLess(abs(float(found) - float(true)), 2 * float(within), name)
 
+    def test_run_a_study_records_and_measures_both_trials(self):
+        with tempfile.TemporaryDirectory() as folder:
+            said = self.program("run_a_study", folder)
+            self.assertEqual(sorted(os.listdir(folder)), ["p07_left.h5", "p07_right.h5"])
+        self.assertEqual(len(re.findall(r"^p07_\w+\.h5: \d+ ticks, motors confirmed$", said, re.MULTILINE)), 2)
+        for trial in ("left", "right"):
+            self.assertRegex(said, rf"(?m)^{trial}: 25\.\d s, at most \d+\.\d of 20 N at the handle$")
+        stiffness = [list(map(float, one.split())) for one in re.findall(r"K (.+) N/m", said)]
+        self.assertEqual(len(stiffness), 2)
+        # Participant 1 at the first place; twice the 95 % intervals that mbk prints.
+        for value, true in zip(stiffness[0], (42.4, -28.6, -28.6, 125.3)):
+            self.assertAlmostEqual(value, true, delta=12)
+        self.assertTrue(said.endswith("completed\n"))
+
 
 class All(unittest.TestCase):
     step = "all"

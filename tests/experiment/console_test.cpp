@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "mbk/experiment/console/page_operator.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
@@ -63,7 +64,10 @@ class ConsoleOfASession : public testing::Test {
               (std::string("mbk_console_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
-    trials_ = protocol::read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value();
+    for (const protocol::Trial& trial :
+         protocol::read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value()) {
+      plans_.push_back(session::make_plan(trial).value());
+    }
     open_console();
   }
   void TearDown() override {
@@ -72,7 +76,7 @@ class ConsoleOfASession : public testing::Test {
   }
 
   void open_console() {
-    console_ = Console::open(0, trials_, session_.signals(), [&](const std::string& line) {
+    console_ = Console::open(0, plans_, session_.signals(), [&](const std::string& line) {
                  const std::scoped_lock lock(mutex_);
                  log_.push_back(line);
                }).value();
@@ -152,14 +156,12 @@ class ConsoleOfASession : public testing::Test {
   std::unique_ptr<Page> open(const std::string& token) { return open(token, "http://" + host()); }
 
   session::TrialOutcome perform(session::Session& session, const fs::path& target) {
-    const protocol::Trial& trial = trials_.front();
-    auto robot = laboratory::simulated_robot(trial).value();
-    const auto plan = session::make_plan(trial).value();
+    const session::Plan& plan = plans_.front();
+    auto robot = laboratory::simulated_robot(plan.trial).value();
     measurement::Options options;
-    options.identify.handle_mass = trial.handle_mass;
-    console_->begin(0, session::header_of(trial, robot->facts(), plan.schedule), options, target,
-                    plan.sequence.duration(0.0));
-    auto outcome = session.perform(*robot, trial, target, [&](auto ticks) { console_->watch(ticks); });
+    options.identify.handle_mass = plan.trial.handle_mass;
+    console_->begin(0, session::header_of(plan, robot->facts()), options, target, plan.sequence.duration(0.0));
+    auto outcome = session.perform(*robot, plan, target, [&](auto ticks) { console_->watch(ticks); });
     EXPECT_TRUE(outcome) << outcome.error().line();
     console_->finish(*outcome);
     return *outcome;
@@ -167,7 +169,7 @@ class ConsoleOfASession : public testing::Test {
 
   fs::path folder_;
   session::Session session_{session::Pace{true, 0.0}};
-  std::vector<protocol::Trial> trials_;
+  std::vector<session::Plan> plans_;
   std::unique_ptr<Console> console_;
   std::string port_, token_, viewing_token_;
   net::io_context context_;
@@ -232,7 +234,7 @@ TEST_F(ConsoleOfASession, ListensOnThisMachineOnly) {
 }
 
 TEST_F(ConsoleOfASession, APortThatIsTakenIsSaid) {
-  const auto second = Console::open(static_cast<std::uint16_t>(std::stoi(port_)), trials_, session_.signals(),
+  const auto second = Console::open(static_cast<std::uint16_t>(std::stoi(port_)), plans_, session_.signals(),
                                     [](const std::string&) {});
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().line().find("--port"), std::string::npos);
@@ -345,7 +347,7 @@ TEST_F(ConsoleOfASession, TheLastEstimateIsThatOfTheRecording) {
       page->read_until([](Page& one) { return one.estimate.contains("final") && one.estimate["final"] == true; }));
   const Recording perturbed = preprocess::perturbation_only(recording::read(outcome.recording, {}).value());
   measurement::Options options;
-  options.identify.handle_mass = trials_.front().handle_mass;
+  options.identify.handle_mass = plans_.front().trial.handle_mass;
   const Json offline = Json::parse(result::to_json(measurement::measure({&perturbed, 1}, options).value()));
   const Json& live = page->estimate.at("result");
   EXPECT_NEAR(page->estimate.at("perturbed_s").get<double>(), 12.0, 0.01);
@@ -386,10 +388,9 @@ TEST_F(ConsoleOfASession, AStopFromThePageTripsTheGateAndIsSaidWithItsReason) {
 }
 
 TEST_F(ConsoleOfASession, ATripIsSaidBeforeTheNextBeat) {
-  const protocol::Trial& trial = trials_.front();
-  auto robot = laboratory::simulated_robot(trial).value();
-  console_->begin(0, session::header_of(trial, robot->facts(), session::make_plan(trial)->schedule), {},
-                  folder_ / "trial.h5", 1.0);
+  const session::Plan& plan = plans_.front();
+  auto robot = laboratory::simulated_robot(plan.trial).value();
+  console_->begin(0, session::header_of(plan, robot->facts()), {}, folder_ / "trial.h5", 1.0);
   auto page = open(viewing_token_);
   constexpr int kTrips = 400;
   const auto begin = std::chrono::steady_clock::now();
@@ -408,10 +409,9 @@ TEST_F(ConsoleOfASession, ATripIsSaidBeforeTheNextBeat) {
 TEST_F(ConsoleOfASession, AStuckViewerCostsABoundedRoomAndHoldsNobodyUp) {
   auto stuck = open(viewing_token_);  // never reads
   ASSERT_TRUE(soon([&] { return console_->status().viewers == 1; }));
-  const protocol::Trial& trial = trials_.front();
-  auto robot = laboratory::simulated_robot(trial).value();
-  console_->begin(0, session::header_of(trial, robot->facts(), session::make_plan(trial)->schedule), {},
-                  folder_ / "trial.h5", 1.0);
+  const session::Plan& plan = plans_.front();
+  auto robot = laboratory::simulated_robot(plan.trial).value();
+  console_->begin(0, session::header_of(plan, robot->facts()), {}, folder_ / "trial.h5", 1.0);
   std::vector<journal::Tick> ticks(8192);
   std::uint64_t number = 0;
   // 8192 samples are 426 kB: the buffers of both sockets are full after some ten of them
@@ -427,10 +427,9 @@ TEST_F(ConsoleOfASession, AStuckViewerCostsABoundedRoomAndHoldsNobodyUp) {
 }
 
 TEST_F(ConsoleOfASession, SamplesThatAreTooManyForAFrameAreLeftOutAndCounted) {
-  const protocol::Trial& trial = trials_.front();
-  auto robot = laboratory::simulated_robot(trial).value();
-  console_->begin(0, session::header_of(trial, robot->facts(), session::make_plan(trial)->schedule), {},
-                  folder_ / "trial.h5", 1.0);
+  const session::Plan& plan = plans_.front();
+  auto robot = laboratory::simulated_robot(plan.trial).value();
+  console_->begin(0, session::header_of(plan, robot->facts()), {}, folder_ / "trial.h5", 1.0);
   std::vector<journal::Tick> ticks(1'000'000);
   for (std::size_t k = 0; k < ticks.size(); ++k) ticks[k].number = k + 5;
   console_->watch(ticks);
@@ -514,6 +513,43 @@ TEST_F(ConsoleOfASession, ANoteNeverTakesThePlaceOfAnAnswer) {
     // Else a note that is still on its way answers the next question.
     ASSERT_TRUE(soon([&] { return !console_->take_notes().empty(); }));
   }
+}
+
+TEST_F(ConsoleOfASession, ThePageConductsAnExperiment) {
+  auto page = open(token_);
+  const auto asks = [](const char* question) {
+    return [=](Page& one) { return !one.state.is_null() && one.state["question"] == question; };
+  };
+  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  std::vector<std::string> warned;
+  PageOperator conductor(*console_, true, [&](const std::string& warning) { warned.push_back(warning); });
+  const conduct::Experiment experiment{plans_, folder_ / "trial.h5"};
+  conduct::Conclusion conclusion;
+  std::thread conducting([&] {
+    ASSERT_TRUE(conductor.may_begin(session_, experiment));
+    conclusion = conduct::run(experiment, session_, conductor, {});
+  });
+  EXPECT_TRUE(page->read_until(asks("begin")));
+  page->tell(R"({"command":"start"})");
+  EXPECT_TRUE(page->read_until(asks("after")));
+  page->tell(R"({"command":"note","text":"born 1.2.1984"})");
+  EXPECT_TRUE(soon([&] { return recording::read(folder_ / "trial.h5", {})->metadata.contains("notes"); }));
+  page->tell(R"({"command":"stop"})");  // holds what comes next
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.state["question"] == "reset"; }));
+  page->tell(R"({"command":"reset"})");
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.state.at("reset_code") != ""; }));
+  page->tell(Json{{"command", "reset"}, {"code", page->state.at("reset_code")}}.dump());
+  EXPECT_TRUE(page->read_until(asks("after")));
+  page->tell(R"({"command":"repeat"})");
+  EXPECT_TRUE(page->read_until(asks("")));
+  EXPECT_TRUE(page->read_until(asks("after")));
+  page->tell(R"({"command":"abort"})");
+  conducting.join();
+  EXPECT_FALSE(conclusion.completed);
+  EXPECT_FALSE(conclusion.failure);
+  EXPECT_EQ(conductor.recording(), folder_ / "trial_2.h5");
+  ASSERT_EQ(warned.size(), 1U);
+  EXPECT_NE(warned.front().find("the note"), std::string::npos) << warned.front();
 }
 
 TEST_F(ConsoleOfASession, NotesOfARecordingAreBoundedAndTheRefusalIsSaid) {

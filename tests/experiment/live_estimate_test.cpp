@@ -38,11 +38,12 @@ number = 1
 journal::Journal recorded() {
   const Trial trial = read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value().front();
   const auto robot = laboratory::simulated_robot(trial).value();
-  journal::Journal journal{header_of(trial, robot->facts(), make_plan(trial)->schedule), {}, {}, {}};
+  const auto plan = make_plan(trial).value();
+  journal::Journal journal{header_of(plan, robot->facts()), {}, {}, {}};
   const auto target = std::filesystem::temp_directory_path() / fmt::format("mbk_live_estimate_{}.h5", getpid());
   std::filesystem::remove(target);
   Session session({true, 0.0});
-  const auto outcome = session.perform(*robot, trial, target, [&](std::span<const journal::Tick> ticks) {
+  const auto outcome = session.perform(*robot, plan, target, [&](std::span<const journal::Tick> ticks) {
     journal.ticks.insert(journal.ticks.end(), ticks.begin(), ticks.end());
   });
   EXPECT_TRUE(outcome) << outcome.error().line();

@@ -66,6 +66,12 @@ class SessionFolder : public testing::Test {
     return trials->front();
   }
 
+  static Plan planned(const Trial& trial) {
+    auto plan = make_plan(trial);
+    EXPECT_TRUE(plan) << plan.error().line();
+    return *plan;
+  }
+
   static constexpr Pace kFast{true, 0.0};
   static inline const RecoverOptions kKeep{.keep = true};
   fs::path folder_, target_;
@@ -76,8 +82,8 @@ TEST_F(SessionFolder, RecordsATrialFromBeginningToEnd) {
   auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   std::uint64_t watched = 0;
-  const auto outcome =
-      session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) { watched += ticks.size(); });
+  const auto outcome = session.perform(*robot, planned(t), target_,
+                                       [&](std::span<const journal::Tick> ticks) { watched += ticks.size(); });
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->ending.how, "completed");
   EXPECT_EQ(outcome->ending.dropped, 0U);
@@ -96,7 +102,7 @@ TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
   const Trial t = trial();
   auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
-  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+  const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
     if (ticks.back().time > 1.5) session.signals().operator_stop = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
@@ -108,11 +114,11 @@ TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
   EXPECT_EQ(torque[torque.size() - 1], 0.0);
 
   auto second = laboratory::simulated_robot(t).value();
-  const auto refused = session.perform(*second, t, folder_ / "second.h5");
+  const auto refused = session.perform(*second, planned(t), folder_ / "second.h5");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().line().find("reset"), std::string::npos);
   ASSERT_TRUE(session.reset());
-  EXPECT_TRUE(session.perform(*second, t, folder_ / "second.h5"));
+  EXPECT_TRUE(session.perform(*second, planned(t), folder_ / "second.h5"));
 }
 
 TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
@@ -122,7 +128,7 @@ TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
     Session session(kFast);
     int calls = 0;
     const fs::path target = folder_ / (known ? "known.h5" : "unknown.h5");
-    const auto outcome = session.perform(*robot, t, target, [&](std::span<const journal::Tick>) {
+    const auto outcome = session.perform(*robot, planned(t), target, [&](std::span<const journal::Tick>) {
       if (++calls < 3) return;
       if (known) throw std::runtime_error("the screen is broken");
       throw 3;
@@ -145,7 +151,7 @@ TEST_F(SessionFolder, EndsEarlyWhenAsked) {
   const Trial t = trial();
   auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
-  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+  const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
     if (ticks.back().time > 4.0) session.signals().end_trial = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
@@ -157,8 +163,10 @@ TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
   Trial t = trial();
   auto robot = laboratory::simulated_robot(t).value();
   const auto refusal = [&](const Trial& one) {
+    const auto plan = make_plan(one);
+    if (!plan) return plan.error().line();
     Session session(kFast);
-    const auto outcome = session.perform(*robot, one, target_);
+    const auto outcome = session.perform(*robot, *plan, target_);
     EXPECT_FALSE(outcome);
     return outcome ? std::string() : outcome.error().line();
   };
@@ -174,7 +182,7 @@ TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
   t = trial();
   {
     Session session(kFast);
-    ASSERT_TRUE(session.perform(*robot, t, target_));
+    ASSERT_TRUE(session.perform(*robot, planned(t), target_));
   }
   EXPECT_NE(refusal(t).find("is there already"), std::string::npos);
 }
@@ -217,7 +225,7 @@ TEST_F(SessionFolder, AStallInsideATickIsLate) {
   DisturbedDevice device(*robot);
   device.stall_at = 200;
   Session session;
-  const auto outcome = session.perform(device, t, target_);
+  const auto outcome = session.perform(device, planned(t), target_);
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->trip.reason, safety::Reason::late) << safety::sentence(outcome->trip);
   EXPECT_GE(outcome->trip.value, 0.29);
@@ -231,7 +239,7 @@ TEST_F(SessionFolder, ATrialWhoseMotorsStayOnIsNotCompleted) {
   device.stuck_on = true;
   realtime::VirtualClock clock(1e-3, 40.0);
   Session session({true, 0.0, &clock});
-  const auto outcome = session.perform(device, t, target_);
+  const auto outcome = session.perform(device, planned(t), target_);
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->trip.reason, safety::Reason::motors_on);
   EXPECT_EQ(outcome->motors.state, safety::MotorsOff::State::missing);
@@ -261,7 +269,7 @@ TEST_F(SessionFolder, AStopButtonThatIsReleasedBetweenTrialsLetsResetThrough) {
   DisturbedDevice device(*robot);
   realtime::VirtualClock clock(1e-3, 40.0);
   Session session({true, 0.0, &clock});
-  const auto outcome = session.perform(device, t, target_, [&](std::span<const journal::Tick> ticks) {
+  const auto outcome = session.perform(device, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
     if (ticks.back().time > 1.0) device.button = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
@@ -290,7 +298,7 @@ TEST_F(SessionFolder, NothingBeginsWhileTheStopButtonIsPressed) {
   DisturbedDevice device(*robot);
   device.button = true;
   Session session;
-  const auto refused = session.perform(device, t, target_);
+  const auto refused = session.perform(device, planned(t), target_);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().line().find("stop button is pressed"), std::string::npos) << refused.error().line();
   EXPECT_FALSE(fs::exists(journal_of(target_)));
@@ -388,7 +396,7 @@ TEST_F(SessionFolder, WhatASessionWritesIsForItsOwnerUnlessAskedOtherwise) {
     fs::remove(target_);
     Session session(kFast);
     std::atomic<unsigned> seen{0};
-    const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick>) {
+    const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick>) {
       seen = static_cast<unsigned>(fs::status(journal_of(target_)).permissions());
       session.signals().end_trial = true;
     });
@@ -409,7 +417,7 @@ TEST_F(SessionFolder, AJournalThatIsRemovedOrReplacedStopsTheTrialAndLosesNothin
     Session session({.virtual_clock = true, .speed = 1.0});
     std::uint64_t watched = 0;
     bool done = false;
-    const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+    const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
       watched += ticks.size();
       if (done || ticks.back().time < 0.3) return;
       done = fs::remove(journal_of(target_));
@@ -435,7 +443,7 @@ TEST_F(SessionFolder, ATrialWhoseJournalIsDamagedWhileItRunsIsNotCompleted) {
   auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   bool done = false;
-  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+  const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
     if (done || ticks.back().time < 3.0) return;
     std::fstream stream(journal_of(target_), std::ios::binary | std::ios::in | std::ios::out);
     stream.seekp(100'000);
@@ -511,7 +519,7 @@ TEST_F(SessionFolder, TheLoopDoesNotAllocateWhileItIsRecordedAndAPlantedAllocati
     CountingDevice counting(*robot, plant);
     fs::remove(target_);
     Session session(kFast);
-    const auto outcome = session.perform(counting, t, target_);
+    const auto outcome = session.perform(counting, planned(t), target_);
     ASSERT_TRUE(outcome) << outcome.error().line();
     EXPECT_EQ(outcome->ending.how, "completed") << outcome->ending.detail;
     EXPECT_GT(outcome->times.ticks, 9000U);
@@ -525,7 +533,7 @@ TEST_F(SessionFolder, ATripDoesNotAllocate) {
   auto robot = laboratory::simulated_robot(t).value();
   CountingDevice counting(*robot, CountingDevice::Plant::nothing);
   Session session(kFast);
-  const auto outcome = session.perform(counting, t, target_, [&](std::span<const journal::Tick> ticks) {
+  const auto outcome = session.perform(counting, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
     if (ticks.back().time > 1.5) session.signals().operator_stop = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
@@ -551,7 +559,7 @@ TEST_F(SessionFolder, MemoryStaysFlatAndNothingIsDropped) {
   auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   double early = 0.0, late = 0.0;
-  const auto outcome = session.perform(*robot, t, target_, [&](std::span<const journal::Tick> ticks) {
+  const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
     if (early == 0.0 && ticks.back().time > 20.0) early = resident();
     if (ticks.back().time > seconds - 5.0) late = resident();
   });

@@ -58,6 +58,7 @@ class Installed(unittest.TestCase):
                 self.assertEqual(numbers, [one for row in wanted[matrix] for one in row], (name, matrix))
         for name in ("filter_a_signal", "judge_a_model", "simulate_a_participant"):  # what they say: tests/examples
             self.assertTrue(ran(self.folder / "example" / name))
+        self.assertTrue(ran(self.folder / "example" / "run_a_study", self.folder))
 
     def test_a_driver_is_built_from_its_example(self):
         example = self.prefix / "share/doc/mbk/examples/device_plugin"

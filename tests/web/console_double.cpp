@@ -64,8 +64,10 @@ void ask(Console& console, Question question) {
 int main() {
   const auto trials = mbk::protocol::read_experiment(kExperiment, "experiment.toml", mbk::laboratory::read_simulation);
   if (!trials) return 1;
+  const auto plan = mbk::session::make_plan(trials->front());
+  if (!plan) return 1;
   mbk::session::Signals signals;
-  auto console = Console::open(0, *trials, signals, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  auto console = Console::open(0, {*plan}, signals, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   if (!console) return 1;
   fmt::print("console: {}\n", (*console)->address());
   std::fflush(stdout);

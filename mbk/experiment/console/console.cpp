@@ -20,7 +20,6 @@ namespace {
 
 using Json = nlohmann::json;
 using journal::Tick;
-using protocol::Trial;
 
 constexpr std::size_t kMostPending = 8192;  // samples of a frame, at most
 constexpr std::uint64_t kStateBeats = 12;   // a state at least so often
@@ -104,17 +103,16 @@ std::string dump(const Json& json) {
 
 }  // namespace
 
-Console::Console(const std::vector<Trial>& trials, session::Signals& signals)
-    : signals_(signals), protocol_(trials.empty() ? "" : trials.front().protocol) {
-  for (const Trial& trial : trials) {
+Console::Console(const std::vector<session::Plan>& plans, session::Signals& signals)
+    : signals_(signals), protocol_(plans.empty() ? "" : plans.front().trial.protocol) {
+  for (const session::Plan& plan : plans) {
+    const protocol::Trial& trial = plan.trial;
     Listed listed;
     listed.name = trial.name.empty() ? trial.protocol : trial.name;
     listed.condition = trial.condition;
     listed.home = trial.home;
     listed.force = !std::holds_alternative<control::PositionMode>(trial.control);
-    if (const auto schedule = perturbation::make_schedule(trial.perturbation, trial.seed)) {
-      listed.duration = schedule->duration();
-    }
+    listed.duration = plan.schedule.duration();
     trials_.push_back(std::move(listed));
   }
   if (const auto html = operator_page()) operator_page_ = make_page(std::string(*html));
@@ -126,9 +124,9 @@ Console::~Console() {
   if (server_) server_->stop();
 }
 
-Result<std::unique_ptr<Console>> Console::open(std::uint16_t port, const std::vector<Trial>& trials,
+Result<std::unique_ptr<Console>> Console::open(std::uint16_t port, const std::vector<session::Plan>& plans,
                                                session::Signals& signals, std::function<void(const std::string&)> log) {
-  std::unique_ptr<Console> console(new Console(trials, signals));
+  std::unique_ptr<Console> console(new Console(plans, signals));
   Console& self = *console;
   auto server = Server::listen(port, {[&self](std::string_view path) { return self.page(path); },
                                       [&self](const Command& command) { return self.command(command); },

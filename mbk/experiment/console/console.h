@@ -18,6 +18,7 @@
 #include "mbk/experiment/console/live_estimate.h"
 #include "mbk/experiment/console/server.h"
 #include "mbk/experiment/device/device.h"
+#include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/measure/measurement/measure.h"
 
@@ -51,11 +52,11 @@ inline constexpr std::size_t kMostNotes = 200, kMostNoteBytes = 32 << 10;
 /// the loop: the loop sees nothing of it but Signals.
 class Console {
  public:
-  /// @param trials  in their order    @param signals  of the session; outlives the console
+  /// @param plans  of the trials, in their order    @param signals  of the session; outlives the console
   /// @param log  one line about what was refused; from the server's thread
   /// @fails  as Server::listen
   [[nodiscard]] static Result<std::unique_ptr<Console>> open(std::uint16_t port,
-                                                             const std::vector<protocol::Trial>& trials,
+                                                             const std::vector<session::Plan>& plans,
                                                              session::Signals& signals,
                                                              std::function<void(const std::string&)> log);
   Console(const Console&) = delete;
@@ -120,7 +121,7 @@ class Console {
     std::string report_missing;
   };
 
-  Console(const std::vector<protocol::Trial>& trials, session::Signals& signals);
+  Console(const std::vector<session::Plan>& plans, session::Signals& signals);
   Page page(std::string_view path);
   Result<void> command(const Command& command);
   Result<void> reset(const std::string& code);

@@ -10,7 +10,7 @@
 #include <iterator>
 
 #include "mbk/base/realtime/signal_stack.h"
-#include "mbk/files/recording/inspect.h"
+#include "mbk/experiment/conduct/trial_measurement.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/model/trial/recording.h"
 
@@ -36,11 +36,6 @@ void cut_unread(Recording& recording, int latency) {
 
 }  // namespace
 
-measurement::Options across_missed_ticks(const Recording& recording, Hertz rate, measurement::Options options) {
-  if (!options.resample && !recording::inspect(recording).gaps.empty()) options.resample = rate;
-  return options;
-}
-
 Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options) {
   auto recording = journal::to_recording(journal);
   if (!recording) return tl::unexpected(recording.error());
@@ -50,7 +45,7 @@ Result<Measurement> estimate(const journal::Journal& journal, const measurement:
   if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
   if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
   const Recording window = preprocess::perturbation_only(std::move(*recording));
-  return measurement::measure({&window, 1}, across_missed_ticks(window, Hertz(journal.header.rate), options));
+  return measurement::measure({&window, 1}, conduct::across_missed_ticks(window, Hertz(journal.header.rate), options));
 }
 
 LiveEstimate::LiveEstimate(std::function<void(const Estimate&)> done)

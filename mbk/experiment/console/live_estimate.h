@@ -15,11 +15,6 @@
 
 namespace mbk::console {
 
-/// The options for what a session recorded: where ticks were missed it is put on the even clock of `rate`, which the
-/// result then warns of (Warning resampled), with the number and length of what a line bridges.
-[[nodiscard]] measurement::Options across_missed_ticks(const Recording& recording, Hertz rate,
-                                                       measurement::Options options);
-
 /// What `mbk measure` makes of the perturbation in a journal, as far as it has come, across missed ticks.
 /// @fails  data: nothing was perturbed yet; as journal::to_recording and measurement::measure.
 [[nodiscard]] Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options);

@@ -124,7 +124,7 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
                            share * setup.trial.rate.value, setup.trial.rate.value),
                "both have to run at the same rate: see rate_hz and the robot's clock");
   const double silence = static_cast<double>(record.longest_gap) / setup.trial.rate.value;
-  findings.add(silence <= setup.limits.link_silence, Verdict::wrong,
+  findings.add(silence <= setup.trial.limits.link_silence, Verdict::wrong,
                fmt::format("the longest silence was {:.0f} ms", 1e3 * silence),
                "the gate would switch off: see network, load and [safety] link_silence_ms");
   findings.add(record.lost * 1000 <= record.fresh, Verdict::doubtful,
@@ -138,15 +138,15 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
                : record.stop_pressed ? "the stop button is pressed"
                                      : "the stop button is not pressed; press and release it meanwhile to test it",
                "release it");
-  const auto frozen = static_cast<std::uint64_t>(std::max(0.25, setup.limits.frozen) * setup.trial.rate.value);
+  const auto frozen = static_cast<std::uint64_t>(std::max(0.25, setup.trial.limits.frozen) * setup.trial.rate.value);
   const Vector2d theta(record.joint[0].mean, record.joint[1].mean);
-  if (auto ok = robot::check_joints(setup.robot.geometry.limits, theta); !ok) {
+  if (auto ok = robot::check_joints(setup.trial.robot.geometry.limits, theta); !ok) {
     findings.add(false, Verdict::wrong, ok.error().line(),
                  "see encoder_sign, count_offset and counts_per_turn, or move the robot");
   }
   check_readings("joint", record.joint, record.ticks, findings);
   const double jump = std::max(record.joint[0].step, record.joint[1].step);
-  findings.add(jump <= 0.1 * setup.limits.encoder_jump, Verdict::doubtful,
+  findings.add(jump <= 0.1 * setup.trial.limits.encoder_jump, Verdict::doubtful,
                fmt::format("the angles step by {:.3g}° from sample to sample", jump / kDegree),
                "encoders are noisy, or the robot was moved fast");
   const auto sensor = [&](const char* name, const char* unit, const std::array<Readings, 2>& both, double much,
@@ -184,7 +184,7 @@ std::string live_text(const RobotSetup& setup, const device::Facts& facts, const
   if (facts.has_force) add("force", "N", record.force, 1.0);
   if (facts.has_acceleration) add("acceleration", "m/s²", record.acceleration, 1.0);
   const Vector2d hand =
-      robot::hand_position(setup.robot.geometry, Vector2d(record.joint[0].mean, record.joint[1].mean));
+      robot::hand_position(setup.trial.robot.geometry, Vector2d(record.joint[0].mean, record.joint[1].mean));
   text += fmt::format("  the hand is at {:.1f}, {:.1f} mm: is it?\n", 1e3 * hand[0], 1e3 * hand[1]);
   return text;
 }

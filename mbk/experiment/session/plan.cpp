@@ -120,7 +120,11 @@ class Peaks {
 
 }  // namespace
 
-Result<Plan> make_plan(const protocol::Trial& trial) {
+Result<safety::Gate> Plan::gate() const {
+  return safety::Gate::create(limits, trial.robot, trial.home, sample_time());
+}
+
+Result<Plan> make_plan(protocol::Trial trial) {
   auto schedule = perturbation::make_schedule(trial.perturbation, trial.seed);
   if (!schedule) return tl::unexpected(schedule.error());
   const robot::Geometry& geometry = trial.robot.geometry;
@@ -141,17 +145,19 @@ Result<Plan> make_plan(const protocol::Trial& trial) {
   const auto planned = check_path(*control, trial);
   if (!planned) return tl::unexpected(planned.error());
   const safety::Limits limits = limits_of(trial, *planned);
-  auto gate = safety::Gate::create(limits, trial.robot, trial.home, sample_time);
-  if (!gate) return tl::unexpected(gate.error());
-  return Plan{limits, std::move(*schedule), std::move(*control), std::move(*sequence), std::move(*gate)};
+  Plan plan{std::move(trial), limits, std::move(*schedule), std::move(*sequence)};
+  if (const auto gate = plan.gate(); !gate) return tl::unexpected(gate.error());
+  return plan;
 }
 
-Result<Rehearsal> rehearse(const protocol::Trial& trial) {
-  auto plan = make_plan(trial);
-  if (!plan) return tl::unexpected(plan.error());
+Result<Rehearsal> rehearse(const Plan& plan) {
+  const protocol::Trial& trial = plan.trial;
   if (!trial.simulation) return bad_usage("there is nothing that simulates the robot", "run the trial itself");
   auto robot = trial.simulation->robot(trial);
   if (!robot) return tl::unexpected(robot.error());
+  auto gate = plan.gate();
+  if (!gate) return tl::unexpected(gate.error());
+  control::Sequencer sequence = plan.sequence;
   Rehearsal rehearsal;
   realtime::BoundedRing<journal::Tick> ring(4096);
   std::atomic<bool> over{false};
@@ -167,13 +173,13 @@ Result<Rehearsal> rehearse(const protocol::Trial& trial) {
       if (!last) std::this_thread::yield();
     }
   });
-  realtime::VirtualClock clock(1.0 / trial.rate.value);
+  realtime::VirtualClock clock(plan.sample_time());
   Signals signals;
   LoopTimes times;
-  run_loop(**robot, plan->sequence, plan->gate, clock, ring, signals, times);
+  run_loop(**robot, sequence, *gate, clock, ring, signals, times);
   over = true;
   looking.join();
-  rehearsal.trip = plan->gate.trip();
+  rehearsal.trip = gate->trip();
   return rehearsal;
 }
 

@@ -7,6 +7,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "mbk/base/config/document.h"
 #include "mbk/model/robot/workspace.h"
@@ -56,7 +57,7 @@ double largest_singular_value(const Matrix2d& matrix) {
 }
 
 void check_links(const RobotSetup& setup, Findings& findings) {
-  const robot::Geometry& g = setup.robot.geometry;
+  const robot::Geometry& g = setup.trial.robot.geometry;
   const auto in_range = [](double d) { return d >= kShortestLink && d <= kLongestLink; };
   findings.judge(doubtful_unless(in_range(g.d1) && in_range(g.d2)),
                  fmt::format("links of {:.4g} and {:.4g} mm", g.d1 / kMillimetre, g.d2 / kMillimetre),
@@ -64,7 +65,7 @@ void check_links(const RobotSetup& setup, Findings& findings) {
 }
 
 void check_inertia(const RobotSetup& setup, const Vector2d& theta, Findings& findings) {
-  const auto mass = setup.robot.inertia_at_hand(theta);
+  const auto mass = setup.trial.robot.inertia_at_hand(theta);
   if (!mass) {
     findings.add(Verdict::wrong, mass.error().line());
     return;
@@ -82,7 +83,7 @@ void check_inertia(const RobotSetup& setup, const Vector2d& theta, Findings& fin
 
 /// @returns  a posture to look at the robot in: home, or the middle of what the joints can do
 std::optional<Vector2d> check_places(const RobotSetup& setup, Findings& findings) {
-  const robot::Geometry& g = setup.robot.geometry;
+  const robot::Geometry& g = setup.trial.robot.geometry;
   const auto workspace = robot::workspace(g);
   if (!workspace) {
     findings.add(Verdict::wrong, "no workspace: " + workspace.error().line());
@@ -91,23 +92,23 @@ std::optional<Vector2d> check_places(const RobotSetup& setup, Findings& findings
   findings.judge(doubtful_unless(workspace->area >= 1e-2),
                  fmt::format("the hand reaches {:.0f} cm²", 1e4 * workspace->area),
                  "that is less than a palm: see theta1_deg, theta2_deg and smallest_opening_deg");
-  if (!setup.home) {
+  if (!setup.has_home) {
     const std::vector<Vector2d> corners = robot::joint_space_corners(g.limits);
     Vector2d middle = Vector2d::Zero();
     for (const Vector2d& corner : corners) middle += corner / static_cast<double>(corners.size());
     return middle;
   }
-  const Vector2d& home = *setup.home;
+  const Vector2d& home = setup.trial.home;
   const auto theta = robot::check_hand(g, home);
   if (!theta) {
     findings.add(Verdict::wrong, "home cannot be reached: " + theta.error().line());
     return std::nullopt;
   }
   const double margin = robot::margin(g.limits, *theta);
-  const bool inside = (home.array() >= setup.limits.workspace_low.array()).all() &&
-                      (home.array() <= setup.limits.workspace_high.array()).all();
+  const bool inside = (home.array() >= setup.trial.limits.workspace_low.array()).all() &&
+                      (home.array() <= setup.trial.limits.workspace_high.array()).all();
   findings.judge(
-      wrong_unless(margin > setup.limits.joint_margin && inside),
+      wrong_unless(margin > setup.trial.limits.joint_margin && inside),
       fmt::format("home is at {:.1f}, {:.1f} mm, {:.1f}° from the nearest limit of a joint{}", home[0] / kMillimetre,
                   home[1] / kMillimetre, margin / kDegree, inside ? "" : ", outside the safety workspace"),
       "move home_mm, or see [safety] joint_margin_deg and workspace_low_mm");
@@ -115,21 +116,21 @@ std::optional<Vector2d> check_places(const RobotSetup& setup, Findings& findings
 }
 
 void check_encoders(const RobotSetup& setup, const Vector2d& theta, Findings& findings) {
-  if (!setup.device.counts) return;
-  const device::Wiring& w = setup.device.fittings.wiring;
+  if (!setup.trial.device.counts) return;
+  const device::Wiring& w = setup.trial.device.fittings.wiring;
   const double count =
-      largest_singular_value(robot::jacobian(setup.robot.geometry, theta) * w.radians_per_count.asDiagonal());
+      largest_singular_value(robot::jacobian(setup.trial.robot.geometry, theta) * w.radians_per_count.asDiagonal());
   findings.judge(count > kCoarseCount ? Verdict::wrong : doubtful_unless(count <= kFineCount),
                  fmt::format("one count of an encoder is at most {:.3g} µm at the hand", count / kMicrometre),
                  "velocities and accelerations will be rough: see counts_per_turn (after the gear, all four edges)");
-  const double jump = setup.limits.encoder_jump / w.radians_per_count.cwiseAbs().maxCoeff();
+  const double jump = setup.trial.limits.encoder_jump / w.radians_per_count.cwiseAbs().maxCoeff();
   findings.judge(jump < 2.0 ? Verdict::wrong : doubtful_unless(jump >= 5.0),
                  fmt::format("the gate takes {:.3g} counts within a tick for a jump", jump),
                  "raise [safety] encoder_jump_deg: what the encoder rounds must not trip");
 }
 
 void check_force(const RobotSetup& setup, Findings& findings) {
-  const drivers::Fittings& f = setup.device.fittings;
+  const drivers::Fittings& f = setup.trial.device.fittings;
   if (!f.has_force) {
     findings.add(Verdict::doubtful, "without a force sensor: what is measured needs --force-source virtual");
     return;
@@ -138,21 +139,21 @@ void check_force(const RobotSetup& setup, Findings& findings) {
   findings.judge(doubtful_unless(gains[0] <= kUnevenGain * gains[1]),
                  fmt::format("the force sensor gives {:.4g} to {:.4g} N per unit", gains[1], gains[0]),
                  "its axes differ much, or both read nearly the same: see force_gain_N_per_unit");
-  if (setup.device.force_step) {
-    const double step = gains[0] * *setup.device.force_step;
+  if (setup.trial.device.force_step) {
+    const double step = gains[0] * *setup.trial.device.force_step;
     findings.judge(doubtful_unless(step <= kCoarseForce), fmt::format("its smallest step is {:.3g} mN", 1e3 * step),
                    "that is coarse beside an arm's forces: use more of the converter's range");
   }
 }
 
 void check_motors(const RobotSetup& setup, const Vector2d& theta, Findings& findings) {
-  const device::Wiring& w = setup.device.fittings.wiring;
-  const Vector2d most = setup.limits.joint_torque.cwiseQuotient(w.torque_per_command).cwiseAbs();
+  const device::Wiring& w = setup.trial.device.fittings.wiring;
+  const Vector2d most = setup.trial.limits.joint_torque.cwiseQuotient(w.torque_per_command).cwiseAbs();
   findings.judge(doubtful_unless(most.minCoeff() >= kSmallCommand && most.maxCoeff() <= kLargeCommand),
                  fmt::format("the largest torques, {:g} and {:g} N·m, are {:.3g} and {:.3g} units of command",
-                             setup.limits.joint_torque[0], setup.limits.joint_torque[1], most[0], most[1]),
+                             setup.trial.limits.joint_torque[0], setup.trial.limits.joint_torque[1], most[0], most[1]),
                  "see torque_per_command_Nm and gear");
-  const Matrix2d J = robot::jacobian(setup.robot.geometry, theta);
+  const Matrix2d J = robot::jacobian(setup.trial.robot.geometry, theta);
   const Vector2d unit = J.transpose().inverse() * Vector2d(w.torque_per_command[0], 0.0);
   findings.add(Verdict::fine,
                fmt::format("one unit of command to motor 1 pushes the hand with {:.3g}, {:.3g} N", unit[0], unit[1]));
@@ -169,8 +170,8 @@ void check_times(const RobotSetup& setup, Findings& findings) {
                      "motors that run on for so long can hurt: take 20 to 100 ms");
     }
   };
-  if (const auto* udp = std::get_if<drivers::UdpOptions>(&setup.device.kind)) watchdog(udp->watchdog);
-  if (const auto* plugin = std::get_if<drivers::PluginOptions>(&setup.device.kind)) watchdog(plugin->watchdog);
+  if (const auto* udp = std::get_if<drivers::UdpOptions>(&setup.trial.device.kind)) watchdog(udp->watchdog);
+  if (const auto* plugin = std::get_if<drivers::PluginOptions>(&setup.trial.device.kind)) watchdog(plugin->watchdog);
 }
 
 std::string device_text(const protocol::DevicePlan& plan) {
@@ -199,13 +200,8 @@ Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem
   if (root.has("control") || root.has("perturbation") || root.has("trial")) {
     auto trials = protocol::read_experiment(text, file, simulation);
     if (!trials) return tl::unexpected(trials.error());
-    const protocol::Trial& first = trials->front();
-    setup.robot = first.robot;
-    setup.limits = first.limits;
-    setup.device = first.device;
-    setup.has_device = true;
-    setup.home = first.home;
-    setup.trial = first;
+    setup.trial = std::move(trials->front());
+    setup.has_device = setup.has_home = true;
     return setup;
   }
   const config::Section robot = root.section("robot");
@@ -215,10 +211,8 @@ Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem
   }
   // The whole description is judged by its own reader, which knows every key.
   if (auto ok = robot_file::parse_robot_description(text, "", file.string()); !ok) return tl::unexpected(ok.error());
-  setup.robot = robot_file::read_planar_robot(robot);
-  setup.device = protocol::read_device(root.section("device"), file.parent_path());
-  setup.trial.robot = setup.robot;
-  setup.trial.device = setup.device;
+  setup.trial.robot = robot_file::read_planar_robot(robot);
+  setup.trial.device = protocol::read_device(root.section("device"), file.parent_path());
   root.leave_to_others("robot");
   root.leave_to_others("drive");
   if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());
@@ -236,8 +230,8 @@ std::vector<Finding> check_setup(const RobotSetup& setup) {
   check_links(setup, findings);
   const auto theta = check_places(setup, findings);
   if (theta) check_inertia(setup, *theta, findings);
-  if (auto ok = safety::check(setup.limits); !ok) findings.add(Verdict::wrong, ok.error().line());
-  if (setup.device.simulated() || !theta) return findings.take();
+  if (auto ok = safety::check(setup.trial.limits); !ok) findings.add(Verdict::wrong, ok.error().line());
+  if (setup.trial.device.simulated() || !theta) return findings.take();
   check_encoders(setup, *theta, findings);
   check_force(setup, findings);
   check_motors(setup, *theta, findings);
@@ -246,17 +240,17 @@ std::vector<Finding> check_setup(const RobotSetup& setup) {
 }
 
 std::string setup_text(const RobotSetup& setup) {
-  const robot::Geometry& g = setup.robot.geometry;
+  const robot::Geometry& g = setup.trial.robot.geometry;
   const robot::JointLimits& l = g.limits;
   std::string text = fmt::format("robot      d₁ {:.1f} mm, d₂ {:.1f} mm\n", g.d1 / kMillimetre, g.d2 / kMillimetre);
   text += fmt::format("joints     θ₁ {:.1f} to {:.1f}°, θ₂ {:.1f} to {:.1f}°, smallest opening {:.1f}°\n",
                       l.theta1_low / kDegree, l.theta1_high / kDegree, l.theta2_low / kDegree, l.theta2_high / kDegree,
                       l.smallest_opening / kDegree);
-  text += fmt::format("device     {}\n", setup.has_device ? device_text(setup.device) : "none is named");
-  if (!setup.has_device || setup.device.simulated()) return text;
-  const drivers::Fittings& f = setup.device.fittings;
+  text += fmt::format("device     {}\n", setup.has_device ? device_text(setup.trial.device) : "none is named");
+  if (!setup.has_device || setup.trial.device.simulated()) return text;
+  const drivers::Fittings& f = setup.trial.device.fittings;
   const device::Wiring& w = f.wiring;
-  if (setup.device.counts) {
+  if (setup.trial.device.counts) {
     text += fmt::format("encoders   {:+.6g} and {:+.6g}° per count, θ = 0 at counts {:g} and {:g}\n",
                         w.radians_per_count[0] / kDegree, w.radians_per_count[1] / kDegree, w.count_offset[0],
                         w.count_offset[1]);

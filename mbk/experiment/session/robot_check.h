@@ -1,25 +1,20 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/experiment/protocol/experiment.h"
-#include "mbk/model/robot/dynamics.h"
 
 namespace mbk::session {
 
 /// What a file says of a planar robot, its wires and its limits.
 struct RobotSetup {
-  robot::PlanarRobot robot;
-  safety::Limits limits;                ///< of an experiment; those by default for a description
-  protocol::DevicePlan device;          ///< with [device] of either file
-  bool has_device = false;              ///< there is something to connect to
-  std::optional<Eigen::Vector2d> home;  ///< of an experiment [m]
-  protocol::Trial trial;  ///< of an experiment, its first; of a description, one with its robot and device
+  protocol::Trial trial;    ///< of an experiment, its first; of a description, one with its robot and device
+  bool has_device = false;  ///< there is something to connect to
+  bool has_home = false;    ///< an experiment says where the hand is at home; a description does not
 };
 
 /// An experiment, its first trial, or the description of a robot, by what stands in it: [control] or [perturbation].

@@ -82,8 +82,8 @@ TEST(RobotCheck, OneFileIsReadAsWhatItIs) {
   EXPECT_FALSE(setup("[robot]\nkind = \"planar\"\n").has_device);
   const RobotSetup described = setup("[robot]\nkind = \"planar\"\nd1_mm = 300\n[device]\nkind = \"udp\"\nport = 7\n");
   EXPECT_TRUE(described.has_device);
-  EXPECT_EQ(described.robot.geometry.d1, 0.3);
-  EXPECT_EQ(std::get<drivers::UdpOptions>(described.device.kind).port, 7);
+  EXPECT_EQ(described.trial.robot.geometry.d1, 0.3);
+  EXPECT_EQ(std::get<drivers::UdpOptions>(described.trial.device.kind).port, 7);
   const auto line = [](const std::string& text) {
     const auto read = read_robot_setup(text, "mine.toml");
     EXPECT_FALSE(read) << text;

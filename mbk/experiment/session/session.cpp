@@ -11,7 +11,6 @@
 #include "mbk/base/core/printable.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/realtime/signal_stack.h"
-#include "mbk/experiment/session/plan.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/files/recording/write_file.h"
@@ -96,7 +95,8 @@ struct NotBegun {
 
 }  // namespace
 
-Header header_of(const protocol::Trial& trial, const device::Facts& facts, const perturbation::Schedule& schedule) {
+Header header_of(const Plan& plan, const device::Facts& facts) {
+  const protocol::Trial& trial = plan.trial;
   Header header;
   header.metadata = protocol::metadata_of(trial.person);
   // Who is simulated is at the handle only where the robot is simulated.
@@ -112,11 +112,11 @@ Header header_of(const protocol::Trial& trial, const device::Facts& facts, const
   header.geometry = trial.robot.geometry;
   header.rate = trial.rate.value;
   header.readers = trial.readers;
-  header.reference_unit = schedule.quantity() == perturbation::Quantity::force ? "N" : "m";
+  header.reference_unit = plan.schedule.quantity() == perturbation::Quantity::force ? "N" : "m";
   header.has_force = facts.has_force;
   header.has_acceleration = facts.has_acceleration;
   header.force_latency = facts.force_latency;
-  for (const auto& event : schedule.events()) header.events.push_back({event.time, event.name, event.value});
+  for (const auto& event : plan.schedule.events()) header.events.push_back({event.time, event.name, event.value});
   return header;
 }
 
@@ -139,8 +139,9 @@ Result<void> Session::reset() {
   return {};
 }
 
-Result<TrialOutcome> Session::perform(device::Device& robot, const protocol::Trial& trial, const fs::path& target,
+Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, const fs::path& target,
                                       const Watch& watch) {
+  const protocol::Trial& trial = plan.trial;
   if (trial.person.withdrawn) {
     return bad_usage("the person has withdrawn: no further trial is begun", "see [person] withdrawn");
   }
@@ -155,21 +156,22 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const protocol::Tri
     return bad_usage(fmt::format("{} keeps its own time, which a virtual clock cannot hurry", robot.facts().name),
                      "run it without --fast and --speed; a simulation behind UDP can wait: lock_step = true");
   }
-  auto plan = make_plan(trial);
-  if (!plan) return tl::unexpected(plan.error());
-  const double sample_time = 1.0 / trial.rate.value;
+  auto gate = plan.gate();
+  if (!gate) return tl::unexpected(gate.error());
+  const double sample_time = plan.sample_time();
 
   TrialOutcome outcome;
   outcome.recording = target;
   outcome.journal = journal_of(target);
-  const auto expected = static_cast<std::uint64_t>(plan->sequence.duration(0.5) / sample_time);
-  auto writer = journal::Writer::create(outcome.journal, header_of(trial, robot.facts(), plan->schedule), expected);
+  const auto expected = static_cast<std::uint64_t>(plan.sequence.duration(0.5) / sample_time);
+  auto writer = journal::Writer::create(outcome.journal, header_of(plan, robot.facts()), expected);
   if (!writer) return tl::unexpected(writer.error());
   NotBegun guard{outcome.journal};
   if (auto ok = start(robot); !ok) return tl::unexpected(ok.error());
   guard.robot = &robot;
 
-  gate_ = std::move(plan->gate);
+  gate_ = std::move(*gate);
+  control::Sequencer sequence = plan.sequence;
   signals_->end_trial = false;
   signals_->recording = true;
   realtime::BoundedRing<Tick> ring(kRing);
@@ -178,14 +180,14 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const protocol::Tri
   std::thread loop([&] {
     const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
-      run_loop(robot, plan->sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
+      run_loop(robot, sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
     } else if (pace_.virtual_clock) {
       realtime::VirtualClock clock(sample_time, pace_.speed);
-      run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
+      run_loop(robot, sequence, *gate_, clock, ring, *signals_, outcome.times);
     } else {
       outcome.setup = realtime::prepare_thread();
       realtime::WallClock clock(sample_time);
-      run_loop(robot, plan->sequence, *gate_, clock, ring, *signals_, outcome.times);
+      run_loop(robot, sequence, *gate_, clock, ring, *signals_, outcome.times);
     }
   });
   guard.begun = true;

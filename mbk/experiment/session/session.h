@@ -9,9 +9,9 @@
 #include "mbk/base/core/result.h"
 #include "mbk/base/realtime/thread_setup.h"
 #include "mbk/experiment/device/device.h"
-#include "mbk/experiment/protocol/experiment.h"
 #include "mbk/experiment/session/idle_watch.h"
 #include "mbk/experiment/session/loop.h"
+#include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/recorder.h"
 
 namespace mbk::session {
@@ -45,9 +45,9 @@ class Session {
   /// @param target  of the recording (.h5); the journal stands beside it as NAME.h5.journal
   /// @param watch  see Recorder; may be empty
   /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; the robot's stop
-  ///         button is pressed; the robot keeps its own time and the clock is virtual; a limit or check
-  ///         failed, which the message names. data: the robot does not answer; the folder, space or disk.
-  [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const protocol::Trial& trial,
+  ///         button is pressed; the robot keeps its own time and the clock is virtual. data: the robot does
+  ///         not answer; the folder, space or disk.
+  [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const Plan& plan,
                                              const std::filesystem::path& target, const Watch& watch = {});
 
   /// For other threads, and for signal handlers: a stop, or an early end, of the trial that runs.
@@ -70,8 +70,7 @@ class Session {
 };
 
 /// What a trial's journal says before the first tick.
-[[nodiscard]] journal::Header header_of(const protocol::Trial& trial, const device::Facts& facts,
-                                        const perturbation::Schedule& schedule);
+[[nodiscard]] journal::Header header_of(const Plan& plan, const device::Facts& facts);
 
 /// Adds remarks to the metadata of a recording, as `notes` in one line with " | " between them.
 /// @fails  data: the recording cannot be read or written.

@@ -129,7 +129,9 @@ Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64
       while (!device.stopped()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   };
-  const auto performed = session.perform(device, run.trial, target, watch);
+  const auto plan = session::make_plan(run.trial);
+  if (!plan) return tl::unexpected(plan.error().in(std::string(kind.name)));
+  const auto performed = session.perform(device, *plan, target, watch);
   if (!performed) return tl::unexpected(performed.error().in(std::string(kind.name)));
   if (begun >= 0) onset = begun;
 
@@ -209,7 +211,9 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
         if (job.kind == nullptr) {
           protocol::Trial trial = (*ready)[static_cast<std::size_t>(job.run) % ready->size()];
           trial.seed = seed;
-          const auto rehearsal = session::rehearse(trial);
+          const auto plan = session::make_plan(std::move(trial));
+          if (!plan) return tl::unexpected(plan.error());
+          const auto rehearsal = session::rehearse(*plan);
           if (!rehearsal) return tl::unexpected(rehearsal.error());
           outcomes[at].reason = rehearsal->trip.reason;
           return {};

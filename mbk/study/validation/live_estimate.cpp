@@ -58,7 +58,7 @@ Result<Held> perform(protocol::Trial trial, std::uint64_t seed, const std::files
   options.passivity = false;
 
   session::Session session({true, 0.0});
-  journal::Journal journal{session::header_of(trial, (*robot)->facts(), plan->schedule), {}, {}, {}};
+  journal::Journal journal{session::header_of(*plan, (*robot)->facts()), {}, {}, {}};
   Held held{};
   std::size_t taken = 0;
   std::optional<Error> failure;
@@ -73,7 +73,7 @@ Result<Held> perform(protocol::Trial trial, std::uint64_t seed, const std::files
       session.signals().end_trial = ++taken == kTimes.size();
     }
   };
-  const auto performed = session.perform(**robot, trial, folder / fmt::format("{}.h5", seed), watch);
+  const auto performed = session.perform(**robot, *plan, folder / fmt::format("{}.h5", seed), watch);
   if (!performed) return tl::unexpected(performed.error());
   std::error_code ignored;
   std::filesystem::remove(performed->recording, ignored);

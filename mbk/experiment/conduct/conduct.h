@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/experiment/conduct/trial_measurement.h"
+#include "mbk/experiment/device/device.h"
+#include "mbk/experiment/protocol/experiment.h"
+#include "mbk/experiment/safety/motors_off.h"
+#include "mbk/experiment/safety/trip.h"
+#include "mbk/experiment/session/plan.h"
+#include "mbk/experiment/session/session.h"
+#include "mbk/files/journal/tick.h"
+
+namespace mbk::conduct {
+
+/// An experiment that can begin: its trials, each planned once, and where they are recorded.
+struct Experiment {
+  std::vector<session::Plan> plans;  ///< in the order of the trials
+  std::filesystem::path out;         ///< empty: PROTOCOL.h5
+
+  /// Recording of a trial: `out`, or where there are several trials relaxed.h5 → relaxed_NAME.h5.
+  [[nodiscard]] std::filesystem::path target(std::size_t index) const;
+};
+
+/// Plans every trial.   @param file  how messages call the experiment
+/// @fails  usage: as session::make_plan; the recording of a trial is there already.
+[[nodiscard]] Result<Experiment> plan_experiment(const std::vector<protocol::Trial>& trials,
+                                                 const std::filesystem::path& out, std::string_view file);
+
+/// Where a trial is recorded that may be a repeated one: relaxed.h5, relaxed_2.h5, … the first that is not there yet.
+[[nodiscard]] std::filesystem::path next_free(const std::filesystem::path& target);
+
+/// A trial that is about to begin.
+struct Attempt {
+  std::size_t index;  ///< of the trial in its experiment
+  const session::Plan& plan;
+  std::filesystem::path target;  ///< of the recording
+  device::Device& robot;
+};
+
+/// A trial that is over and recorded.
+struct Performed {
+  const Attempt& attempt;
+  session::TrialOutcome outcome;
+  std::optional<Result<Measurement>> measured;  ///< absent: the trial was stopped, or is only recorded
+
+  /// The gate has tripped.
+  [[nodiscard]] bool stopped() const { return outcome.trip.reason != safety::Reason::none; }
+  /// It could not be measured, or what was found is poor.
+  [[nodiscard]] bool poor() const { return measured && (!*measured || conduct::poor((*measured)->identification)); }
+};
+
+/// What comes after a trial.
+enum class Next { go_on, repeat, end };
+
+/// Lives from before the robot moves until it is at rest: a line that shows how far a trial is, keys that stop it.
+class Watcher {
+ public:
+  Watcher() = default;
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
+  virtual ~Watcher() = default;
+
+  /// As session::Watch.
+  virtual void watch(std::span<const journal::Tick> ticks) = 0;
+};
+
+/// Who conducts an experiment: is told what happens, and decides what comes next. As it stands here nobody looks and
+/// nobody is there: after a stop no trial follows, and none is repeated.
+class Operator {
+ public:
+  Operator() = default;
+  Operator(const Operator&) = delete;
+  Operator& operator=(const Operator&) = delete;
+  virtual ~Operator() = default;
+
+  /// A trial begins.   @returns  what is to live as long as it runs; may be null
+  [[nodiscard]] virtual std::unique_ptr<Watcher> begin(const Attempt& /*attempt*/) { return nullptr; }
+
+  /// The robot is at rest: first of all what it says of its motors.
+  virtual void motors(const safety::MotorsOff& /*motors*/) {}
+
+  /// What a robot that is not simulated says until the next trial, each time that it changes. From another thread.
+  virtual void idle(const session::IdleState& /*seen*/) {}
+
+  /// The trial is recorded, and will be measured next.
+  virtual void recorded(const session::TrialOutcome& /*outcome*/) {}
+
+  /// All is known of it.   @fails  as it likes; no trial follows then
+  [[nodiscard]] virtual Result<void> judged(const Performed& /*performed*/) { return {}; }
+
+  /// What comes next. After a stop a trial follows only where the gate was reset (Session::reset).
+  [[nodiscard]] virtual Next next(session::Session& /*session*/, const Performed& performed) {
+    return performed.stopped() ? Next::end : Next::go_on;
+  }
+};
+
+/// How an experiment ended.
+struct Conclusion {
+  bool completed = false;        ///< after its last trial
+  std::optional<Error> failure;  ///< why it could not go on
+  safety::Trip trip;             ///< of the trial that was the last because of it; Reason::none: there was none
+  safety::MotorsOff motors;      ///< of that trial
+};
+
+/// Performs the trials of an experiment in their order, each behind the gate into a file of its own, and measures what
+/// was recorded. Between two trials the robot is told "motors off" (IdleWatch). None follows one whose ticks were lost,
+/// nor a request to end (Signals::end_session).
+/// @param measure  after each trial that was not stopped; empty: trials are only recorded
+/// @returns  with a failure as make_device, Session::perform and Operator::judged; data: ticks were lost
+[[nodiscard]] Conclusion run(const Experiment& experiment, session::Session& session, Operator& conductor,
+                             const Measure& measure = measure_recording);
+
+}  // namespace mbk::conduct

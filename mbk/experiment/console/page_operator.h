@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "mbk/experiment/conduct/conduct.h"
+#include "mbk/experiment/console/console.h"
+
+namespace mbk::console {
+
+/// The operator at the page: it is shown all that happens, and asked what comes next.
+class PageOperator : public conduct::Operator {
+ public:
+  /// @param console  outlives this    @param wait  the page begins the first trial, and is asked after each
+  /// @param warn  takes a sentence about a note that looks as if it said who somebody is; the page is shown it too
+  PageOperator(Console& console, bool wait, std::function<void(const std::string&)> warn)
+      : console_(console), wait_(wait), warn_(std::move(warn)) {}
+
+  /// Waits for the page, and shows it the robot of the first trial meanwhile; true at once where nobody is to wait.
+  /// @returns  false: it would rather not
+  [[nodiscard]] bool may_begin(session::Session& session, const conduct::Experiment& experiment);
+
+  [[nodiscard]] std::unique_ptr<conduct::Watcher> begin(const conduct::Attempt& attempt) override;
+  void motors(const safety::MotorsOff& motors) override;
+  void idle(const session::IdleState& seen) override;
+  void recorded(const session::TrialOutcome& outcome) override;
+
+  /// Keeps its notes.
+  [[nodiscard]] Result<void> judged(const conduct::Performed& /*performed*/) override { return keep_notes(); }
+
+  /// Asks the page where it decides, resets the gate where that says so, and keeps notes meanwhile.
+  [[nodiscard]] conduct::Next next(session::Session& session, const conduct::Performed& performed) override;
+
+  /// Whether the page is asked what comes next: always where it is waited for, else where somebody has to be asked and
+  /// a page is in control.
+  [[nodiscard]] bool decides(const conduct::Performed& performed) const;
+
+  /// Remarks go into the recording of the last trial.   @fails  as session::annotate
+  [[nodiscard]] Result<void> keep_notes();
+
+  /// Of the last trial; empty before the first is recorded.
+  [[nodiscard]] const std::filesystem::path& recording() const { return recording_; }
+
+ private:
+  Console& console_;
+  bool wait_;
+  std::function<void(const std::string&)> warn_;
+  bool motors_missing_ = false;  // the last trial ended without the robot's word that its motors are off
+  std::filesystem::path recording_;
+};
+
+}  // namespace mbk::console
