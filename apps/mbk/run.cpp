@@ -111,7 +111,7 @@ class StatusLine {
 };
 
 std::string outcome_text(const session::TrialOutcome& outcome, const session::Pace& pace) {
-  std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ending.how);
+  std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ended);
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
   text += "\n  motors: " + safety::sentence(outcome.motors);
   text += fmt::format("\n  {} ticks, {} dropped; compute per tick: {}\n", outcome.times.ticks, outcome.ending.dropped,
@@ -272,7 +272,7 @@ std::optional<int> perform(Session& session, const Trial& trial, std::size_t ind
   if (auto ok = console.keep_notes(); !ok) return failed(ok.error());
   if (!written) return failed(written.error());
   if (outcome->incomplete) {
-    report_error({ErrorKind::data, outcome->ending.how, "look at the disk before the next trial; the journal is kept",
+    report_error({ErrorKind::data, outcome->ended, "look at the disk before the next trial; the journal is kept",
                   target.string()});
     return code_of(*outcome);
   }

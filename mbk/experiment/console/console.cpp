@@ -224,7 +224,7 @@ void Console::finish(const session::TrialOutcome& outcome) {
   trip_ = outcome.trip;
   listed.progress = trip_.reason == safety::Reason::none ? Progress::done : Progress::stopped;
   listed.recording = outcome.recording.string();
-  listed.ending = outcome.ending.how;
+  listed.ending = outcome.ended;
   dropped_ticks_ = outcome.ending.dropped;
   running_ = false;
   changed_ = true;

@@ -243,10 +243,16 @@ Header header_of(const Json& json) {
 }
 
 Ending ending_of(const Json& json) {
-  Ending ending{printable(json.at("how").get<std::string>()),  printable(json.at("detail").get<std::string>()),
-                json.at("dropped").get<std::uint64_t>(),       json.at("overruns").get<std::uint64_t>(),
-                json.value("ticks", std::uint64_t{0}),         printable(json.value("trip", std::string())),
-                printable(json.value("motors", std::string()))};
+  Ending ending;
+  const auto word = printable(json.at("how").get<std::string>());
+  ending.how = value_of<Ending::How>(word).value_or(Ending::How::other);
+  ending.detail = printable(json.at("detail").get<std::string>());
+  ending.dropped = json.at("dropped").get<std::uint64_t>();
+  ending.overruns = json.at("overruns").get<std::uint64_t>();
+  ending.ticks = json.value("ticks", std::uint64_t{0});
+  ending.trip = printable(json.value("trip", std::string()));
+  ending.motors = printable(json.value("motors", std::string()));
+  if (ending.how == Ending::How::other) ending.other = word;
   if (ending.ticks > kLargestNumber) throw std::runtime_error("more ticks than there can be");
   return ending;
 }

@@ -133,12 +133,15 @@ void add_events(Recording& recording, const Journal& journal) {
 
 /// Says how the trial ended, and what of it is missing.
 void add_ending(Recording& recording, const Journal& journal, const Rows& rows) {
-  const Ending ending =
-      journal.ending.value_or(Ending{"interrupted", "the program or the machine went down while it recorded"});
+  const Ending ending = journal.ending.value_or(
+      Ending{Ending::How::interrupted, "the program or the machine went down while it recorded"});
   auto& metadata = recording.metadata;
   metadata["ended"] = journal.ended();
   std::string detail = ending.detail;
   if (!journal.ending && journal.damage.bytes > 0) detail += ", or the end of the journal is damaged";
+  if (ending.how == Ending::How::other) {
+    detail += fmt::format("{}this version of mbk does not know '{}'", detail.empty() ? "" : "; ", ending.word());
+  }
   if (!detail.empty()) metadata["ended_detail"] = detail;
   if (!ending.trip.empty()) metadata["trip"] = ending.trip;
   if (!ending.motors.empty()) metadata["motors_off"] = ending.motors;
@@ -157,7 +160,7 @@ void add_ending(Recording& recording, const Journal& journal, const Rows& rows) 
 }  // namespace
 
 std::string Journal::ended() const {
-  const std::string how = ending ? ending->how : "interrupted";
+  const std::string how(ending ? ending->word() : word_of(Ending::How::interrupted));
   const std::uint64_t lost = damage.ticks_lost();
   if (lost > 0) return fmt::format("{}, but {} of {} ticks were lost", how, lost, lost + ticks.size());
   if (damage.header) return how + ", but the journal's header was lost";
