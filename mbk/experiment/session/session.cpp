@@ -40,7 +40,7 @@ journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, cons
   ending.how = gate.tripped() ? How::safety_stop : signals.end_trial ? How::ended_early : How::completed;
   if (gate.tripped()) {
     ending.detail = safety::sentence(gate.trip());
-    ending.trip = safety::code(gate.trip().reason);
+    ending.trip = word_of(gate.trip().reason);
   }
   ending.motors = safety::sentence(gate.motors());
   ending.overruns = times.missed;

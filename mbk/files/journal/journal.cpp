@@ -49,7 +49,7 @@ std::string text_of(const Header& header) {
                {"has_acceleration", header.has_acceleration},
                {"force_latency_ticks", header.force_latency},
                {"tick_bytes", sizeof(Tick)},
-               {"readable_by", text(header.readers)},
+               {"readable_by", word_of(header.readers)},
                {"events", events}});
 }
 

@@ -232,9 +232,8 @@ Header header_of(const Json& json) {
   if (json.at("tick_bytes").get<std::size_t>() != sizeof(Tick)) throw std::runtime_error("ticks of another version");
   if (header.force_latency < 0) throw std::runtime_error("a force latency below zero");
   if (!(header.rate > 0.0)) throw std::runtime_error("a rate that is not above zero");
-  const auto readable_by = json.value("readable_by", std::string(text(Readers::owner)));
-  const auto readers = std::ranges::find(kReaders, readable_by, &decltype(kReaders)::value_type::first);
-  if (readers != kReaders.end()) header.readers = readers->second;
+  const auto readers = value_of<Readers>(json.value("readable_by", std::string()));
+  if (readers) header.readers = *readers;
   for (const Json& event : json.at("events")) {
     header.events.push_back({event.at("time").get<double>(), printable(event.at("name").get<std::string>()),
                              event.at("value").get<double>()});

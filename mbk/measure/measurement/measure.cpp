@@ -315,7 +315,6 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
 /// The same trial with ẍ from the other source; absent where the recording holds no accelerometer that could be used.
 std::optional<PreparedTrial> with_other_acceleration(const Source& source, const PreparedTrial& trial,
                                                      Options options) {
-  using preprocess::AccelerationSource;
   const bool sensor = trial.preparation.acceleration_from_sensor;
   if (!sensor && source.recording().find(kAccelerationChannels.name(trial.axes, 0)) == nullptr) {
     return std::nullopt;

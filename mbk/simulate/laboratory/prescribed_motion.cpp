@@ -96,7 +96,7 @@ std::string as_text(const Matrix& matrix) {
 
 std::map<std::string, std::string> metadata(const PrescribedMotionOptions& o) {
   const auto number = [](double value) { return fmt::format("{:.17g}", value); };
-  return {{"protocol", std::string(text(o.protocol))},
+  return {{"protocol", std::string(word_of(o.protocol))},
           {"seed", std::to_string(o.seed)},
           {"truth_M", as_text(o.limb.M)},
           {"truth_B", as_text(o.limb.B)},

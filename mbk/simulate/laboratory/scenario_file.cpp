@@ -271,8 +271,7 @@ OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   machine.friction.smoothing = robot.number("smoothing_rad_per_s", machine.friction.smoothing, above(0));
   machine.steps_per_tick = robot.integer("steps_per_tick", machine.steps_per_tick, 1, 100);
   const Section control = root.section("control");
-  trial.controlled =
-      control.required_choice<Quantity>("kind", {{"position", Quantity::position}, {"force", Quantity::force}});
+  trial.controlled = control.required_choice<Quantity>("kind");
   if (trial.controlled == Quantity::position) {
     trial.servo.proportional = control.number("proportional_Nm_per_rad", trial.servo.proportional, at_least(0));
     trial.servo.derivative = control.number("derivative_Nms_per_rad", trial.servo.derivative, at_least(0));
