@@ -136,8 +136,8 @@ bool perform(double seconds, bool real_time, const fs::path& folder) {
     return false;
   }
   fmt::print("{} ticks, {}: {}, {} dropped, {} missed; {:.1f} s with the recording made\n", outcome->times.ticks,
-             real_time ? "real time" : "virtual clock", outcome->ending.how, outcome->ending.dropped,
-             outcome->times.missed, took);
+             real_time ? "real time" : "virtual clock", outcome->ended, outcome->ending.dropped, outcome->times.missed,
+             took);
   fmt::print("  {:<42}{:>9}{:>9}{:>10}\n", "µs", "median", "p99.9", "worst");
   print("a tick from wake-up to end", outcome->times.compute);
   print("  of it the simulated robot", device.times());

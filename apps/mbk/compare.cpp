@@ -28,11 +28,11 @@ Result<Identification> stored(const std::filesystem::path& file) {
 }
 
 Result<Identification> measured(MeasureArguments arguments, const std::filesystem::path& file) {
-  arguments.files = {file};
+  arguments.reading.files = {file};
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->passivity = false;
-  const auto recordings = read_perturbations(arguments);
+  const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return tl::unexpected(recordings.error());
   auto found = measurement::measure(std::span(*recordings), *options);
   if (!found) return tl::unexpected(found.error());
@@ -47,19 +47,19 @@ std::string source_line(const Identification& id, const char* which) {
 }
 
 int run(const MeasureArguments& arguments) {
-  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
   std::vector<Identification> both;
-  for (const std::filesystem::path& file : arguments.files) {
+  for (const std::filesystem::path& file : arguments.reading.files) {
     auto one = file.extension() == ".json" ? stored(file) : measured(arguments, file);
     if (!one) return report_error(one.error());
     both.push_back(std::move(*one));
   }
   const auto widths = analyse::analyse_width(both[0], both[1]);
   if (!widths) return report_error(widths.error());
-  const std::string shown =
-      arguments.json ? result::width_to_json(both[0].sources, both[1].sources, *widths)
-                     : source_line(both[0], "first") + source_line(both[1], "second") + report::width_text(*widths);
-  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
+  const std::string shown = arguments.output.json ? result::width_to_json(both[0].sources, both[1].sources, *widths)
+                                                  : source_line(both[0], "first") + source_line(both[1], "second") +
+                                                        report::width_text(*widths);
+  if (auto ok = arguments.output.to.write(shown); !ok) return report_error(ok.error());
   return widths->complete() && both[0].usable && both[1].usable ? kFine : kNotUsable;
 }
 
@@ -79,15 +79,13 @@ Action add_compare(CLI::App& app) {
       "whatever axes and units, at hand or joints. Beside it how many times the second is the first, least\n"
       "and most, and along which direction from x. A matrix that is not positive definite has no width\n"
       "(exit code 4).");
-  add_reading_options(*command, *arguments);
+  add_measure_options(*command, *arguments);
   command->get_option("FILE")->expected(2)->description("two results of 'mbk measure --json', or recordings");
-  add_sensor_options(*command, arguments->sensor);
-  add_measuring_options(*command, *arguments);
   // They join files or add what a width does not show.
   for (const char* name : {"--parts", "--pool", "--bootstrap", "--seed", "--decimate-check", "--threads"}) {
     command->remove_option(command->get_option(name));
   }
-  add_output_options(*command, *arguments, "mbk.compare/1");
+  add_output_options(*command, arguments->output, "mbk.compare/1");
   return [arguments] { return run(*arguments); };
 }
 

@@ -3,22 +3,29 @@
 #include <memory>
 
 #include "apps/mbk/commands.h"
-#include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/word_options.h"
 
 namespace mbk::app {
 namespace {
 
+enum class Shell { bash, zsh, fish };
+
+constexpr auto word_table(Shell) {
+  using enum Shell;
+  return std::to_array<Word<Shell>>({{bash, "bash"}, {zsh, "zsh"}, {fish, "fish"}});
+}
+
 struct Arguments {
-  std::string shell;
+  Shell shell = Shell::bash;
   Output output;
 };
 
 int run(const Arguments& arguments, CLI::App& root) {
   const CommandText text = describe(root);
-  const std::string script = arguments.shell == "bash"  ? bash_completion(text)
-                             : arguments.shell == "zsh" ? zsh_completion(text)
-                                                        : fish_completion(text);
+  const std::string script = arguments.shell == Shell::bash  ? bash_completion(text)
+                             : arguments.shell == Shell::zsh ? zsh_completion(text)
+                                                             : fish_completion(text);
   if (auto ok = arguments.output.check({}); !ok) return report_error(ok.error());
   if (auto ok = arguments.output.write(script); !ok) return report_error(ok.error());
   return kFine;
@@ -43,8 +50,7 @@ Action add_completion(CLI::App& app) {
       "      with fpath+=~/.zfunc before compinit in ~/.zshrc\n"
       "  mbk completion fish --out ~/.config/fish/completions/mbk.fish\n\n"
       "Where mbk came as a package, or by 'cmake --install', the scripts are in place.");
-  const std::vector<std::string> shells = {"bash", "zsh", "fish"};
-  command->add_option("SHELL", arguments->shell, "bash, zsh or fish")->required()->check(one_of(shells));
+  add_choice(*command, "SHELL", arguments->shell, "bash, zsh or fish")->type_name("TEXT")->required();
   arguments->output.add_options(*command);
   return [arguments, &app] { return run(*arguments, app); };
 }

@@ -1,21 +1,24 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
 #include "apps/mbk/commands.h"
-#include "apps/mbk/measure_options.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
 #include "apps/mbk/readers_option.h"
+#include "apps/mbk/reading_options.h"
 #include "mbk/files/recording/write.h"
 
 namespace mbk::app {
 namespace {
 
 struct Arguments {
-  MeasureArguments reading;  ///< its files: those to read, and last the one to write
+  ReadingArguments reading;  ///< its files: those to read, and last the one to write
+  SensorArguments sensor;
   std::string format;
-  bool overwrite = false;
+  bool overwrite = false, quiet = false;
   std::optional<Readers> readers;
 };
 
@@ -41,7 +44,7 @@ std::string summary_line(const Recording& recording, const std::filesystem::path
 }
 
 int run(Arguments arguments) {
-  MeasureArguments& reading = arguments.reading;
+  ReadingArguments& reading = arguments.reading;
   Output output;
   output.file = reading.files.back();
   output.overwrite = arguments.overwrite;
@@ -49,7 +52,7 @@ int run(Arguments arguments) {
   if (auto ok = check_files(reading.files, output, reading.parts); !ok) return report_error(ok.error());
   const auto format = recording::format_of(*output.file, arguments.format);
   if (!format) return report_error(format.error());
-  const auto recordings = read_recordings(reading);
+  const auto recordings = read_recordings(reading, arguments.sensor);
   if (!recordings) return report_error(recordings.error());
   const Recording& recording = recordings->front();
   const Readers readers = arguments.readers.value_or(Readers::owner);
@@ -59,7 +62,7 @@ int run(Arguments arguments) {
   for (const std::string& lost : recording::lost_in(recording, *format)) {
     say("mbk: {}: not written: {}\n", output.file->string(), lost);
   }
-  if (reading.quiet) return kFine;
+  if (arguments.quiet) return kFine;
   for (const std::string& note : recording.notes) say("mbk: {}: {}\n", reading.files.front().string(), note);
   if (auto ok = Output().write(summary_line(recording, *output.file, *format)); !ok) return report_error(ok.error());
   return kFine;
@@ -81,14 +84,14 @@ Action add_convert(CLI::App& app) {
       "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
       "What was left aside in reading, or has no place in the new format, is said on standard error.");
   add_reading_options(*command, arguments->reading);
-  add_sensor_options(*command, arguments->reading.sensor);
+  add_sensor_options(*command, arguments->sensor);
   command->get_option("FILE")->description("the recording to read (several with --parts), and last the one to write");
   command->add_option("--format", arguments->format, "of the file to write; otherwise by the end of its name")
-      ->type_name("mat5|mat73|hdf5|csv")
+      ->type_name(fmt::format("{}", fmt::join(kWordList<recording::Format>, "|")))
       ->check(not_empty());
   command->add_flag("--overwrite", arguments->overwrite, "replace the file to write where it is there");
   add_readers_option(*command, arguments->readers);
-  command->add_flag("--quiet", arguments->reading.quiet, "only say what is lost");
+  command->add_flag("--quiet", arguments->quiet, "only say what is lost");
   return [arguments] { return run(*arguments); };
 }
 

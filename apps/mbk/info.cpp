@@ -1,7 +1,8 @@
 #include <memory>
 
 #include "apps/mbk/commands.h"
-#include "apps/mbk/measure_options.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/reading_options.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/files/recording/read.h"
@@ -11,15 +12,22 @@
 namespace mbk::app {
 namespace {
 
+struct Arguments {
+  ReadingArguments reading;
+  SensorArguments sensor;
+  OutputArguments output;
+};
+
 /// A file that is sound but speaks of no channel still shows what it holds; everything else is an error.
-int list_unrecognised(const MeasureArguments& arguments, const Error& error) {
-  if (error.kind != ErrorKind::data || arguments.files.size() != 1 || !arguments.channels.empty()) {
+int list_unrecognised(const Arguments& arguments, const Error& error) {
+  if (error.kind != ErrorKind::data || arguments.reading.files.size() != 1 || !arguments.reading.channels.empty()) {
     return report_error(error);
   }
-  const auto contents = recording::list_contents(arguments.files.front());
+  const auto contents = recording::list_contents(arguments.reading.files.front());
   if (!contents) return report_error(error);
-  const std::string text = arguments.json ? result::to_json(*contents, error) : report::contents_text(*contents, error);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  const std::string text =
+      arguments.output.json ? result::to_json(*contents, error) : report::contents_text(*contents, error);
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -34,30 +42,31 @@ Result<std::vector<Recording>> read_journal(const std::filesystem::path& file) {
   return std::vector<Recording>{std::move(*recording)};
 }
 
-int run(const MeasureArguments& arguments) {
-  if (auto ok = arguments.output.check(arguments.files); !ok) return report_error(ok.error());
-  const bool journal = arguments.files.size() == 1 && journal::is_journal(arguments.files.front());
-  const auto recordings = journal ? read_journal(arguments.files.front()) : read_recordings(arguments);
+int run(const Arguments& arguments) {
+  if (auto ok = arguments.output.to.check(arguments.reading.files); !ok) return report_error(ok.error());
+  const bool journal = arguments.reading.files.size() == 1 && journal::is_journal(arguments.reading.files.front());
+  const auto recordings =
+      journal ? read_journal(arguments.reading.files.front()) : read_recordings(arguments.reading, arguments.sensor);
   if (!recordings && journal) return report_error(recordings.error());
   if (!recordings) return list_unrecognised(arguments, recordings.error());
   std::vector<Inspection> inspections;
   for (const Recording& recording : *recordings) inspections.push_back(recording::inspect(recording));
   std::string text;
-  if (arguments.json) {
+  if (arguments.output.json) {
     text = result::to_json(*recordings, inspections);
   } else {
     for (std::size_t i = 0; i < inspections.size(); ++i) {
       text += (i > 0 ? "\n" : "") + report::info_text((*recordings)[i], inspections[i]);
     }
   }
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
 }  // namespace
 
 Action add_info(CLI::App& app) {
-  auto arguments = std::make_shared<MeasureArguments>();
+  auto arguments = std::make_shared<Arguments>();
   CLI::App* command = add_command(app, "info", "what is in a recording: channels, rate, gaps, problems");
   command->footer(
       "Examples:\n"
@@ -66,9 +75,9 @@ Action add_info(CLI::App& app) {
       "  mbk info --parts log_1.mat log_2.mat\n"
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
       "Nothing is repaired: gaps, repeated or backward time and values that are no numbers are reported.");
-  add_reading_options(*command, *arguments);
+  add_reading_options(*command, arguments->reading);
   add_sensor_options(*command, arguments->sensor);
-  add_output_options(*command, *arguments, "mbk.info/1");
+  add_output_options(*command, arguments->output, "mbk.info/1");
   return [arguments] { return run(*arguments); };
 }
 

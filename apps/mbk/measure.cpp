@@ -17,6 +17,11 @@ namespace {
 
 using measurement::Examined;
 
+struct Arguments : MeasureArguments {
+  AnalyseArguments analyse;
+  ReportArguments report;
+};
+
 /// A result, with the diagnostics where a report will show them: those of one recording.
 Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
                              bool with_diagnostics) {
@@ -28,16 +33,16 @@ Result<Examined> measure_one(std::span<const Recording> recordings, const measur
 
 /// One result per recording, several at a time; the order is that of the recordings.
 std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordings,
-                                           const measurement::Options& options, const MeasureArguments& arguments) {
+                                           const measurement::Options& options, const Arguments& arguments) {
   std::vector<Result<Examined>> results(recordings.size(), bad_data("not measured"));
   const int count = static_cast<int>(recordings.size());
-  Progress progress(arguments.quiet);
+  Progress progress(arguments.output.quiet);
   int done = 0;
   std::ignore = numeric::parallel_for(
       count, arguments.threads,
       [&](int i) -> Result<void> {
         const auto k = static_cast<std::size_t>(i);
-        results[k] = measure_one({&recordings[k], 1}, options, arguments.report.has_value());
+        results[k] = measure_one({&recordings[k], 1}, options, arguments.report.file.has_value());
         return {};
       },
       [&](int i) {
@@ -48,16 +53,18 @@ std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordi
 }
 
 /// The work of `measure` and `identify`, which differ only in whether the ellipses are shown.
-int run(const MeasureArguments& arguments, const std::string& typed, bool with_findings) {
-  const auto options = measurement_options(arguments);
+int run(const Arguments& arguments, const std::string& typed, bool with_findings) {
+  const auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
   if (!options) return report_error(options.error());
-  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
-  const auto recordings = read_perturbations(arguments);
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok)
+    return report_error(ok.error());
+  auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return report_error(recordings.error());
+  add_arm(arguments.analyse, *recordings);
 
   std::vector<Result<Examined>> results;
   if (arguments.pool) {
-    results.push_back(measure_one(*recordings, *options, arguments.report.has_value()));
+    results.push_back(measure_one(*recordings, *options, arguments.report.file.has_value()));
   } else {
     results = measure_each(*recordings, *options, arguments);
   }
@@ -83,7 +90,7 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
   }
 
   std::string text;
-  if (arguments.json) {
+  if (arguments.output.json) {
     text = summary ? result::to_json(measured, summary) : result::to_json(measured.front());
   } else {
     for (const Measurement& one : measured) {
@@ -101,11 +108,12 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
     }
     if (summary) text += "\n" + report::summary_text(*summary);
   }
-  if (arguments.report) {
-    const std::string document = report_json(typed, arguments.report_note, *recordings, measured, diagnostics, summary);
-    if (auto ok = write_page(arguments, document); !ok) return report_error(ok.error());
+  if (arguments.report.file) {
+    const std::string document = report_json(typed, arguments.report.note, *recordings, measured, diagnostics, summary);
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document); !ok)
+      return report_error(ok.error());
   }
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   for (const Measurement& one : measured) {
     if (!one.identification.usable) return kNotUsable;
   }
@@ -114,15 +122,13 @@ int run(const MeasureArguments& arguments, const std::string& typed, bool with_f
 
 Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
            bool with_findings) {
-  auto arguments = std::make_shared<MeasureArguments>();
+  auto arguments = std::make_shared<Arguments>();
   CLI::App* command = add_command(app, name, summary);
   command->footer(footer);
-  add_reading_options(*command, *arguments);
-  add_sensor_options(*command, arguments->sensor);
-  add_measuring_options(*command, *arguments);
-  add_domain_options(*command, *arguments);
-  add_output_options(*command, *arguments, "mbk.result/1");
-  if (with_findings) add_report_options(*command, *arguments);
+  add_measure_options(*command, *arguments);
+  add_analyse_options(*command, arguments->analyse);
+  add_output_options(*command, arguments->output, "mbk.result/1");
+  if (with_findings) add_report_options(*command, arguments->report);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
 }
 

@@ -52,7 +52,7 @@ Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const st
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
-  const auto recordings = read_perturbations(arguments);
+  const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return tl::unexpected(recordings.error());
   std::vector<Answer> answers;
   const std::span<const Recording> all(*recordings);
@@ -69,7 +69,7 @@ Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const st
 /// A stored result holds the model and not the data, so that only the model can be judged.
 Result<std::vector<Answer>> from_results(const Arguments& arguments, const std::optional<PassivityBand>& band) {
   std::vector<Answer> answers;
-  for (const std::filesystem::path& file : arguments.files) {
+  for (const std::filesystem::path& file : arguments.reading.files) {
     const auto text = read_text(file);
     if (!text) return tl::unexpected(text.error());
     auto identifications = result::identifications_from_json(*text);
@@ -104,10 +104,10 @@ std::string text_of(const Answer& answer) {
 }
 
 int run(const Arguments& arguments) {
-  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
   const auto band = band_of(arguments.band);
   if (!band) return report_error(band.error());
-  const bool stored = arguments.files.front().extension() == ".json";
+  const bool stored = arguments.reading.files.front().extension() == ".json";
   if (stored && arguments.sensor.file) {
     return report_error({ErrorKind::usage, "--sensor needs the voltages of a recording, and a stored result has none",
                          "leave it out, or name the recording", ""});
@@ -115,7 +115,7 @@ int run(const Arguments& arguments) {
   const auto answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
   if (!answers) return report_error(answers.error());
   std::string shown;
-  if (arguments.json) {
+  if (arguments.output.json) {
     std::vector<std::string> documents;
     for (const Answer& one : *answers) {
       documents.push_back(result::passivity_to_json(one.sources, one.passivity, one.energies));
@@ -124,7 +124,7 @@ int run(const Arguments& arguments) {
   } else {
     for (const Answer& one : *answers) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }
-  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.to.write(shown); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -143,9 +143,7 @@ Action add_passivity(CLI::App& app) {
       "      the model that 'mbk measure --json' stored; there are no data in it, so no energy\n\n"
       "passive: every condition holds with 95 % confidence. active: one fails, or energy was generated.\n"
       "undecided: the data do not say. Where no model explains half of the force the energy decides.");
-  add_reading_options(*command, *arguments);
-  add_sensor_options(*command, arguments->sensor);
-  add_measuring_options(*command, *arguments);
+  add_measure_options(*command, *arguments);
   command
       ->add_option("--band", arguments->band,
                    "frequencies at which the model is judged; otherwise those at which "
@@ -153,7 +151,7 @@ Action add_passivity(CLI::App& app) {
       ->type_name("LOW:HIGH")
       ->check(not_empty())
       ->group("What counts");
-  add_output_options(*command, *arguments, "mbk.passivity/1");
+  add_output_options(*command, arguments->output, "mbk.passivity/1");
   return [arguments] { return run(*arguments); };
 }
 

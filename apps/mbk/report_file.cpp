@@ -47,10 +47,10 @@ std::string report_json(const std::string& typed, const std::string& note, const
   return result::to_json(report);
 }
 
-Result<void> write_page(const MeasureArguments& arguments, std::string_view report_json) {
+Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json) {
   const auto page = report::page(report_json);
   if (!page) return tl::unexpected(page.error());
-  return recording::write_file(*arguments.report, arguments.output.overwrite, *page);
+  return recording::write_file(*arguments.file, overwrite, *page);
 }
 
 }  // namespace mbk::app

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/mbk/measure_options.h"
+#include "apps/mbk/output_options.h"
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/diagnostics.h"
 #include "mbk/model/trial/recording.h"
@@ -25,6 +25,6 @@ namespace mbk::app {
                                       const std::optional<Summary>& summary);
 
 /// Writes --report: the page with that document.
-[[nodiscard]] Result<void> write_page(const MeasureArguments& arguments, std::string_view report_json);
+[[nodiscard]] Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json);
 
 }  // namespace mbk::app

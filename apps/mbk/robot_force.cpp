@@ -1,10 +1,13 @@
 #include <memory>
 #include <string>
 
-#include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/preprocess_options.h"
+#include "apps/mbk/reading_options.h"
 #include "apps/mbk/robot_commands.h"
 #include "apps/mbk/robot_file.h"
+#include "apps/mbk/word_options.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/measure/measurement/compute_force.h"
 #include "mbk/present/report/robot_text.h"
@@ -13,22 +16,28 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments : MeasureArguments {
-  std::string source = "virtual";
+struct Arguments {
+  ReadingArguments reading;
+  WindowArguments window;
+  FilterArguments filters;
+  OutputArguments output;
+  std::optional<std::filesystem::path> robot;
+  ForceSource source = ForceSource::virtual_sensor;
+  AccelerationSource acceleration = AccelerationSource::derivative;
 };
 
 int run(const Arguments& arguments) {
   std::optional<recording::Format> format;
-  if (arguments.output.file) {
-    const auto found = recording::format_of(*arguments.output.file);
+  if (arguments.output.to.file) {
+    const auto found = recording::format_of(*arguments.output.to.file);
     if (!found) return report_error(found.error());
     format = *found;
   }
-  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
-  if (arguments.files.size() > 1 && !arguments.parts) {
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
+  if (arguments.reading.files.size() > 1 && !arguments.reading.parts) {
     return report_error({ErrorKind::usage, "one recording at a time", "or join numbered parts with --parts", ""});
   }
-  const auto signals = signal_options(arguments);
+  const auto signals = signal_options(arguments.window, arguments.filters);
   if (!signals) return report_error(signals.error());
   measurement::Options options;
   options.preprocess = *signals;
@@ -36,19 +45,20 @@ int run(const Arguments& arguments) {
   if (!robot) return report_error(robot.error());
   preprocess::Options& p = options.preprocess;
   p.robot = std::make_shared<const robot::DynamicModel>(std::move(*robot));
-  p.force_source = arguments.source == "observer" ? ForceSource::observer : ForceSource::virtual_sensor;
-  if (arguments.acceleration == "sensor") p.acceleration = preprocess::AccelerationSource::sensor;
-  if (arguments.resample_hz) options.resample = Hertz(*arguments.resample_hz);
-  const auto recordings = read_recordings(arguments);
+  p.force_source = arguments.source;
+  if (arguments.acceleration == AccelerationSource::sensor) p.acceleration = AccelerationSource::sensor;
+  if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
+  const auto recordings = read_recordings(arguments.reading);
   if (!recordings) return report_error(recordings.error());
   const auto made = measurement::compute_force(recordings->front(), options);
-  if (!made) return report_error(made.error().in(arguments.files.front().string()));
+  if (!made) return report_error(made.error().in(arguments.reading.files.front().string()));
   if (format) {
-    if (auto ok = recording::write(made->recording, *arguments.output.file, *format, arguments.output.overwrite); !ok) {
+    if (auto ok = recording::write(made->recording, *arguments.output.to.file, *format, arguments.output.to.overwrite);
+        !ok) {
       return report_error(ok.error());
     }
   }
-  const std::string text = arguments.json ? result::to_json(made->summary) : report::force_text(made->summary);
+  const std::string text = arguments.output.json ? result::to_json(made->summary) : report::force_text(made->summary);
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -67,26 +77,21 @@ Action add_robot_force(CLI::App& group) {
       "'mbk measure --force-source virtual' does the same on its way.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, *arguments);
+  add_reading_options(*command, arguments->reading);
   command
       ->add_option("--robot", arguments->robot,
                    "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
       ->type_name("FILE")
       ->check(not_empty());
-  command
-      ->add_option("--force-source", arguments->source,
-                   "virtual: from the whole motion, not causal; observer: as it could be had while the robot runs "
-                   "(virtual)")
-      ->type_name("virtual|observer")
-      ->check(one_of({"virtual", "observer"}));
-  command->add_option("--acceleration", arguments->acceleration, "where the acceleration comes from (derivative)")
-      ->type_name("sensor|derivative")
-      ->check(one_of({"sensor", "derivative"}));
-  add_window_options(*command, *arguments);
-  add_filter_options(*command, *arguments);
+  add_choice(*command, "--force-source", arguments->source, {ForceSource::virtual_sensor, ForceSource::observer},
+             "virtual: from the whole motion, not causal; observer: as it could be had while the robot runs "
+             "(virtual)");
+  add_choice(*command, "--acceleration", arguments->acceleration, "where the acceleration comes from (derivative)");
+  add_window_options(*command, arguments->window);
+  add_filter_options(*command, arguments->filters);
   command->remove_option(command->get_option("--split"));  // nothing is held back here
   command->remove_option(command->get_option("--every"));
-  add_output_options(*command, *arguments, "mbk.force/1");
+  add_output_options(*command, arguments->output, "mbk.force/1");
   command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");
   return [arguments] { return run(*arguments); };
 }

@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/preprocess_options.h"
+#include "apps/mbk/reading_options.h"
 #include "apps/mbk/robot_commands.h"
 #include "apps/mbk/robot_file.h"
+#include "apps/mbk/word_options.h"
 #include "mbk/measure/measurement/identify_robot.h"
 #include "mbk/model/robot/drive_term_names.h"
 #include "mbk/present/report/robot_text.h"
@@ -20,7 +23,14 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments : MeasureArguments {
+struct Arguments {
+  ReadingArguments reading;
+  WindowArguments window;
+  FilterArguments filters;
+  OutputArguments output;
+  std::optional<std::filesystem::path> robot;
+  RobotMethod method = RobotMethod::weighted_least_squares;
+  double hac_lag_s = 1.0;
   std::vector<std::filesystem::path> held_back;
   std::string fixed, terms, delay = "auto", stribeck_velocity;
   std::optional<double> smoothing, motion_cutoff_hz;
@@ -122,7 +132,7 @@ Result<std::vector<Index>> indices_of(const std::string& list, const robot::Robo
 }
 
 int run(const Arguments& arguments) {
-  if (auto ok = check_files(arguments); !ok) return report_error(ok.error());
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
   measurement::RobotOptions options;
   auto robot = describe_robot(arguments.robot);
   if (!robot) return report_error(robot.error());
@@ -130,18 +140,17 @@ int run(const Arguments& arguments) {
   const auto fixed = indices_of(arguments.fixed, *robot);
   if (!fixed) return report_error(fixed.error());
   options.fit.fixed = *fixed;
-  const auto signals = signal_options(arguments);
+  const auto signals = signal_options(arguments.window, arguments.filters);
   if (!signals) return report_error(signals.error());
   options.preprocess.signals = *signals;
   if (arguments.motion_cutoff_hz) options.preprocess.motion_cutoff = Hertz(*arguments.motion_cutoff_hz);
-  if (arguments.method == "ls") options.fit.method = RobotMethod::least_squares;
-  if (arguments.method == "iv") options.fit.method = RobotMethod::instrumental_variables;
+  options.fit.method = arguments.method;
   options.fit.hac_lag_s = arguments.hac_lag_s;
-  if (arguments.resample_hz) options.resample = Hertz(*arguments.resample_hz);
+  if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
 
-  const auto recordings = read_recordings(arguments);
+  const auto recordings = read_recordings(arguments.reading);
   if (!recordings) return report_error(recordings.error());
-  MeasureArguments others = arguments;
+  ReadingArguments others = arguments.reading;
   others.files = arguments.held_back;
   const auto held_back = read_recordings(others);
   if (!held_back) return report_error(held_back.error());
@@ -149,8 +158,8 @@ int run(const Arguments& arguments) {
   if (!found) return report_error(found.error());
   found->description = robot->toml;
   found->urdf = robot->urdf;
-  const std::string text = arguments.json ? result::to_json(*found) : report::robot_text(*found);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  const std::string text = arguments.output.json ? result::to_json(*found) : report::robot_text(*found);
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 
@@ -158,7 +167,6 @@ int run(const Arguments& arguments) {
 
 Action add_robot_identify(CLI::App& group) {
   auto arguments = std::make_shared<Arguments>();
-  arguments->method = "wls";
   CLI::App* command = add_command(group, "identify", "the robot's own inertia and friction, from its motion alone");
   command->footer(
       "Examples:\n"
@@ -174,15 +182,15 @@ Action add_robot_identify(CLI::App& group) {
       "will measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, *arguments);
+  add_reading_options(*command, arguments->reading);
   command->add_option("--held-back", arguments->held_back, "recordings that only judge the fit")->type_name("FILE");
   command
       ->add_option("--robot", arguments->robot,
                    "which robot it is: a description in TOML or a URDF; without it the thesis's robot")
       ->type_name("FILE")
       ->check(not_empty());
-  add_window_options(*command, *arguments);
-  add_filter_options(*command, *arguments);
+  add_window_options(*command, arguments->window);
+  add_filter_options(*command, arguments->filters);
   const char* const model = "Model";
   command
       ->add_option("--terms", arguments->terms,
@@ -217,12 +225,9 @@ Action add_robot_identify(CLI::App& group) {
       ->type_name("MS|auto")
       ->check(not_empty())
       ->group(model);
-  command
-      ->add_option("--method", arguments->method,
-                   "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, "
-                   "which noise of the motion does not bias")
-      ->type_name("wls|ls|iv")
-      ->check(one_of({"wls", "ls", "iv"}))
+  add_choice(*command, "--method", arguments->method,
+             "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
+             "noise of the motion does not bias")
       ->group(model);
   command
       ->add_option("--motion-cutoff", arguments->motion_cutoff_hz,
@@ -236,7 +241,7 @@ Action add_robot_identify(CLI::App& group) {
       ->type_name("S")
       ->check(positive())
       ->group(model);
-  add_output_options(*command, *arguments, "mbk.robot/1");
+  add_output_options(*command, arguments->output, "mbk.robot/1");
   return [arguments] { return run(*arguments); };
 }
 

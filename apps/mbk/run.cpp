@@ -84,7 +84,7 @@ class StatusLine {
     next_ = now + std::chrono::milliseconds(terminal_ ? 100 : 1000);
     const auto phase = static_cast<control::Phase>(tick.phase);
     const std::string line = fmt::format("{}{:6.1f} s  {}  |F| {:4.1f} N  torque {:+.2f} {:+.2f} N·m",
-                                         trial_.empty() ? "" : trial_ + ": ", tick.time, control::text(phase),
+                                         trial_.empty() ? "" : trial_ + ": ", tick.time, word_of(phase),
                                          std::hypot(tick.force[0], tick.force[1]), tick.torque[0], tick.torque[1]);
     say("{}{}{}", terminal_ ? "\r\033[K" : "", line, terminal_ ? "" : "\n");
     shown_ = true;
@@ -103,7 +103,7 @@ class StatusLine {
 };
 
 std::string outcome_text(const session::TrialOutcome& outcome, const session::Pace& pace) {
-  std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ending.how);
+  std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ended);
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
   text += "\n  motors: " + safety::sentence(outcome.motors);
   text += fmt::format("\n  {} ticks, {} dropped; compute per tick: {}\n", outcome.times.ticks, outcome.ending.dropped,

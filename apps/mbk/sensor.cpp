@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "apps/mbk/commands.h"
-#include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
-#include "apps/mbk/output.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/reading_options.h"
 #include "apps/mbk/sensor_options.h"
 #include "mbk/measure/calibration/force_sensor.h"
 #include "mbk/present/report/sensor_text.h"
@@ -17,10 +17,12 @@ namespace {
 constexpr double kMillimetres = 1000.0, kMilliseconds = 1000.0;
 
 struct Arguments {
-  MeasureArguments reading;
+  ReadingArguments reading;
+  OutputArguments output;
   std::optional<double> lever_arm_mm, range;
   std::optional<int> bits;
-  std::string frame = "auto";
+  calibration::SensorFrame frame = calibration::SensorFrame::automatic;
+  double hac_lag_s = 1.0;
   double longest_delay_ms = 50.0;
 };
 
@@ -29,7 +31,7 @@ Result<calibration::SensorCalibrationOptions> options_of(const Arguments& argume
   options.crosstalk = arguments.reading.axes != 1;
   if (arguments.lever_arm_mm) options.lever_arm = *arguments.lever_arm_mm / kMillimetres;
   if (arguments.bits) options.converter = calibration::Converter{*arguments.bits, *arguments.range};
-  options.hac_lag_s = arguments.reading.hac_lag_s;
+  options.hac_lag_s = arguments.hac_lag_s;
   options.longest_delay = arguments.longest_delay_ms / kMilliseconds;
   return options;
 }
@@ -37,14 +39,14 @@ Result<calibration::SensorCalibrationOptions> options_of(const Arguments& argume
 Result<SensorCalibration> calibrate(const Arguments& arguments) {
   const auto options = options_of(arguments);
   if (!options) return tl::unexpected(options.error());
-  MeasureArguments reading = arguments.reading;
+  ReadingArguments reading = arguments.reading;
   reading.axes = 2;  // --axes counts those of the sensor here; the names are Fx, Fy, Vx, Vy either way
   reading.untimed = true;
   const auto recordings = read_recordings(reading);
   if (!recordings) return tl::unexpected(recordings.error());
   std::vector<calibration::SensorRun> runs;
   for (const Recording& recording : *recordings) {
-    auto run = calibration::sensor_run(recording, sensor_frame(arguments.frame));
+    auto run = calibration::sensor_run(recording, arguments.frame);
     if (!run) return tl::unexpected(run.error());
     runs.push_back(std::move(*run));
   }
@@ -52,11 +54,11 @@ Result<SensorCalibration> calibrate(const Arguments& arguments) {
 }
 
 int run_calibrate(const Arguments& arguments) {
-  const Output& output = arguments.reading.output;
+  const Output& output = arguments.output.to;
   if (auto ok = output.check(arguments.reading.files); !ok) return report_error(ok.error());
   const auto calibration = calibrate(arguments);
   if (!calibration) return report_error(calibration.error());
-  const std::string text = arguments.reading.json ? result::to_json(*calibration) : report::sensor_text(*calibration);
+  const std::string text = arguments.output.json ? result::to_json(*calibration) : report::sensor_text(*calibration);
   if (auto ok = output.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -73,7 +75,7 @@ Action add_calibrate(CLI::App& sensor) {
       "  mbk sensor calibrate trial.csv --json --out cell.json\n"
       "      a reference sensor's Fx, Fy over time beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
       "Each FILE is a run with a zero of its own; the slopes come from all runs, the zero from the last.");
-  MeasureArguments& reading = arguments->reading;
+  ReadingArguments& reading = arguments->reading;
   add_reading_options(*command, reading);
   command->get_option("--axes")->description("1: each axis by itself; otherwise crosstalk is fitted too");
   command->get_option("FILE")->description("tables of loads or recordings: .csv, .h5 or .mat");
@@ -99,11 +101,12 @@ Action add_calibrate(CLI::App& sensor) {
       ->type_name("MS")
       ->check(not_negative());
   command
-      ->add_option("--hac-lag", reading.hac_lag_s, "reach of the residual's correlation in the standard errors, s (1)")
+      ->add_option("--hac-lag", arguments->hac_lag_s,
+                   "reach of the residual's correlation in the standard errors, s (1)")
       ->type_name("S")
       ->check(not_negative());
-  command->add_flag("--json", reading.json, "for machines: schema mbk.sensor/1, which --sensor reads");
-  reading.output.add_options(*command);
+  command->add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor/1, which --sensor reads");
+  arguments->output.to.add_options(*command);
   return [arguments] { return run_calibrate(*arguments); };
 }
 

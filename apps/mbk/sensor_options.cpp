@@ -10,6 +10,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "apps/mbk/word_options.h"
 #include "mbk/present/result/sensor_json.h"
 
 namespace mbk::app {
@@ -50,10 +51,8 @@ Result<void> read_zero(const std::string& text, calibration::SensorUse& use) {
 
 }  // namespace
 
-CLI::Option* add_sensor_frame(CLI::App& command, std::string& frame, const char* description) {
-  return command.add_option("--sensor-frame", frame, description)
-      ->type_name("auto|link|base")
-      ->check(one_of({"auto", "link", "base"}));
+CLI::Option* add_sensor_frame(CLI::App& command, calibration::SensorFrame& frame, const char* description) {
+  return add_choice(command, "--sensor-frame", frame, description);
 }
 
 void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
@@ -85,19 +84,10 @@ void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
                    "link: the sensor turns with the last link, at q2; base: it does not; auto: link where q2 is there")
       ->needs(sensor)
       ->group(group);
-  command
-      .add_option("--sensor-delay", arguments.delay,
-                  "undo: move the force earlier by the delay that the calibration saw (keep)")
-      ->type_name("keep|undo")
-      ->check(one_of({"keep", "undo"}))
+  add_choice(command, "--sensor-delay", arguments.delay,
+             "undo: move the force earlier by the delay that the calibration saw (keep)")
       ->needs(sensor)
       ->group(group);
-}
-
-calibration::SensorFrame sensor_frame(const std::string& text) {
-  return text == "link"   ? calibration::SensorFrame::link
-         : text == "base" ? calibration::SensorFrame::base
-                          : calibration::SensorFrame::automatic;
 }
 
 Result<std::optional<calibration::SensorUse>> sensor_use(const SensorArguments& arguments) {
@@ -113,8 +103,8 @@ Result<std::optional<calibration::SensorUse>> sensor_use(const SensorArguments& 
   use.calibration = std::move(*calibration);
   use.name = arguments.file->string();
   if (arguments.lever_arm_mm) use.lever_arm = *arguments.lever_arm_mm / kMillimetres;
-  use.frame = sensor_frame(arguments.frame);
-  use.undo_delay = arguments.delay == "undo";
+  use.frame = arguments.frame;
+  use.undo_delay = arguments.delay == SensorDelay::undo;
   return use;
 }
 

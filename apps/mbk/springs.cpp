@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "apps/mbk/commands.h"
-#include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
-#include "apps/mbk/output.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/reading_options.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/spring_options.h"
 #include "mbk/measure/calibration/spring_array.h"
@@ -172,9 +172,15 @@ Result<SpringConstant> constant_of(const Recording& recording, double hac_lag_s)
   return constant;
 }
 
-int run_calibrate(const MeasureArguments& arguments) {
-  if (auto ok = arguments.output.check(arguments.files); !ok) return report_error(ok.error());
-  MeasureArguments reading = arguments;
+struct CalibrateArguments {
+  ReadingArguments reading;
+  OutputArguments output;
+  double hac_lag_s = 1.0;
+};
+
+int run_calibrate(const CalibrateArguments& arguments) {
+  if (auto ok = arguments.output.to.check(arguments.reading.files); !ok) return report_error(ok.error());
+  ReadingArguments reading = arguments.reading;
   if (reading.axes == 0) reading.axes = 1;
   const auto recordings = read_recordings(reading);
   if (!recordings) return report_error(recordings.error());
@@ -184,8 +190,9 @@ int run_calibrate(const MeasureArguments& arguments) {
     if (!constant) return report_error(constant.error());
     constants.push_back(std::move(*constant));
   }
-  const std::string text = arguments.json ? result::to_json(constants) : report::spring_constants_text(constants);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  const std::string text =
+      arguments.output.json ? result::to_json(constants) : report::spring_constants_text(constants);
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -274,7 +281,7 @@ Action add_find(CLI::App& springs) {
 }
 
 Action add_calibrate(CLI::App& springs) {
-  auto arguments = std::make_shared<MeasureArguments>();
+  auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = add_command(springs, "calibrate", "spring constants from slow stretches");
   command->footer(
       "Examples:\n"
@@ -283,12 +290,12 @@ Action add_calibrate(CLI::App& springs) {
       "  mbk springs calibrate --channels time=1,x=2:mm,F=-3 gauge.csv\n"
       "      F is what the spring exerts on the machine: it falls as x grows; -3 turns a gauge of tension\n\n"
       "The hooks of a spring bend at first. Where that shows, the constant is the slope beyond it.");
-  add_reading_options(*command, *arguments);
+  add_reading_options(*command, arguments->reading);
   command->add_option("--hac-lag", arguments->hac_lag_s, "reach of the noise's correlation for the intervals, s (1)")
       ->type_name("S")
       ->check(not_negative());
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.springs/1");
-  arguments->output.add_options(*command);
+  command->add_flag("--json", arguments->output.json, "for machines: schema mbk.springs/1");
+  arguments->output.to.add_options(*command);
   return [arguments] { return run_calibrate(*arguments); };
 }
 

@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "apps/mbk/commands.h"
-#include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/preprocess_options.h"
+#include "apps/mbk/reading_options.h"
 #include "apps/mbk/report_file.h"
+#include "apps/mbk/word_options.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/measure/analyse/describe_transfer_function.h"
@@ -25,13 +28,18 @@
 namespace mbk::app {
 namespace {
 
-constexpr std::array kMethods = {TransferFunctionMethod::srivc, TransferFunctionMethod::rivc,
-                                 TransferFunctionMethod::closed_loop, TransferFunctionMethod::output_error,
-                                 TransferFunctionMethod::box_jenkins};
-
-struct Arguments : MeasureArguments {
+struct Arguments {
+  ReadingArguments reading;
+  WindowArguments window;
+  OutputArguments output;
+  ReportArguments report;
+  std::optional<double> resample_hz;
+  TransferFunctionMethod method = TransferFunctionMethod::srivc;
+  std::optional<AdmittanceOutput> invert;
+  double hac_lag_s = 1.0;
+  unsigned threads = 0;
   std::vector<std::filesystem::path> held_back;
-  std::string input = "input", output_signal = "output", reference, orders, delay = "0", invert, sample_rate;
+  std::string input = "input", output_signal = "output", reference, orders, delay = "0", sample_rate;
   std::filesystem::path charts;
   std::optional<long> poles, zeros;
   std::vector<double> start_poles_hz;
@@ -90,9 +98,9 @@ Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given)
 
 Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) {
   measurement::TransferFunctionMeasurement options;
-  const auto signals = signal_options(a);
-  if (!signals) return tl::unexpected(signals.error());
-  options.window = signals->window;
+  const auto window = window_limits(a.window);
+  if (!window) return tl::unexpected(window.error());
+  options.window = *window;
   identify::TransferFunctionOptions& fit = options.fit;
   if (!a.orders.empty()) {
     if (a.poles || a.zeros)
@@ -111,9 +119,7 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
           "exchange input and output, or take fewer zeros");
     }
   }
-  for (const auto method : kMethods) {
-    if (a.method == text(method)) fit.method = method;
-  }
+  fit.method = a.method;
   if (fit.method == TransferFunctionMethod::closed_loop && a.reference.empty()) {
     return bad_usage("--method clsrivc needs the reference that drives the loop", "name it by --reference");
   }
@@ -154,8 +160,8 @@ struct Signal {
 /// Where the signals stand: channels under their own names (position, Fx), or else columns, rows or variables of the
 /// file, which the map then makes `input`, `output` and `drive`.
 Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasurement& options) {
-  const auto mapped =
-      a.channels.empty() ? Result<std::vector<recording::ChannelSource>>() : recording::parse_channel_map(a.channels);
+  const auto mapped = a.reading.channels.empty() ? Result<std::vector<recording::ChannelSource>>()
+                                                 : recording::parse_channel_map(a.reading.channels);
   if (!mapped) return tl::unexpected(mapped.error());
   const auto in_map = [&](const std::string& name) {
     const auto meant = recording::kinds_called(name);
@@ -175,17 +181,17 @@ Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasuremen
     if (by_name || in_map(name)) {
       signal.to = name;
       if (flipped) *signal.sign = -1.0;
-      if (by_name) a.wanted.push_back(name);
+      if (by_name) a.reading.wanted.push_back(name);
       continue;
     }
-    a.channels += fmt::format("{}{}={}", a.channels.empty() ? "" : ",", signal.channel, signal.given);
+    a.reading.channels += fmt::format("{}{}={}", a.reading.channels.empty() ? "" : ",", signal.channel, signal.given);
     signal.to = signal.channel;
   }
   return {};
 }
 
 Result<std::vector<Recording>> read_all(const Arguments& a, const std::vector<std::filesystem::path>& files) {
-  MeasureArguments reading = a;
+  ReadingArguments reading = a.reading;
   reading.files = files;
   auto recordings = files.empty() ? Result<std::vector<Recording>>() : read_perturbations(reading);
   if (!recordings || !a.resample_hz) return recordings;
@@ -195,14 +201,6 @@ Result<std::vector<Recording>> read_all(const Arguments& a, const std::vector<st
     recording = std::move(*even);
   }
   return recordings;
-}
-
-/// What the output is, where the model is to be inverted.
-std::optional<AdmittanceOutput> inverted_output(const std::string& word) {
-  for (const auto output : {AdmittanceOutput::position, AdmittanceOutput::velocity, AdmittanceOutput::acceleration}) {
-    if (text(output) == word) return output;
-  }
-  return std::nullopt;
 }
 
 /// How a signal was named, without what converts it: "-2:mm" is −2.
@@ -220,12 +218,14 @@ std::filesystem::path chart_file(const Arguments& arguments, std::size_t chart) 
 
 /// What can be said of every file that is to be written before the work begins.
 Result<void> check_written(const Arguments& arguments) {
-  MeasureArguments others = arguments;
-  const bool charts_alone = !arguments.output.file && !arguments.report && !arguments.charts.empty();
-  if (charts_alone) others.output.overwrite = false;
-  if (auto ok = check_files(others); !ok || arguments.charts.empty()) return ok;
+  Output output = arguments.output.to;
+  const bool charts_alone = !output.file && !arguments.report.file && !arguments.charts.empty();
+  if (charts_alone) output.overwrite = false;
+  if (auto ok = check_files(arguments.reading.files, output, arguments.report); !ok || arguments.charts.empty())
+    return ok;
   for (std::size_t k = 0; k < kChartNames.size(); ++k) {
-    if (auto ok = check_new_file(chart_file(arguments, k), "--charts", arguments.output.overwrite, arguments.files);
+    if (auto ok = check_new_file(chart_file(arguments, k), "--charts", arguments.output.to.overwrite,
+                                 arguments.reading.files);
         !ok) {
       return ok;
     }
@@ -235,7 +235,7 @@ Result<void> check_written(const Arguments& arguments) {
 
 Result<void> write_charts(const Arguments& arguments, const std::vector<Chart>& charts) {
   for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
-    const Output file{chart_file(arguments, k), arguments.output.overwrite};
+    const Output file{chart_file(arguments, k), arguments.output.to.overwrite};
     if (auto ok = file.write(report::chart_svg(charts[k])); !ok) return ok;
   }
   return {};
@@ -247,7 +247,7 @@ int run(const Arguments& given, const std::string& typed) {
   auto options = options_of(arguments);
   if (!options) return report_error(options.error());
   if (auto ok = place_signals(arguments, *options); !ok) return report_error(ok.error());
-  const auto recordings = read_all(arguments, arguments.files);
+  const auto recordings = read_all(arguments, arguments.reading.files);
   if (!recordings) return report_error(recordings.error());
   const auto held_back = read_all(arguments, arguments.held_back);
   if (!held_back) return report_error(held_back.error());
@@ -256,18 +256,20 @@ int run(const Arguments& given, const std::string& typed) {
   found->input = shown_name(given.input);
   found->output = shown_name(given.output_signal);
   found->reference = shown_name(given.reference);
-  const auto findings = analyse::describe(*found, inverted_output(given.invert));
+  const auto findings = analyse::describe(*found, given.invert);
   if (!findings) return report_error(findings.error());
-  if (arguments.report) {
-    const std::string report = result::report_json(*found, *findings, typed, arguments.report_note);
-    if (auto ok = write_page(arguments, report); !ok) return report_error(ok.error());
+  if (arguments.report.file) {
+    const std::string report = result::report_json(*found, *findings, typed, arguments.report.note);
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, report); !ok)
+      return report_error(ok.error());
   }
   if (auto ok = write_charts(arguments, report::response_charts(*found, findings->response)); !ok) {
     return report_error(ok.error());
   }
-  std::string text = arguments.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
-  if (!arguments.json && findings->inverse) text += report::inverted_admittance_text(*findings->inverse);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  std::string text =
+      arguments.output.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
+  if (!arguments.output.json && findings->inverse) text += report::inverted_admittance_text(*findings->inverse);
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 
@@ -275,7 +277,6 @@ int run(const Arguments& given, const std::string& typed) {
 
 Action add_tf(CLI::App& app, const std::string& typed) {
   auto arguments = std::make_shared<Arguments>();
-  arguments->method = "srivc";
   CLI::App* command = add_command(app, "tf", "a transfer function from one signal to another");
   command->footer(
       "Examples:\n"
@@ -291,7 +292,7 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       "model, is refused.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, *arguments);
+  add_reading_options(*command, arguments->reading);
   command
       ->add_option("--input", arguments->input,
                    "the cause: a channel, or a column's number or name, a row or a variable of the file (input)")
@@ -304,7 +305,7 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       ->type_name("NAME")
       ->check(not_empty());
   command->add_option("--held-back", arguments->held_back, "recordings that only judge the fit")->type_name("FILE");
-  add_window_options(*command, *arguments);
+  add_window_options(*command, arguments->window);
   command
       ->add_option("--resample", arguments->resample_hz,
                    "put an uneven clock right first, by straight lines; never done unasked, and srivc does without")
@@ -330,20 +331,14 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       ->type_name("FROM:TO|LIST")
       ->check(not_empty())
       ->group(model);
-  command
-      ->add_option("--invert", arguments->invert,
-                   "also the inverse: the input is the force on what moves, the output that motion of it; gives the "
-                   "impedance")
-      ->type_name("position|velocity|acceleration")
-      ->check(one_of({"position", "velocity", "acceleration"}))
+  add_choice(*command, "--invert", arguments->invert,
+             "also the inverse: the input is the force on what moves, the output that motion of it; gives the "
+             "impedance")
       ->group(model);
-  command
-      ->add_option("--method", arguments->method,
-                   "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
-                   "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
-                   "bj: Box-Jenkins, with a model of the noise")
-      ->type_name("srivc|rivc|clsrivc|oe|bj")
-      ->check(one_of({"srivc", "rivc", "clsrivc", "oe", "bj"}))
+  add_choice(*command, "--method", arguments->method,
+             "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
+             "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
+             "bj: Box-Jenkins, with a model of the noise")
       ->group(model);
   command->add_option("--delay", arguments->delay, "seconds by which the effect lags; auto finds it (0)")
       ->type_name("S|auto")
@@ -380,8 +375,8 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       ->type_name("N")
       ->check(whole_number(1, 1024))
       ->group(model);
-  add_output_options(*command, *arguments, "mbk.tf/1");
-  add_report_options(*command, *arguments);
+  add_output_options(*command, arguments->output, "mbk.tf/1");
+  add_report_options(*command, arguments->report);
   command
       ->add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")
       ->type_name("PREFIX")

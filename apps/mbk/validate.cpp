@@ -11,6 +11,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
+#include "apps/mbk/word_options.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/text.h"
@@ -24,13 +25,21 @@ namespace {
 
 constexpr int kFallsShort = 1;
 
+/// Over what the faulty robots of a study are driven.
+enum class Link { function, udp };
+
+constexpr auto word_table(Link) {
+  using enum Link;
+  return std::to_array<Word<Link>>({{function, "function"}, {udp, "udp"}});
+}
+
 struct Arguments {
   std::string study = "coverage";
   std::optional<int> runs;
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::optional<std::filesystem::path> charts;
-  std::string link = "function";
+  Link link = Link::function;
   std::vector<std::string> faults;
   bool json = false, quiet = false, overwrite = false, page = false;
 };
@@ -80,8 +89,8 @@ Result<void> write_charts(const ValidationTable& table, const std::filesystem::p
 
 Result<ValidationTable> perform(const validation::Study& study, const validation::StudyOptions& options,
                                 const Arguments& arguments) {
-  if (arguments.link == "function" && arguments.faults.empty()) return study.perform(options);
-  if (study.name != "faults" || arguments.link != "udp") {
+  if (arguments.link == Link::function && arguments.faults.empty()) return study.perform(options);
+  if (study.name != "faults" || arguments.link != Link::udp) {
     return bad_usage("--link and --fault belong to 'mbk validate faults --link udp'", "leave them out");
   }
   std::error_code error;
@@ -141,11 +150,9 @@ Action add_validate(CLI::App& app) {
   command->add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
       ->type_name("N")
       ->check(whole_number(1, 1024));
-  command
-      ->add_option("--link", arguments->link,
-                   "of 'faults': function, or udp for a robot in a process of its own (function)")
-      ->type_name("LINK")
-      ->check(one_of({"function", "udp"}));
+  add_choice(*command, "--link", arguments->link,
+             "of 'faults': function, or udp for a robot in a process of its own (function)")
+      ->type_name("LINK");
   command->add_option("--fault", arguments->faults, "of 'faults --link udp': only this one; may be repeated")
       ->type_name("NAME")
       ->check(suggests(fault_names()));

@@ -57,20 +57,6 @@ ParametricPolynomial pade_polynomial(int order, const Polynomial& T, int sign) {
 
 }  // namespace
 
-std::string_view text(Architecture architecture) {
-  switch (architecture) {
-    case Architecture::position_force:
-      return "position-force";
-    case Architecture::three_channel:
-      return "three-channel";
-    case Architecture::four_channel:
-      return "four-channel";
-    case Architecture::position_position:
-      break;
-  }
-  return "position-position";
-}
-
 std::vector<std::string> matrix_lines(Architecture architecture) {
   const std::string impedances = "Zm = m_m s + b_m, Cm = d_m + k_m/s, Zs = m_s s + b_s, Cs = d_s + k_s/s";
   switch (architecture) {

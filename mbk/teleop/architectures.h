@@ -10,6 +10,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/units.h"
+#include "mbk/base/core/words.h"
 #include "mbk/teleop/two_port.h"
 
 namespace mbk::teleop {
@@ -38,8 +39,13 @@ enum class Architecture {
   four_channel,
 };
 
-/// "position-position"
-[[nodiscard]] std::string_view text(Architecture architecture);
+[[nodiscard]] constexpr auto word_table(Architecture) {
+  using enum Architecture;
+  return std::to_array<Word<Architecture>>({{position_position, "position-position"},
+                                            {position_force, "position-force"},
+                                            {three_channel, "three-channel"},
+                                            {four_channel, "four-channel"}});
+}
 
 /// The equations above as lines to print.
 [[nodiscard]] std::vector<std::string> matrix_lines(Architecture architecture);

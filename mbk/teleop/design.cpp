@@ -35,14 +35,8 @@ config::Range allowed(std::string_view key) {
 }
 
 Teleoperator read_teleoperator(const Document& document) {
-  using enum Architecture;
   Teleoperator result;
-  result.architecture = document.root()
-                            .section("architecture")
-                            .required_choice<Architecture>("kind", {{text(position_position), position_position},
-                                                                    {text(position_force), position_force},
-                                                                    {text(three_channel), three_channel},
-                                                                    {text(four_channel), four_channel}});
+  result.architecture = document.root().section("architecture").required_choice<Architecture>("kind");
   for (const Parameter& parameter : all_parameters()) {
     const Need needed = need(result.architecture, parameter.name);
     if (needed == Need::none) continue;
@@ -76,10 +70,10 @@ Polynomial read_polynomial(const Section& entry, std::string_view key, std::vect
 
 TwoPort read_two_port(const Section& section) {
   TwoPort result;
-  result.form = section.required_choice<Form>("form", {{"z", Form::z}, {"y", Form::y}, {"h", Form::h}, {"g", Form::g}});
+  result.form = section.required_choice<Form>("form");
   for (const Index i : {0, 1}) {
     for (const Index j : {0, 1}) {
-      const std::string name = fmt::format("{}{}{}", text(result.form), i + 1, j + 1);
+      const std::string name = fmt::format("{}{}{}", word_of(result.form), i + 1, j + 1);
       const Section entry = section.section(name);
       if (!section.has(name)) {
         section.reject(name, "is missing", fmt::format("write {} = {{numerator = [1], denominator = [1, 0]}}", name));
@@ -113,10 +107,9 @@ std::optional<FrequencyGrid> read_delay(const Section& section, Teleoperator& te
 }
 
 SimulatedArm read_arm(const Section& section) {
-  using enum SimulatedArm::Kind;
   SimulatedArm arm;
-  arm.kind = section.choice("kind", {{"relaxed", relaxed}, {"rigid", rigid}, {"impedance", impedance}}, arm.kind);
-  if (arm.kind == impedance) {
+  arm.kind = section.choice("kind", arm.kind);
+  if (arm.kind == SimulatedArm::Kind::impedance) {
     arm.impedance.mass = section.number("mass_kg", 0.0, config::at_least(0.0));
     arm.impedance.damping = section.number("damping_N_s_per_m", 0.0);
     arm.impedance.stiffness = section.number("stiffness_N_per_m", 0.0, config::at_least(0.0));

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/teleoperation.h"
 #include "mbk/teleop/architectures.h"
 
@@ -35,6 +36,11 @@ struct SimulatedArm {
   double direction = 1.5707963267948966;  ///< of the line on which it moves, from +x [rad]
   Termination impedance;
 };
+
+[[nodiscard]] constexpr auto word_table(SimulatedArm::Kind) {
+  using enum SimulatedArm::Kind;
+  return std::to_array<Word<SimulatedArm::Kind>>({{relaxed, "relaxed"}, {rigid, "rigid"}, {impedance, "impedance"}});
+}
 
 /// What `--simulate` runs in time, where the design says so. Delays are those of the design.
 struct SimulationPlan {

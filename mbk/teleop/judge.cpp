@@ -84,7 +84,7 @@ std::vector<Chart> charts(const Immittance& immittance, const std::vector<RadPer
     return result;
   };
   const auto resistance = [&](int port) {
-    const bool impedance = form == "z" || form == (port == 1 ? "h" : "g");
+    const bool impedance = form == word_of(Form::z) || form == word_of(port == 1 ? Form::h : Form::g);
     return ChartAxis{fmt::format("Re {}{}{}", form, port, port), impedance ? "N·s/m" : "m/(N·s)"};
   };
   return {chart("First condition: r11 must not be negative", resistance(1), std::move(r11)),
@@ -118,11 +118,11 @@ void describe(const Design& design, TeleoperationFinding& finding) {
   finding.name = design.name;
   finding.operator_port = static_cast<int>(design.operator_port);
   if (const auto* two_port = std::get_if<TwoPort>(&design.network)) {
-    finding.kind = fmt::format("two-port {}", text(two_port->form));
+    finding.kind = fmt::format("two-port {}", word_of(two_port->form));
     return;
   }
   const auto& teleoperator = std::get<Teleoperator>(design.network);
-  finding.kind = text(teleoperator.architecture);
+  finding.kind = word_of(teleoperator.architecture);
   finding.matrix = matrix_lines(teleoperator.architecture);
   for (const Parameter& parameter : all_parameters()) {
     const auto found = teleoperator.values.find(parameter.name);
@@ -154,7 +154,7 @@ Result<std::string> unit_of(const Design& design, const std::string& name) {
     if (parameter.name == name) return std::string(parameter.unit);
     names.push_back(parameter.name);
   }
-  return bad_usage(fmt::format("--parameter: '{}' is no parameter of {}", name, text(teleoperator->architecture)),
+  return bad_usage(fmt::format("--parameter: '{}' is no parameter of {}", name, word_of(teleoperator->architecture)),
                    fmt::format("it has {}", fmt::join(names, ", ")));
 }
 

@@ -183,7 +183,7 @@ bool is_absolutely_stable(const TwoPort& two_port) {
 AbsoluteStability llewellyn(const TwoPort& two_port) {
   using enum StabilityCondition;
   const RationalMatrix& m = two_port.matrix;
-  const std::string_view form = text(two_port.form);
+  const std::string_view form = word_of(two_port.form);
   AbsoluteStability result;
   result.form = form;
 

@@ -106,8 +106,8 @@ TEST(Llewellyn, NeverCallsAPassiveTwoPortUnstableInAnyForm) {
     const TwoPort passive = random_passive(random);
     for (const Form form : kForms) {
       const auto converted = convert(passive, form);
-      ASSERT_TRUE(converted) << trial << text(form) << converted.error().line();
-      EXPECT_TRUE(llewellyn(*converted).holds()) << "trial " << trial << " as " << text(form);
+      ASSERT_TRUE(converted) << trial << word_of(form) << converted.error().line();
+      EXPECT_TRUE(llewellyn(*converted).holds()) << "trial " << trial << " as " << word_of(form);
       EXPECT_TRUE(is_absolutely_stable(*converted));
     }
   }
@@ -134,8 +134,8 @@ TEST(Llewellyn, AgreesWithADenseGridAndInEveryForm) {
     }
     for (const Form form : kForms) {
       const auto converted = convert(network, form);
-      ASSERT_TRUE(converted) << trial << text(form) << converted.error().line();
-      EXPECT_EQ(is_absolutely_stable(*converted), stability.holds()) << trial << text(form);
+      ASSERT_TRUE(converted) << trial << word_of(form) << converted.error().line();
+      EXPECT_EQ(is_absolutely_stable(*converted), stability.holds()) << trial << word_of(form);
     }
   }
   EXPECT_GT(stable, 5);

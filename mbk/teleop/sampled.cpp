@@ -77,7 +77,7 @@ Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, co
     squares.push_back(product.back() < 0.0 ? 0.0 : product.back() - std::abs(p));
   }
   AbsoluteStability result;
-  result.form = text(Form::z);
+  result.form = word_of(Form::z);
   result.conditions = {poles.conditions[0],
                        poles.conditions[1],
                        on_grid(StabilityCondition::resistance_1, omega, r11, r11),

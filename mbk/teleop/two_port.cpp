@@ -59,7 +59,7 @@ tl::unexpected<Error> no_form(std::string_view form) {
 
 Result<TwoPort> in_form(const Equations<RationalFunction>& rows, Form form) {
   const auto solved = solve(rows, form);
-  if (solved.determinant.is_zero()) return no_form(text(form));
+  if (solved.determinant.is_zero()) return no_form(word_of(form));
   TwoPort two_port{form, lti::RationalMatrix(2)};
   for (const Index i : {0, 1}) {
     for (const Index j : {0, 1}) {
@@ -90,11 +90,6 @@ ParametricPolynomial common_factor(const ParametricPolynomial& a, const Parametr
 }
 
 }  // namespace
-
-std::string_view text(Form form) {
-  constexpr std::array<std::string_view, 4> kNames = {"z", "y", "h", "g"};
-  return kNames[static_cast<std::size_t>(form)];
-}
 
 Result<TwoPort> convert(const TwoPort& two_port, Form form) {
   return in_form(equations(two_port), form);

@@ -2,10 +2,10 @@
 
 #include <array>
 #include <complex>
-#include <string_view>
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/base/lti/rational.h"
 #include "mbk/teleop/parametric.h"
 
@@ -20,8 +20,10 @@ enum class Form { z, y, h, g };
 
 inline constexpr std::array<Form, 4> kForms = {Form::z, Form::h, Form::g, Form::y};
 
-/// "z"
-[[nodiscard]] std::string_view text(Form form);
+[[nodiscard]] constexpr auto word_table(Form) {
+  using enum Form;
+  return std::to_array<Word<Form>>({{z, "z"}, {y, "y"}, {h, "h"}, {g, "g"}});
+}
 
 /// A linear two-port, exactly.
 struct TwoPort {

@@ -14,8 +14,8 @@ TEST(Convert, GoesThereAndBackExactly) {
     const TwoPort z = random_near_passive(random);
     for (const Form form : kForms) {
       const auto there = convert(z, form);
-      ASSERT_TRUE(there) << trial << text(form) << there.error().line();
-      EXPECT_EQ(convert(*there, Form::z)->matrix, z.matrix) << text(form);
+      ASSERT_TRUE(there) << trial << word_of(form) << there.error().line();
+      EXPECT_EQ(convert(*there, Form::z)->matrix, z.matrix) << word_of(form);
     }
   }
 }
@@ -28,7 +28,7 @@ TEST(Convert, KeepsTheVariablesThatMeetTheEquations) {
   const Eigen::Vector2cd V = z.matrix(omega) * I;
   const auto maps = [&](Form form, const Eigen::Vector2cd& from, const Eigen::Vector2cd& to) {
     const Eigen::Vector2cd mapped = convert(z, form)->matrix(omega) * from;
-    EXPECT_LT((mapped - to).norm(), 1e-12 * V.norm()) << text(form);
+    EXPECT_LT((mapped - to).norm(), 1e-12 * V.norm()) << word_of(form);
   };
   maps(Form::y, V, I);
   maps(Form::h, {I[0], V[1]}, {V[0], I[1]});

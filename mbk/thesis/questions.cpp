@@ -87,7 +87,7 @@ Result<void> with_dynamics(Workbench& bench, Draft& exhibit) {
       table.rows.push_back({fmt::format("{}, {}", person(result.participant), text(task)),
                             {cell(model.smallest_index), cell(model.smallest_index95.first),
                              words(fmt::format("{:.2f} to {:.2f} Hz", model.band.low.value, model.band.high.value)),
-                             cell(passivity.energy->absorbed), words(std::string(text(passivity.verdict)))}});
+                             cell(passivity.energy->absorbed), words(std::string(word_of(passivity.verdict)))}});
       ++people;
       passive += passivity.verdict == Verdict::passive ? 1 : 0;
       for (const TaskTrial& trial : result.trials) {
@@ -135,7 +135,7 @@ Result<void> with_a_task(Workbench& bench, Draft& exhibit) {
     table.rows.push_back({person(result.participant),
                           {cell(energy.absorbed), cell(energy.absorbed95.first), cell(energy.absorbed95.second),
                            cell(energy.shortage_largest), vaf, words(passivity.by_model ? "model" : "energy"),
-                           words(std::string(text(passivity.verdict)))}});
+                           words(std::string(word_of(passivity.verdict)))}});
   }
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
   const auto people = static_cast<int>((*results)->size());

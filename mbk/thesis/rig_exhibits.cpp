@@ -166,7 +166,7 @@ Result<Identification> identified(laboratory::Scenario scenario, std::uint64_t s
   if (!performance) return tl::unexpected(performance.error());
   measurement::Options options = validation::mass_and_springs();
   options.preprocess.mode = Mode::reference;
-  options.identify.parameters_from = identify::ParametersFrom::all;
+  options.identify.parameters_from = ParametersFrom::all;
   options.passivity = false;
   auto measured = measurement::measure({&performance->recording, 1}, options);
   if (!measured) return tl::unexpected(measured.error());

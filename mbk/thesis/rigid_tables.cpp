@@ -82,7 +82,7 @@ void add_bias_rows(const TaskResult& result, ReproducedTable& table) {
   add("instrumental variables", result.by(Method::instrumental_variables).model,
       published(Method::instrumental_variables));
   ReproducedRow energy{person(result.participant) + ", energy", std::vector<ReproducedCell>(6)};
-  energy.cells.push_back(words(fmt::format("{}, {:+.2f} J", text(result.pooled.passivity->energy->verdict),
+  energy.cells.push_back(words(fmt::format("{}, {:+.2f} J", word_of(result.pooled.passivity->energy->verdict),
                                            result.pooled.passivity->energy->absorbed)));
   table.rows.push_back(std::move(energy));
 }
@@ -142,7 +142,7 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
         {person(result.participant),
          {cell(passivity.explained), cell(passivity.energy->absorbed), cell(passivity.energy->absorbed95.first),
           cell(passivity.energy->absorbed95.second),
-          words(fmt::format("{}, by the {}", text(passivity.verdict), passivity.by_model ? "model" : "energy"))}});
+          words(fmt::format("{}, by the {}", word_of(passivity.verdict), passivity.by_model ? "model" : "energy"))}});
   }
   exhibit.tables = {std::move(verdicts), std::move(bias), std::move(pulses)};
   return {};

@@ -280,7 +280,7 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
     measurement::Options options;
     options.preprocess.mode = mode;
     options.passivity = false;
-    options.identify.parameters_from = identify::ParametersFrom::all;
+    options.identify.parameters_from = ParametersFrom::all;
     const auto measured = measurement::measure({&*pulses, 1}, options);
     if (!measured) return tl::unexpected(measured.error());
     const impedance::Model& found = measured->identification.model;

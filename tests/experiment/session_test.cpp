@@ -85,7 +85,7 @@ TEST_F(SessionFolder, RecordsATrialFromBeginningToEnd) {
   const auto outcome = session.perform(*robot, planned(t), target_,
                                        [&](std::span<const journal::Tick> ticks) { watched += ticks.size(); });
   ASSERT_TRUE(outcome) << outcome.error().line();
-  EXPECT_EQ(outcome->ending.how, "completed");
+  EXPECT_EQ(outcome->ended, "completed");
   EXPECT_EQ(outcome->ending.dropped, 0U);
   EXPECT_EQ(watched, outcome->times.ticks);
   EXPECT_FALSE(fs::exists(outcome->journal));
@@ -135,7 +135,7 @@ TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
     });
     ASSERT_TRUE(outcome) << outcome.error().line();
     EXPECT_EQ(calls, 3);
-    EXPECT_EQ(outcome->ending.how, "completed");
+    EXPECT_EQ(outcome->ended, "completed");
     EXPECT_EQ(outcome->trip.reason, safety::Reason::none);
     EXPECT_EQ(outcome->ending.detail.find("the screen is broken") != std::string::npos, known);
     const auto recording = recording::read(target, {});
@@ -155,7 +155,7 @@ TEST_F(SessionFolder, EndsEarlyWhenAsked) {
     if (ticks.back().time > 4.0) session.signals().end_trial = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
-  EXPECT_EQ(outcome->ending.how, "ended early by the operator");
+  EXPECT_EQ(outcome->ended, "ended early by the operator");
   EXPECT_EQ(outcome->trip.reason, safety::Reason::none);
 }
 
@@ -243,7 +243,7 @@ TEST_F(SessionFolder, ATrialWhoseMotorsStayOnIsNotCompleted) {
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->trip.reason, safety::Reason::motors_on);
   EXPECT_EQ(outcome->motors.state, safety::MotorsOff::State::missing);
-  EXPECT_NE(outcome->ending.how, "completed");
+  EXPECT_EQ(outcome->ending.how, journal::Ending::How::safety_stop);
   const auto recording = recording::read(target_, {});
   ASSERT_TRUE(recording);
   EXPECT_EQ(recording->metadata.at("trip"), "motors-on");
@@ -351,7 +351,7 @@ void write_damaged_journal(const fs::path& file) {
     std::vector<journal::Tick> ticks(500);
     for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].time = 1e-3 * static_cast<double>(ticks[i].number = i);
     for (std::size_t i = 0; i < ticks.size(); i += 50) ASSERT_TRUE(writer.append(std::span(ticks).subspan(i, 50)));
-    ASSERT_TRUE(writer.end({"completed", "", 0, 0, 500}));
+    ASSERT_TRUE(writer.end({journal::Ending::How::completed, "", 0, 0, 500}));
   }
   std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
   stream.seekp(static_cast<std::streamoff>(fs::file_size(file) / 3));
@@ -452,12 +452,12 @@ TEST_F(SessionFolder, ATrialWhoseJournalIsDamagedWhileItRunsIsNotCompleted) {
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_TRUE(outcome->incomplete);
-  EXPECT_TRUE(outcome->ending.how.starts_with("completed, but ")) << outcome->ending.how;
+  EXPECT_TRUE(outcome->ended.starts_with("completed, but ")) << outcome->ended;
   EXPECT_TRUE(fs::exists(outcome->journal));
   const auto recording = recording::read(target_, {});
   ASSERT_TRUE(recording);
   EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
-  EXPECT_EQ(recording->metadata.at("ended"), outcome->ending.how);
+  EXPECT_EQ(recording->metadata.at("ended"), outcome->ended);
 }
 
 TEST(ExperimentFile, RefusesNames) {
@@ -521,7 +521,7 @@ TEST_F(SessionFolder, TheLoopDoesNotAllocateWhileItIsRecordedAndAPlantedAllocati
     Session session(kFast);
     const auto outcome = session.perform(counting, planned(t), target_);
     ASSERT_TRUE(outcome) << outcome.error().line();
-    EXPECT_EQ(outcome->ending.how, "completed") << outcome->ending.detail;
+    EXPECT_EQ(outcome->ended, "completed") << outcome->ending.detail;
     EXPECT_GT(outcome->times.ticks, 9000U);
     EXPECT_EQ(counting.counted(), plant == Plant::nothing ? 0 : 1);
   }

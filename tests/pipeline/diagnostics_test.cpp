@@ -40,7 +40,7 @@ TEST(Diagnostics, PredictTheForceAsTheFitSays) {
     making.protocol = protocol;
     making.sensors.force_noise = 0.3;
     measurement::Options options;
-    options.identify.parameters_from = identify::ParametersFrom::identification;
+    options.identify.parameters_from = ParametersFrom::identification;
     options.identify.handle_mass = 0.2;
     options.preprocess.every = protocol == Protocol::underdamped ? 10 : 20;
     const Examined one = examined(generated(making), options);
@@ -132,7 +132,7 @@ TEST(Diagnostics, OfAccelerometersThatMissTheMotionSaySo) {
   EXPECT_GT(agreement->vaf[0], 99.0);
   EXPECT_LT(agreement->vaf[1], -200.0);  // 1 − 2²: four times the variance is left
   measurement::Options options;
-  options.preprocess.acceleration = preprocess::AccelerationSource::sensor;
+  options.preprocess.acceleration = AccelerationSource::sensor;
   EXPECT_LT(examined(recording, options).diagnostics[0].double_integral.vaf[1], 0.0);
 }
 
@@ -242,7 +242,7 @@ TEST(Diagnostics, CompareTheDerivativeWithTheAccelerometer) {
   }
   // The same whichever of the two the fit took.
   measurement::Options options;
-  options.preprocess.acceleration = preprocess::AccelerationSource::sensor;
+  options.preprocess.acceleration = AccelerationSource::sensor;
   const auto other = examined(generated(making), options).diagnostics[0].acceleration;
   EXPECT_TRUE(other->sensor.isApprox(agreement->sensor, 1e-12));
   Recording without = generated(making);

@@ -44,7 +44,7 @@ inline bool warns(const Identification& identification, WarningCode code) {
 
 inline std::string codes(const Identification& identification) {
   std::string all;
-  for (const Warning& warning : identification.warnings) all += std::string(text(warning.code)) + " ";
+  for (const Warning& warning : identification.warnings) all += std::string(word_of(warning.code)) + " ";
   return all;
 }
 

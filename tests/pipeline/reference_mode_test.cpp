@@ -51,7 +51,7 @@ class ReferenceMode : public testing::TestWithParam<Case> {
     options.preprocess.mode = Mode::reference;
     options.preprocess.procedure = GetParam().procedure;
     options.identify.handle_mass = GetParam().handle_mass.value_or(0.0);
-    if (GetParam().all_samples) options.identify.parameters_from = identify::ParametersFrom::all;
+    if (GetParam().all_samples) options.identify.parameters_from = ParametersFrom::all;
     return options;
   }
   static reference::Settings settings_of_twin() {
@@ -118,7 +118,7 @@ TEST_P(Golden, ReferenceModeAgreesWithItsExpectedNumbers) {
   const auto got = measurement::measure({&*recording, 1}, options);
   ASSERT_TRUE(got) << got.error().line();
   const Identification& id = got->identification;
-  EXPECT_EQ(text(id.preparations[0].protocol), GetParam());
+  EXPECT_EQ(word_of(id.preparations[0].protocol), GetParam());
   const auto numbers = [&](const char* name) { return wanted[name].get<std::vector<double>>(); };
   EXPECT_LE(difference(id.model.M, matrix2(numbers("M"))), kPromised);
   EXPECT_LE(difference(id.model.B, matrix2(numbers("B"))), kPromised);

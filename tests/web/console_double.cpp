@@ -55,7 +55,7 @@ RobotStatus robot_of(const nlohmann::json& said) {
 void ask(Console& console, Question question) {
   Action decided = Action::note;
   while (decided == Action::note) decided = console.ask(question);
-  fmt::print("decided {}\n", mbk::console::text(decided));
+  fmt::print("decided {}\n", mbk::word_of(decided));
   std::fflush(stdout);
 }
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include "mbk/base/config/key_unit.h"
 #include "mbk/base/config/toml_tree.h"
+#include "mbk/base/core/edit_distance.h"
 
 namespace mbk::config {
 namespace {
@@ -72,22 +72,6 @@ std::string element(std::string_view path, std::size_t i) {
   return fmt::format("{}[{}]", path, i + 1);
 }
 
-/// Levenshtein's distance: insertions, deletions and replacements that turn a into b.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j + 1] + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
-
 using Keys = std::set<std::string, std::less<>>;
 
 /// The known key that `key` was probably meant to be, or "".
@@ -96,7 +80,7 @@ std::string nearest(std::string_view key, const Keys& known) {
   std::size_t least = std::max<std::size_t>(2, key.size() / 3) + 1;
   if (key.size() > 100) return best;
   for (const std::string& candidate : known) {
-    const std::size_t d = distance(key, candidate);
+    const std::size_t d = edit_distance(key, candidate);
     if (d < least && d < candidate.size()) {
       least = d;
       best = candidate;

@@ -17,6 +17,7 @@
 
 #include "mbk/base/config/range.h"
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 
 namespace mbk::config {
 
@@ -116,6 +117,19 @@ class Section {
   template <class Value>
   [[nodiscard]] Value required_choice(std::string_view key, Choices<Value> options) const {
     return chosen(key, options, Need::required).value_or(options.begin()->second);
+  }
+
+  /// One of the words of an enumeration: s.choice("phases", Phases::random)
+  template <HasWords Enum>
+  [[nodiscard]] Enum choice(std::string_view key, Enum fallback) const {
+    const auto index = find_word(key, kWordList<Enum>, Need::optional);
+    return index ? kWords<Enum>[static_cast<std::size_t>(*index)].value : fallback;
+  }
+  /// The first one where it is missing.
+  template <HasWords Enum>
+  [[nodiscard]] Enum required_choice(std::string_view key) const {
+    const auto index = find_word(key, kWordList<Enum>, Need::required);
+    return kWords<Enum>[index ? static_cast<std::size_t>(*index) : 0].value;
   }
 
   /// Some of a few words, each at most once: s.choices("axes", {{"x", Axis::x}, {"y", Axis::y}}, {Axis::x})

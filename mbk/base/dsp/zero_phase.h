@@ -2,6 +2,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/base/dsp/butterworth.h"
 
 namespace mbk::dsp {
@@ -12,6 +13,11 @@ enum class Extension {
   even,      ///< mirror image, x[i]: keeps the value
   constant,  ///< the end value, held
 };
+
+[[nodiscard]] constexpr auto word_table(Extension) {
+  using enum Extension;
+  return std::to_array<Word<Extension>>({{odd, "odd"}, {even, "even"}, {constant, "constant"}});
+}
 
 /// The published procedure, and MATLAB's filtfilt for a filter of order five, use 15 samples of odd extension.
 struct Padding {

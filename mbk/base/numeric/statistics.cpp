@@ -1,11 +1,25 @@
 #include "mbk/base/numeric/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/beta.hpp>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 namespace mbk::numeric {
+namespace {
+
+/// The value in the middle, behind which the greater ones then stand; NaN where there are none.
+double upper_median_of(std::vector<double>& values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
 
 double variance(const Eigen::Ref<const Vector>& values) {
   if (values.size() < 2) return 0.0;
@@ -40,41 +54,11 @@ double normal_quantile(double p) {
   if (std::isnan(p)) return p;
   if (p <= 0.0) return -kInfinity;
   if (p >= 1.0) return kInfinity;
-  double low = -40.0, high = 40.0;
-  for (int i = 0; i < 64; ++i) {
-    const double middle = 0.5 * (low + high);
-    (normal_probability(middle) < p ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * p);
 }
-
-namespace {
-
-/// P(|T| ≤ t), t ≥ 0.
-double student_within(double t, int degrees_of_freedom) {
-  const double angle = std::atan2(t, std::sqrt(degrees_of_freedom));
-  const double c = std::cos(angle), s = std::sin(angle);
-  const bool odd = degrees_of_freedom % 2 == 1;
-  double term = odd ? c : 1.0, sum = degrees_of_freedom == 1 ? 0.0 : term;
-  for (int k = odd ? 3 : 2; k < degrees_of_freedom; k += 2) {
-    term *= c * c * static_cast<double>(k - 1) / static_cast<double>(k);
-    sum += term;
-  }
-  return odd ? (angle + s * sum) * 2.0 / std::numbers::pi : s * sum;
-}
-
-}  // namespace
 
 double student_quantile(double p, int degrees_of_freedom) {
-  const double within = std::abs(2.0 * p - 1.0);
-  double high = 1.0;
-  while (high < 1e300 && student_within(high, degrees_of_freedom) < within) high *= 2.0;
-  double low = 0.0;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (student_within(middle, degrees_of_freedom) < within ? low : high) = middle;
-  }
-  return std::copysign(0.5 * (low + high), p - 0.5);
+  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
 }
 
 double quantile(const Eigen::Ref<const Vector>& sorted, double p) {
@@ -85,37 +69,22 @@ double quantile(const Eigen::Ref<const Vector>& sorted, double p) {
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-namespace {
-
-/// P(X ≤ k) for X ~ Binomial(n, p).
-double binomial_at_most(int k, int n, double p) {
-  if (k >= n || p <= 0.0) return 1.0;
-  if (p >= 1.0) return 0.0;
-  double sum = 0.0;
-  for (int i = 0; i <= k; ++i) {
-    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0) + i * std::log(p) +
-                    (n - i) * std::log1p(-p));
-  }
-  return sum;
+double median(std::vector<double> values) {
+  const double upper = upper_median_of(values);
+  if (values.size() % 2 == 1 || values.empty()) return upper;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  return 0.5 * (upper + *std::max_element(values.begin(), middle));
 }
 
-}  // namespace
+double upper_median(std::vector<double> values) {
+  return upper_median_of(values);
+}
 
 std::pair<double, double> binomial_interval(int successes, int trials, double confidence) {
   const double tail = 0.5 * (1.0 - confidence);
-  // Both tails fall or rise monotonically in p, so that each limit is found by bisection.
-  const auto solve = [&](auto&& too_low) {
-    double low = 0.0, high = 1.0;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (too_low(middle) ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-  };
-  const double lower =
-      successes == 0 ? 0.0 : solve([&](double p) { return 1.0 - binomial_at_most(successes - 1, trials, p) < tail; });
-  const double upper =
-      successes == trials ? 1.0 : solve([&](double p) { return binomial_at_most(successes, trials, p) > tail; });
+  const double k = successes, n = trials;
+  const double lower = successes == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, tail);
+  const double upper = successes == trials ? 1.0 : boost::math::ibetac_inv(k + 1.0, n - k, tail);
   return {lower, upper};
 }
 

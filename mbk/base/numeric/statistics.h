@@ -1,6 +1,7 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
 
@@ -29,10 +30,10 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 /// Φ(z), P(Z ≤ z) of a standard normal Z.
 [[nodiscard]] double normal_probability(double z);
 
-/// Φ⁻¹(p), by bisection to the last digits; −∞ for p ≤ 0, ∞ for p ≥ 1.
+/// Φ⁻¹(p); −∞ for p ≤ 0, ∞ for p ≥ 1.
 [[nodiscard]] double normal_quantile(double p);
 
-/// t with P(T ≤ t) = p for Student's T, by bisection of its finite sums (Abramowitz & Stegun 1964, 26.7.3 and 26.7.4).
+/// t with P(T ≤ t) = p for Student's T.
 /// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
 [[nodiscard]] double student_quantile(double p, int degrees_of_freedom);
 
@@ -40,7 +41,13 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 /// @param sorted rising    @param p in [0, 1]
 [[nodiscard]] double quantile(const Eigen::Ref<const Vector>& sorted, double p);
 
-/// Exact (Clopper–Pearson) interval of a binomial proportion, by bisection of the binomial tails.
+/// The value in the middle, or the mean of the two in the middle; NaN where there are none.
+[[nodiscard]] double median(std::vector<double> values);
+
+/// The value in the middle, the greater of two: one of those that are there. NaN where there are none.
+[[nodiscard]] double upper_median(std::vector<double> values);
+
+/// Exact (Clopper–Pearson) interval of a binomial proportion, by the quantiles of beta distributions.
 /// @param successes 0…trials    @param confidence e.g. 0.99
 [[nodiscard]] std::pair<double, double> binomial_interval(int successes, int trials, double confidence);
 

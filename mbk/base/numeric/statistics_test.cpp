@@ -49,6 +49,16 @@ TEST(Statistics, QuantileLiesBetweenTheSortedValues) {
   EXPECT_TRUE(std::isnan(quantile(Vector(), 0.5)));
 }
 
+TEST(Statistics, TheMedianIsInTheMiddle) {
+  EXPECT_EQ(median({8, 1, 4, 2}), 3.0);
+  EXPECT_EQ(median({8, 1, 4}), 4.0);
+  EXPECT_EQ(upper_median({8, 1, 4, 2}), 4.0);
+  EXPECT_EQ(upper_median({8, 1, 4}), 4.0);
+  EXPECT_EQ(median({7}), 7.0);
+  EXPECT_TRUE(std::isnan(median({})));
+  EXPECT_TRUE(std::isnan(upper_median({})));
+}
+
 TEST(Statistics, BinomialIntervalIsClopperAndPearsons) {
   // Beta quantiles: B(0.005; 380, 21) and B(0.995; 381, 20), from SciPy.
   const auto [lower, upper] = binomial_interval(380, 400, 0.99);

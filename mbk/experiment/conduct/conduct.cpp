@@ -81,7 +81,7 @@ class Run {
     }
     if (auto ok = operator_.judged(performed); !ok) return fail(ok.error());
     if (performed.outcome.incomplete) {
-      return fail({ErrorKind::data, performed.outcome.ending.how,
+      return fail({ErrorKind::data, performed.outcome.ended,
                    "look at the disk before the next trial; the journal is kept", attempt.target.string()});
     }
     return asked_to_end() ? Next::end : operator_.next(session_, performed);

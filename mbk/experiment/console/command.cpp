@@ -2,28 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
 namespace mbk::console {
 namespace {
-
-struct Name {
-  Action action;
-  std::string_view name;
-};
-
-constexpr std::array<Name, 8> kNames = {{{Action::stop, "stop"},
-                                         {Action::end, "end"},
-                                         {Action::start, "start"},
-                                         {Action::repeat, "repeat"},
-                                         {Action::next, "next"},
-                                         {Action::abort, "abort"},
-                                         {Action::reset, "reset"},
-                                         {Action::note, "note"}}};
 
 tl::unexpected<Error> refused(std::string message) {
   return bad_usage(std::move(message), "reload the page");
@@ -53,10 +37,6 @@ Result<nlohmann::json> parse(std::string_view text) {
 
 }  // namespace
 
-std::string_view text(Action action) {
-  return std::ranges::find(kNames, action, &Name::action)->name;
-}
-
 Result<Command> parse_command(std::string_view json) {
   const auto parsed = parse(json);
   if (!parsed) return tl::unexpected(parsed.error());
@@ -64,10 +44,10 @@ Result<Command> parse_command(std::string_view json) {
   const auto named = message.find("command");
   if (named == message.end() || !named->is_string()) return refused("a message names no command");
   const auto& name = named->get_ref<const std::string&>();
-  const auto* const found = std::ranges::find(kNames, name, &Name::name);
-  if (found == kNames.end()) return refused(fmt::format("there is no command '{:.40}'", name));
+  const auto action = value_of<Action>(name);
+  if (!action) return refused(fmt::format("there is no command '{:.40}'", name));
 
-  Command command{found->action, {}};
+  Command command{*action, {}};
   const char* const key = command.action == Action::note ? "text" : command.action == Action::reset ? "code" : nullptr;
   for (const auto& [other, value] : message.items()) {
     if (other == "command") continue;

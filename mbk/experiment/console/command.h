@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 
 namespace mbk::console {
 
@@ -19,7 +20,19 @@ enum class Action {
   note,    ///< a remark for the recording
 };
 
-[[nodiscard]] std::string_view text(Action action);
+[[nodiscard]] constexpr auto word_table(Action) {
+  using enum Action;
+  return std::to_array<Word<Action>>({
+      {stop, "stop"},
+      {end, "end"},
+      {start, "start"},
+      {repeat, "repeat"},
+      {next, "next"},
+      {abort, "abort"},
+      {reset, "reset"},
+      {note, "note"},
+  });
+}
 
 inline constexpr std::size_t kLongestNote = 2000;  ///< [bytes]
 

@@ -8,7 +8,7 @@ namespace {
 TEST(Command, EveryActionHasANameThatLeadsBackToIt) {
   for (const Action action :
        {Action::stop, Action::end, Action::start, Action::repeat, Action::next, Action::abort, Action::reset}) {
-    const auto command = parse_command(R"({"command":")" + std::string(text(action)) + R"("})");
+    const auto command = parse_command(R"({"command":")" + std::string(word_of(action)) + R"("})");
     ASSERT_TRUE(command) << command.error().line();
     EXPECT_EQ(command->action, action);
     EXPECT_EQ(command->text, "");

@@ -41,20 +41,6 @@ Json times_json(const realtime::CycleRecord& record) {
           {"bins", std::move(bins)}};
 }
 
-const char* text(Question question) {
-  switch (question) {
-    case Question::none:
-      break;
-    case Question::begin:
-      return "begin";
-    case Question::after:
-      return "after";
-    case Question::reset:
-      return "reset";
-  }
-  return "";
-}
-
 bool answers(Question question, Action action) {
   switch (question) {
     case Question::none:
@@ -73,19 +59,7 @@ bool answers(Question question, Action action) {
 std::string sentence_of(const safety::Trip& trip) {
   if (trip.reason == safety::Reason::none) return "";
   const bool whole = safety::unit(trip.reason).empty() || trip.limit != 0.0 || trip.value != 0.0;
-  return whole ? safety::sentence(trip) : std::string(safety::code(trip.reason));
-}
-
-const char* text(RobotStatus::Motors motors) {
-  switch (motors) {
-    case RobotStatus::Motors::unknown:
-      break;
-    case RobotStatus::Motors::off:
-      return "off";
-    case RobotStatus::Motors::on:
-      return "on";
-  }
-  return "unknown";
+  return whole ? safety::sentence(trip) : std::string(word_of(trip.reason));
 }
 
 /// At most so much of it, cut between two characters of UTF-8.
@@ -222,7 +196,7 @@ void Console::finish(const session::TrialOutcome& outcome) {
   trip_ = outcome.trip;
   listed.progress = trip_.reason == safety::Reason::none ? Progress::done : Progress::stopped;
   listed.recording = outcome.recording.string();
-  listed.ending = outcome.ending.how;
+  listed.ending = outcome.ended;
   dropped_ticks_ = outcome.ending.dropped;
   running_ = false;
   changed_ = true;
@@ -334,7 +308,7 @@ Result<void> Console::command(const Command& command) {
       break;
   }
   if (!answers(question_, command.action)) {
-    return bad_usage(fmt::format("'{}' is not what is asked for now", console::text(command.action)));
+    return bad_usage(fmt::format("'{}' is not what is asked for now", word_of(command.action)));
   }
   return command.action == Action::reset ? reset(command.text) : (decide(command.action), Result<void>{});
 }
@@ -414,24 +388,24 @@ std::string Console::state_locked() const {
                {"trials", std::move(trials)},
                {"current", current_},
                {"running", running_},
-               {"phase", control::text(static_cast<control::Phase>(last_.phase))},
+               {"phase", word_of(static_cast<control::Phase>(last_.phase))},
                {"perturbing", running_ && last_.perturbing()},
                {"time_s", last_.time},
                {"perturbation_s", last_.perturbation_time},
                {"duration_s", expected_duration_},
                {"ticks", ticks_},
                {"over", over_},
-               {"question", text(question_)},
+               {"question", word_of(question_)},
                {"reset_code", reset_code_},
                {"said", beginning(said_)},
                {"safety",
                 {{"tripped", trip_.reason != safety::Reason::none || held},
-                 {"reason", held ? safety::code(safety::Reason::operator_stop) : safety::code(trip_.reason)},
+                 {"reason", held ? word_of(safety::Reason::operator_stop) : word_of(trip_.reason)},
                  {"sentence", held ? "stopped while nothing ran: nothing begins before a reset" : sentence_of(trip_)},
                  {"cut", last_.cut != 0},
                  {"enabled", last_.enabled != 0}}},
                {"robot",
-                {{"motors", text(robot_.motors)},
+                {{"motors", word_of(robot_.motors)},
                  {"confirmed_off", robot_.confirmed_off ? Json(*robot_.confirmed_off) : Json()},
                  {"stop_button", robot_.stop_button},
                  {"link", robot_.link},

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/words.h"
 #include "mbk/base/realtime/cycle_record.h"
 #include "mbk/experiment/console/live_estimate.h"
 #include "mbk/experiment/console/server.h"
@@ -31,6 +32,11 @@ enum class Question {
   after,  ///< a trial is over: once more, on, or no further
   reset,  ///< after a stop
 };
+
+[[nodiscard]] constexpr auto word_table(Question) {
+  using enum Question;
+  return std::to_array<Word<Question>>({{none, ""}, {begin, "begin"}, {after, "after"}, {reset, "reset"}});
+}
 
 /// What is known of the robot itself, between trials too.
 struct RobotStatus {

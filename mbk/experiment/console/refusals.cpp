@@ -7,14 +7,6 @@
 
 namespace mbk::console {
 
-std::string_view text(Refusal kind) {
-  constexpr std::array<std::string_view, kRefusals> kNames = {
-      "wrong token",       "foreign host",          "foreign origin",        "malformed request",
-      "crowded out",       "no descriptor is free", "malformed message",     "message too long",
-      "too many messages", "command out of place",  "failure of the console"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
 bool Refusals::take(Refusal kind, Time now) {
   if (!begin_) begin_ = now;
   return ++counts_[static_cast<std::size_t>(kind)] <= kSaid;
@@ -30,7 +22,7 @@ std::optional<std::string> Refusals::summary(Time now, bool last) {
     const std::uint64_t unsaid = counts[k] - std::min(counts[k], kSaid);
     if (unsaid == 0) continue;
     all += unsaid;
-    kinds += fmt::format("{}{} × {}", kinds.empty() ? "" : ", ", unsaid, text(static_cast<Refusal>(k)));
+    kinds += fmt::format("{}{} × {}", kinds.empty() ? "" : ", ", unsaid, word_of(static_cast<Refusal>(k)));
   }
   if (all == 0) return std::nullopt;
   return fmt::format("{} more within {} s: {}", all, kSpell.count(), kinds);

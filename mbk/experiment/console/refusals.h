@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
+
+#include "mbk/base/core/words.h"
 
 namespace mbk::console {
 
@@ -14,7 +15,22 @@ namespace mbk::console {
 enum class Refusal { token, host, origin, request, crowd, descriptors, message, too_long, haste, command, failure };
 inline constexpr std::size_t kRefusals = 11;
 
-[[nodiscard]] std::string_view text(Refusal kind);
+[[nodiscard]] constexpr auto word_table(Refusal) {
+  using enum Refusal;
+  return std::to_array<Word<Refusal>>({
+      {token, "wrong token"},
+      {host, "foreign host"},
+      {origin, "foreign origin"},
+      {request, "malformed request"},
+      {crowd, "crowded out"},
+      {descriptors, "no descriptor is free"},
+      {message, "malformed message"},
+      {too_long, "message too long"},
+      {haste, "too many messages"},
+      {command, "command out of place"},
+      {failure, "failure of the console"},
+  });
+}
 
 /// How much is said of what is refused: of each kind the first five in ten seconds, one line each, and of all the
 /// others one line when the ten seconds are over. However much comes, the log gets less than six lines a second, and

@@ -265,7 +265,7 @@ class Server::Implementation {
   }
   void failed(const char* what) noexcept {
     try {
-      refuse(Refusal::failure, fmt::format("{}: {}", console::text(Refusal::failure), what));
+      refuse(Refusal::failure, fmt::format("{}: {}", word_of(Refusal::failure), what));
     } catch (...) {  // without memory there is no line either; it is counted
     }
   }
@@ -688,7 +688,7 @@ void Server::Implementation::receive(Viewer& viewer, std::string_view text, bool
   }
   const bool may = viewer.controls || (viewer.rights() == Rights::control && stop);
   if (!may) {
-    return refusal(Refusal::command, fmt::format("'{}' from a page that only watches", console::text(command->action)));
+    return refusal(Refusal::command, fmt::format("'{}' from a page that only watches", word_of(command->action)));
   }
   if (auto done = handlers_.command(*command); !done) refusal(Refusal::command, done.error().line());
 }

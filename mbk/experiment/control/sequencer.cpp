@@ -26,26 +26,6 @@ perturbation::MinimumJerk straight(double from, double to, double duration) {
 
 }  // namespace
 
-std::string_view text(Phase phase) {
-  switch (phase) {
-    case Phase::starting:
-      return "soft start";
-    case Phase::moving:
-      return "moving to the test location";
-    case Phase::settling:
-      return "settling";
-    case Phase::perturbing:
-      return "perturbing";
-    case Phase::returning:
-      return "returning";
-    case Phase::stopping:
-      return "soft stop";
-    case Phase::done:
-      return "done";
-  }
-  return "unknown";
-}
-
 Sequencer::Sequencer(const TrialControl& trial, const SequenceOptions& options, const robot::Geometry& geometry,
                      JointPositionControl hold, double sample_time)
     : trial_(trial),

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 
+#include "mbk/base/core/words.h"
 #include "mbk/experiment/control/trial_control.h"
 #include "mbk/model/perturbation/minimum_jerk.h"
 
@@ -20,7 +20,18 @@ enum class Phase : std::uint8_t {
   done,        ///< no torque
 };
 
-[[nodiscard]] std::string_view text(Phase phase);
+[[nodiscard]] constexpr auto word_table(Phase) {
+  using enum Phase;
+  return std::to_array<Word<Phase>>({
+      {starting, "soft start"},
+      {moving, "moving to the test location"},
+      {settling, "settling"},
+      {perturbing, "perturbing"},
+      {returning, "returning"},
+      {stopping, "soft stop"},
+      {done, "done"},
+  });
+}
 
 /// How the robot comes to the test location and away from it.
 struct SequenceOptions {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 
 namespace mbk::device {
 
@@ -16,6 +17,11 @@ enum class Motors : std::uint8_t {
   off,
   on
 };
+
+[[nodiscard]] constexpr auto word_table(Motors) {
+  using enum Motors;
+  return std::to_array<Word<Motors>>({{unknown, "unknown"}, {off, "off"}, {on, "on"}});
+}
 
 /// What a robot of two joints reads at one tick, in SI units, base frame, and what it reports of itself.
 struct State {

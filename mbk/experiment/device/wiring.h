@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mbk/base/core/words.h"
 #include "mbk/experiment/device/device.h"
 #include "mbk/model/robot/kinematics.h"
 
@@ -40,5 +41,10 @@ struct Wiring {
   /// The command in the robot's unit: τ / torque_per_command.
   [[nodiscard]] Vector2d command(const Vector2d& torque) const noexcept;
 };
+
+[[nodiscard]] constexpr auto word_table(Wiring::Frame) {
+  using enum Wiring::Frame;
+  return std::to_array<Word<Wiring::Frame>>({{base, "base"}, {last_link, "last_link"}});
+}
 
 }  // namespace mbk::device

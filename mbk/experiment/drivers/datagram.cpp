@@ -94,22 +94,6 @@ Reading body_of(std::span<const std::byte> bytes) noexcept {
 
 }  // namespace
 
-std::string_view text(Refusal refusal) {
-  switch (refusal) {
-    case Refusal::none:
-      return "believed";
-    case Refusal::length:
-      return "wrong length";
-    case Refusal::magic:
-      return "no datagram of this kind";
-    case Refusal::version:
-      return "another version";
-    case Refusal::checksum:
-      return "wrong checksum";
-  }
-  return "";
-}
-
 StateBytes encode(const StateDatagram& d) noexcept {
   StateBytes bytes(kStateLengths[d.version >= kNewestStateVersion ? 1 : 0]);
   Writing out(bytes);

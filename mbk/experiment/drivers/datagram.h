@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
+#include "mbk/base/core/words.h"
 #include "mbk/experiment/device/wiring.h"
 
 /// @file
@@ -46,7 +46,14 @@ struct CommandDatagram {
 
 /// Why a datagram is not believed.
 enum class Refusal : std::uint8_t { none, length, magic, version, checksum };
-[[nodiscard]] std::string_view text(Refusal refusal);
+[[nodiscard]] constexpr auto word_table(Refusal) {
+  using enum Refusal;
+  return std::to_array<Word<Refusal>>({{none, "believed"},
+                                       {length, "wrong length"},
+                                       {magic, "no datagram of this kind"},
+                                       {version, "another version"},
+                                       {checksum, "wrong checksum"}});
+}
 
 /// A state as bytes, as many as its version has.
 class StateBytes {

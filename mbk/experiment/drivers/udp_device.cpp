@@ -101,7 +101,7 @@ Error UdpDevice::no_answer() const {
   const auto add = [&](std::uint64_t count, std::string_view what) {
     if (count > 0) came += fmt::format("{}{} × {}", came.empty() ? "; what came instead: " : ", ", count, what);
   };
-  for (std::size_t i = 0; i < counts_.refused.size(); ++i) add(counts_.refused[i], text(static_cast<Refusal>(i)));
+  for (std::size_t i = 0; i < counts_.refused.size(); ++i) add(counts_.refused[i], word_of(static_cast<Refusal>(i)));
   add(counts_.foreign, "from another address");
   add(counts_.old, "of another session");
   return fail(ErrorKind::data, fmt::format("{}: no answer within {:g} s{}", facts_.name, options_.answer_within, came),

@@ -28,7 +28,7 @@ Eigen::Matrix2d read_gain(const Section& s, const char* key, const Eigen::Matrix
 }
 
 Wiring::Frame read_frame(const Section& s, const char* key) {
-  return s.choice(key, {{"base", Wiring::Frame::base}, {"last_link", Wiring::Frame::last_link}}, Wiring::Frame::base);
+  return s.choice(key, Wiring::Frame::base);
 }
 
 void read_wiring(const Section& s, DevicePlan& plan) {

@@ -64,14 +64,10 @@ Size read_size(const Section& s, const std::string& word, const std::vector<Size
 }
 
 std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Section& s) {
-  using perturbation::LimitedSignal;
   enum class Power { flat, d_optimal };
   const auto power = s.choice("power", {{"flat", Power::flat}, {"d_optimal", Power::d_optimal}}, Power::flat);
   perturbation::OptimalPowerOptions options;
-  options.limited = s.choice(
-      "power_limited_by",
-      {{"position", LimitedSignal::position}, {"velocity", LimitedSignal::velocity}, {"force", LimitedSignal::force}},
-      options.limited);
+  options.limited = s.choice("power_limited_by", options.limited);
   options.floor = s.number("power_floor_percent", options.floor, between(0, 100));
   if (const Section nominal = s.section("nominal"); nominal.given()) {
     options.nominal = {nominal.required_number("mass_kg"), nominal.required_number("damping_Ns_per_m"),
@@ -82,8 +78,6 @@ std::optional<perturbation::OptimalPowerOptions> read_optimal_power(const Sectio
 }
 
 MultisinePlan read_multisine(const Section& s, const Size& size) {
-  using Phases = MultisinePlan::Phases;
-  using Axes = MultisinePlan::Axes;
   MultisinePlan plan;
   plan.quantity = size.unit.quantity;
   plan.space = size.unit.space;
@@ -96,15 +90,8 @@ MultisinePlan read_multisine(const Section& s, const Size& size) {
     if (harmonic != std::round(harmonic)) s.reject("harmonics", fmt::format("{:g} is no whole number", harmonic));
     plan.harmonics.push_back(static_cast<int>(harmonic));
   }
-  plan.phases = s.choice(
-      "phases", {{"random", Phases::random}, {"schroeder", Phases::schroeder}, {"low_crest", Phases::low_crest}},
-      plan.phases);
-  plan.axes = s.choice("axes",
-                       {{"independent", Axes::independent},
-                        {"interleaved", Axes::interleaved},
-                        {"hadamard_first", Axes::hadamard_first},
-                        {"hadamard_second", Axes::hadamard_second}},
-                       plan.axes);
+  plan.phases = s.choice("phases", plan.phases);
+  plan.axes = s.choice("axes", plan.axes);
   plan.optimal_power = read_optimal_power(s);
   plan.duration = s.number("duration_s", plan.duration, above(0));
   plan.moving_in = s.number("moving_in_s", plan.moving_in, at_least(0));
@@ -167,7 +154,7 @@ perturbation::Limits read_limits(const Section& s, const SizeUnit& unit) {
 }  // namespace
 
 Machine read_machine(const Section& robot) {
-  return robot.choice("kind", {{"planar", Machine::planar}, {"one_axis", Machine::one_axis}}, Machine::planar);
+  return robot.choice("kind", Machine::planar);
 }
 
 TrialPlan read_recording(const Section& s) {
@@ -175,8 +162,7 @@ TrialPlan read_recording(const Section& s) {
   r.condition = s.text("condition", "");
   r.rate = Hertz(s.number("rate_hz", r.rate.value, between(10, 100'000)));
   r.seed = s.integer<std::uint64_t>("seed", r.seed, 0, std::numeric_limits<std::int64_t>::max());
-  r.readers = s.choice<Readers>(
-      "readable_by", {{"owner", Readers::owner}, {"group", Readers::group}, {"all", Readers::all}}, r.readers);
+  r.readers = s.choice("readable_by", r.readers);
   return r;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mbk/base/config/document.h"
+#include "mbk/base/core/words.h"
 #include "mbk/experiment/control/trial_control.h"
 #include "mbk/experiment/protocol/trial_plan.h"
 
@@ -10,6 +11,11 @@ namespace mbk::protocol {
 /// line, key, value and what is allowed.
 
 enum class Machine { planar, one_axis };
+
+[[nodiscard]] constexpr auto word_table(Machine) {
+  using enum Machine;
+  return std::to_array<Word<Machine>>({{planar, "planar"}, {one_axis, "one_axis"}});
+}
 
 /// `kind` of [robot]; a planar one where nothing is said.
 [[nodiscard]] Machine read_machine(const config::Section& robot);

@@ -82,7 +82,7 @@ TEST_P(EveryFault, TripsInTimeForItsReasonAndBringsTheTorqueToZero) {
   const int ticks = ticks_to_trip(g, GetParam().spoil);
   ASSERT_GE(ticks, 0);
   EXPECT_LE(ticks, GetParam().longest);
-  EXPECT_EQ(code(g.trip().reason), code(GetParam().reason)) << sentence(g.trip());
+  EXPECT_EQ(word_of(g.trip().reason), word_of(GetParam().reason)) << sentence(g.trip());
   Gate::Decision last = g.history().back().decision;
   for (int k = 1; k < kRampTicks; ++k) {
     EXPECT_TRUE(last.enabled);
@@ -484,7 +484,7 @@ TEST(Trip, EveryReasonHasItsOwnCodeAndWords) {
   std::vector<std::string> codes;
   for (int i = 0; i < kReasons; ++i) {
     const Trip trip{static_cast<Reason>(i), 1.5, 3, 2.0, 1.0};
-    codes.emplace_back(code(trip.reason));
+    codes.emplace_back(word_of(trip.reason));
     EXPECT_NE(sentence(trip).find("at 1.500 s"), std::string::npos);
     EXPECT_EQ(sentence(trip).find("(limit") == std::string::npos, unit(trip.reason).empty());
   }

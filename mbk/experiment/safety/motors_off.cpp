@@ -27,22 +27,6 @@ std::string reason(const MotorsOff& motors) {
 
 }  // namespace
 
-std::string_view code(MotorsOff::State state) {
-  switch (state) {
-    case MotorsOff::State::not_asked:
-      return "driven";
-    case MotorsOff::State::waiting:
-      return "waiting";
-    case MotorsOff::State::confirmed:
-      return "confirmed";
-    case MotorsOff::State::missing:
-      return "not confirmed";
-    case MotorsOff::State::cannot_say:
-      return "not reported";
-  }
-  return "";
-}
-
 std::string sentence(const MotorsOff& motors) {
   switch (motors.state) {
     case MotorsOff::State::not_asked:

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 namespace mbk::safety {
 
@@ -25,9 +24,6 @@ struct MotorsOff {
   double torque = 0.0;  ///< that drives or motion show [N·m]
   double limit = 0.0;   ///< what the motion may show of motors that are off [N·m]
 };
-
-/// "confirmed", "not confirmed", "not reported": for files and machines.
-[[nodiscard]] std::string_view code(MotorsOff::State state);
 
 /// "confirmed off by the robot 0.045 s after the stop", "NOT CONFIRMED OFF: …": for people.
 [[nodiscard]] std::string sentence(const MotorsOff& motors);

@@ -59,7 +59,7 @@ class EveryLie : public testing::TestWithParam<Lie> {};
 
 TEST_P(EveryLie, IsFoundInTimeAndNamed) {
   const Seen seen = watch(GetParam().spoil);
-  EXPECT_EQ(code(seen.violation.reason), code(GetParam().reason));
+  EXPECT_EQ(word_of(seen.violation.reason), word_of(GetParam().reason));
   EXPECT_GE(seen.ticks, 0);
   EXPECT_LE(seen.ticks, GetParam().longest);
 }

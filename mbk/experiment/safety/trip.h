@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "mbk/base/core/words.h"
+
 namespace mbk::safety {
 
 /// Why the gate switched the motors off. Journals hold the numbers: new ones go to the end.
@@ -46,8 +48,46 @@ enum class Reason : std::uint8_t {
 
 inline constexpr int kReasons = static_cast<int>(Reason::torque_disagrees) + 1;
 
-/// "force-jump": for files and machines.
-[[nodiscard]] std::string_view code(Reason reason);
+/// For files and machines.
+[[nodiscard]] constexpr auto word_table(Reason) {
+  using enum Reason;
+  return std::to_array<Word<Reason>>({
+      {none, "none"},
+      {stop_button, "stop-button"},
+      {operator_stop, "operator-stop"},
+      {link_lost, "link-lost"},
+      {late, "late"},
+      {recording_failed, "recording-failed"},
+      {controller_not_finite, "controller-not-finite"},
+      {encoder_not_finite, "encoder-not-finite"},
+      {force_not_finite, "force-not-finite"},
+      {accelerometer_not_finite, "accelerometer-not-finite"},
+      {encoder_jump, "encoder-jump"},
+      {force_jump, "force-jump"},
+      {encoder_frozen, "encoder-frozen"},
+      {force_frozen, "force-frozen"},
+      {accelerometer_frozen, "accelerometer-frozen"},
+      {accelerometer_disagrees, "accelerometer-disagrees"},
+      {measured_force, "measured-force"},
+      {speed, "speed"},
+      {acceleration, "acceleration"},
+      {workspace, "workspace"},
+      {joint_margin, "joint-margin"},
+      {excursion, "excursion"},
+      {tracking, "tracking"},
+      {limited_too_long, "limited-too-long"},
+      {robot_fault, "robot-fault"},
+      {robot_watchdog, "robot-watchdog"},
+      {robot_clock, "robot-clock"},
+      {state_old, "state-old"},
+      {answer_late, "answer-late"},
+      {answer_wrong, "answer-wrong"},
+      {motors_off, "motors-off"},
+      {motors_on, "motors-on"},
+      {sensor_missing, "sensor-missing"},
+      {torque_disagrees, "torque-disagrees"},
+  });
+}
 
 /// A trip with what was measured against what limit.
 struct Trip {

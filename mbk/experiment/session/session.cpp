@@ -35,10 +35,11 @@ std::string now_text() {
 
 journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
   journal::Ending ending;
-  ending.how = gate.tripped() ? "safety stop" : signals.end_trial ? "ended early by the operator" : "completed";
+  using How = journal::Ending::How;
+  ending.how = gate.tripped() ? How::safety_stop : signals.end_trial ? How::ended_early : How::completed;
   if (gate.tripped()) {
     ending.detail = safety::sentence(gate.trip());
-    ending.trip = safety::code(gate.trip().reason);
+    ending.trip = word_of(gate.trip().reason);
   }
   ending.motors = safety::sentence(gate.motors());
   ending.overruns = times.missed;
@@ -209,7 +210,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   if (!recovered) return tl::unexpected(recovered.error());
   outcome.damage = recovered->damage;
   outcome.incomplete = recovered->incomplete || recovered->ticks != outcome.times.ticks;
-  outcome.ending.how = recovered->recording.metadata.at("ended");
+  outcome.ended = recovered->recording.metadata.at("ended");
   return outcome;
 }
 

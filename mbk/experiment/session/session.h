@@ -30,6 +30,7 @@ struct TrialOutcome {
   bool incomplete = false;          ///< not every tick that the loop made came back from the recording
   journal::Damage damage;           ///< of the journal; where there is any, it is kept
   journal::Ending ending;
+  std::string ended;         ///< the same with what was lost: "completed, but 50 of 67101 ticks were lost"
   safety::Trip trip;         ///< Reason::none where nothing tripped
   safety::MotorsOff motors;  ///< whether the robot has confirmed that they are off
   LoopTimes times;

@@ -49,12 +49,12 @@ std::string text_of(const Header& header) {
                {"has_acceleration", header.has_acceleration},
                {"force_latency_ticks", header.force_latency},
                {"tick_bytes", sizeof(Tick)},
-               {"readable_by", text(header.readers)},
+               {"readable_by", word_of(header.readers)},
                {"events", events}});
 }
 
 std::string text_of(const Ending& ending) {
-  return dump({{"how", ending.how},
+  return dump({{"how", ending.word()},
                {"detail", ending.detail},
                {"dropped", ending.dropped},
                {"overruns", ending.overruns},
@@ -146,6 +146,10 @@ Writer& Writer::operator=(Writer&& other) noexcept {
 
 Writer::~Writer() {
   if (descriptor_ >= 0) close(descriptor_);
+}
+
+std::string_view Ending::word() const {
+  return how == How::other ? std::string_view(other) : word_of(how);
 }
 
 Result<Writer> Writer::create(const fs::path& file, const Header& header, std::uint64_t expected) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/files/journal/tick.h"
 #include "mbk/model/robot/kinematics.h"
 #include "mbk/model/trial/readers.h"
@@ -31,14 +32,34 @@ struct Header {
 
 /// How a trial ended.
 struct Ending {
-  std::string how;             ///< "completed", "stopped by the operator", "safety stop", "interrupted"
+  enum class How {
+    completed,
+    ended_early,  ///< by the operator
+    safety_stop,
+    interrupted,  ///< the program or the machine went down
+    other,        ///< a newer version of mbk has a word for it that this one does not know
+  };
+  How how = How::completed;
   std::string detail;          ///< a sentence; may be empty
   std::uint64_t dropped = 0;   ///< ticks that did not reach the file
   std::uint64_t overruns = 0;  ///< ticks that went by without a wake-up
   std::uint64_t ticks = 0;     ///< that the loop made, with those that were dropped; 0: not said
   std::string trip;            ///< code of the safety stop; empty without one
   std::string motors;          ///< what is known of the motors after it: safety::sentence; empty: nothing
+  std::string other;           ///< that word, where `how` is `other`
+
+  /// "completed": of `how`, or that of a newer version.
+  [[nodiscard]] std::string_view word() const;
 };
+
+[[nodiscard]] constexpr auto word_table(Ending::How) {
+  using enum Ending::How;
+  return std::to_array<Word<Ending::How>>({{completed, "completed"},
+                                           {ended_early, "ended early by the operator"},
+                                           {safety_stop, "safety stop"},
+                                           {interrupted, "interrupted"},
+                                           {other, "other"}});
+}
 
 /// Writes a trial tick by tick to a file that is only ever appended to, in blocks with a checksum each, so that
 /// what was written before a crash can be read after it, and every whole block of it wherever something is damaged.

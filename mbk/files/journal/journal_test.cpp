@@ -35,7 +35,7 @@ class JournalFile : public testing::Test {
     ASSERT_TRUE(writer) << writer.error().line();
     for (int b = 0; b < blocks; ++b) ASSERT_TRUE(writer->append(ticks(50 * b, 50 * b + 50)));
     if (end) {
-      ASSERT_TRUE(writer->end({"completed", "", 3, 2, static_cast<std::uint64_t>(50 * blocks)}));
+      ASSERT_TRUE(writer->end({Ending::How::completed, "", 3, 2, static_cast<std::uint64_t>(50 * blocks)}));
     }
   }
 
@@ -57,7 +57,7 @@ TEST_F(JournalFile, ComesBackAsItWasWritten) {
   ASSERT_EQ(journal->ticks.size(), 250U);
   EXPECT_EQ(journal->ticks[123].force[0], 123.0);
   ASSERT_TRUE(journal->ending);
-  EXPECT_EQ(journal->ending->how, "completed");
+  EXPECT_EQ(journal->ending->how, Ending::How::completed);
   EXPECT_EQ(journal->ending->dropped, 3U);
   EXPECT_FALSE(journal->damage.any());
 }
@@ -121,7 +121,7 @@ TEST_F(JournalFile, WhoKnowsTheEndingKnowsTheTail) {
   ASSERT_TRUE(journal);
   EXPECT_TRUE(journal->incomplete());
   EXPECT_TRUE(journal->damage.lost.empty());
-  journal->end_with({"completed", "", 0, 0, 200});
+  journal->end_with({Ending::How::completed, "", 0, 0, 200});
   EXPECT_EQ(journal->ended(), "completed, but 50 of 200 ticks were lost");
 }
 
@@ -304,7 +304,7 @@ TEST_F(JournalFile, RemovedOrReplacedItGoesOnElsewhereWithAllThatItHeld) {
     ASSERT_TRUE(writer->save_elsewhere());
     EXPECT_EQ(writer->place(), Writer::Place::here);
     ASSERT_TRUE(writer->append(ticks(50, 100)));
-    ASSERT_TRUE(writer->end({"completed", "", 0, 0, 100}));
+    ASSERT_TRUE(writer->end({Ending::How::completed, "", 0, 0, 100}));
     const auto journal = read(writer->file());
     ASSERT_TRUE(journal);
     EXPECT_TRUE(identical(journal->ticks, ticks(0, 100)));
@@ -354,6 +354,34 @@ TEST_F(JournalFile, TheRecordingSaysWhatHappened) {
 TEST_F(JournalFile, WithoutAnEndItWasInterrupted) {
   write(2, false);
   EXPECT_EQ(to_recording(*read(file_))->metadata.at("ended"), "interrupted");
+}
+
+TEST_F(JournalFile, EveryEndingComesBackAndIsSaid) {
+  for (const auto& [how, word] : kWords<Ending::How>) {
+    if (how == Ending::How::other) continue;
+    fs::remove(file_);
+    auto writer = Writer::create(file_, header(), 1000);
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE(writer->append(ticks(0, 50)));
+    ASSERT_TRUE(writer->end({how, "", 0, 0, 50}));
+    const auto journal = read(file_);
+    ASSERT_TRUE(journal && journal->ending);
+    EXPECT_EQ(journal->ending->how, how);
+    EXPECT_EQ(to_recording(*journal)->metadata.at("ended"), word);
+  }
+}
+
+TEST_F(JournalFile, AnEndingOfANewerVersionKeepsItsWordAndIsSaid) {
+  auto writer = Writer::create(file_, header(), 1000);
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(writer->append(ticks(0, 50)));
+  ASSERT_TRUE(writer->end({.how = Ending::How::other, .detail = "no power", .ticks = 50, .other = "unplugged"}));
+  const auto journal = read(file_);
+  ASSERT_TRUE(journal && journal->ending);
+  EXPECT_EQ(journal->ending->how, Ending::How::other);
+  const auto metadata = to_recording(*journal)->metadata;
+  EXPECT_EQ(metadata.at("ended"), "unplugged");
+  EXPECT_EQ(metadata.at("ended_detail"), "no power; this version of mbk does not know 'unplugged'");
 }
 
 TEST_F(JournalFile, LateForcesStandBesideTheirOwnAngles) {

@@ -232,9 +232,8 @@ Header header_of(const Json& json) {
   if (json.at("tick_bytes").get<std::size_t>() != sizeof(Tick)) throw std::runtime_error("ticks of another version");
   if (header.force_latency < 0) throw std::runtime_error("a force latency below zero");
   if (!(header.rate > 0.0)) throw std::runtime_error("a rate that is not above zero");
-  const auto readable_by = json.value("readable_by", std::string(text(Readers::owner)));
-  const auto readers = std::ranges::find(kReaders, readable_by, &decltype(kReaders)::value_type::first);
-  if (readers != kReaders.end()) header.readers = readers->second;
+  const auto readers = value_of<Readers>(json.value("readable_by", std::string()));
+  if (readers) header.readers = *readers;
   for (const Json& event : json.at("events")) {
     header.events.push_back({event.at("time").get<double>(), printable(event.at("name").get<std::string>()),
                              event.at("value").get<double>()});
@@ -243,10 +242,16 @@ Header header_of(const Json& json) {
 }
 
 Ending ending_of(const Json& json) {
-  Ending ending{printable(json.at("how").get<std::string>()),  printable(json.at("detail").get<std::string>()),
-                json.at("dropped").get<std::uint64_t>(),       json.at("overruns").get<std::uint64_t>(),
-                json.value("ticks", std::uint64_t{0}),         printable(json.value("trip", std::string())),
-                printable(json.value("motors", std::string()))};
+  Ending ending;
+  const auto word = printable(json.at("how").get<std::string>());
+  ending.how = value_of<Ending::How>(word).value_or(Ending::How::other);
+  ending.detail = printable(json.at("detail").get<std::string>());
+  ending.dropped = json.at("dropped").get<std::uint64_t>();
+  ending.overruns = json.at("overruns").get<std::uint64_t>();
+  ending.ticks = json.value("ticks", std::uint64_t{0});
+  ending.trip = printable(json.value("trip", std::string()));
+  ending.motors = printable(json.value("motors", std::string()));
+  if (ending.how == Ending::How::other) ending.other = word;
   if (ending.ticks > kLargestNumber) throw std::runtime_error("more ticks than there can be");
   return ending;
 }

@@ -59,7 +59,7 @@ inline std::string journal_bytes(int blocks, int per_block = 50, bool end = true
     for (int b = 0; b < blocks; ++b) {
       EXPECT_TRUE(writer.append(test_ticks(per_block * b, per_block * b + per_block)));
     }
-    Ending ending{"completed", "", 0, 2, static_cast<std::uint64_t>(blocks * per_block)};
+    Ending ending{Ending::How::completed, "", 0, 2, static_cast<std::uint64_t>(blocks * per_block)};
     if (end) {
       EXPECT_TRUE(writer.end(ending));
     }

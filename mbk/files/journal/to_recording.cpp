@@ -5,7 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/files/journal/journal.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::journal {
 namespace {
@@ -29,9 +31,7 @@ double period_of(const Journal& journal) {
     if (other.number == one.number + 1 && other.time > one.time) periods.push_back(other.time - one.time);
   }
   if (periods.empty()) return 1e-3;
-  const auto middle = periods.begin() + std::ssize(periods) / 2;
-  std::ranges::nth_element(periods, middle);
-  return *middle;
+  return numeric::upper_median(std::move(periods));
 }
 
 Rows rows_of(const Journal& journal) {
@@ -75,9 +75,9 @@ Rows rows_of(const Journal& journal) {
 /// The value of every row as a channel; with a latency, that of the tick so many ticks later, which belongs to it. The
 /// last rows, whose own has not come, keep the last one.
 template <class Get>
-Channel channel(const Rows& rows, const char* name, const char* unit, const char* frame, int latency, const Get& get) {
+Channel channel(const Rows& rows, const QuantityChannels& quantity, std::size_t axis, int latency, const Get& get) {
   const Index samples = std::ssize(rows.ticks);
-  Channel made{name, unit, frame, Vector(samples)};
+  Channel made{quantity.plane[axis], quantity.unit, quantity.frame, Vector(samples)};
   for (Index i = 0; i < samples; ++i) {
     const Tick* const tick = rows.ticks[static_cast<std::size_t>(i)];
     const Tick* const later = rows.ticks[static_cast<std::size_t>(std::min(i + latency, samples - 1))];
@@ -91,18 +91,17 @@ Channel channel(const Rows& rows, const char* name, const char* unit, const char
 
 using Pair = std::array<double, 2> Tick::*;
 
-void add_pair(Recording& recording, const Rows& rows, std::array<const char*, 2> names, const char* unit,
-              const char* frame, Pair values, int latency = 0) {
+void add_pair(Recording& recording, const Rows& rows, const QuantityChannels& quantity, Pair values, int latency = 0) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     recording.channels.push_back(
-        channel(rows, names[axis], unit, frame, latency, [&](const Tick& tick) { return (tick.*values)[axis]; }));
+        channel(rows, quantity, axis, latency, [&](const Tick& tick) { return (tick.*values)[axis]; }));
   }
 }
 
 void add_hand(Recording& recording, const Rows& rows, const robot::Geometry& geometry) {
-  for (Index axis = 0; axis < 2; ++axis) {
-    recording.channels.push_back(channel(rows, axis == 0 ? "hand_x" : "hand_y", "m", "base", 0, [&](const Tick& tick) {
-      return robot::hand_position(geometry, {tick.joint[0], tick.joint[1]})[axis];
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    recording.channels.push_back(channel(rows, kPositionChannels, axis, 0, [&](const Tick& tick) {
+      return robot::hand_position(geometry, {tick.joint[0], tick.joint[1]})[static_cast<Index>(axis)];
     }));
   }
 }
@@ -133,12 +132,15 @@ void add_events(Recording& recording, const Journal& journal) {
 
 /// Says how the trial ended, and what of it is missing.
 void add_ending(Recording& recording, const Journal& journal, const Rows& rows) {
-  const Ending ending =
-      journal.ending.value_or(Ending{"interrupted", "the program or the machine went down while it recorded"});
+  const Ending ending = journal.ending.value_or(
+      Ending{Ending::How::interrupted, "the program or the machine went down while it recorded"});
   auto& metadata = recording.metadata;
   metadata["ended"] = journal.ended();
   std::string detail = ending.detail;
   if (!journal.ending && journal.damage.bytes > 0) detail += ", or the end of the journal is damaged";
+  if (ending.how == Ending::How::other) {
+    detail += fmt::format("{}this version of mbk does not know '{}'", detail.empty() ? "" : "; ", ending.word());
+  }
   if (!detail.empty()) metadata["ended_detail"] = detail;
   if (!ending.trip.empty()) metadata["trip"] = ending.trip;
   if (!ending.motors.empty()) metadata["motors_off"] = ending.motors;
@@ -157,7 +159,7 @@ void add_ending(Recording& recording, const Journal& journal, const Rows& rows) 
 }  // namespace
 
 std::string Journal::ended() const {
-  const std::string how = ending ? ending->how : "interrupted";
+  const std::string how(ending ? ending->word() : word_of(Ending::How::interrupted));
   const std::uint64_t lost = damage.ticks_lost();
   if (lost > 0) return fmt::format("{}, but {} of {} ticks were lost", how, lost, lost + ticks.size());
   if (damage.header) return how + ", but the journal's header was lost";
@@ -172,17 +174,18 @@ Result<Recording> to_recording(const Journal& journal) {
   Recording recording;
   recording.time = Eigen::Map<const Vector>(rows.times.data(), std::ssize(rows.times));
   if (known) add_hand(recording, rows, header.geometry);
-  add_pair(recording, rows, {"joint_1", "joint_2"}, "rad", "joint", &Tick::joint);
+  add_pair(recording, rows, kJointChannels, &Tick::joint);
   if (header.has_force) {
-    add_pair(recording, rows, {"force_x", "force_y"}, "N", "base", &Tick::force, header.force_latency);
+    add_pair(recording, rows, kForceChannels, &Tick::force, header.force_latency);
   }
   if (known) {
-    add_pair(recording, rows, {"reference_x", "reference_y"}, header.reference_unit.c_str(), "base", &Tick::reference);
+    QuantityChannels reference = kReferenceChannels;
+    reference.unit = header.reference_unit.c_str();
+    add_pair(recording, rows, reference, &Tick::reference);
   }
-  add_pair(recording, rows, {"torque_1", "torque_2"}, "N.m", "joint", &Tick::torque);
+  add_pair(recording, rows, kTorqueChannels, &Tick::torque);
   if (header.has_acceleration) {
-    add_pair(recording, rows, {"acceleration_x", "acceleration_y"}, "m/s2", "base", &Tick::acceleration,
-             header.force_latency);
+    add_pair(recording, rows, kAccelerationChannels, &Tick::acceleration, header.force_latency);
   }
   add_events(recording, journal);
 

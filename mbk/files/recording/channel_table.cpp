@@ -4,8 +4,9 @@
 #include <array>
 #include <cctype>
 #include <limits>
-#include <numeric>
-#include <utility>
+#include <string>
+
+#include "mbk/base/core/edit_distance.h"
 
 namespace mbk::recording {
 namespace {
@@ -80,19 +81,10 @@ bool same_name(std::string_view name, std::string_view known) {
   return std::ranges::equal(name, known, {}, lower, lower);
 }
 
-/// Levenshtein distance, case aside.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-    }
-  }
-  return row.back();
+std::string in_lower_case(std::string_view name) {
+  std::string text(name);
+  std::ranges::transform(text, text.begin(), lower);
+  return text;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -122,9 +114,10 @@ std::vector<const ChannelKind*> kinds_called(std::string_view name) {
 std::string_view nearest_channel_name(std::string_view name) {
   std::string_view nearest;
   std::size_t least = std::numeric_limits<std::size_t>::max();
+  const std::string given = in_lower_case(name);
   for (const ChannelKind& kind : kKinds) {
     for (const std::string_view known : {kind.name, kind.alias}) {
-      const std::size_t d = distance(name, known);
+      const std::size_t d = edit_distance(given, in_lower_case(known));
       if (d < least) {
         least = d;
         nearest = known;

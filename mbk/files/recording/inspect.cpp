@@ -6,6 +6,8 @@
 #include <limits>
 #include <string_view>
 
+#include "mbk/base/numeric/statistics.h"
+
 namespace mbk::recording {
 namespace {
 
@@ -14,14 +16,6 @@ constexpr double kGap = 1.5;  ///< median intervals
 constexpr Index kRunLength = 5;
 constexpr Index kRuns = 3;
 constexpr double kClippedFraction = 0.002;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return kNaN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
 
 void find_non_finite(const std::string& name, const Vector& values, std::vector<NonFinite>& found) {
   if (values.allFinite()) return;
@@ -57,7 +51,7 @@ void inspect_time(const Vector& time, Inspection& facts) {
       if (facts.backward_times++ == 0) facts.first_backward = i;
     }
   }
-  facts.interval_median = median(intervals);
+  facts.interval_median = numeric::median(intervals);
   if (intervals.empty()) {
     facts.rate_hz = facts.interval_min = facts.interval_max = facts.interval_standard_deviation = kNaN;
     return;

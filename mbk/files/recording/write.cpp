@@ -14,20 +14,12 @@
 namespace mbk::recording {
 namespace {
 
-struct Named {
+struct Extension {
   std::string_view name;
   Format format;
 };
 
-constexpr auto kNames = std::to_array<Named>({
-    {"mat", Format::mat5},
-    {"mat5", Format::mat5},
-    {"mat73", Format::mat73},
-    {"hdf5", Format::hdf5},
-    {"csv", Format::csv},
-});
-
-constexpr auto kExtensions = std::to_array<Named>({
+constexpr auto kExtensions = std::to_array<Extension>({
     {".mat", Format::mat5},
     {".h5", Format::hdf5},
     {".hdf5", Format::hdf5},
@@ -91,13 +83,12 @@ std::string_view text(Format format) {
 
 Result<Format> format_of(const std::filesystem::path& file, std::string_view name) {
   const std::string extension = file.extension().string();
-  const auto by_name = std::ranges::find(kNames, name, &Named::name);
-  if (by_name != kNames.end()) return by_name->format;
+  if (const auto by_name = value_of<Format>(name == "mat" ? "mat5" : name)) return *by_name;
   if (!name.empty()) {
     return bad_usage(fmt::format("'{}' is not a format that is written", printable(std::string(name))),
                      "choose mat5, mat73, hdf5 or csv");
   }
-  const auto by_extension = std::ranges::find(kExtensions, extension, &Named::name);
+  const auto by_extension = std::ranges::find(kExtensions, extension, &Extension::name);
   if (by_extension != kExtensions.end()) return by_extension->format;
   return fail(ErrorKind::usage,
               extension.empty() ? "the name does not say a format"

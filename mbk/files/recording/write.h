@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/readers.h"
 #include "mbk/model/trial/recording.h"
 
@@ -18,6 +19,11 @@ enum class Format {
   hdf5,   ///< .h5, .hdf5
   csv,    ///< .csv
 };
+
+[[nodiscard]] constexpr auto word_table(Format) {
+  using enum Format;
+  return std::to_array<Word<Format>>({{mat5, "mat5"}, {mat73, "mat73"}, {hdf5, "hdf5"}, {csv, "csv"}});
+}
 
 /// "MAT v5", "MAT v7.3", "HDF5", "CSV".
 [[nodiscard]] std::string_view text(Format format);

@@ -12,9 +12,9 @@
 
 #include "mbk/base/dsp/savitzky_golay.h"
 #include "mbk/measure/analyse/energy_blocks.h"
-#include "mbk/measure/analyse/recorded.h"
 #include "mbk/measure/analyse/thinning.h"
 #include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
 namespace {
@@ -95,13 +95,13 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
                     "record longer");
   }
   Exchange exchange;
-  exchange.position = recorded(recording, trial.axes, kPosition);
-  exchange.force = recorded(recording, trial.axes, kForce);
+  exchange.position = recorded(recording, kPositionChannels, trial.axes);
+  exchange.force = recorded(recording, kForceChannels, trial.axes);
   if (exchange.position.size() == 0) return bad_data("no position was recorded", "say where it is: --channels");
   if (exchange.force.size() == 0) {
     return bad_data("no force was recorded, without which there is no energy", "say where it is: --channels");
   }
-  exchange.reference = recorded(recording, trial.axes, kReference);
+  exchange.reference = recorded(recording, kReferenceChannels, trial.axes);
   exchange.time = recording.time.array() - recording.time[0];
   auto window = window_of(trial, exchange.time);
   if (!window) return tl::unexpected(window.error());

@@ -11,8 +11,8 @@
 #include "mbk/base/dsp/integral.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/analyse/frequencies.h"
-#include "mbk/measure/analyse/recorded.h"
 #include "mbk/measure/analyse/thinning.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
 namespace {
@@ -128,7 +128,7 @@ DoubleIntegral double_integral_of(const PreparedTrial& trial, const std::vector<
 
 void add_recording(const Recording& recording, const Matrix& position, const Matrix& force, Diagnostics& result) {
   const Index n = position.cols();
-  const Matrix reference = recorded(recording, static_cast<int>(n), kReference);
+  const Matrix reference = recorded(recording, kReferenceChannels, static_cast<int>(n));
   Matrix all(recording.samples(), 2 * n + reference.cols());
   all.leftCols(2 * n) << position, force;
   if (reference.cols() > 0) all.rightCols(n) = reference;
@@ -160,8 +160,8 @@ Result<void> check_origin(const Matrix& position, const Matrix& force, const Pre
 
 Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& trial,
                              const Identification& identification, const PreparedTrial* other_acceleration) {
-  const Matrix position = recorded(recording, trial.axes, kPosition);
-  const Matrix force = recorded(recording, trial.axes, kForce);
+  const Matrix position = recorded(recording, kPositionChannels, trial.axes);
+  const Matrix force = recorded(recording, kForceChannels, trial.axes);
   const std::vector<Rows> all = rows_of(trial), held_back = rows_of(trial, Purpose::validation);
   if (auto ok = check_origin(position, force, trial, all); !ok) return tl::unexpected(ok.error());
 

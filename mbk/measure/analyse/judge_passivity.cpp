@@ -222,7 +222,7 @@ Passivity decide(std::vector<ModelPassivity> models, double explained, std::opti
       result.reason += fmt::format(
           ". The model would say {}: it fits what answers the perturbation as if it were "
           "mechanics",
-          text(model->verdict));
+          word_of(model->verdict));
     }
     return result;
   }

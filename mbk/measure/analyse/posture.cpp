@@ -70,9 +70,11 @@ ArmPosture arm_posture(const Recording& recording, const Vector2d& hand) {
     if (any) posture.note = fmt::format("the arm is not drawn: the metadata lack {}", missing);
     return posture;
   }
-  const auto side = metadata.find("elbow");
-  if (side != metadata.end() && side->second != "right" && side->second != "left") {
-    posture.note = fmt::format("the arm is not drawn: metadata elbow is '{}', neither right nor left", side->second);
+  const auto stated = metadata.find("elbow");
+  const std::optional<ElbowSide> side =
+      stated == metadata.end() ? ElbowSide::right : value_of<ElbowSide>(stated->second);
+  if (!side) {
+    posture.note = fmt::format("the arm is not drawn: metadata elbow is '{}', neither right nor left", stated->second);
     return posture;
   }
   const Vector2d shoulder(values[0], values[1]);
@@ -85,8 +87,7 @@ ArmPosture arm_posture(const Recording& recording, const Vector2d& hand) {
         l1, l2);
     return posture;
   }
-  const bool left = side != metadata.end() && side->second == "left";
-  const double gamma = (left ? 1.0 : -1.0) * std::acos(cosine);
+  const double gamma = (side == ElbowSide::left ? 1.0 : -1.0) * std::acos(cosine);
   const Vector2d elbow = shoulder + l1 / r * (Eigen::Rotation2Dd(gamma) * (hand - shoulder));
   return {ArmPosture::Of::arm, {shoulder, elbow, hand}, ""};
 }

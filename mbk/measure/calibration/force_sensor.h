@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/sensor_calibration.h"
 
 namespace mbk::calibration {
@@ -40,6 +41,11 @@ enum class SensorFrame {
   link,       ///< the sensor turns with the last link, at joint_2: (E.4)
   base,       ///< sensor and force have the same axes
 };
+
+[[nodiscard]] constexpr auto word_table(SensorFrame) {
+  using enum SensorFrame;
+  return std::to_array<Word<SensorFrame>>({{automatic, "auto"}, {link, "link"}, {base, "base"}});
+}
 
 /// Loads and voltages of a recording: force_x with voltage_x, force_y with voltage_y. A recording with both voltages
 /// and one force is a run without load on the other axis; a note says so. Where the sensor sits on the last link, the

@@ -52,7 +52,7 @@ SensorRun table(const Matrix& force, const Matrix& slope, double noise, std::uin
 
 std::vector<std::string_view> codes(const SensorCalibration& calibration) {
   std::vector<std::string_view> all;
-  for (const SensorWarning& warning : calibration.warnings) all.push_back(text(warning.code));
+  for (const SensorWarning& warning : calibration.warnings) all.push_back(word_of(warning.code));
   return all;
 }
 

@@ -106,7 +106,7 @@ Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials,
     return foreign();
   }
   const Regression r = stack(trials);
-  const bool all = found.parameters_from == "all";
+  const bool all = found.parameters_from == ParametersFrom::all;
   const std::vector<RowRange> ranges = all ? joined(r.identification, r.validation) : joined(r.identification, {});
   const Matrix Z = rows_of(r.Z, ranges), Y = rows_of(r.Y, ranges);
   if (Z.rows() != found.samples || Z.rows() == 0) return foreign();

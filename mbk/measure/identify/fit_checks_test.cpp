@@ -26,7 +26,7 @@ Identification identified(const PreparedTrial& prepared, const Options& options 
 
 std::vector<std::string> codes(const Identification& id) {
   std::vector<std::string> all;
-  for (const Warning& warning : id.warnings) all.emplace_back(text(warning.code));
+  for (const Warning& warning : id.warnings) all.emplace_back(word_of(warning.code));
   return all;
 }
 
@@ -46,8 +46,8 @@ TEST(Warnings, EveryOneSaysWhatToTry) {
   const Identification id = identified(trial(odd, {.samples = 4000, .validation = 0.0, .across = 0.01}));
   EXPECT_GE(id.warnings.size(), 5u);
   for (const Warning& warning : id.warnings) {
-    EXPECT_FALSE(warning.message.empty()) << text(warning.code);
-    EXPECT_FALSE(warning.remedy.empty()) << text(warning.code);
+    EXPECT_FALSE(warning.message.empty()) << word_of(warning.code);
+    EXPECT_FALSE(warning.remedy.empty()) << word_of(warning.code);
   }
 }
 

@@ -172,7 +172,7 @@ void Fitter::describe(Identification& result) const {
   result.motion = first.motion;
   result.structure = options_.structure;
   result.handle_mass = options_.handle_mass;
-  result.parameters_from = all_ ? "all" : "identification";
+  result.parameters_from = all_ ? ParametersFrom::all : ParametersFrom::identification;
   result.parameters = parameter_names(first.axes);
   result.samples = samples_;
   result.hac_lag_s = static_cast<double>(lags_) * r_.sample_time;

@@ -11,12 +11,6 @@
 
 namespace mbk::identify {
 
-/// Which data stand behind the parameters; the fit is always judged on held-back data where there are any.
-enum class ParametersFrom {
-  identification,  ///< the stretches that are there to identify
-  all,             ///< every stretch (Dyck 2013, §3.6.2: parameters from 16 pulses, VAF from 8 against 8)
-};
-
 struct Options {
   Method method = Method::least_squares;
   Structure structure = Structure::full;

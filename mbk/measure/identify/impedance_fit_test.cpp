@@ -235,9 +235,9 @@ TEST(IdentifyImpedance, VafIsOfTheHeldBackPart) {
 TEST(IdentifyImpedance, PulsesInDefaultModeTakeAllForTheParameters) {
   PreparedTrial pulses = trial(arm(), {.noise = 0.3});
   pulses.preparation.protocol = Protocol::underdamped;
-  EXPECT_EQ(identified({pulses}).parameters_from, "all");
+  EXPECT_EQ(identified({pulses}).parameters_from, ParametersFrom::all);
   pulses.preparation.mode = Mode::reference;
-  EXPECT_EQ(identified({pulses}).parameters_from, "identification");
+  EXPECT_EQ(identified({pulses}).parameters_from, ParametersFrom::identification);
 }
 
 TEST(IdentifyImpedance, HandleMassComesOffTheDiagonalOfTheInertiaOnly) {

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "mbk/base/dsp/difference_equation.h"
 #include "mbk/base/dsp/spectrum.h"
+#include "mbk/base/numeric/golden_section.h"
 #include "mbk/base/numeric/polynomial_roots.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/prediction_error.h"
@@ -145,10 +148,7 @@ double Identifier::median_step() const {
   for (const SignalPair& pair : experiments_) {
     for (Index i = 1; i < pair.time.size(); ++i) steps.push_back(pair.time[i] - pair.time[i - 1]);
   }
-  if (steps.empty()) return kUndefined;
-  const auto middle = steps.begin() + std::ssize(steps) / 2;
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return numeric::upper_median(std::move(steps));
 }
 
 ContinuousFitOptions Identifier::continuous_options(Index poles, Index zeros) const {
@@ -215,28 +215,18 @@ Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
     delay_ = best;
     return fit(poles, zeros, delay_);
   }
-  constexpr double kGolden = 0.6180339887498949, kNear = 0.01;  // of a sample
+  constexpr double kNear = 0.01;  // of a sample
   const double whole = best, reach = static_cast<double>(every) * step;
-  double a = std::max(whole - reach, 0.0), b = std::min(whole + reach, options_.most_delay);
-  double c = b - kGolden * (b - a), d = a + kGolden * (b - a);
-  auto at_c = look(c), at_d = look(d);
-  while (at_c && at_d && b - a > kNear * step) {
-    if (*at_c < *at_d) {
-      b = d;
-      d = c;
-      at_d = at_c;
-      c = b - kGolden * (b - a);
-      at_c = look(c);
-    } else {
-      a = c;
-      c = d;
-      at_c = at_d;
-      d = a + kGolden * (b - a);
-      at_d = look(d);
-    }
-  }
-  if (!at_c) return tl::unexpected(at_c.error());
-  if (!at_d) return tl::unexpected(at_d.error());
+  std::optional<Error> failure;
+  numeric::golden_section(
+      std::max(whole - reach, 0.0), std::min(whole + reach, options_.most_delay),
+      [&](double delay) {
+        const auto variance = look(delay);
+        if (!variance && !failure) failure = variance.error();
+        return variance.value_or(std::numeric_limits<double>::infinity());
+      },
+      std::less<>{}, [&](double low, double high) { return !failure && high - low > kNear * step; });
+  if (failure) return tl::unexpected(*failure);
   delay_ = best;
   return fit(poles, zeros, delay_);
 }

@@ -9,8 +9,8 @@
 #include "mbk/measure/analyse/compare_forces.h"
 #include "mbk/measure/preprocess/filters.h"
 #include "mbk/measure/preprocess/resample.h"
-#include "mbk/measure/preprocess/signals.h"
 #include "mbk/measure/preprocess/virtual_force.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::measurement {
 namespace {
@@ -45,7 +45,7 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
   std::vector<std::string> names;
   std::string unit;
   for (Index axis = 0; axis < axes; ++axis) {
-    names.emplace_back(preprocess::channel_name(preprocess::Quantity::force, axes, axis));
+    names.emplace_back(kForceChannels.name(axes, axis));
     const Channel& channel = *made->recording.find(names.back());
     unit = channel.unit;
     forces.col(axis) = channel.values.segment(made->first, length);

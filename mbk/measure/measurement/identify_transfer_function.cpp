@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mbk/base/dsp/decimate.h"
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/channel_table.h"
 
 namespace mbk::measurement {
@@ -37,8 +38,7 @@ std::pair<std::vector<Piece>, bool> pieces_of(const Vector& time) {
   const Index n = time.size();
   std::vector<double> steps;
   for (Index i = 1; i < n; ++i) steps.push_back(time[i] - time[i - 1]);
-  std::ranges::sort(steps);
-  const double median = steps[steps.size() / 2];
+  const double median = numeric::upper_median(std::move(steps));
   std::vector<Piece> pieces = {{0, n}};
   for (Index i = 1; i < n; ++i) {
     if (time[i] - time[i - 1] <= kGap * median) continue;

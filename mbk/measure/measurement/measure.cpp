@@ -18,7 +18,7 @@
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/resample.h"
-#include "mbk/measure/preprocess/signals.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::measurement {
 namespace {
@@ -225,7 +225,7 @@ Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::
     const Source& source = sources[k];
     Recording sensed = source.computed->recording;
     for (Index axis = 0; axis < trials[k].axes; ++axis) {
-      const char* const name = preprocess::channel_name(preprocess::Quantity::force, trials[k].axes, axis);
+      const char* const name = kForceChannels.name(trials[k].axes, axis);
       for (Channel& channel : sensed.channels) {
         if (channel.name == name) channel.values = source.computed->sensor_force.col(axis);
       }
@@ -315,9 +315,8 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
 /// The same trial with ẍ from the other source; absent where the recording holds no accelerometer that could be used.
 std::optional<PreparedTrial> with_other_acceleration(const Source& source, const PreparedTrial& trial,
                                                      Options options) {
-  using preprocess::AccelerationSource;
   const bool sensor = trial.preparation.acceleration_from_sensor;
-  if (!sensor && source.recording().find(trial.axes == 1 ? "acceleration" : "acceleration_x") == nullptr) {
+  if (!sensor && source.recording().find(kAccelerationChannels.name(trial.axes, 0)) == nullptr) {
     return std::nullopt;
   }
   options.preprocess.acceleration = sensor ? AccelerationSource::derivative : AccelerationSource::sensor;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/dsp/spectrum.h"
+#include "mbk/base/numeric/statistics.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -64,11 +65,9 @@ Result<Hertz> motion_top(const Vector& position, const std::vector<Cut>& cuts, H
   const Index begin = above(excited->high), end = above(limit);
   constexpr Index kFewest = 5;
   if (end - begin < kFewest) return limit;
-  std::vector<double> sorted(density.begin() + begin, density.begin() + end);
-  const auto middle = sorted.begin() + (end - begin) / 2;
-  std::ranges::nth_element(sorted, middle);
+  const double floor = numeric::upper_median({density.begin() + begin, density.begin() + end});
   for (Index i = begin; i < end; ++i) {
-    if (density[i] < 2.0 * *middle) return Hertz(f[i]);
+    if (density[i] < 2.0 * floor) return Hertz(f[i]);
   }
   return limit;
 }

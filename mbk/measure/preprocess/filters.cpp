@@ -52,7 +52,7 @@ FilterPlan reference_filters(const Options& options) {
   return with_choices(
       {{6, chapter5 ? 151 : 101},
        Hertz(chapter5 ? 4.5 : 5.0),
-       fmt::format("{} of the published procedure{}", text(options.procedure), changed ? ", changed as asked" : "")},
+       fmt::format("{} of the published procedure{}", word_of(options.procedure), changed ? ", changed as asked" : "")},
       options);
 }
 

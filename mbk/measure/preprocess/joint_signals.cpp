@@ -10,6 +10,7 @@
 #include <string>
 
 #include "mbk/model/robot/dynamic_model.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -89,16 +90,19 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
   }
   const bool plane = axes == 2;
   signals.joint_reference = gather(recording, joint_references, mechanism.slides(0) ? "m" : "rad");
-  if (plane) signals.hand_reference = gather(recording, {"reference_x", "reference_y"}, "m");
-  if (!plane) signals.hand_reference = gather(recording, {"reference"}, mechanism.slides(0) ? "m" : "rad");
+  const int kinds = plane ? 2 : 1;
+  const auto at_hand = [&](const QuantityChannels& quantity) {
+    std::vector<std::string> names;
+    for (Index axis = 0; axis < kinds; ++axis) names.emplace_back(quantity.name(kinds, axis));
+    return names;
+  };
+  const bool slides = plane || mechanism.slides(0);
+  signals.hand_reference = gather(recording, at_hand(kReferenceChannels), slides ? "m" : "rad");
   if (hand_acceleration) {
-    using Names = std::vector<std::string>;
-    signals.hand_acceleration =
-        gather(recording, plane ? Names{"acceleration_x", "acceleration_y"} : Names{"acceleration"},
-               plane || mechanism.slides(0) ? "m/s2" : "rad/s2");
+    signals.hand_acceleration = gather(recording, at_hand(kAccelerationChannels), slides ? "m/s2" : "rad/s2");
     if (signals.hand_acceleration.size() == 0) {
       return bad_data(
-          fmt::format("channel '{}' is missing; {}", plane ? "acceleration_x" : "acceleration", there(recording)),
+          fmt::format("channel '{}' is missing; {}", kAccelerationChannels.name(kinds, 0), there(recording)),
           "name it with --channels, or use --acceleration derivative");
     }
   }

@@ -11,9 +11,6 @@
 
 namespace mbk::preprocess {
 
-/// Where ẍ comes from.
-enum class AccelerationSource { derivative, sensor };
-
 /// Which samples the user asks for, in seconds from the recording's first sample.
 struct WindowLimits {
   std::optional<double> from_s, split_s, to_s;

@@ -11,6 +11,7 @@
 #include "mbk/measure/preprocess/signals.h"
 #include "mbk/measure/preprocess/trial_clock.h"
 #include "mbk/measure/preprocess/windows.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
 
@@ -54,8 +55,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   how.protocol = options.protocol.value_or(found.protocol);
   how.protocol_rule = options.protocol ? "given" : found.rule;
   if (how.protocol != Protocol::free && signals->reference.size() == 0) {
-    return bad_data(fmt::format("protocol '{}' needs the reference, channel '{}', which is missing", text(how.protocol),
-                                channel_name(Quantity::reference, trial.axes, 0)),
+    return bad_data(fmt::format("protocol '{}' needs the reference, channel '{}', which is missing",
+                                word_of(how.protocol), kReferenceChannels.name(trial.axes, 0)),
                     "name it with --channels, or use --protocol free");
   }
 

@@ -167,7 +167,7 @@ TEST(Prepare, SinesKeepTheirVelocityAndAccelerationUpToTheFilters) {
 
 class BothModes : public testing::TestWithParam<Mode> {};
 INSTANTIATE_TEST_SUITE_P(All, BothModes, testing::Values(Mode::improved, Mode::reference),
-                         [](const auto& mode) { return std::string(text(mode.param)); });
+                         [](const auto& mode) { return std::string(word_of(mode.param)); });
 
 TEST_P(BothModes, ALinearRelationOfForceAndMotionSurvivesTheFilters) {
   const impedance::Model model = arm();

@@ -8,6 +8,8 @@
 #include <limits>
 #include <string>
 
+#include "mbk/model/trial/quantity_channels.h"
+
 namespace mbk::preprocess {
 
 Result<void> check_choices(const Options& options) {
@@ -83,7 +85,7 @@ Result<void> check_reference(const Clock& clock, const Signals& signals, const W
       const bool outside = (limits.from_s && at < *limits.from_s) || (limits.to_s && at >= *limits.to_s);
       if (outside || std::isfinite(signals.reference(i, axis))) continue;
       return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
-                                  channel_name(Quantity::reference, signals.axes, axis), i + 1, at),
+                                  kReferenceChannels.name(signals.axes, axis), i + 1, at),
                       "choose a window without it with --from and --to, or use --protocol free");
     }
   }
@@ -91,10 +93,10 @@ Result<void> check_reference(const Clock& clock, const Signals& signals, const W
 }
 
 Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan) {
-  const std::array<std::pair<Quantity, const Matrix*>, 3> quantities = {
-      {{Quantity::position, &signals.position},
-       {Quantity::force, &signals.force_hand_on_robot},
-       {Quantity::acceleration, &signals.acceleration}}};
+  const std::array<std::pair<QuantityChannels, const Matrix*>, 3> quantities = {
+      {{kPositionChannels, &signals.position},
+       {kForceChannels, &signals.force_hand_on_robot},
+       {kAccelerationChannels, &signals.acceleration}}};
   for (const auto& [quantity, columns] : quantities) {
     for (Index axis = 0; axis < columns->cols(); ++axis) {
       for (const Cut& cut : plan.cuts) {
@@ -102,7 +104,7 @@ Result<void> check_finite(const Clock& clock, const Signals& signals, const Wind
         if (bad < 0) continue;
         const Index sample = cut.begin + bad;
         return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
-                                    channel_name(quantity, signals.axes, axis), sample + 1, clock.seconds(sample)),
+                                    quantity.name(signals.axes, axis), sample + 1, clock.seconds(sample)),
                         "choose a window without it with --from and --to, or mend the recording");
       }
     }
@@ -139,21 +141,21 @@ Result<void> check_alive(const Signals& signals, const WindowPlan& plan) {
       return (columns.col(axis).segment(cut.begin, cut.end - cut.begin).array() == value).all();
     });
   };
-  const auto refusal = [&](Quantity quantity, const Matrix& columns, Index axis, const char* remedy) {
-    return bad_data(fmt::format("channel '{}' is {:g} throughout the window",
-                                channel_name(quantity, signals.axes, axis), columns(plan.cuts.front().begin, axis)),
+  const auto refusal = [&](const QuantityChannels& quantity, const Matrix& columns, Index axis, const char* remedy) {
+    return bad_data(fmt::format("channel '{}' is {:g} throughout the window", quantity.name(signals.axes, axis),
+                                columns(plan.cuts.front().begin, axis)),
                     remedy);
   };
   Index resting = 0;
   for (Index axis = 0; axis < signals.axes; ++axis) {
     if (constant(signals.force_hand_on_robot, axis)) {
-      return refusal(Quantity::force, signals.force_hand_on_robot, axis,
+      return refusal(kForceChannels, signals.force_hand_on_robot, axis,
                      "check that the sensor was on, or name its channel with --channels");
     }
     resting += constant(signals.position, axis) ? 1 : 0;
   }
   if (resting < signals.axes) return {};
-  return refusal(Quantity::position, signals.position, 0,
+  return refusal(kPositionChannels, signals.position, 0,
                  "choose a window in which the limb moves, with --from and --to");
 }
 

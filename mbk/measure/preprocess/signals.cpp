@@ -2,29 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string>
+
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
 namespace {
 
-/// The columns of one quantity, or nothing where any of them is missing.
-Matrix gather(const Recording& recording, Quantity quantity, int axes) {
-  Matrix columns(recording.samples(), axes);
-  for (Index axis = 0; axis < axes; ++axis) {
-    const Channel* channel = recording.find(channel_name(quantity, axes, axis));
-    if (channel == nullptr) return {};
-    columns.col(axis) = channel->values;
-  }
-  return columns;
-}
-
-Result<Matrix> require(const Recording& recording, Quantity quantity, int axes) {
-  Matrix columns = gather(recording, quantity, axes);
+Result<Matrix> require(const Recording& recording, const QuantityChannels& quantity, int axes) {
+  Matrix columns = recorded(recording, quantity, axes);
   if (columns.size() > 0) return columns;
   std::string missing, present, first;
   for (Index axis = 0; axis < axes; ++axis) {
-    const char* name = channel_name(quantity, axes, axis);
+    const char* name = quantity.name(axes, axis);
     if (recording.find(name) != nullptr) continue;
     missing += fmt::format("{}'{}'", missing.empty() ? "" : " and ", name);
     if (first.empty()) first = name;
@@ -47,7 +37,7 @@ Result<Motion> motion_of(const Recording& recording, int axes) {
 }
 
 ReferenceQuantity reference_quantity(const Recording& recording, int axes) {
-  const Channel* channel = recording.find(channel_name(Quantity::reference, axes, 0));
+  const Channel* channel = recording.find(kReferenceChannels.name(axes, 0));
   if (channel == nullptr) return ReferenceQuantity::unknown;
   if (channel->unit == "m" || channel->unit == "rad") return ReferenceQuantity::position;
   if (channel->unit == "N" || channel->unit == "N.m") return ReferenceQuantity::force;
@@ -56,30 +46,22 @@ ReferenceQuantity reference_quantity(const Recording& recording, int axes) {
 
 }  // namespace
 
-const char* channel_name(Quantity quantity, int axes, Index axis) {
-  using Names = std::array<const char*, 3>;  // of one axis, of x, of y
-  static constexpr std::array<Names, 4> kNames = {
-      Names{"position", "hand_x", "hand_y"}, Names{"reaction", "force_x", "force_y"},
-      Names{"reference", "reference_x", "reference_y"}, Names{"acceleration", "acceleration_x", "acceleration_y"}};
-  return kNames[static_cast<std::size_t>(quantity)][axes == 1 ? 0 : static_cast<std::size_t>(axis) + 1];
-}
-
 Result<Signals> select_signals(const Recording& recording, int axes, bool acceleration_from_sensor) {
   Signals signals;
   const bool one_axis = recording.find("position") != nullptr || recording.find("reaction") != nullptr;
   signals.axes = axes != 0 ? axes : (one_axis ? 1 : 2);
-  const auto take = [&](Quantity quantity, Matrix& target) -> Result<void> {
+  const auto take = [&](const QuantityChannels& quantity, Matrix& target) -> Result<void> {
     auto columns = require(recording, quantity, signals.axes);
     if (!columns) return tl::unexpected(columns.error());
     target = std::move(*columns);
     return {};
   };
-  if (auto ok = take(Quantity::position, signals.position); !ok) return tl::unexpected(ok.error());
-  if (auto ok = take(Quantity::force, signals.force_hand_on_robot); !ok) return tl::unexpected(ok.error());
+  if (auto ok = take(kPositionChannels, signals.position); !ok) return tl::unexpected(ok.error());
+  if (auto ok = take(kForceChannels, signals.force_hand_on_robot); !ok) return tl::unexpected(ok.error());
   if (acceleration_from_sensor) {
-    if (auto ok = take(Quantity::acceleration, signals.acceleration); !ok) return tl::unexpected(ok.error());
+    if (auto ok = take(kAccelerationChannels, signals.acceleration); !ok) return tl::unexpected(ok.error());
   }
-  signals.reference = gather(recording, Quantity::reference, signals.axes);
+  signals.reference = recorded(recording, kReferenceChannels, signals.axes);
   signals.reference_quantity = reference_quantity(recording, signals.axes);
   const auto motion = motion_of(recording, signals.axes);
   if (!motion) return tl::unexpected(motion.error());

@@ -7,12 +7,6 @@
 
 namespace mbk::preprocess {
 
-/// What a channel measures, whatever the number of axes.
-enum class Quantity { position, force, reference, acceleration };
-
-/// The channel's name: "hand_x", "force_y", …; with one axis "position", "reaction", "reference", "acceleration".
-[[nodiscard]] const char* channel_name(Quantity quantity, int axes, Index axis);
-
 /// The channels that a fit needs, side by side, as recorded.
 struct Signals {
   int axes = 2;                ///< n

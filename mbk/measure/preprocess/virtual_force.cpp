@@ -16,6 +16,7 @@
 #include "mbk/measure/preprocess/trial_clock.h"
 #include "mbk/measure/preprocess/windows.h"
 #include "mbk/model/robot/observed_force.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -159,8 +160,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   }
   const int kinds = static_cast<int>(axes);
   std::vector<const Channel*> recorded;
-  for (Index axis = 0; axis < axes; ++axis)
-    recorded.push_back(recording.find(channel_name(Quantity::force, kinds, axis)));
+  for (Index axis = 0; axis < axes; ++axis) recorded.push_back(recording.find(kForceChannels.name(kinds, axis)));
   if (std::ranges::find(recorded, nullptr) == recorded.end()) {
     made.sensor_force.resize(samples, axes);
     for (Index axis = 0; axis < axes; ++axis) {
@@ -170,8 +170,8 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   const bool turns = axes == 1 && !mechanism.slides(0);
   Matrix place;
   for (Index axis = 0; axis < axes; ++axis) {
-    put(made.recording, channel_name(Quantity::force, kinds, axis), turns ? "N.m" : "N", whole.col(axis));
-    const char* const hand = channel_name(Quantity::position, kinds, axis);
+    put(made.recording, kForceChannels.name(kinds, axis), turns ? "N.m" : "N", whole.col(axis));
+    const char* const hand = kPositionChannels.name(kinds, axis);
     if (recording.find(hand) != nullptr) continue;
     if (place.size() == 0) {
       place.resize(samples, axes);

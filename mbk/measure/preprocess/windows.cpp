@@ -135,7 +135,7 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
   const Index begin = sines ? kSinusoidalBegin : (pulses ? kUnderdampedBegin : 0);
   if (!limits.from_s && samples <= begin) {
     return bad_data(fmt::format("the published {} window begins at {:g} s, and this recording lasts {:g} s",
-                                text(protocol), clock.seconds(begin), clock.seconds(samples)),
+                                word_of(protocol), clock.seconds(begin), clock.seconds(samples)),
                     "use --mode default, or name a window with --from and --to");
   }
   auto range = in_samples(limits, begin, sines ? std::min(kSinusoidalEnd, samples) : samples, clock);

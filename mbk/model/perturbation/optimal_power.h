@@ -5,6 +5,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/perturbation/multisine.h"
 #include "mbk/model/perturbation/phases.h"
 
@@ -19,6 +20,11 @@ struct NominalImpedance {
 
 /// Which signal is limited: the position, the velocity, or the force that the nominal impedance answers with.
 enum class LimitedSignal { position, velocity, force };
+
+[[nodiscard]] constexpr auto word_table(LimitedSignal) {
+  using enum LimitedSignal;
+  return std::to_array<Word<LimitedSignal>>({{position, "position"}, {velocity, "velocity"}, {force, "force"}});
+}
 
 struct OptimalPowerOptions {
   LimitedSignal limited = LimitedSignal::position;

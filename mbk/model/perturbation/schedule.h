@@ -11,6 +11,7 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/perturbation/jet.h"
 #include "mbk/model/perturbation/minimum_jerk.h"
 #include "mbk/model/perturbation/multisine.h"
@@ -20,7 +21,13 @@
 namespace mbk::perturbation {
 
 enum class Quantity { position, force };  ///< what a signal commands: a displacement from home, or a force
-enum class Space { hand, joint };         ///< hand: base frame, Cartesian [m | N]; joint: [rad | N·m]
+
+[[nodiscard]] constexpr auto word_table(Quantity) {
+  using enum Quantity;
+  return std::to_array<Word<Quantity>>({{position, "position"}, {force, "force"}});
+}
+
+enum class Space { hand, joint };  ///< hand: base frame, Cartesian [m | N]; joint: [rad | N·m]
 
 /// The unit of a commanded value: "m", "rad", "N" or "N·m".
 [[nodiscard]] std::string_view unit(Quantity quantity, Space space);

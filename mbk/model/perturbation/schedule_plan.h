@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/perturbation/optimal_power.h"
 #include "mbk/model/perturbation/random_binary.h"
 #include "mbk/model/perturbation/schedule.h"
@@ -30,6 +31,20 @@ struct MultisinePlan {
   double duration = 62.1;  ///< [s]
   double moving_in = 5.0;  ///< from rest [s]
 };
+
+[[nodiscard]] constexpr auto word_table(MultisinePlan::Phases) {
+  using enum MultisinePlan::Phases;
+  return std::to_array<Word<MultisinePlan::Phases>>(
+      {{random, "random"}, {schroeder, "schroeder"}, {low_crest, "low_crest"}});
+}
+
+[[nodiscard]] constexpr auto word_table(MultisinePlan::Axes) {
+  using enum MultisinePlan::Axes;
+  return std::to_array<Word<MultisinePlan::Axes>>({{independent, "independent"},
+                                                   {interleaved, "interleaved"},
+                                                   {hadamard_first, "hadamard_first"},
+                                                   {hadamard_second, "hadamard_second"}});
+}
 
 /// Underdamped pulses in random order.
 struct PulsePlan {

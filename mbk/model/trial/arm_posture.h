@@ -4,7 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/words.h"
+
 namespace mbk {
+
+/// On which side of the line from shoulder to hand the elbow is, seen from above; `elbow` in a recording's metadata.
+enum class ElbowSide { right, left };
+
+[[nodiscard]] constexpr auto word_table(ElbowSide) {
+  using enum ElbowSide;
+  return std::to_array<Word<ElbowSide>>({{right, "right"}, {left, "left"}});
+}
 
 /// Where limb or machine stood while it was measured, as points to draw lines between.
 struct ArmPosture {
@@ -18,16 +28,9 @@ struct ArmPosture {
   std::string note;                     ///< why it is no more than that, where the recording meant to say more
 };
 
-[[nodiscard]] constexpr const char* text(ArmPosture::Of of) {
-  switch (of) {
-    case ArmPosture::Of::arm:
-      return "arm";
-    case ArmPosture::Of::robot:
-      return "robot";
-    case ArmPosture::Of::hand:
-      return "hand";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(ArmPosture::Of) {
+  using enum ArmPosture::Of;
+  return std::to_array<Word<ArmPosture::Of>>({{arm, "arm"}, {robot, "robot"}, {hand, "hand"}});
 }
 
 }  // namespace mbk

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/words.h"
+
 namespace mbk {
 
 /// What an axis shows: "stiffness K_xx", in "N/m". The unit may be empty.
@@ -21,6 +23,11 @@ struct ChartSeries {
   std::vector<std::pair<double, double>> intervals;  ///< of y, low and high; none, or one for each point
   Drawn drawn = Drawn::marks;
 };
+
+[[nodiscard]] constexpr auto word_table(ChartSeries::Drawn) {
+  using enum ChartSeries::Drawn;
+  return std::to_array<Word<ChartSeries::Drawn>>({{line, "line"}, {marks, "marks"}});
+}
 
 /// A value that is marked across the whole chart.
 struct ChartReference {

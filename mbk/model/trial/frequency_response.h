@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/identification.h"
 
 namespace mbk {
@@ -27,10 +27,10 @@ struct FrequencyResponse {
 /// What the output of an admittance is: force → this.
 enum class AdmittanceOutput { position, velocity, acceleration };
 
-[[nodiscard]] constexpr std::string_view text(AdmittanceOutput output) {
-  return output == AdmittanceOutput::position   ? "position"
-         : output == AdmittanceOutput::velocity ? "velocity"
-                                                : "acceleration";
+[[nodiscard]] constexpr auto word_table(AdmittanceOutput) {
+  using enum AdmittanceOutput;
+  return std::to_array<Word<AdmittanceOutput>>(
+      {{position, "position"}, {velocity, "velocity"}, {acceleration, "acceleration"}});
 }
 
 /// A value and its standard error.

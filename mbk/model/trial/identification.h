@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/impedance/model.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/warning.h"
@@ -19,16 +20,9 @@ enum class Structure {
   mass_spring,  ///< M = m I, B = 0, K symmetric (eq. 3.8–3.9)
 };
 
-[[nodiscard]] constexpr std::string_view text(Structure structure) {
-  switch (structure) {
-    case Structure::full:
-      return "full";
-    case Structure::symmetric:
-      return "symmetric";
-    case Structure::mass_spring:
-      return "mass-spring";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(Structure) {
+  using enum Structure;
+  return std::to_array<Word<Structure>>({{full, "full"}, {symmetric, "symmetric"}, {mass_spring, "mass-spring"}});
 }
 
 /// How the parameters are found.
@@ -37,8 +31,20 @@ enum class Method {
   instrumental_variables,  ///< on what the known perturbation alone makes of it
 };
 
-[[nodiscard]] constexpr std::string_view text(Method method) {
-  return method == Method::least_squares ? "ls" : "iv";
+[[nodiscard]] constexpr auto word_table(Method) {
+  using enum Method;
+  return std::to_array<Word<Method>>({{least_squares, "ls"}, {instrumental_variables, "iv"}});
+}
+
+/// Which data stand behind the parameters; the fit is always judged on held-back data where there are any.
+enum class ParametersFrom {
+  identification,  ///< the stretches that are there to identify
+  all,             ///< every stretch (Dyck 2013, §3.6.2: parameters from 16 pulses, VAF from 8 against 8)
+};
+
+[[nodiscard]] constexpr auto word_table(ParametersFrom) {
+  using enum ParametersFrom;
+  return std::to_array<Word<ParametersFrom>>({{identification, "identification"}, {all, "all"}});
 }
 
 /// What stands behind instrumental variables, and whether it may.
@@ -124,9 +130,9 @@ struct Identification {
   std::optional<InstrumentCheck> instrument;  ///< with instrumental variables only
   std::optional<Replicates> replicates;       ///< where a bootstrap was asked for
   Structure structure = Structure::full;
-  double hac_lag_s = 0;         ///< reach of the autocovariance in the standard errors [s]
-  double handle_mass = 0;       ///< [kg] taken off the diagonal of M
-  std::string parameters_from;  ///< "identification" or "all": the data behind the parameters
+  double hac_lag_s = 0;    ///< reach of the autocovariance in the standard errors [s]
+  double handle_mass = 0;  ///< [kg] taken off the diagonal of M
+  ParametersFrom parameters_from = ParametersFrom::identification;
   Fit fit;
   Excitation excitation;
   std::optional<DecimationCheck> decimation;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/prepared_trial.h"
 
 namespace mbk {
@@ -15,6 +16,14 @@ enum class InstrumentMotion {
   hand_reference,   ///< what the hand was told to do, through the kinematics
   smoothed,         ///< the measured motion, low-passed to the band of the torque
 };
+
+[[nodiscard]] constexpr auto word_table(InstrumentMotion) {
+  using enum InstrumentMotion;
+  return std::to_array<Word<InstrumentMotion>>({{none, "none"},
+                                                {joint_reference, "joint reference"},
+                                                {hand_reference, "hand reference"},
+                                                {smoothed, "smoothed motion"}});
+}
 
 /// Motor torques beside what a robot's dynamics say they are made of, all filtered alike: τ = W θ.
 struct PreparedDynamics {

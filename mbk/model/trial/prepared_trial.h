@@ -2,11 +2,11 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/units.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/protocol.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/warning.h"
@@ -34,6 +34,14 @@ struct Stretch {
 /// Order of the zero-phase low-pass (Dyck 2013 §3.5.1).
 inline constexpr int kLowpassOrder = 5;
 
+/// Where ẍ comes from.
+enum class AccelerationSource { derivative, sensor };
+
+[[nodiscard]] constexpr auto word_table(AccelerationSource) {
+  using enum AccelerationSource;
+  return std::to_array<Word<AccelerationSource>>({{sensor, "sensor"}, {derivative, "derivative"}});
+}
+
 /// Where the force at the hand comes from.
 enum class ForceSource {
   sensor,          ///< measured
@@ -41,16 +49,9 @@ enum class ForceSource {
   observer,        ///< from the same, as it could be had while the robot runs
 };
 
-[[nodiscard]] constexpr std::string_view text(ForceSource source) {
-  switch (source) {
-    case ForceSource::sensor:
-      return "sensor";
-    case ForceSource::virtual_sensor:
-      return "virtual";
-    case ForceSource::observer:
-      return "observer";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(ForceSource) {
+  using enum ForceSource;
+  return std::to_array<Word<ForceSource>>({{sensor, "sensor"}, {virtual_sensor, "virtual"}, {observer, "observer"}});
 }
 
 /// How the signals of a PreparedTrial were made, so that any number can be traced and made again.
@@ -77,16 +78,9 @@ struct Preparation {
 /// What the perturbation reference is, by the unit of its channel.
 enum class ReferenceQuantity { position, force, unknown };
 
-[[nodiscard]] constexpr std::string_view text(ReferenceQuantity quantity) {
-  switch (quantity) {
-    case ReferenceQuantity::position:
-      return "position";
-    case ReferenceQuantity::force:
-      return "force";
-    case ReferenceQuantity::unknown:
-      break;
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(ReferenceQuantity) {
+  using enum ReferenceQuantity;
+  return std::to_array<Word<ReferenceQuantity>>({{position, "position"}, {force, "force"}, {unknown, "unknown"}});
 }
 
 /// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame. Where the low-pass leaves

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include "mbk/base/core/words.h"
 
 namespace mbk {
 
@@ -18,24 +18,19 @@ enum class Mode { improved, reference };
 /// chapter 5 takes it from the accelerometer, W = 151, 4.5 Hz.
 enum class Procedure { chapter3, chapter5 };
 
-[[nodiscard]] constexpr std::string_view text(Protocol protocol) {
-  switch (protocol) {
-    case Protocol::sinusoidal:
-      return "sinusoidal";
-    case Protocol::underdamped:
-      return "underdamped";
-    case Protocol::free:
-      return "free";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(Protocol) {
+  using enum Protocol;
+  return std::to_array<Word<Protocol>>({{sinusoidal, "sinusoidal"}, {underdamped, "underdamped"}, {free, "free"}});
 }
 
-[[nodiscard]] constexpr std::string_view text(Mode mode) {
-  return mode == Mode::improved ? "default" : "reference";
+[[nodiscard]] constexpr auto word_table(Mode) {
+  using enum Mode;
+  return std::to_array<Word<Mode>>({{improved, "default"}, {reference, "reference"}});
 }
 
-[[nodiscard]] constexpr std::string_view text(Procedure procedure) {
-  return procedure == Procedure::chapter3 ? "chapter3" : "chapter5";
+[[nodiscard]] constexpr auto word_table(Procedure) {
+  using enum Procedure;
+  return std::to_array<Word<Procedure>>({{chapter3, "chapter3"}, {chapter5, "chapter5"}});
 }
 
 }  // namespace mbk

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
-#include <string_view>
-#include <utility>
+#include "mbk/base/core/words.h"
 
 namespace mbk {
 
@@ -13,11 +11,9 @@ enum class Readers {
   all,    ///< 0644
 };
 
-inline constexpr std::array<std::pair<std::string_view, Readers>, 3> kReaders = {
-    {{"owner", Readers::owner}, {"group", Readers::group}, {"all", Readers::all}}};
-
-[[nodiscard]] constexpr std::string_view text(Readers readers) {
-  return kReaders[static_cast<std::size_t>(readers)].first;
+[[nodiscard]] constexpr auto word_table(Readers) {
+  using enum Readers;
+  return std::to_array<Word<Readers>>({{owner, "owner"}, {group, "group"}, {all, "all"}});
 }
 
 /// The permissions of such a file, whatever the umask.

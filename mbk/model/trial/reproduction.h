@@ -2,10 +2,10 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/chart.h"
 
 namespace mbk {
@@ -17,16 +17,10 @@ enum class Provenance {
   not_recoverable,  ///< what it rests on was never published
 };
 
-[[nodiscard]] constexpr std::string_view text(Provenance provenance) {
-  switch (provenance) {
-    case Provenance::recomputed:
-      return "recomputed";
-    case Provenance::simulated:
-      return "simulated";
-    case Provenance::not_recoverable:
-      return "not recoverable";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(Provenance) {
+  using enum Provenance;
+  return std::to_array<Word<Provenance>>(
+      {{recomputed, "recomputed"}, {simulated, "simulated"}, {not_recoverable, "not recoverable"}});
 }
 
 /// How a number of ours stands to the printed one.
@@ -37,18 +31,10 @@ enum class Agreement {
   differs,          ///< it does not, and nothing explains it
 };
 
-[[nodiscard]] constexpr std::string_view text(Agreement agreement) {
-  switch (agreement) {
-    case Agreement::not_compared:
-      return "not compared";
-    case Agreement::within_rounding:
-      return "within rounding";
-    case Agreement::slip:
-      return "slip";
-    case Agreement::differs:
-      return "differs";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(Agreement) {
+  using enum Agreement;
+  return std::to_array<Word<Agreement>>(
+      {{not_compared, "not compared"}, {within_rounding, "within rounding"}, {slip, "slip"}, {differs, "differs"}});
 }
 
 /// One cell of a table: numbers, or words where there is no number.
@@ -107,20 +93,10 @@ struct Exhibit {
   std::vector<std::string> related;  ///< ids of other exhibits
 };
 
-[[nodiscard]] constexpr std::string_view text(Exhibit::Kind kind) {
-  switch (kind) {
-    case Exhibit::Kind::table:
-      return "table";
-    case Exhibit::Kind::figure:
-      return "figure";
-    case Exhibit::Kind::slip:
-      return "slip";
-    case Exhibit::Kind::question:
-      return "question";
-    case Exhibit::Kind::future_work:
-      return "future work";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(Exhibit::Kind) {
+  using enum Exhibit::Kind;
+  return std::to_array<Word<Exhibit::Kind>>(
+      {{table, "table"}, {figure, "figure"}, {slip, "slip"}, {question, "question"}, {future_work, "future work"}});
 }
 
 /// What of a source was made again.

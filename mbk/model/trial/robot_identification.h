@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/robot/dynamic_model.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/prepared_dynamics.h"
@@ -18,16 +19,10 @@ enum class RobotMethod {
   instrumental_variables,  ///< weighted, on what the commanded or smoothed motion makes of the regressors
 };
 
-[[nodiscard]] constexpr std::string_view text(RobotMethod method) {
-  switch (method) {
-    case RobotMethod::least_squares:
-      return "ls";
-    case RobotMethod::weighted_least_squares:
-      return "wls";
-    case RobotMethod::instrumental_variables:
-      return "iv";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(RobotMethod) {
+  using enum RobotMethod;
+  return std::to_array<Word<RobotMethod>>(
+      {{weighted_least_squares, "wls"}, {least_squares, "ls"}, {instrumental_variables, "iv"}});
 }
 
 /// What a coefficient of the robot turned out to be.

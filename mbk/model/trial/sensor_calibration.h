@@ -3,11 +3,10 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk {
@@ -26,32 +25,21 @@ enum class SensorWarningCode {
   step_contradicts_converter,
 };
 
-/// Every code with its text, which is stable: scripts may test for it.
-inline constexpr auto kSensorWarningTexts = std::to_array<std::pair<SensorWarningCode, std::string_view>>({
-    {SensorWarningCode::few_loads, "few-loads"},
-    {SensorWarningCode::one_sided_loads, "one-sided-loads"},
-    {SensorWarningCode::loads_nearly_collinear, "loads-nearly-collinear"},
-    {SensorWarningCode::clipping, "clipping"},
-    {SensorWarningCode::nonlinear, "nonlinear"},
-    {SensorWarningCode::hysteresis, "hysteresis"},
-    {SensorWarningCode::noise_below_resolution, "noise-below-resolution"},
-    {SensorWarningCode::zero_changed, "zero-changed"},
-    {SensorWarningCode::voltage_unlikely, "voltage-unlikely"},
-    {SensorWarningCode::step_contradicts_converter, "step-contradicts-converter"},
-});
-
-[[nodiscard]] constexpr std::string_view text(SensorWarningCode code) {
-  for (const auto& [known, words] : kSensorWarningTexts) {
-    if (known == code) return words;
-  }
-  return "unknown";
-}
-
-[[nodiscard]] constexpr std::optional<SensorWarningCode> sensor_warning_code(std::string_view words) {
-  for (const auto& [known, its_words] : kSensorWarningTexts) {
-    if (its_words == words) return known;
-  }
-  return std::nullopt;
+/// Stable: scripts may test for these words.
+[[nodiscard]] constexpr auto word_table(SensorWarningCode) {
+  using enum SensorWarningCode;
+  return std::to_array<Word<SensorWarningCode>>({
+      {few_loads, "few-loads"},
+      {one_sided_loads, "one-sided-loads"},
+      {loads_nearly_collinear, "loads-nearly-collinear"},
+      {clipping, "clipping"},
+      {nonlinear, "nonlinear"},
+      {hysteresis, "hysteresis"},
+      {noise_below_resolution, "noise-below-resolution"},
+      {zero_changed, "zero-changed"},
+      {voltage_unlikely, "voltage-unlikely"},
+      {step_contradicts_converter, "step-contradicts-converter"},
+  });
 }
 
 struct SensorWarning {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mbk/base/core/units.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/chart.h"
 
 namespace mbk {
@@ -20,6 +21,16 @@ enum class StabilityCondition {
   product,       ///< 2 r₁₁ r₂₂ − Re p ≥ 0
   squares,       ///< 4 r₁₁ r₂₂ (r₁₁ r₂₂ − Re p) − (Im p)² ≥ 0
 };
+
+[[nodiscard]] constexpr auto word_table(StabilityCondition) {
+  using enum StabilityCondition;
+  return std::to_array<Word<StabilityCondition>>({{right_poles, "right_poles"},
+                                                  {axis_poles, "axis_poles"},
+                                                  {resistance_1, "r11"},
+                                                  {resistance_2, "r22"},
+                                                  {product, "product"},
+                                                  {squares, "squares"}});
+}
 
 /// "2 r11 r22 − Re p ≥ 0"
 [[nodiscard]] inline const char* text(StabilityCondition condition) {
@@ -59,17 +70,9 @@ enum class StabilityVerdict {
   unstable,  ///< one is violated: not absolutely stable
 };
 
-/// The word of the JSON.
-[[nodiscard]] inline const char* text(StabilityVerdict verdict) {
-  switch (verdict) {
-    case StabilityVerdict::stable:
-      return "stable";
-    case StabilityVerdict::marginal:
-      return "marginal";
-    case StabilityVerdict::unstable:
-      break;
-  }
-  return "unstable";
+[[nodiscard]] constexpr auto word_table(StabilityVerdict) {
+  using enum StabilityVerdict;
+  return std::to_array<Word<StabilityVerdict>>({{stable, "stable"}, {marginal, "marginal"}, {unstable, "unstable"}});
 }
 
 struct AbsoluteStability {
@@ -161,17 +164,9 @@ enum class MotionOutcome {
   grows,     ///< more than twice as fast, or it ran away
 };
 
-/// The word of the JSON.
-[[nodiscard]] inline const char* text(MotionOutcome outcome) {
-  switch (outcome) {
-    case MotionOutcome::dies_out:
-      return "dies_out";
-    case MotionOutcome::bounded:
-      return "bounded";
-    case MotionOutcome::grows:
-      break;
-  }
-  return "grows";
+[[nodiscard]] constexpr auto word_table(MotionOutcome) {
+  using enum MotionOutcome;
+  return std::to_array<Word<MotionOutcome>>({{dies_out, "dies_out"}, {bounded, "bounded"}, {grows, "grows"}});
 }
 
 /// One simulation of hand, master, line, slave and environment in time.

@@ -3,11 +3,11 @@
 #include <complex>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/words.h"
 #include "mbk/model/trial/frequency_response.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/warning.h"
@@ -37,20 +37,10 @@ struct TransferFunction {
 /// How a transfer function is found.
 enum class TransferFunctionMethod { srivc, rivc, closed_loop, output_error, box_jenkins };
 
-[[nodiscard]] constexpr std::string_view text(TransferFunctionMethod method) {
-  switch (method) {
-    case TransferFunctionMethod::srivc:
-      return "srivc";
-    case TransferFunctionMethod::rivc:
-      return "rivc";
-    case TransferFunctionMethod::closed_loop:
-      return "clsrivc";
-    case TransferFunctionMethod::output_error:
-      return "oe";
-    case TransferFunctionMethod::box_jenkins:
-      return "bj";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(TransferFunctionMethod) {
+  using enum TransferFunctionMethod;
+  return std::to_array<Word<TransferFunctionMethod>>(
+      {{srivc, "srivc"}, {rivc, "rivc"}, {closed_loop, "clsrivc"}, {output_error, "oe"}, {box_jenkins, "bj"}});
 }
 
 /// Whether its models are of samples; otherwise of continuous time.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include "mbk/base/core/words.h"
 
 namespace mbk {
 
@@ -11,16 +11,9 @@ enum class Verdict {
   undecided,  ///< the data do not say
 };
 
-[[nodiscard]] constexpr std::string_view text(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::passive:
-      return "passive";
-    case Verdict::active:
-      return "active";
-    case Verdict::undecided:
-      return "undecided";
-  }
-  return "unknown";
+[[nodiscard]] constexpr auto word_table(Verdict) {
+  using enum Verdict;
+  return std::to_array<Word<Verdict>>({{passive, "passive"}, {active, "active"}, {undecided, "undecided"}});
 }
 
 }  // namespace mbk

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
+
+#include "mbk/base/core/words.h"
 
 namespace mbk {
 
@@ -33,45 +32,32 @@ enum class WarningCode {
   uneven_clock,
 };
 
-/// Every code with its text, which is stable: scripts may test for it.
-inline constexpr auto kWarningTexts = std::to_array<std::pair<WarningCode, std::string_view>>({
-    {WarningCode::force_sign_reversed, "force-sign-reversed"},
-    {WarningCode::inertia_not_positive, "inertia-not-positive"},
-    {WarningCode::damping_not_positive, "damping-not-positive"},
-    {WarningCode::stiffness_not_positive, "stiffness-not-positive"},
-    {WarningCode::band_too_narrow, "band-too-narrow"},
-    {WarningCode::motion_on_one_line, "motion-on-one-line"},
-    {WarningCode::motion_too_small, "motion-too-small"},
-    {WarningCode::poorly_conditioned, "poorly-conditioned"},
-    {WarningCode::held_back_fit_poor, "held-back-fit-poor"},
-    {WarningCode::fit_poor, "fit-poor"},
-    {WarningCode::no_held_back_data, "no-held-back-data"},
-    {WarningCode::clock_jitter, "clock-jitter"},
-    {WarningCode::resampled, "resampled"},
-    {WarningCode::clipping, "clipping"},
-    {WarningCode::too_little_data, "too-little-data"},
-    {WarningCode::decimation_changes_model, "decimation-changes-model"},
-    {WarningCode::torque_unit, "torque-unit"},
-    {WarningCode::residual_not_white, "residual-not-white"},
-    {WarningCode::input_explains_residual, "input-explains-residual"},
-    {WarningCode::pole_outside_band, "pole-outside-band"},
-    {WarningCode::uneven_clock, "uneven-clock"},
-});
-
-/// "inertia-not-positive", …
-[[nodiscard]] constexpr std::string_view text(WarningCode code) {
-  for (const auto& [known, words] : kWarningTexts) {
-    if (known == code) return words;
-  }
-  return "unknown";
-}
-
-/// The code of that text, where there is one.
-[[nodiscard]] constexpr std::optional<WarningCode> warning_code(std::string_view words) {
-  for (const auto& [known, its_words] : kWarningTexts) {
-    if (its_words == words) return known;
-  }
-  return std::nullopt;
+/// Stable: scripts may test for these words.
+[[nodiscard]] constexpr auto word_table(WarningCode) {
+  using enum WarningCode;
+  return std::to_array<Word<WarningCode>>({
+      {force_sign_reversed, "force-sign-reversed"},
+      {inertia_not_positive, "inertia-not-positive"},
+      {damping_not_positive, "damping-not-positive"},
+      {stiffness_not_positive, "stiffness-not-positive"},
+      {band_too_narrow, "band-too-narrow"},
+      {motion_on_one_line, "motion-on-one-line"},
+      {motion_too_small, "motion-too-small"},
+      {poorly_conditioned, "poorly-conditioned"},
+      {held_back_fit_poor, "held-back-fit-poor"},
+      {fit_poor, "fit-poor"},
+      {no_held_back_data, "no-held-back-data"},
+      {clock_jitter, "clock-jitter"},
+      {resampled, "resampled"},
+      {clipping, "clipping"},
+      {too_little_data, "too-little-data"},
+      {decimation_changes_model, "decimation-changes-model"},
+      {torque_unit, "torque-unit"},
+      {residual_not_white, "residual-not-white"},
+      {input_explains_residual, "input-explains-residual"},
+      {pole_outside_band, "pole-outside-band"},
+      {uneven_clock, "uneven-clock"},
+  });
 }
 
 /// One thing that the user must know, what it means in words, and what to try.

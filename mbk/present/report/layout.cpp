@@ -57,7 +57,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 std::string warnings_text(const std::vector<Warning>& warnings) {
   std::string text;
   for (const Warning& warning : warnings) {
-    text += paragraph("  ! ", fmt::format("{}: {}", mbk::text(warning.code), warning.message));
+    text += paragraph("  ! ", fmt::format("{}: {}", word_of(warning.code), warning.message));
     text += paragraph("    try: ", warning.remedy);
   }
   return text;

@@ -24,7 +24,7 @@ const char* long_name(Method method) {
 
 std::string model_text(const ModelPassivity& model) {
   std::string text = fmt::format("  model of {}: {} from {:.3g} to {:.3g} Hz\n", long_name(model.method),
-                                 mbk::text(model.verdict), model.band.low.value, model.band.high.value);
+                                 word_of(model.verdict), model.band.low.value, model.band.high.value);
   std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "± s.e.", "unit", ""}};
   for (const PassivityCondition& c : model.conditions) {
     rows.push_back({c.name, fmt::format("{:.3g}", c.value), fmt::format("{:.2g}", c.standard_error), c.unit,
@@ -56,7 +56,7 @@ std::string energy_text(const EnergyAccount& account, const char* unit) {
   };
   const auto [end, end95] = shortage(account.shortage_at_end, account.shortage_at_end95);
   const auto [most, most95] = shortage(account.shortage_largest, account.shortage_largest95);
-  return fmt::format("  energy: {}\n", mbk::text(account.verdict)) +
+  return fmt::format("  energy: {}\n", word_of(account.verdict)) +
          table({{"absorbed", fmt::format("{:.3g} J", account.absorbed), between(account.absorbed95),
                  fmt::format("in {:.1f} s", account.duration)},
                 {what, fmt::format("{:.3g} {}", end, unit), between(end95), "eq. (4.3)"},
@@ -68,7 +68,7 @@ std::string energy_text(const EnergyAccount& account, const char* unit) {
 
 std::string passivity_text(const Passivity& passivity, Motion motion) {
   std::string text =
-      fmt::format("passivity: {}, by the {}\n", mbk::text(passivity.verdict), passivity.by_model ? "model" : "energy");
+      fmt::format("passivity: {}, by the {}\n", word_of(passivity.verdict), passivity.by_model ? "model" : "energy");
   text += paragraph("  ", passivity.reason);
   text += "\n";
   for (const ModelPassivity& model : passivity.models) text += model_text(model) + "\n";
@@ -100,7 +100,7 @@ std::string consistent_text(const ConsistentFit& fit, Motion motion) {
 }
 
 std::string passivity_line(const Passivity& passivity) {
-  return paragraph("  ", fmt::format("passivity: {}, by the {}: {}", mbk::text(passivity.verdict),
+  return paragraph("  ", fmt::format("passivity: {}, by the {}: {}", word_of(passivity.verdict),
                                      passivity.by_model ? "model" : "energy", passivity.reason));
 }
 

@@ -132,7 +132,7 @@ std::string sensor_text(const SensorCalibration& c) {
   text += c.lever_arm ? fmt::format("  lever arm    {:g} mm in this calibration\n", kMilli * *c.lever_arm)
                       : paragraph("  lever arm    ", "not said; --lever-arm-mm keeps it for other points of attack");
   for (const SensorWarning& warning : c.warnings) {
-    text += paragraph("  ! ", fmt::format("{}: {}", mbk::text(warning.code), warning.message));
+    text += paragraph("  ! ", fmt::format("{}: {}", word_of(warning.code), warning.message));
     if (!warning.remedy.empty()) text += paragraph("    try: ", warning.remedy);
   }
   return text + "\n(± is the standard error; the slope of V on F, inverted, is the answer, and F on V stands beside)\n";

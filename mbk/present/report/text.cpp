@@ -55,9 +55,9 @@ std::string how_made(const Identification& id) {
     rows.push_back({"", fmt::format("and {} notes more: see 'mbk info'", id.notes.size() - kNotes)});
   }
   rows.push_back({"mode", how.mode == Mode::reference
-                              ? fmt::format("reference, {} of the published procedure", text(how.procedure))
+                              ? fmt::format("reference, {} of the published procedure", word_of(how.procedure))
                               : "default"});
-  rows.push_back({"protocol", fmt::format("{} ({})", text(how.protocol), how.protocol_rule)});
+  rows.push_back({"protocol", fmt::format("{} ({})", word_of(how.protocol), how.protocol_rule)});
   rows.push_back({"window", how.window_rule});
   rows.push_back({"filters", filters_text(how)});
   if (how.force_source != ForceSource::sensor) {
@@ -68,7 +68,7 @@ std::string how_made(const Identification& id) {
   rows.push_back(
       {"acceleration", how.acceleration_from_sensor ? "from the accelerometer" : "second derivative of position"});
   std::string data = fmt::format("{:.1f} s", id.excitation.duration);
-  data += id.parameters_from == "all" ? ", all that counts" : "";
+  data += id.parameters_from == ParametersFrom::all ? ", all that counts" : "";
   if (id.preparations.size() > 1) data += fmt::format(", {} trials pooled", id.preparations.size());
   rows.push_back({"parameters", data});
   const Excitation& e = id.excitation;
@@ -82,7 +82,7 @@ std::string how_made(const Identification& id) {
   } else if (how.mode == Mode::reference && how.procedure == Procedure::chapter5) {
     rows.push_back({"handle", "nothing taken off the inertia (the published handle of 0.135 kg: --handle-mass 0.135)"});
   }
-  if (id.structure != Structure::full) rows.push_back({"structure", std::string(text(id.structure))});
+  if (id.structure != Structure::full) rows.push_back({"structure", std::string(word_of(id.structure))});
   return table(rows);
 }
 

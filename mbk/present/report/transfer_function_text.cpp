@@ -213,7 +213,7 @@ std::vector<Chart> response_charts(const TransferFunctionIdentification& found, 
 std::string inverted_admittance_text(const InvertedAdmittance& inverse) {
   const Units units = units_of(inverse.motion);
   std::string text =
-      fmt::format("\nimpedance, force per velocity: the inverse of force → {}\n", mbk::text(inverse.output));
+      fmt::format("\nimpedance, force per velocity: the inverse of force → {}\n", word_of(inverse.output));
   Rows rows;
   const auto add = [&](const char* name, const std::optional<Estimate>& value, const char* unit) {
     if (value)

@@ -16,7 +16,7 @@ Json joint_domain_json(const JointDomain& joints) {
   Json points = Json::array();
   for (const Eigen::Vector2d& point : joints.posture.points) points.push_back(list(point));
   return {
-      {"of", text(joints.posture.of)},
+      {"of", word_of(joints.posture.of)},
       {"second_joint_against", of_arm ? "first link" : "base"},
       {"points_m", std::move(points)},
       {"joint_angles_deg", list(180.0 / std::numbers::pi * joints.angles)},

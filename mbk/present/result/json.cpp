@@ -86,12 +86,12 @@ Json antisymmetry_json(const Findings& findings) {
 Json fit_json(const Fit& fit) {
   return {{"VAF", list(fit.vaf)},
           {"RMSE", list(fit.rmse)},
-          {"validated_on", fit.held_back ? "held-back" : "in-sample"},
+          {"validated_on", validated_on(fit.held_back)},
           {"VAF_in_sample", list(fit.vaf_in_sample)}};
 }
 
 Json instrument_json(const InstrumentCheck& check) {
-  return {{"reference", text(check.from)},
+  return {{"reference", word_of(check.from)},
           {"first_stage_F", list(check.strength)},
           {"weakest_F", number(check.weakest())},
           {"strong", check.strong()},
@@ -100,7 +100,7 @@ Json instrument_json(const InstrumentCheck& check) {
 
 /// A second method beside the first, without what both have in common.
 Json alternative_json(const Identification& id) {
-  Json json = {{"method", text(id.method)},
+  Json json = {{"method", word_of(id.method)},
                {"model", model_json(id.model)},
                {"standard_error", model_json(id.standard_error)},
                {"fit", fit_json(id.fit)},
@@ -169,12 +169,12 @@ Json result_json(const Measurement& measured) {
   }
   if (!id.notes.empty()) json["notes"] = id.notes;
   if (!id.preparations.empty()) {  // a result that was read back says nothing of how it was made
-    json["mode"] = text(id.preparations.front().mode);
-    json["protocol"] = text(id.preparations.front().protocol);
+    json["mode"] = word_of(id.preparations.front().mode);
+    json["protocol"] = word_of(id.preparations.front().protocol);
   }
-  json["method"] = text(id.method);
+  json["method"] = word_of(id.method);
   json["axes"] = id.axes;
-  json["structure"] = text(id.structure);
+  json["structure"] = word_of(id.structure);
   if (id.motion != Motion::unknown) {
     const Units units = units_of(id.motion);
     json["units"] = {{"M", units.inertia},
@@ -204,7 +204,7 @@ Json result_json(const Measurement& measured) {
   json["warnings"] = warnings_json(id.warnings);
   json["usable"] = id.usable;
   json["covariance"] = {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}};
-  json["estimation"] = {{"parameters_from", id.parameters_from},
+  json["estimation"] = {{"parameters_from", word_of(id.parameters_from)},
                         {"samples", id.samples},
                         {"duration_s", id.excitation.duration},
                         {"hac_lag_s", id.hac_lag_s},
@@ -288,7 +288,7 @@ Fit fit_from(const Json& json, Index n) {
   fit.rmse = list_from(json, "RMSE", n);
   fit.vaf_in_sample =
       json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n) : Vector::Constant(n, kUnknown);
-  fit.held_back = json.value("validated_on", "held-back") == "held-back";
+  fit.held_back = json.value("validated_on", validated_on(true)) == validated_on(true);
   return fit;
 }
 
@@ -297,7 +297,7 @@ std::vector<Warning> warnings_from(const Json& json) {
   std::vector<Warning> warnings;
   for (const Json& one : json) {
     const std::string code = one.value("code", "");
-    const auto known = warning_code(code);
+    const auto known = value_of<WarningCode>(code);
     if (!known) throw Malformed{fmt::format("there is no warning '{}'", code)};
     warnings.push_back({*known, one.value("message", ""), one.value("try", "")});
   }
@@ -336,8 +336,7 @@ Identification identification_from(const Json& json) {
     id.covariance = matrix_from(*covariance, "matrix", count, count);
     id.parameters = covariance->value("parameters", std::vector<std::string>{});
   }
-  id.method = json.value("method", "ls") == text(Method::instrumental_variables) ? Method::instrumental_variables
-                                                                                 : Method::least_squares;
+  id.method = value_of<Method>(json.value("method", "")).value_or(Method::least_squares);
   id.usable = json.value("usable", true);
   if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
     for (const Json& input : *inputs) {

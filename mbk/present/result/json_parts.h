@@ -63,6 +63,11 @@ inline std::string dumped(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// What the fit was judged on.
+inline const char* validated_on(bool held_back) {
+  return held_back ? "held-back" : "in-sample";
+}
+
 inline Json header(const char* schema) {
   return {{"schema", schema}, {"software", fmt::format("mbk {}", version())}};
 }
@@ -78,13 +83,13 @@ inline Json inputs_json(const std::vector<SourceFile>& sources) {
 inline Json warnings_json(const std::vector<Warning>& warnings) {
   Json array = Json::array();
   for (const Warning& warning : warnings) {
-    array.push_back({{"code", text(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
+    array.push_back({{"code", word_of(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
   }
   return array;
 }
 
 inline Json preparation_json(const Preparation& how) {
-  Json json = {{"protocol", text(how.protocol)},
+  Json json = {{"protocol", word_of(how.protocol)},
                {"protocol_rule", how.protocol_rule},
                {"window_rule", how.window_rule},
                {"from_s", how.from_s},
@@ -94,12 +99,13 @@ inline Json preparation_json(const Preparation& how) {
                {"cutoff_rule", how.cutoff_rule},
                {"every", how.every},
                {"excited_band_hz", {how.band_low.value, how.band_high.value}},
-               {"force_source", text(how.force_source)},
-               {"acceleration", how.acceleration_from_sensor ? "sensor" : "derivative"},
+               {"force_source", word_of(how.force_source)},
+               {"acceleration",
+                word_of(how.acceleration_from_sensor ? AccelerationSource::sensor : AccelerationSource::derivative)},
                {"cut_before_filter", how.cut_before_filter}};
   if (how.split_s) json["split_s"] = *how.split_s;
   if (how.protocol == Protocol::underdamped) json["perturbations"] = how.perturbations;
-  if (how.mode == Mode::reference) json["procedure"] = text(how.procedure);
+  if (how.mode == Mode::reference) json["procedure"] = word_of(how.procedure);
   return json;
 }
 

@@ -48,7 +48,7 @@ Measurement measured(int axes) {
   id.durations = {62.0};
   id.rates = {1000.0};
   id.warnings.push_back({WarningCode::fit_poor, "so \"so\"", "again\n"});
-  id.parameters_from = "identification";
+  id.parameters_from = ParametersFrom::identification;
   if (axes == 2) {
     result.findings.emplace();
     result.findings->ellipses[0].ellipse.area = 4.0;

@@ -6,9 +6,9 @@ namespace mbk::result {
 namespace {
 
 Json model_passivity_json(const ModelPassivity& model) {
-  Json json = {{"method", text(model.method)},
-               {"verdict", text(model.verdict)},
-               {"symmetric_part", text(model.symmetric_verdict)},
+  Json json = {{"method", word_of(model.method)},
+               {"verdict", word_of(model.verdict)},
+               {"symmetric_part", word_of(model.symmetric_verdict)},
                {"published_rule", model.published_rule ? "passive" : "active"},
                {"band_hz", {model.band.low.value, model.band.high.value}},
                {"band_rule", model.band.rule},
@@ -25,7 +25,7 @@ Json model_passivity_json(const ModelPassivity& model) {
                                   {"standard_error", number(c.standard_error)},
                                   {"lower95", number(c.lower95)},
                                   {"upper", number(c.upper)},
-                                  {"verdict", text(c.verdict)}});
+                                  {"verdict", word_of(c.verdict)}});
   }
   if (model.excess) {
     json["eop"] = {{"corrected", number(model.excess->corrected)},
@@ -41,7 +41,7 @@ Json model_passivity_json(const ModelPassivity& model) {
 }
 
 Json account_json(const EnergyAccount& account) {
-  return {{"verdict", text(account.verdict)},
+  return {{"verdict", word_of(account.verdict)},
           {"reason", account.reason},
           {"absorbed_J", number(account.absorbed)},
           {"interval95", interval(account.absorbed95)},
@@ -89,7 +89,7 @@ Json energy_json(const Energy& energy) {
 }
 
 Json passivity_json(const Passivity& passivity) {
-  Json json = {{"verdict", text(passivity.verdict)},
+  Json json = {{"verdict", word_of(passivity.verdict)},
                {"decided_by", passivity.by_model ? "model" : "energy"},
                {"reason", passivity.reason},
                {"explained_percent", number(passivity.explained)}};

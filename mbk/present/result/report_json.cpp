@@ -68,7 +68,7 @@ Json facts_json(const RecordingFacts& facts) {
   Json json = {{"metadata", Json::object()}};
   for (const auto& [key, value] : facts.metadata) json["metadata"][key] = value;
   if (!facts.posture) return json;
-  json["posture"] = {{"of", text(facts.posture->of)}, {"points_m", Json::array()}};
+  json["posture"] = {{"of", word_of(facts.posture->of)}, {"points_m", Json::array()}};
   for (const Eigen::Vector2d& point : facts.posture->points) json["posture"]["points_m"].push_back(rounded(point));
   if (!facts.posture->note.empty()) json["posture"]["note"] = facts.posture->note;
   return json;

@@ -17,14 +17,14 @@ Json cell_json(const ReproducedCell& cell) {
                {"difference", optional(cell.difference())},
                {"spread", optional(cell.spread)},
                {"range", cell.range ? interval(*cell.range) : Json(nullptr)},
-               {"agreement", text(cell.agreement)}};
+               {"agreement", word_of(cell.agreement)}};
   return json;
 }
 
 Json table_json(const ReproducedTable& table) {
   Json json = {{"id", table.id},
                {"title", table.title},
-               {"provenance", text(table.provenance)},
+               {"provenance", word_of(table.provenance)},
                {"what_rows_are", table.what_rows_are},
                {"spread_is", table.spread_is},
                {"slip", table.slip.empty() ? Json(nullptr) : Json(table.slip)},
@@ -71,7 +71,7 @@ Json chart_json(const Chart& chart) {
                {"series", Json::array()}};
   for (const ChartSeries& series : chart.series) {
     Json one = {{"name", series.name},
-                {"drawn", series.drawn == ChartSeries::Drawn::line ? "line" : "marks"},
+                {"drawn", word_of(series.drawn)},
                 {"x", rounded_list(series.x)},
                 {"y", rounded_list(series.y)},
                 {"intervals", Json::array()}};
@@ -103,15 +103,15 @@ std::string to_json(const Reproduction& reproduction) {
   json["source"] = reproduction.source;
   json["agreement"] = Json::object();
   for (const Agreement agreement : {Agreement::within_rounding, Agreement::slip, Agreement::differs}) {
-    json["agreement"][std::string(text(agreement))] = reproduction.count(agreement);
+    json["agreement"][std::string(word_of(agreement))] = reproduction.count(agreement);
   }
   json["exhibits"] = Json::array();
   for (const Exhibit& exhibit : reproduction.exhibits) {
     Json one = {{"id", exhibit.id},
-                {"kind", text(exhibit.kind)},
+                {"kind", word_of(exhibit.kind)},
                 {"chapter", exhibit.chapter},
                 {"title", exhibit.title},
-                {"provenance", text(exhibit.provenance)},
+                {"provenance", word_of(exhibit.provenance)},
                 {"text", exhibit.text},
                 {"commands", exhibit.commands},
                 {"related", exhibit.related},
@@ -141,7 +141,7 @@ std::string to_csv(const ReproducedTable& table) {
       csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", field(row.name), field(table.columns[k].name),
                          field(table.columns[k].unit), field(cell.printed),
                          cell.words.empty() ? field(cell.ours) : field(cell.words), field(cell.difference()),
-                         field(cell.spread), field(low), field(high), text(cell.agreement));
+                         field(cell.spread), field(low), field(high), word_of(cell.agreement));
     }
   }
   return csv;

@@ -12,20 +12,6 @@ namespace {
 
 constexpr const char* kSchema = "mbk.robot/1";
 
-const char* text(InstrumentMotion motion) {
-  switch (motion) {
-    case InstrumentMotion::joint_reference:
-      return "joint reference";
-    case InstrumentMotion::hand_reference:
-      return "hand reference";
-    case InstrumentMotion::smoothed:
-      return "smoothed motion";
-    case InstrumentMotion::none:
-      break;
-  }
-  return "none";
-}
-
 Json drive_json(const robot::DriveTerms& drive) {
   Json json = {{"terms", Json::array()}, {"smoothing", drive.smoothing}};
   for (const robot::DriveTermName& term : robot::kDriveTermNames) {
@@ -93,9 +79,9 @@ std::string to_json(const RobotIdentification& found) {
     json["inputs"][k]["duration_s"] = found.durations[k];
     json["inputs"][k]["rate_hz"] = found.rates[k];
   }
-  json["method"] = mbk::text(found.method);
+  json["method"] = word_of(found.method);
   if (found.method == RobotMethod::instrumental_variables) {
-    json["instruments"] = text(found.instrument_motion);
+    json["instruments"] = word_of(found.instrument_motion);
     if (found.instrument_motion == InstrumentMotion::smoothed) json["motion_cutoff_hz"] = found.motion_cutoff;
   }
   json["parameters"] = Json::array();
@@ -122,7 +108,7 @@ std::string to_json(const RobotIdentification& found) {
     json["fit"].push_back(std::move(entry));
   }
   if (found.smoothed_cutoff > 0.0) json["smoothed_motion_cutoff_hz"] = found.smoothed_cutoff;
-  json["validated_on"] = found.held_back ? "held-back" : "in-sample";
+  json["validated_on"] = validated_on(found.held_back);
   if (!found.held_back_files.empty()) json["held_back_files"] = found.held_back_files;
   json["excitation"] = {{"rank", found.rank},
                         {"structural_rank", found.structural_rank},
@@ -152,7 +138,7 @@ std::string to_json(const RobotIdentification& found) {
 std::string to_json(const ForceSummary& force) {
   Json json = header("mbk.force/1");
   json["inputs"] = inputs_json(force.sources);
-  json["force_source"] = mbk::text(force.source);
+  json["force_source"] = word_of(force.source);
   json["lag_s"] = number(force.lag);
   json["RMS"] = list(force.rms);
   json["peak"] = list(force.peak);

@@ -135,7 +135,7 @@ void read_provenance(SensorCalibration& calibration, const Json& json) {
         {text_or_empty(one, "file"), text_or_empty(one, "format"), text_or_empty(one, "sha256")});
   });
   each("warnings", [&](const Json& one) {
-    const auto code = one.is_object() ? sensor_warning_code(text_or_empty(one, "code")) : std::nullopt;
+    const auto code = one.is_object() ? value_of<SensorWarningCode>(text_or_empty(one, "code")) : std::nullopt;
     if (code) calibration.warnings.push_back({*code, text_or_empty(one, "message"), text_or_empty(one, "try")});
   });
   each("notes", [&](const Json& one) {
@@ -175,7 +175,8 @@ std::string to_json(const SensorCalibration& calibration) {
   for (const Vector& zero : calibration.zero_voltages) json["zero_voltages"].push_back(list(zero));
   json["warnings"] = Json::array();
   for (const SensorWarning& warning : calibration.warnings) {
-    json["warnings"].push_back({{"code", text(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
+    json["warnings"].push_back(
+        {{"code", word_of(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
   }
   json["notes"] = calibration.notes;
   return dumped(json);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "mbk/model/trial/identification.h"
 #include "mbk/present/result/json_reading.h"
@@ -11,16 +10,13 @@
 namespace mbk::result {
 namespace {
 
-constexpr std::array<const char*, 6> kConditionNames = {"right_poles", "axis_poles", "r11",
-                                                        "r22",         "product",    "squares"};
-
 Json stability_json(const AbsoluteStability& stability) {
   Json json = {{"form", stability.form},
-               {"verdict", text(stability.verdict)},
+               {"verdict", word_of(stability.verdict)},
                {"absolutely_stable", stability.holds()},
                {"conditions", Json::array()}};
   for (const StabilityOutcome& outcome : stability.conditions) {
-    Json one = {{"name", kConditionNames[static_cast<std::size_t>(outcome.condition)]},
+    Json one = {{"name", word_of(outcome.condition)},
                 {"condition", text(outcome.condition)},
                 {"holds", outcome.violated.empty()},
                 {"violated", Json::array()}};
@@ -77,7 +73,7 @@ Json run_json(const TeleoperationRun& run) {
   Json json = {{"what", run.what},
                {"hand", run.hand},
                {"environment", run.environment},
-               {"outcome", text(run.outcome)},
+               {"outcome", word_of(run.outcome)},
                {"ratio", number(run.ratio)},
                {"frequency", number(run.frequency.value)},
                {"duration", number(run.duration)},

@@ -52,7 +52,7 @@ Json response_json(const FrequencyResponse& response) {
 
 Json inverse_json(const InvertedAdmittance& inverse) {
   const Units units = units_of(inverse.motion);
-  Json json = {{"admittance_to", mbk::text(inverse.output)},
+  Json json = {{"admittance_to", word_of(inverse.output)},
                {"units", {{"M", units.inertia}, {"B", units.damping}, {"K", units.stiffness}}},
                {"unstable", inverse.unstable}};
   const auto add = [&](const char* name, const std::optional<Estimate>& value) {
@@ -69,7 +69,7 @@ Json inverse_json(const InvertedAdmittance& inverse) {
 Json document(const TransferFunctionIdentification& found, const TransferFunctionFindings& findings) {
   Json json = header("mbk.tf/1");
   json["inputs"] = inputs_json(found.sources);
-  json["method"] = mbk::text(found.method);
+  json["method"] = word_of(found.method);
   json["input"] = {{"name", found.input}, {"unit", found.input_unit}};
   json["output"] = {{"name", found.output}, {"unit", found.output_unit}};
   if (!found.reference.empty()) json["reference"] = found.reference;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mbk/base/numeric/random.h"
+#include "mbk/model/trial/quantity_channels.h"
 #include "mbk/simulate/laboratory/noise.h"
 
 namespace mbk::laboratory {
@@ -95,7 +96,7 @@ std::string as_text(const Matrix& matrix) {
 
 std::map<std::string, std::string> metadata(const PrescribedMotionOptions& o) {
   const auto number = [](double value) { return fmt::format("{:.17g}", value); };
-  return {{"protocol", std::string(text(o.protocol))},
+  return {{"protocol", std::string(word_of(o.protocol))},
           {"seed", std::to_string(o.seed)},
           {"truth_M", as_text(o.limb.M)},
           {"truth_B", as_text(o.limb.B)},
@@ -203,27 +204,25 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
   }
 
   const PrescribedMotionSensors& sensors = options.sensors;
-  const char* suffix[] = {"_x", "_y"};
-  const auto add = [&](const char* name, const char* one_axis_name, const char* unit, const Matrix& signals,
-                       const auto& sense) {
+  const auto add = [&](const QuantityChannels& quantity, const Matrix& signals, const auto& sense) {
     for (Index i = 0; i < axes; ++i) {
       Vector signal = signals.col(i);
       sense(signal, static_cast<std::uint32_t>(i));
       recording.channels.push_back(
-          {axes == 1 ? one_axis_name : std::string(name) + suffix[i], unit, "base", std::move(signal)});
+          {quantity.name(static_cast<int>(axes), i), quantity.unit, quantity.frame, std::move(signal)});
     }
   };
-  add("hand", "position", "m", position, [&](Vector& s, std::uint32_t) {
+  add(kPositionChannels, position, [&](Vector& s, std::uint32_t) {
     for (double& value : s) value = quantised(value, sensors.position_quantum);
   });
-  add("force", "reaction", "N", force, [&](Vector& s, std::uint32_t axis) {
+  add(kForceChannels, force, [&](Vector& s, std::uint32_t axis) {
     WhiteNoise white(sensors.force_noise, Random(options.seed, kWhiteForce + axis));
     ColouredNoise coloured(sensors.coloured_force_noise, sensors.coloured_force_bandwidth, 1.0 / rate.value,
                            Random(options.seed, kColouredForce + axis));
     for (double& value : s) value = value + white.next() + coloured.next();
   });
-  add("reference", "reference", "m", reference, [](Vector&, std::uint32_t) {});
-  add("acceleration", "acceleration", "m/s2", acceleration, [&](Vector& s, std::uint32_t axis) {
+  add(kReferenceChannels, reference, [](Vector&, std::uint32_t) {});
+  add(kAccelerationChannels, acceleration, [&](Vector& s, std::uint32_t axis) {
     WhiteNoise white(sensors.acceleration_noise, Random(options.seed, kAcceleration + axis));
     for (double& value : s) value += white.next();
   });

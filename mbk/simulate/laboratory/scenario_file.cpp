@@ -279,8 +279,7 @@ OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   friction.smoothing = robot.number("smoothing_rad_per_s", friction.smoothing, above(0));
   trial.robot.steps_per_tick = robot.integer("steps_per_tick", trial.robot.steps_per_tick, 1, 100);
   const Section control = root.section("control");
-  if (control.required_choice<Quantity>("kind", {{"position", Quantity::position}, {"force", Quantity::force}}) ==
-      Quantity::position) {
+  if (control.required_choice<Quantity>("kind") == Quantity::position) {
     ServoMode servo;
     servo.proportional = control.number("proportional_Nm_per_rad", servo.proportional, at_least(0));
     servo.derivative = control.number("derivative_Nms_per_rad", servo.derivative, at_least(0));

@@ -109,7 +109,7 @@ void add_eigenvalues(const Runs& runs, Method method, bool judged, ValidationTab
             100.0 * (eigenvalue(by(runs[k], method).model) / eigenvalue(runs[k].truth) - 1.0);
       }
       const auto index = static_cast<std::size_t>(matrix);
-      ValidationRow row = bias_row(fmt::format("6 N multisine, {}: {} eigenvalue of {}", text(method),
+      ValidationRow row = bias_row(fmt::format("6 N multisine, {}: {} eigenvalue of {}", word_of(method),
                                                smallest ? "smallest" : "largest", kNames[index]),
                                    error, kAllowed[index], "%");
       if (!judged) row.wanted.reset();

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/base/core/words.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/experiment/protocol/experiment.h"
 #include "mbk/experiment/safety/trip.h"
@@ -16,6 +17,11 @@ namespace mbk::validation {
 
 /// What the robot is told to do while a fault comes.
 enum class TrialKind { position, force };
+
+[[nodiscard]] constexpr auto word_table(TrialKind) {
+  using enum TrialKind;
+  return std::to_array<Word<TrialKind>>({{position, "position"}, {force, "force"}});
+}
 
 /// What goes wrong beside the robot.
 enum class Outside {

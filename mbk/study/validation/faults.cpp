@@ -10,6 +10,7 @@
 #include "mbk/base/realtime/clock.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
+#include "mbk/files/journal/journal.h"
 #include "mbk/files/journal/tick.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
@@ -73,7 +74,7 @@ std::int64_t draw_onset(const FaultKind& kind, int detection, numeric::Random& r
 bool holds_every_command(const fs::path& file, const std::vector<FaultyDevice::Received>& received) {
   const auto recording = recording::read(file, {});
   if (!recording || std::cmp_not_equal(recording->samples(), received.size())) return false;
-  if (recording->metadata.at("ended") != "safety stop") return false;
+  if (recording->metadata.at("ended") != word_of(journal::Ending::How::safety_stop)) return false;
   const Channel *first = recording->find("torque_1"), *second = recording->find("torque_2");
   for (std::size_t i = 0; i < received.size(); ++i) {
     const auto at = static_cast<Index>(i);
@@ -166,10 +167,6 @@ struct Job {
   int run;
 };
 
-std::string_view name_of(TrialKind kind) {
-  return kind == TrialKind::position ? "position" : "force";
-}
-
 ValidationRow row_of(std::string what, double value, std::pair<double, double> wanted, std::string unit) {
   ValidationRow row;
   row.what = std::move(what);
@@ -242,7 +239,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
     const Outcome& outcome = outcomes[i];
     const int documented = kind->detection[static_cast<std::size_t>(trial_kind)] + safety::kRampTicks;
     if (run == 0) {
-      table.rows.push_back(row_of(fmt::format("{}, {} trial: off after", kind->name, name_of(trial_kind)), 0.0,
+      table.rows.push_back(row_of(fmt::format("{}, {} trial: off after", kind->name, word_of(trial_kind)), 0.0,
                                   {0.0, documented}, "ticks"));
     }
     double& worst = table.rows.back().value;
@@ -259,9 +256,8 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
     if (never || outcome.ticks > documented || !reason_is_right || !outcome.recorded ||
         outcome.handle_force > cap + kForceTolerance) {
       table.notes.push_back(fmt::format("{}, {} trial, run {}: off after {} ticks by {}, {:.3f} N, recording {}",
-                                        kind->name, name_of(trial_kind), run, outcome.ticks,
-                                        safety::code(outcome.reason), outcome.handle_force,
-                                        outcome.recorded ? "whole" : "not whole"));
+                                        kind->name, word_of(trial_kind), run, outcome.ticks, word_of(outcome.reason),
+                                        outcome.handle_force, outcome.recorded ? "whole" : "not whole"));
     }
   }
   const auto share = [&](int met) { return 100.0 * met / static_cast<double>(faulty); };
@@ -274,7 +270,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   for (std::size_t i = faulty; i < jobs.size(); ++i) {
     if (outcomes[i].reason == Reason::none) continue;
     ++trips;
-    table.notes.push_back(fmt::format("without a fault: {} in {}, seed {}", safety::code(outcomes[i].reason),
+    table.notes.push_back(fmt::format("without a fault: {} in {}, seed {}", word_of(outcomes[i].reason),
                                       (*ready)[static_cast<std::size_t>(jobs[i].run) % ready->size()].protocol,
                                       100'000 * options.seed + i));
   }

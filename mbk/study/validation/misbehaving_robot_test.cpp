@@ -19,7 +19,7 @@ constexpr std::uint32_t kLoopback = 0x7F000001;
 
 TEST(UdpFaults, AreOfManyKindsEachWithAMechanismAndKnownReasons) {
   std::set<std::string_view> names, codes;
-  for (int i = 0; i < safety::kReasons; ++i) codes.insert(safety::code(static_cast<safety::Reason>(i)));
+  for (int i = 0; i < safety::kReasons; ++i) codes.insert(word_of(static_cast<safety::Reason>(i)));
   for (const UdpFaultKind& kind : udp_fault_kinds()) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
     EXPECT_EQ(find_udp_fault(kind.name), &kind);

@@ -93,8 +93,8 @@ double quantile(Vector values, double share) {
   return numeric::quantile(values, share);
 }
 
-double median(Vector values) {
-  return quantile(std::move(values), 0.5);
+double median(const Vector& values) {
+  return numeric::median({values.begin(), values.end()});
 }
 
 Vector vaf_of(Outcomes outcomes) {

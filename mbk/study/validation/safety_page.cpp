@@ -136,7 +136,7 @@ std::string function_table() {
   std::string text_ = "| Fault | What detects it | Position, force: off within |\n|---|---|---|\n";
   for (const FaultKind& kind : fault_kinds()) {
     text_ += fmt::format("| {} | {} | {}, {} |\n", kind.name,
-                         codes(kind.reasons, [](safety::Reason one) { return safety::code(one); }),
+                         codes(kind.reasons, [](safety::Reason one) { return word_of(one); }),
                          ticks(kind.detection[0], safety::kRampTicks), ticks(kind.detection[1], safety::kRampTicks));
   }
   return text_;

@@ -35,7 +35,7 @@ struct UdpFaultKind {
   std::string_view what;  ///< what happens, physically
   Expected expected;
   std::array<int, 2> detection;           ///< ticks to the trip at most, in a trial of positions and of forces
-  std::vector<std::string_view> reasons;  ///< safety::code of every one that is right
+  std::vector<std::string_view> reasons;  ///< words of every safety::Reason that is right
   SafeState safe_state;
   std::string_view bound;     ///< what stays the robot's duty, or limits the harm
   std::uint16_t version = 1;  ///< of the robot's states

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "mbk/base/core/words.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/experiment/safety/gate.h"
@@ -58,10 +59,6 @@ constexpr std::array<std::string_view, 12> kOfStalls = {"late",
                                                         "acceleration"};
 
 constexpr std::array kTrialKinds = {TrialKind::position, TrialKind::force};
-
-std::string_view name_of(TrialKind kind) {
-  return kind == TrialKind::position ? "position" : "force";
-}
 
 /// A robot's time line, from the last line of its log that says so; ticks.
 struct Truth {
@@ -260,7 +257,23 @@ class Runner {
 
 /// What a run with a fault comes to.
 enum class Verdict { in_time, late, not_recognised, wrong_reason, stalled, never_began };
+[[nodiscard]] constexpr auto word_table(Verdict) {
+  using enum Verdict;
+  return std::to_array<Word<Verdict>>({{in_time, "recognised in time"},
+                                       {late, "recognised late"},
+                                       {not_recognised, "NOT RECOGNISED"},
+                                       {wrong_reason, "stopped for another reason"},
+                                       {stalled, "explained by a recorded stall"},
+                                       {never_began, "the fault never began"}});
+}
+
 enum class Safe { confirmed, loud, silently_wrong };
+
+[[nodiscard]] constexpr auto word_table(Safe) {
+  using enum Safe;
+  return std::to_array<Word<Safe>>(
+      {{confirmed, "confirmed off"}, {loud, "loudly not confirmed"}, {silently_wrong, "SILENTLY WRONG"}});
+}
 
 bool contains(const auto& list, std::string_view one) {
   return std::ranges::find(list, one) != list.end();
@@ -302,10 +315,6 @@ Safe safe_state_of(const Outcome& outcome) {
   const bool began = outcome.truth.motors_on >= 0;
   // Without a word the motors are not confirmed off, and nobody knows.
   return off && (outcome.said.confirmed || !began) ? Safe::confirmed : Safe::silently_wrong;
-}
-
-std::string_view text(Safe safe) {
-  return safe == Safe::confirmed ? "confirmed off" : safe == Safe::loud ? "loudly not confirmed" : "SILENTLY WRONG";
 }
 
 ValidationRow row_of(std::string what, double value, std::optional<std::pair<double, double>> wanted,
@@ -404,8 +413,8 @@ class Summary {
       table_->notes.push_back(fmt::format(
           "{}, {} trial, run {}: {}; after {} ticks (documented {}), {}, exit code {}, motors {}{}, {:.2f} m/s, {:.1f} "
           "N",
-          kind.name, name_of(job.trial), job.run, text_of(verdict), outcome.ticks, documented(kind, job.trial),
-          outcome.said.trip.empty() ? "no trip" : outcome.said.trip, outcome.said.exit_code, text(safe),
+          kind.name, word_of(job.trial), job.run, word_of(verdict), outcome.ticks, documented(kind, job.trial),
+          outcome.said.trip.empty() ? "no trip" : outcome.said.trip, outcome.said.exit_code, word_of(safe),
           outcome.truth.torque_off >= 0 ? "" : " and on", outcome.truth.speed, outcome.truth.force));
     }
   }
@@ -413,7 +422,7 @@ class Summary {
   /// One for each kind and trial: the slowest.
   void add_row(const Job& job, const Outcome& outcome, bool apart) {
     if (job.kind->expected != Expected::trip) return;
-    const std::string what = fmt::format("{}, {} trial: off after", job.kind->name, name_of(job.trial));
+    const std::string what = fmt::format("{}, {} trial: off after", job.kind->name, word_of(job.trial));
     auto row = std::ranges::find(table_->rows, what, &ValidationRow::what);
     if (row == table_->rows.end()) {
       if (apart) return;
@@ -436,19 +445,9 @@ class Summary {
     const bool explained = outcome.stalled && contains(kOfStalls, outcome.said.trip);
     ++(explained ? stalls_ : trips_);
     table_->notes.push_back(fmt::format("without a fault, {} trial {}: {}{}, exit code {}, after {:.1f} s, motors {}",
-                                        name_of(job.trial), job.run, outcome.said.trip,
+                                        word_of(job.trial), job.run, outcome.said.trip,
                                         explained ? " by a recorded stall" : "", outcome.said.exit_code,
-                                        outcome.said.duration, text(safe)));
-  }
-
-  static std::string_view text_of(Verdict verdict) {
-    constexpr std::array<std::string_view, 6> kTexts = {"recognised in time",
-                                                        "recognised late",
-                                                        "NOT RECOGNISED",
-                                                        "stopped for another reason",
-                                                        "explained by a recorded stall",
-                                                        "the fault never began"};
-    return kTexts[static_cast<std::size_t>(verdict)];
+                                        outcome.said.duration, word_of(safe)));
   }
 
   ValidationTable* table_;

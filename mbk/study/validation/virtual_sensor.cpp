@@ -97,7 +97,7 @@ void add_force_rmse(const Trials& trials, ValidationTable& table) {
     const auto force = static_cast<Force>(at);
     for (Index axis = 0; axis < 2; ++axis) {
       const Vector rmse = values_of(trials, any, [&](const ForceTrial& trial) { return trial.of(force).rmse[axis]; });
-      table.rows.push_back(at_most_row(fmt::format("{}: largest RMSE of F{}", text(force), axis == 0 ? "x" : "y"),
+      table.rows.push_back(at_most_row(fmt::format("{}: largest RMSE of F{}", word_of(force), axis == 0 ? "x" : "y"),
                                        rmse.maxCoeff(), force == virtual_sensor ? std::optional(kRmse) : std::nullopt,
                                        "N"));
     }
@@ -110,7 +110,7 @@ void add_errors(const Trials& trials, Force force, bool judged, ValidationTable&
       return element_of(trial.of(force).model, element) - element_of(trial.truth, element);
     });
     const std::string what =
-        fmt::format("{}: {} {}", text(force), name, kElementNames[static_cast<std::size_t>(element)]);
+        fmt::format("{}: {} {}", word_of(force), name, kElementNames[static_cast<std::size_t>(element)]);
     ValidationRow row = judged ? bias_row(what, error, allowed_error(name, element), unit_of(element))
                                : reported_row(what, error, unit_of(element));
     if (force == sensor || force == virtual_sensor) {
@@ -133,7 +133,7 @@ void add_mean_errors(const Trials& trials, Force force, const char* prefix, Vali
       return element_of(trial.of(force).model, element) - element_of(trial.truth, element);
     });
     table.rows.push_back(reported_row(
-        fmt::format("{}{}: mean error of {}", prefix, text(force), kElementNames[static_cast<std::size_t>(element)]),
+        fmt::format("{}{}: mean error of {}", prefix, word_of(force), kElementNames[static_cast<std::size_t>(element)]),
         error, unit_of(element)));
   }
 }
@@ -171,7 +171,7 @@ void add_elastic_drives(const Trials& trials, ValidationTable& table) {
     for (Index axis = 0; axis < 2; ++axis) {
       const Vector rmse = values_of(trials, any, [&](const ForceTrial& trial) { return trial.of(force).rmse[axis]; });
       table.rows.push_back(
-          at_most_row(fmt::format("elastic drives, {}: largest RMSE of F{}", text(force), axis == 0 ? "x" : "y"),
+          at_most_row(fmt::format("elastic drives, {}: largest RMSE of F{}", word_of(force), axis == 0 ? "x" : "y"),
                       rmse.maxCoeff(), {}, "N"));
     }
     add_mean_errors(trials, force, "elastic drives, ", table);
@@ -180,7 +180,7 @@ void add_elastic_drives(const Trials& trials, ValidationTable& table) {
 
 ChartSeries series_of(const Trials& trials, Force force, bool masses) {
   ChartSeries marks;
-  marks.name = text(force);
+  marks.name = word_of(force);
   for_each_parameter([&](const std::string& /*name*/, Element element, const auto& belongs) {
     if ((element == mass) != masses) return;
     marks.x.push_back(

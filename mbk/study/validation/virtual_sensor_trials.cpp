@@ -58,22 +58,6 @@ Result<Outcome> measured(const Recording& recording, Force force, const Robots& 
 
 }  // namespace
 
-const char* text(Force force) {
-  switch (force) {
-    case Force::sensor:
-      return "sensor";
-    case Force::virtual_sensor:
-      return "virtual sensor";
-    case Force::no_coulomb:
-      return "virtual sensor without Coulomb";
-    case Force::no_friction:
-      return "virtual sensor without friction";
-    case Force::observer:
-      break;
-  }
-  return "momentum observer";
-}
-
 RobotModel Robots::behind(Force force) const {
   const FrictionModel friction = force == Force::no_coulomb    ? FrictionModel::viscous
                                  : force == Force::no_friction ? FrictionModel::none

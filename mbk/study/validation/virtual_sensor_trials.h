@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/words.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/model/impedance/model.h"
 #include "mbk/model/robot/capstan.h"
@@ -20,7 +21,14 @@ namespace mbk::validation {
 enum class Force { sensor, virtual_sensor, no_coulomb, no_friction, observer };
 inline constexpr int kForces = 5;
 
-[[nodiscard]] const char* text(Force force);
+[[nodiscard]] constexpr auto word_table(Force) {
+  using enum Force;
+  return std::to_array<Word<Force>>({{sensor, "sensor"},
+                                     {virtual_sensor, "virtual sensor"},
+                                     {no_coulomb, "virtual sensor without Coulomb"},
+                                     {no_friction, "virtual sensor without friction"},
+                                     {observer, "momentum observer"}});
+}
 
 /// One robot, as three models of its friction found it.
 struct Robots {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/words.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::app {
+
+/// Where an impedance is said.
+enum class Domain { hand, joint };
+
+[[nodiscard]] constexpr auto word_table(Domain) {
+  using enum Domain;
+  return std::to_array<Word<Domain>>({{hand, "hand"}, {joint, "joint"}});
+}
+
+/// From a model at the hand to what it means.
+struct AnalyseArguments {
+  Domain domain = Domain::hand;
+  std::string arm;
+};
+
+/// Adds --domain and --arm.
+void add_analyse_options(CLI::App& command, AnalyseArguments& arguments);
+
+/// With --arm the recordings' metadata hold that arm.
+void add_arm(const AnalyseArguments& arguments, std::vector<Recording>& recordings);
+
+}  // namespace mbk::app

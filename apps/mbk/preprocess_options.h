@@ -1,0 +1,58 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "mbk/base/core/result.h"
+#include "mbk/measure/preprocess/options.h"
+
+namespace mbk::app {
+
+/// Which samples count, in seconds from the start of the recording.
+struct WindowArguments {
+  std::optional<double> from_s, split_s, to_s;
+};
+
+/// How signals are filtered.
+struct FilterArguments {
+  std::optional<int> sg_window, sg_order;
+  std::string cutoff;
+  dsp::Extension extension = dsp::Extension::odd;
+  long padding = 15;
+  std::optional<long> every;
+  std::optional<double> resample_hz;
+};
+
+/// From a recording to a trial that can be identified.
+struct PreprocessArguments {
+  Mode mode = Mode::improved;
+  std::optional<Procedure> procedure;
+  std::optional<Protocol> protocol;
+  WindowArguments window;
+  FilterArguments filters;
+  std::optional<AccelerationSource> acceleration;
+  ForceSource force_source = ForceSource::sensor;
+  std::optional<std::filesystem::path> robot;
+};
+
+/// Adds --from, --split, --to.
+void add_window_options(CLI::App& command, WindowArguments& arguments);
+
+/// Adds --sg-window, --sg-order, --cutoff, --extension, --padding, --every, --resample.
+void add_filter_options(CLI::App& command, FilterArguments& arguments);
+
+/// Adds --mode, --procedure, --protocol and the window.
+void add_protocol_options(CLI::App& command, PreprocessArguments& arguments);
+
+/// Adds the filters, --acceleration, --force-source and --robot.
+void add_signal_options(CLI::App& command, PreprocessArguments& arguments);
+
+/// @fails  usage: the limits are not in order.
+[[nodiscard]] Result<preprocess::WindowLimits> window_limits(const WindowArguments& arguments);
+
+/// Window and filters alone.   @fails  as window_limits
+[[nodiscard]] Result<preprocess::Options> signal_options(const WindowArguments& window, const FilterArguments& filters);
+
+}  // namespace mbk::app

@@ -1,0 +1,101 @@
+#include "apps/mbk/reading_options.h"
+
+#include <fmt/format.h>
+
+#include "apps/mbk/option_checks.h"
+#include "mbk/files/journal/journal.h"
+#include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/measure/preprocess/perturbation_only.h"
+
+namespace mbk::app {
+namespace {
+
+Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
+  recording::ReadOptions options;
+  if (!arguments.channels.empty()) {
+    auto map = recording::parse_channel_map(arguments.channels);
+    if (!map) return tl::unexpected(map.error());
+    options.channels = std::move(*map);
+  }
+  if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
+  options.axes = arguments.axes;
+  options.untimed = arguments.untimed;
+  options.variable = arguments.variable;
+  options.wanted = arguments.wanted;
+  return options;
+}
+
+}  // namespace
+
+void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
+  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5 or .csv")->required();
+  command
+      .add_option("--channels", arguments.channels,
+                  "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
+                  "(or rows of a wide matrix, or names in the file); x=2:mm converts, Fx=-10 flips. Channels: time, "
+                  "x, y, Fx, Fy, xr, yr, q1 to q8, tau1 to tau8, qr1 to qr8, ax, ay, Vx, Vy; one axis: time, x, F, xr, "
+                  "a; for mbk tf: input, output")
+      ->type_name("MAP")
+      ->check(not_empty());
+  command.add_option("--variable", arguments.variable, "which variable of a MAT file, where several could be meant")
+      ->type_name("NAME")
+      ->check(not_empty());
+  command.add_option("--rate", arguments.rate_hz, "sample rate, where the file holds no time")
+      ->type_name("HZ")
+      ->check(positive());
+  command.add_option("--axes", arguments.axes, "1 or 2; otherwise by the channels that are there")
+      ->type_name("N")
+      ->check([](const std::string& n) {
+        return n == "1" || n == "2" ? "" : fmt::format("{} is neither 1 nor 2", quoted(n));
+      });
+  command.add_flag("--parts", arguments.parts, "the FILEs are numbered parts of one record: join them");
+}
+
+Result<std::vector<Recording>> read_recordings(const ReadingArguments& arguments, const SensorArguments& with_sensor) {
+  const auto options = read_options(arguments);
+  if (!options) return tl::unexpected(options.error());
+  const auto sensor = sensor_use(with_sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  std::vector<Recording> recordings;
+  const auto add = [&](Result<Recording> one, const std::filesystem::path& file) -> Result<void> {
+    if (!one) return tl::unexpected(one.error());
+    if (*sensor) {
+      one = calibration::force_from_voltage(std::move(*one), **sensor);
+      if (!one) return tl::unexpected(one.error().in(file.string()));
+    }
+    recordings.push_back(std::move(*one));
+    return {};
+  };
+  if (arguments.parts) {
+    if (auto ok = add(recording::read_parts(arguments.files, *options), arguments.files.front()); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    return recordings;
+  }
+  for (const std::filesystem::path& file : arguments.files) {
+    if (journal::is_journal(file)) {
+      return bad_data("is the journal of a session that was cut off, or still runs",
+                      fmt::format("'mbk recover {}' makes a recording of it", file.string()), file.string());
+    }
+    if (auto ok = add(recording::read(file, *options), file); !ok) return tl::unexpected(ok.error());
+  }
+  return recordings;
+}
+
+Result<std::vector<Recording>> read_perturbations(const ReadingArguments& arguments,
+                                                  const SensorArguments& with_sensor) {
+  auto recordings = read_recordings(arguments, with_sensor);
+  if (!recordings) return recordings;
+  for (Recording& recording : *recordings) {
+    const auto withdrawn = recording.metadata.find("withdrawn");
+    if (withdrawn != recording.metadata.end() && withdrawn->second == "yes") {
+      return bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
+                      recording.sources.empty() ? "" : recording.sources.front().path);
+    }
+    recording = preprocess::perturbation_only(std::move(recording));
+  }
+  return recordings;
+}
+
+}  // namespace mbk::app
