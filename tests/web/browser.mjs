@@ -1,7 +1,7 @@
 // What the tests of reports and console share: the programs, a browser without a network, and reading numbers off a page.
 //
-// Run in the build folder of the page, where the packages are: cd build/test/web/report, then
-//   MBK=$PWD/../../bin/mbk MAKE_LOG=$PWD/../../bin/make_log node ../../../../tests/web/report_test.mjs
+// Run in the build folder of the pages, where the packages are: cd build/test/web, then
+//   MBK=$PWD/../bin/mbk MAKE_LOG=$PWD/../bin/make_log node ../../../tests/web/report_test.mjs
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";

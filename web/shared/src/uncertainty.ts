@@ -1,5 +1,5 @@
 // What the covariance of a matrix means for its ellipse: draws from it, by direction.
-import type { Result, Value } from "./data";
+import type { Result, Value } from "./documents";
 
 const draws = 1000;
 const tail = Math.round(0.025 * draws);

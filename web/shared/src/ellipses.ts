@@ -1,9 +1,10 @@
 // Ellipses to scale at the hand, with a reference circle and the posture under them (Dyck 2013, figs. 3.10, 3.11).
-import { type Ellipse, type Posture, type Result, type Trial, matrices, unitsOf } from "./data";
+import { angleBetween } from "./directions";
+import type { Ellipse, Posture, Result } from "./documents";
 import { h, svg } from "./dom";
 import { fixed, plain, significant } from "./format";
+import { matrices, type Trial, unitsOf } from "./result";
 import { type Band, directions, ellipseBand } from "./uncertainty";
-import { angleBetween } from "./words";
 
 const radius = 92; // of the largest ellipse [px]
 const armSize = 176; // of the posture's longer side [px]

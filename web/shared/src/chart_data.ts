@@ -1,5 +1,5 @@
 // What a chart is made of.
-import type { Value } from "./data";
+import type { Value } from "./documents";
 
 export const dashes = { solid: "", dashed: "7 4", dotted: "2 3", dashdot: "9 3 2 3" } as const;
 export const symbols = { circle: "M 1 5 a 4 4 0 1 0 8 0 a 4 4 0 1 0 -8 0", diamond: "M 5 0 L 10 5 L 5 10 L 0 5 Z", rect: "M 1 1 H 9 V 9 H 1 Z", triangle: "M 5 1 L 9.5 9 H 0.5 Z" } as const;

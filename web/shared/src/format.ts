@@ -1,5 +1,5 @@
 // Numbers as they are read: minus signs, digits that mean something, and every digit for machines beside them.
-import type { Value } from "./data";
+import type { Value } from "./documents";
 import { h } from "./dom";
 
 export const normal95 = 1.959963984540054;

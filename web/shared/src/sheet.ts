@@ -1,6 +1,6 @@
 // The numbers of a chart as a table and as a CSV file.
 import type { Chart } from "./chart_data";
-import type { Value } from "./data";
+import type { Value } from "./documents";
 import { h, scrolling } from "./dom";
 import { significant } from "./format";
 

@@ -1,3 +1,4 @@
+// How each page becomes one file: vite build PAGE --config vite.config.ts
 import { defineConfig } from "vite";
 import { viteSingleFile } from "vite-plugin-singlefile";
 
