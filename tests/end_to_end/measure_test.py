@@ -146,7 +146,7 @@ class SeveralFiles(Case):
         return [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2, 3)]
 
     def test_each_has_its_result_and_the_summary_their_mean_and_standard_error(self):
-        both = self.fine("measure", "--json", *self.logs()).json
+        both = self.fine("measure", "--json", "--quiet", *self.logs()).json
         self.assertEqual(both["schema"], "mbk.results/1")
         self.assertEqual(both["results"], [results_of(log) for log in self.logs()])
         summary = both["summary"]

@@ -20,7 +20,8 @@ using schemas::fits_its_schema;
 /// A result with everything that a measurement has by itself.
 const Json& result_document() {
   static const Json document = [] {
-    const Recording recording = laboratory::record_prescribed_motion({}, Hertz{1000.0}).value();
+    Recording recording = laboratory::record_prescribed_motion({}, Hertz{1000.0}).value();
+    recording.sources = {{"log.mat", "MAT level 5", "abc"}};
     return schemas::parsed(result::to_json(measurement::measure({&recording, 1}, {}).value()));
   }();
   return document;
@@ -43,7 +44,7 @@ struct Places {
 
 Places places_of(const Json& document) {
   Places places;
-  find_places(document, {}, places.objects, places.members);
+  find_places(document, Json::json_pointer(), places.objects, places.members);
   return places;
 }
 
