@@ -158,8 +158,10 @@ export async function open(file, { script, ...options } = {}) {
 export async function scrollThrough(page) {
   const height = await page.evaluate(() => document.documentElement.scrollHeight);
   for (let y = 0; y < height; y += 600) {
-    await page.evaluate((top) => scrollTo({ top, behavior: "instant" }), y);
-    await page.waitForTimeout(20);
+    await page.evaluate((top) => new Promise((drawn) => {
+      scrollTo({ top, behavior: "instant" });
+      requestAnimationFrame(() => requestAnimationFrame(drawn));
+    }), y);
   }
   await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
 }
