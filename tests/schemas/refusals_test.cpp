@@ -19,12 +19,12 @@ using schemas::fits_its_schema;
 
 /// A result with everything that a measurement has by itself.
 const Json& result_document() {
-  static const Json document = [] {
+  static const Json kDocument = [] {
     Recording recording = laboratory::record_prescribed_motion({}, Hertz{1000.0}).value();
     recording.sources = {{"log.mat", "MAT level 5", "abc"}};
     return schemas::parsed(result::to_json(measurement::measure({&recording, 1}, {}).value()));
   }();
-  return document;
+  return kDocument;
 }
 
 /// The place of every object and of every value in it.
