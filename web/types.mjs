@@ -36,4 +36,6 @@ const types = await compile({ definitions }, "Documents", {
   unreachableDefinitions: true,
   format: false,
 });
-writeFileSync(out, types.replace(/^ \*( \n \*)? This interface was referenced by .*\n \* via the `definition` .*\n/gm, "").replace(/^\/\*\*\n \*\/\n/gm, ""));
+const ofTheCollection = /^export interface Documents \{[^}]*\}\n/m;
+const whereItStands = /^ \*( \n \*)? This interface was referenced by .*\n \* via the `definition` .*\n/gm;
+writeFileSync(out, types.replace(ofTheCollection, "").replace(whereItStands, "").replace(/^\/\*\*\n \*\/\n/gm, ""));
