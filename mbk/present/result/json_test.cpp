@@ -129,6 +129,12 @@ TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   EXPECT_EQ(json.contains("antisymmetry"), n == 2);
 }
 
+TEST(ToJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {
+  Measurement warned = measured(2);
+  for (const auto& [code, words] : kWarningTexts) warned.identification.warnings.push_back({code, "so", "again"});
+  EXPECT_TRUE(schemas::fits_its_schema(to_json(warned)));
+}
+
 TEST(ToJson, EllipsesHaveTheirIntervals) {
   const Json json = schemas::parsed(to_json(measured(2)));
   for (const char* matrix : {"inertia", "damping", "stiffness"}) {

@@ -79,5 +79,11 @@ TEST(SensorJson, NamesWhatIsWrong) {
   EXPECT_THAT(error(document.dump()), HasSubstr("'zero_voltage' is not a number"));
 }
 
+TEST(SensorJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {
+  SensorCalibration warned = calibration();
+  for (const auto& [code, words] : kSensorWarningTexts) warned.warnings.push_back({code, "so", "again"});
+  EXPECT_TRUE(schemas::fits_its_schema(to_json(warned)));
+}
+
 }  // namespace
 }  // namespace mbk::result
