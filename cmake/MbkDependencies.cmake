@@ -38,6 +38,8 @@ if(MBK_BUILD_TESTS)
   # Readers of their own, against which files that are written are held.
   pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
   pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+  # What documents are held to their schemas with (tests/support). Its CMake file names no target.
+  find_path(RAPIDJSON_INCLUDE_DIR rapidjson/schema.h REQUIRED)
   # An engine of its own for tests/physics. Debian's mujocoConfig.cmake names a folder that its package does not have.
   find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h REQUIRED)
   find_library(MUJOCO_LIBRARY mujoco REQUIRED)

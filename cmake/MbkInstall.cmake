@@ -1,5 +1,5 @@
 # What `cmake --install` puts where. Two components: program (what runs: mbk, its manual pages, its completion, the
-# documents) and development (what an application is built with: libraries, headers, the CMake package mbk).
+# schemas of what it writes, the documents) and development (what an application is built with: libraries, headers, the CMake package mbk).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -99,6 +99,9 @@ function(mbk_install)
   install(TARGETS mbk mbk_misbehaving_robot RUNTIME COMPONENT program)
   install(FILES apps/misbehaving_robot/mbk_misbehaving_robot.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
   mbk_install_program_texts()
+
+  # What scripts of one's own may rely on: docs/guide/schemas.md.
+  install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/mbk COMPONENT program)
 
   # The folders keep their places beside each other, so that the links between the documents hold.
   install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright

@@ -1,6 +1,7 @@
-# The page of the HTML report: TypeScript in web/report that Vite makes into one file. Everything happens in the build
-# folder, with the packages that package-lock.json names. Vite 8 needs Node 20.19 or newer; where the machine has an
-# older one, npm's package node@22 runs it, so npm is all that is needed beside it.
+# The pages: TypeScript in web/, one npm workspace that Vite makes into one file for each page. Everything happens in the
+# build folder, with the packages that web/package-lock.json names. Vite 8 needs Node 20.19 or newer; where the machine
+# has an older one, npm's package node@22 runs it, so npm is all that is needed beside it. What only tests need (a
+# browser's driver, the compiler that checks types) is installed where tests are built.
 option(MBK_WEB "Build the page of 'mbk measure --report' (needs Node.js and npm)" ON)
 
 # mbk_node_command(RESULT VERSION): how to run a script with Node, given the version of the machine's own ("v18.20.4").
@@ -22,66 +23,113 @@ if(MBK_WEB)
                         "(tools/install-packages build), or configure with -DMBK_WEB=OFF and do without --report")
   endif()
   # In the folder where it will run, for a manager of versions may choose by folder.
-  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/web/report ${PROJECT_BINARY_DIR}/web/console
-       ${PROJECT_BINARY_DIR}/web/reproduction)
-  execute_process(COMMAND ${MBK_NODE} --version WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/web/report
+  set(MBK_WEB_FOLDER ${PROJECT_BINARY_DIR}/web)
+  file(MAKE_DIRECTORY ${MBK_WEB_FOLDER})
+  execute_process(COMMAND ${MBK_NODE} --version WORKING_DIRECTORY ${MBK_WEB_FOLDER}
                   OUTPUT_VARIABLE version OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   mbk_node_command(MBK_NODE_COMMAND "${version}")
 endif()
 
-# mbk_web_page(NAME [OTHER...]): web/NAME as ${PROJECT_BINARY_DIR}/web/NAME/dist/index.html, of target web_NAME. Its
-# sources may import those of the OTHER pages.
-function(mbk_web_page name)
-  set(others "")
-  foreach(other IN LISTS ARGN)
-    list(APPEND others ${PROJECT_BINARY_DIR}/web/${other}/dist/index.html)
-  endforeach()
+# mbk_web_copy(NAME): web/NAME in the build folder; web/NAME/copied says that it is there.
+function(mbk_web_copy name)
   set(source ${PROJECT_SOURCE_DIR}/web/${name})
-  set(folder ${PROJECT_BINARY_DIR}/web/${name})
-  set(package ${source}/package.json ${source}/package-lock.json ${source}/.npmrc)
+  set(folder ${MBK_WEB_FOLDER}/${name})
   file(GLOB_RECURSE code CONFIGURE_DEPENDS ${source}/src/*)
-  set(settings ${source}/index.html ${source}/vite.config.ts ${source}/tsconfig.json)
+  list(FILTER code EXCLUDE REGEX "/documents\\.ts$")  # that someone had written beside the sources
+  file(GLOB page CONFIGURE_DEPENDS ${source}/index.html)
+  set(copy_page "")
+  if(page)
+    set(copy_page COMMAND ${CMAKE_COMMAND} -E copy ${page} ${folder})
+  endif()
+  add_custom_command(
+    OUTPUT ${folder}/copied
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${folder}/src
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}/src
+    COMMAND ${CMAKE_COMMAND} -E copy ${code} ${folder}/src
+    ${copy_page}
+    COMMAND ${CMAKE_COMMAND} -E touch ${folder}/copied
+    DEPENDS ${MBK_WEB_FOLDER}/installed ${code} ${page}
+    COMMENT "Copying web/${name}"
+    VERBATIM)
+endfunction()
+
+# mbk_web_page(NAME): web/NAME as ${PROJECT_BINARY_DIR}/web/NAME/dist/index.html, of target web_NAME.
+function(mbk_web_page name)
+  add_custom_command(
+    OUTPUT ${MBK_WEB_FOLDER}/${name}/dist/index.html
+    COMMAND ${MBK_NODE_COMMAND} node_modules/vite/bin/vite.js build ${name} --config vite.config.ts --logLevel warn
+    DEPENDS ${MBK_WEB_FOLDER}/installed ${MBK_WEB_FOLDER}/settings ${MBK_WEB_FOLDER}/shared/copied
+            ${MBK_WEB_FOLDER}/${name}/copied
+    WORKING_DIRECTORY ${MBK_WEB_FOLDER}
+    COMMENT "Building the page web/${name}"
+    VERBATIM)
+  add_custom_target(web_${name} DEPENDS ${MBK_WEB_FOLDER}/${name}/dist/index.html)
+endfunction()
+
+# The packages of all pages, what the pages share, and, with tests, the types of everything: those of the documents are
+# written from schemas/.
+if(MBK_WEB)
+  set(packages "")
+  set(install "")
+  foreach(file package.json package-lock.json .npmrc shared/package.json report/package.json console/package.json
+          reproduction/package.json)
+    list(APPEND packages ${PROJECT_SOURCE_DIR}/web/${file})
+    list(APPEND install COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/web/${file} ${MBK_WEB_FOLDER}/${file})
+  endforeach()
+  foreach(name shared report console reproduction)
+    file(MAKE_DIRECTORY ${MBK_WEB_FOLDER}/${name})
+  endforeach()
   set(omit --omit=dev)
   if(MBK_BUILD_TESTS)
     set(omit --include=dev)
   endif()
   add_custom_command(
-    OUTPUT ${folder}/installed
-    COMMAND ${CMAKE_COMMAND} -E copy ${package} ${folder}
+    OUTPUT ${MBK_WEB_FOLDER}/installed
+    ${install}
     COMMAND ${MBK_NPM} ci ${omit} --prefer-offline --loglevel=error
-    COMMAND ${CMAKE_COMMAND} -E touch ${folder}/installed
-    DEPENDS ${package}
-    WORKING_DIRECTORY ${folder}
-    COMMENT "Installing the npm packages of web/${name} (without a network: -DMBK_WEB=OFF)"
+    COMMAND ${CMAKE_COMMAND} -E touch ${MBK_WEB_FOLDER}/installed
+    DEPENDS ${packages}
+    WORKING_DIRECTORY ${MBK_WEB_FOLDER}
+    COMMENT "Installing the npm packages of web/ (without a network: -DMBK_WEB=OFF)"
     VERBATIM)
+  set(settings ${PROJECT_SOURCE_DIR}/web/vite.config.ts ${PROJECT_SOURCE_DIR}/web/tsconfig.json
+      ${PROJECT_SOURCE_DIR}/web/types.mjs)
   add_custom_command(
-    OUTPUT ${folder}/dist/index.html
-    COMMAND ${CMAKE_COMMAND} -E rm -rf src dist
-    COMMAND ${CMAKE_COMMAND} -E copy ${settings} ${folder}
-    COMMAND ${CMAKE_COMMAND} -E copy_directory ${source}/src ${folder}/src
-    COMMAND ${MBK_NODE_COMMAND} node_modules/typescript/bin/tsc --noEmit
-    COMMAND ${MBK_NODE_COMMAND} node_modules/vite/bin/vite.js build --logLevel warn
-    DEPENDS ${folder}/installed ${code} ${settings} ${others}
-    WORKING_DIRECTORY ${folder}
-    COMMENT "Building the page web/${name}"
+    OUTPUT ${MBK_WEB_FOLDER}/settings
+    COMMAND ${CMAKE_COMMAND} -E copy ${settings} ${MBK_WEB_FOLDER}
+    COMMAND ${CMAKE_COMMAND} -E touch ${MBK_WEB_FOLDER}/settings
+    DEPENDS ${settings}
     VERBATIM)
-  add_custom_target(web_${name} DEPENDS ${folder}/dist/index.html)
-  foreach(other IN LISTS ARGN)
-    add_dependencies(web_${name} web_${other})
+  mbk_web_copy(shared)
+  foreach(page report console reproduction)
+    mbk_web_copy(${page})
+    mbk_web_page(${page})
   endforeach()
-endfunction()
+  if(MBK_BUILD_TESTS)
+    file(GLOB schemas CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/schemas/*.schema.json)
+    add_custom_command(
+      OUTPUT ${MBK_WEB_FOLDER}/checked
+      COMMAND ${MBK_NODE_COMMAND} types.mjs ${PROJECT_SOURCE_DIR}/schemas shared/src/documents.ts
+      COMMAND ${MBK_NODE_COMMAND} node_modules/typescript/bin/tsc --noEmit
+      COMMAND ${CMAKE_COMMAND} -E touch checked
+      DEPENDS ${schemas} ${MBK_WEB_FOLDER}/settings ${MBK_WEB_FOLDER}/shared/copied ${MBK_WEB_FOLDER}/report/copied
+              ${MBK_WEB_FOLDER}/console/copied ${MBK_WEB_FOLDER}/reproduction/copied
+      WORKING_DIRECTORY ${MBK_WEB_FOLDER}
+      COMMENT "Checking the types of web/"
+      VERBATIM)
+    add_custom_target(web_types ALL DEPENDS ${MBK_WEB_FOLDER}/checked)
+  endif()
+endif()
 
-# mbk_embed_page(MODULE PAGE SYMBOL [USES OTHER...]): the page web/PAGE as bytes from SYMBOLBegin to SYMBOLEnd in MODULE,
-# whose sources see MBK_WEB. Without MBK_WEB: nothing.
+# mbk_embed_page(MODULE PAGE SYMBOL): the page web/PAGE as bytes from SYMBOLBegin to SYMBOLEnd in MODULE, whose sources
+# see MBK_WEB. Without MBK_WEB: nothing.
 function(mbk_embed_page module page symbol)
   if(NOT MBK_WEB)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
-  mbk_web_page(${page} ${ARG_USES})
   set(MBK_PAGE_NAME ${page})
   set(MBK_PAGE_SYMBOL ${symbol})
-  set(MBK_PAGE_FILE ${PROJECT_BINARY_DIR}/web/${page}/dist/index.html)
+  set(MBK_PAGE_FILE ${MBK_WEB_FOLDER}/${page}/dist/index.html)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/page.S.in page.S @ONLY)
   set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/page.S PROPERTIES OBJECT_DEPENDS ${MBK_PAGE_FILE})
   add_library(mbk_${module}_page OBJECT ${CMAKE_CURRENT_BINARY_DIR}/page.S)

@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/present/result/reproduction_json.h"
 #include "mbk/thesis/reproduce.h"
+#include "tests/support/schemas.h"
 
 /// Exhibits as tests look at them.
 namespace mbk::thesis {
@@ -26,6 +28,12 @@ inline Reproduction made(const std::vector<std::string>& only, unsigned threads 
   options.threads = threads;
   auto reproduction = reproduce(source, options);
   EXPECT_TRUE(reproduction) << reproduction.error().line();
+  EXPECT_TRUE(schemas::fits_its_schema(result::to_json(*reproduction)));
+  for (const Exhibit& exhibit : reproduction->exhibits) {
+    for (const ReproducedTable& table : exhibit.tables) {
+      EXPECT_TRUE(schemas::fits_its_schema(result::to_json(exhibit, table)));
+    }
+  }
   return *reproduction;
 }
 

@@ -16,6 +16,7 @@ import tempfile
 import unittest
 
 import mat_file
+import schemas
 
 SKIPPED = 77  # exit code of a file whose tests were all skipped; CTest reports it as such
 FINE, WRONG_USAGE, BAD_DATA, NOT_USABLE = 0, 2, 3, 4
@@ -49,13 +50,19 @@ def program(variable):
 
 
 def run(*arguments, folder=None, timeout=120, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE):
-    """mbk with these arguments, in `folder`."""
+    """mbk with these arguments, in `folder`. A JSON document that it prints or writes has to fit its schema."""
     arguments = [argument if isinstance(argument, bytes) else str(argument) for argument in arguments]
     process = subprocess.run([program("MBK"), *arguments], cwd=folder, stdin=stdin, stdout=stdout,
                              stderr=subprocess.PIPE, timeout=timeout, check=False)
     if process.stdout is None:
         process.stdout = b""
-    return Ran(process, "mbk " + " ".join(map(str, arguments)))
+    ran = Ran(process, "mbk " + " ".join(map(str, arguments)))
+    schemas.check_printed(ran.out)
+    if "--json" in arguments and "--out" in arguments and ran.code in (FINE, NOT_USABLE):
+        out = pathlib.Path(folder or ".", arguments[arguments.index("--out") + 1])
+        if out.is_file():
+            schemas.check_printed(out.read_text(encoding="utf-8"))
+    return ran
 
 
 @functools.lru_cache(maxsize=None)

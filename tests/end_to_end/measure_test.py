@@ -146,7 +146,7 @@ class SeveralFiles(Case):
         return [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2, 3)]
 
     def test_each_has_its_result_and_the_summary_their_mean_and_standard_error(self):
-        both = self.fine("measure", "--json", *self.logs()).json
+        both = self.fine("measure", "--json", "--quiet", *self.logs()).json
         self.assertEqual(both["schema"], "mbk.results/1")
         self.assertEqual(both["results"], [results_of(log) for log in self.logs()])
         summary = both["summary"]
@@ -173,7 +173,7 @@ class SeveralFiles(Case):
 
     def test_one_and_two_axes_have_no_common_mean(self):
         other = make_log("sinusoidal", "--one-axis").path
-        ran = self.refused(3, "measure", make_log().path, other, says=[str(other), "axes"])
+        ran = self.refused(3, "measure", "--quiet", make_log().path, other, says=[str(other), "axes"])
         self.assertRegex(ran.err, r"; \w")
         self.refused(3, "measure", "--pool", make_log().path, other, says=[str(other), "axes"])
 

@@ -5,6 +5,7 @@ import json
 import pathlib
 import subprocess
 
+import schemas
 from command import WRONG_USAGE, Case, main, program
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -35,6 +36,8 @@ class MisbehavingRobot(Case):
         ran = robot("relaxed_sinusoidal", "--port", "0", "--for", "1")
         self.assertEqual(ran.returncode, 0)
         events = [json.loads(line) for line in ran.stdout.splitlines()]
+        for event in events:
+            schemas.check(event, "robot_event")
         self.assertEqual([event["event"] for event in events], ["listening", "end"])
 
 

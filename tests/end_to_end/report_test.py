@@ -4,6 +4,7 @@
 import json
 import re
 
+import schemas
 from command import BAD_DATA, FINE, NOT_USABLE, WRONG_USAGE, Case, copy, main, make_log, run
 
 DATA = re.compile(r'<script type="application/json" id="report-data">(.*?)</script>', re.DOTALL)
@@ -11,7 +12,9 @@ DATA = re.compile(r'<script type="application/json" id="report-data">(.*?)</scri
 
 def document_of(path):
     """What a report holds for machines."""
-    return json.loads(DATA.search(path.read_text(encoding="utf-8")).group(1))
+    document = json.loads(DATA.search(path.read_text(encoding="utf-8")).group(1))
+    schemas.check(document)
+    return document
 
 
 class Report(Case):

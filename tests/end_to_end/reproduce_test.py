@@ -15,6 +15,7 @@ import subprocess
 import tempfile
 import unittest
 
+import schemas
 from command import WRONG_USAGE, Case, main, run
 
 TABLES = ("3.1", "3.2", "3.3", "3.4", "3.5", "3.6", "4.1", "4.2", "4.3", "4.4", "4.5", "5.1", "5.3", "5.4", "5.5", "5.6",
@@ -56,6 +57,7 @@ class Whole(Case):
 
     def test_nothing_that_follows_from_printed_numbers_differs(self):
         self.assertEqual(self.ran.code, 0, self.ran)
+        schemas.check(self.document, "reproduction")
         self.assertEqual(self.document["agreement"]["differs"], 0)
         self.assertGreater(self.document["agreement"]["within rounding"], 80)
         self.assertIn("0 differ", self.ran.out)
@@ -98,8 +100,9 @@ class Whole(Case):
                 for row, cell in zip(rows, cells):
                     if isinstance(cell["ours"], float):
                         self.assertEqual(float(row["ours"]), cell["ours"])
-                self.assertEqual(json.loads((self.place / "tables" / f"{stem}.json").read_text())["rows"],
-                                 table["rows"])
+                written = json.loads((self.place / "tables" / f"{stem}.json").read_text())
+                schemas.check(written, "reproduced_table")
+                self.assertEqual(written["rows"], table["rows"])
                 count += 1
             for number in range(1, len(exhibit["charts"]) + 1):
                 svg = (self.place / "figures" / f"{name}-{number}.svg").read_text()
@@ -110,6 +113,9 @@ class Whole(Case):
         html = (self.place / "index.html").read_text()
         self.assertNotIn("@MBK_REPORT_DATA@", html)
         self.assertIsNone(re.search(r'(?:src|href)="https?:', html))
+        document = json.loads(re.search(r'id="report-data">(.*?)</script>', html, re.DOTALL).group(1))
+        schemas.check(document, "reproduction_page")
+        self.assertEqual(document["reproduction"], self.document)
 
     def test_commands_name_options_that_there_are(self):
         """Each `mbk COMMAND … --option` of each exhibit."""

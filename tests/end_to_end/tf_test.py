@@ -7,6 +7,7 @@ import random
 import re
 
 import mat_file
+import schemas
 from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main, make_log, run
 
 W, ZETA, GAIN = 2 * math.pi * 1.5, 0.2, 4.0  # GAIN W²/(s² + 2 ZETA W s + W²)
@@ -283,6 +284,7 @@ class Report(Case):
                         "--report-note", "<b>Ward 3")
         text = self.path.read_text(encoding="utf-8")
         document = json.loads(re.search(r'id="report-data">(.*?)</script>', text, re.DOTALL).group(1))
+        schemas.check(document)
         self.assertEqual((document["schema"], document["note"]), ("mbk.tf_report/1", "<b>Ward 3"))
         self.assertEqual(document["result"], ran.json)
         lengths = {len(document["simulation"][name]) for name in ("time_s", "measured", "simulated")}

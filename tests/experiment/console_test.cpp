@@ -19,6 +19,7 @@
 #include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/present/result/json.h"
 #include "mbk/simulate/laboratory/simulation.h"
+#include "tests/support/schemas.h"
 
 namespace mbk::console {
 namespace {
@@ -130,7 +131,9 @@ class ConsoleOfASession : public testing::Test {
         ++frames;
         return;
       }
-      const Json message = Json::parse(beast::buffers_to_string(buffer.data()));
+      const std::string text = beast::buffers_to_string(buffer.data());
+      EXPECT_TRUE(schemas::fits(text, "console"));
+      const Json message = Json::parse(text);
       const std::string type = message.at("type");
       (type == "you" ? you : type == "state" ? state : type == "estimate" ? estimate : refused) = message;
     }

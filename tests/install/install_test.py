@@ -11,6 +11,8 @@ import sys
 import tempfile
 import unittest
 
+import jsonschema
+
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PUBLIC = {"Eigen", "boost", "tl", "fmt"}  # outside libraries that may stand in headers
 OF_C = {"stddef.h", "stdint.h"}  # in headers that C reads too
@@ -117,6 +119,21 @@ class Installed(unittest.TestCase):
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(compiled, remaining))
 
+    def test_what_it_writes_fits_the_schemas_beside_it(self):
+        """They refer to each other by where they stand."""
+        folder = self.prefix / "share/mbk/schemas"
+        self.assertEqual(sorted(one.name for one in folder.iterdir()), sorted(one.name for one in (SOURCE / "schemas").iterdir()))
+        recording = self.folder / "to_fit.mat"
+        ran(program("MAKE_LOG"), "--protocol", "sinusoidal", "--out", recording)
+        path = folder / "result.schema.json"
+        schema = json.loads(path.read_text(encoding="utf-8"))
+        resolver = jsonschema.RefResolver(path.as_uri(), schema)
+        result = json.loads(ran(self.prefix / "bin/mbk", "measure", "--json", recording))
+        jsonschema.validate(result, schema, cls=jsonschema.Draft7Validator, resolver=resolver)
+        del result["model"]["K"]
+        with self.assertRaises(jsonschema.ValidationError):
+            jsonschema.validate(result, schema, cls=jsonschema.Draft7Validator, resolver=resolver)
+
     def test_headers_of_tests_stay_behind(self):
         self.assertEqual([one.name for one in self.headers if one.name.startswith("test_")], [])
 
@@ -125,7 +142,7 @@ class Installed(unittest.TestCase):
         for name in ("man/man1/mbk.1", "man/man1/mbk-springs-field.1", "bash-completion/completions/mbk",
                      "zsh/site-functions/_mbk", "fish/vendor_completions.d/mbk.fish", "doc/mbk/LICENSE",
                      "doc/mbk/THIRD_PARTY_NOTICES.md", "doc/mbk/copyright", "doc/mbk/docs/guide/install.md",
-                     "doc/mbk/examples/scenarios/relaxed_sinusoidal.toml", "doc/mbk/examples/01_measure/run.sh"):
+                     "doc/mbk/examples/scenarios/relaxed_sinusoidal.toml", "mbk/schemas/result.schema.json", "doc/mbk/examples/01_measure/run.sh"):
             self.assertTrue((share / name).is_file(), name)
         self.assertFalse((share / "doc/mbk/docs/site").exists())  # what builds the site, of no use without the tree
         mbk = self.prefix / "bin/mbk"

@@ -1,7 +1,7 @@
 // What the tests of reports and console share: the programs, a browser without a network, and reading numbers off a page.
 //
-// Run in the build folder of the page, where the packages are: cd build/test/web/report, then
-//   MBK=$PWD/../../bin/mbk MAKE_LOG=$PWD/../../bin/make_log node ../../../../tests/web/report_test.mjs
+// Run in the build folder of the pages, where the packages are: cd build/test/web, then
+//   MBK=$PWD/../bin/mbk MAKE_LOG=$PWD/../bin/make_log node ../../../tests/web/report_test.mjs
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -158,8 +158,10 @@ export async function open(file, { script, ...options } = {}) {
 export async function scrollThrough(page) {
   const height = await page.evaluate(() => document.documentElement.scrollHeight);
   for (let y = 0; y < height; y += 600) {
-    await page.evaluate((top) => scrollTo({ top, behavior: "instant" }), y);
-    await page.waitForTimeout(20);
+    await page.evaluate((top) => new Promise((drawn) => {
+      scrollTo({ top, behavior: "instant" });
+      requestAnimationFrame(() => requestAnimationFrame(drawn));
+    }), y);
   }
   await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
 }

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, endPrograms, folder, makeLog, mbk, measure, open, pictures, scrollThrough, start, startDouble, violations } from "./browser.mjs";
+import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, open, pictures, scrollThrough, start, startDouble, violations } from "./browser.mjs";
 
 after(() => {
   endPrograms(); // of tests that failed
@@ -60,9 +60,13 @@ async function visit(address, options = {}) {
   const visited = await open(address, { viewport: { width: 1920, height: 1080 }, ...options });
   const { page } = visited;
   const banner = (...words) => page.waitForFunction((texts) => texts.some((text) => document.querySelector(".banner-title")?.textContent?.includes(text)), words, { timeout: 60_000 });
+  const perturbing = async () => {
+    await banner("Running");
+    await page.waitForFunction(() => /perturbing/i.test(document.querySelector(".phase")?.textContent ?? ""), undefined, { timeout: 60_000 });
+  };
   const rests = () => banner("motors are off", "No torque is commanded"); // what the robot reports, or else what is known
   const foreign = () => visited.outside().filter((url) => !url.startsWith(new URL(address).origin));
-  return Object.assign(visited, { banner, rests, foreign, click: (name) => page.getByRole("button", { name }).click({ timeout: 60_000 }) });
+  return Object.assign(visited, { banner, perturbing, rests, foreign, click: (name) => page.getByRole("button", { name }).click({ timeout: 60_000 }) });
 }
 
 const mostTicks = 250; // from the trip to its message, on a machine that has a hundred other things to do; 5 where it has not
@@ -75,7 +79,7 @@ const ended = async ({ close }, running) => {
 test("a whole run is clicked through, from the first trial to the reports", async () => {
   const running = await run("whole", "--wait", "--speed", "4");
   const operator = await visit(running.operator);
-  const { page, click, banner, rests } = operator;
+  const { page, click, banner, perturbing, rests } = operator;
   await rests();
   assert.deepEqual(await violations(page), []);
   await take(page, "console-ready");
@@ -86,15 +90,14 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await page.getByLabel("Note for the recording").fill("talked to the nurse");
   await click("Add the note");
   await page.waitForSelector(".cells", { timeout: 60_000 });
-  await page.waitForTimeout(500);
+  await page.waitForFunction(() => document.querySelector(".tightening")?.textContent.includes("as wide as"), undefined, { timeout: 60_000 });
   assert.deepEqual(await violations(page), []);
   await take(page, "console-running");
 
   await page.getByRole("button", { name: "Begin the next: rigid" }).waitFor({ timeout: 60_000 });
   assert.match(await page.textContent(".estimate h2"), /whole perturbation, 14 s/);
   await click("Begin the next: rigid");
-  await banner("Running");
-  await page.waitForTimeout(1500);
+  await perturbing();
   await take(page, "console-force");
   await click("End this trial early");
   await click("Repeat this trial");
@@ -174,10 +177,9 @@ async function pressAndMeasure(page, press) {
 test("the stop button and the space bar trip the gate; a reset takes two steps", async () => {
   const running = await run("stopped", "--wait", "--speed", "1", "--trial", "relaxed");
   const operator = await visit(running.operator, { script: watchArrivals });
-  const { page, click, banner } = operator;
+  const { page, click, perturbing } = operator;
   await click("Begin: relaxed");
-  await banner("Running");
-  await page.waitForTimeout(1500);
+  await perturbing();
   const byButton = await pressAndMeasure(page, () => page.locator(".stop").click());
   await page.getByRole("button", { name: "Reset …" }).waitFor();
   assert.match(await page.textContent(".banner"), /Stopped.*the operator stopped it/);
@@ -186,8 +188,7 @@ test("the stop button and the space bar trip the gate; a reset takes two steps",
   await click("Reset …");
   await click("The reason is gone");
   await click("Repeat this trial");
-  await banner("Running");
-  await page.waitForTimeout(1500);
+  await perturbing();
   await page.getByRole("button", { name: "End this trial early" }).focus();  // the space bar does not press it
   const bySpace = await pressAndMeasure(page, () => page.keyboard.press("Space"));
   console.log(`after the press: by the button ${byButton}; by the space bar ${bySpace}`);
@@ -252,7 +253,7 @@ test("a wrong token and a foreign page get nothing, and that is logged", async (
   assert.match(await stranger.page.textContent("main"), /not right/);
   await running.until(/refused: a wrong token/);
   await stranger.close();
-  const own = await open(join(pictures, "..", "dist", "index.html"));
+  const own = await open(join(pictures, "..", "report", "dist", "index.html"));
   const opened = await own.page.evaluate((url) => new Promise((resolve) => {
     const socket = new WebSocket(url);
     socket.onopen = () => resolve(true);
@@ -273,8 +274,7 @@ test("who only watches sees everything and can do nothing", async () => {
   assert.ok(await watching.page.locator(".stop").isDisabled());
   assert.equal(await watching.page.locator(".actions button").count(), 0);
   assert.match(await watching.page.textContent("footer"), /only watches/);
-  await watching.page.waitForTimeout(2500);
-  const rates = await Promise.all([operator, watching].map(({ page }) => page.evaluate(() => document.documentElement.dataset.framesPerSecond)));
+  const rates = await Promise.all([operator, watching].map(async ({ page }) => (await page.waitForFunction(() => document.documentElement.dataset.framesPerSecond, undefined, { timeout: 60_000 })).jsonValue()));
   console.log(`frames drawn per second by two pages: ${rates.join(", ")}`);
   await watching.close();
   await operator.click("Finish");
@@ -291,10 +291,10 @@ test("the participant sees handle and target, mirrored and turned as the operato
   await operator.click("Begin: rigid");
   await operator.banner("Running");
   const place = (of) => of.page.waitForFunction(() => document.querySelector("canvas").dataset.handle).then((handle) => handle.jsonValue());
-  await place(participant);
-  await page.waitForTimeout(6000);
+  const before = await place(participant);
+  await operator.perturbing();
+  await page.waitForFunction((first) => document.querySelector(".please-wait").textContent === "" && document.querySelector("canvas").dataset.handle !== first, before, { timeout: 60_000 });
   assert.deepEqual(await violations(page), []);
-  assert.equal(await page.textContent(".please-wait"), "");
   await take(page, "participant");
   await take(mirrored.page, "participant-mirrored");
   await page.getByText("View").click();
@@ -351,7 +351,7 @@ test("motors that are not confirmed off are an alarm that cannot be missed, unti
   await take(page, "console-alarm");
   await page.setViewportSize({ width: 700, height: 900 });
   await page.mouse.wheel(0, 3000);
-  await page.waitForTimeout(200);
+  await page.waitForFunction(() => scrollY > 0);
   assert.ok(await alarm.isVisible() && (await alarm.boundingBox()).y >= 0, "it does not scroll away");
   await take(page, "console-alarm-narrow");
   await page.setViewportSize({ width: 1920, height: 1080 });
@@ -406,14 +406,15 @@ test("a script or a style that came into the page later is not run", async () =>
     style.textContent = ".stop { display: none; }";
     const room = document.createElement("div");
     room.innerHTML = '<p style="position: fixed">x</p><img src="data:," onerror="globalThis.injected = true">';
+    const failed = new Promise((resolve) => room.querySelector("img").addEventListener("error", resolve)); // after its own handler
     document.body.append(script, style, room);
-    await new Promise((resolve) => setTimeout(resolve, 300));
+    await failed;
     return [globalThis.injected, getComputedStyle(document.querySelector(".stop")).display, getComputedStyle(room.firstChild).position];
   });
   assert.notEqual(after[0], true);
   assert.notEqual(after[1], "none");
   assert.notEqual(after[2], "fixed");
-  assert.ok(said.every((line) => /Content Security Policy/.test(line)) && said.length >= 4, said.join("\n"));
+  await eventually(async () => assert.ok(said.every((line) => /Content Security Policy/.test(line)) && said.length >= 4, said.join("\n")));
   tell("quit");
   assert.equal(await ended(operator, { code }), 0);
 });

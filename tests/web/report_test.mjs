@@ -139,14 +139,12 @@ test("the keyboard reaches the content first, zooms a chart and shows all again"
   const whole = await ticks();
   await figure.getByRole("button", { name: /^Zoom in/ }).focus();
   await page.keyboard.press("Enter");
-  await page.waitForTimeout(100);
-  assert.notDeepEqual(await ticks(), whole);
-  assert.equal(await figure.locator(".zoom").textContent(), "25–75 %");
+  await eventually(async () => assert.equal(await figure.locator(".zoom").textContent(), "25–75 %"));
+  await eventually(async () => assert.notDeepEqual(await ticks(), whole));
   for (let k = 0; k < 4; ++k) await page.keyboard.press("Tab");
   await eventually(async () => assert.match(await page.evaluate(() => document.activeElement.ariaLabel ?? document.activeElement.getAttribute("aria-label")), /^Show all/));
   await page.keyboard.press("Enter");
-  await page.waitForTimeout(100);
-  assert.deepEqual(await ticks(), whole);
+  await eventually(async () => assert.deepEqual(await ticks(), whole));
   await done();
 });
 

@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "tests/support/schemas.h"
+
 namespace mbk::result {
 namespace {
 
@@ -96,7 +98,7 @@ TEST_P(BothAxes, ModelCovarianceFitWarningsAndInputsComeBackToTheLastBit) {
 
 TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   const std::size_t n = static_cast<std::size_t>(GetParam());
-  const Json json = Json::parse(to_json(measured(GetParam())));
+  const Json json = schemas::parsed(to_json(measured(GetParam())));
   EXPECT_EQ(json.at("schema"), "mbk.result/1");
   EXPECT_THAT(json.at("software").get<std::string>(), testing::StartsWith("mbk "));
   EXPECT_EQ(json.at("inputs").at(0).at("file"), "a.mat");
@@ -127,8 +129,14 @@ TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   EXPECT_EQ(json.contains("antisymmetry"), n == 2);
 }
 
+TEST(ToJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {
+  Measurement warned = measured(2);
+  for (const auto& [code, words] : kWarningTexts) warned.identification.warnings.push_back({code, "so", "again"});
+  EXPECT_TRUE(schemas::fits_its_schema(to_json(warned)));
+}
+
 TEST(ToJson, EllipsesHaveTheirIntervals) {
-  const Json json = Json::parse(to_json(measured(2)));
+  const Json json = schemas::parsed(to_json(measured(2)));
   for (const char* matrix : {"inertia", "damping", "stiffness"}) {
     const Json& one = json.at("ellipses").at(matrix);
     for (const char* number : {"area", "shape", "orientation_deg"}) {
@@ -145,7 +153,7 @@ TEST(ToJson, EllipsesHaveTheirIntervals) {
 
 TEST(ToJson, MatricesAreWrittenRowByRow) {
   const Measurement two = measured(2);
-  const Json json = Json::parse(to_json(two));
+  const Json json = schemas::parsed(to_json(two));
   EXPECT_EQ(json.at("model").at("M").at(0).at(1).get<double>(), two.identification.model.M(0, 1));
   EXPECT_EQ(json.at("covariance").at("matrix").at(3).at(7).get<double>(), two.identification.covariance(3, 7));
 }
@@ -155,7 +163,7 @@ TEST(ToJson, WhatIsUndefinedIsNullAndComesBackAsNaN) {
   undefined.identification.model.x0[1] = kNaN;
   undefined.identification.fit.vaf[0] = -std::numeric_limits<double>::infinity();
   const std::string text = to_json(undefined);
-  EXPECT_TRUE(Json::parse(text).at("model").at("x0").at(1).is_null());
+  EXPECT_TRUE(schemas::parsed(text).at("model").at("x0").at(1).is_null());
   EXPECT_TRUE(std::isnan(read_back(text).model.x0[1]));
   EXPECT_TRUE(std::isnan(read_back(text).fit.vaf[0]));
 }
@@ -185,7 +193,7 @@ TEST(ToJson, ASummaryHasItsMeanAndError) {
   Summary summary;
   summary.trials = 2;
   summary.mean = summary.between_trial_standard_error = measured(2).identification.model;
-  const Json json = Json::parse(to_json(std::vector<Measurement>{measured(2), measured(2)}, summary));
+  const Json json = schemas::parsed(to_json(std::vector<Measurement>{measured(2), measured(2)}, summary));
   EXPECT_EQ(json.at("schema"), "mbk.results/1");
   EXPECT_EQ(json.at("results").size(), 2u);
   EXPECT_EQ(json.at("summary").at("trials"), 2);
@@ -194,7 +202,7 @@ TEST(ToJson, ASummaryHasItsMeanAndError) {
 }
 
 TEST(FromJson, WithoutACovarianceTakesTheStandardErrors) {
-  Json json = Json::parse(to_json(measured(2)));
+  Json json = schemas::parsed(to_json(measured(2)));
   json.erase("covariance");
   const Identification back = read_back(json.dump());
   EXPECT_DOUBLE_EQ(back.covariance(1, 1), std::pow(back.standard_error.M(0, 1), 2));
@@ -206,9 +214,9 @@ TEST(FromJson, WithoutACovarianceTakesTheStandardErrors) {
 TEST(FromJson, WhatWasReadCanBeWrittenAgain) {
   for (const int axes : {1, 2}) {
     const Identification id = read_back(to_json(measured(axes)));
-    const Json again = Json::parse(to_json(Measurement{id, std::nullopt}));
+    const Json again = schemas::parsed(to_json(Measurement{id, std::nullopt}));
     EXPECT_FALSE(again.contains("mode"));
-    EXPECT_EQ(again["model"], Json::parse(to_json(measured(axes)))["model"]);
+    EXPECT_EQ(again["model"], schemas::parsed(to_json(measured(axes)))["model"]);
   }
 }
 
@@ -262,7 +270,7 @@ TEST(FromJson, RefusesWhatIsNoResult) {
 }
 
 TEST(FromJson, RefusesMatricesOfTheWrongShapeByName) {
-  const Json good = Json::parse(to_json(measured(2)));
+  const Json good = schemas::parsed(to_json(measured(2)));
   const auto broken = [&](const char* pointer, const Json& value) {
     Json json = good;
     json[Json::json_pointer(pointer)] = value;
@@ -345,7 +353,7 @@ TEST(ToJson, AValidationKeepsItsRowsAndAddsWhatTheyHave) {
   table.unit = "N/m";
   table.rows.push_back({"k_xx", 431.5, {429.0, 434.0}, std::pair{420.0, 440.0}});
   table.rows.push_back({"m_xx", 1.3, {1.2, 1.4}, std::nullopt, "kg", 0.01, 0.95});
-  Json json = Json::parse(to_json(table));
+  Json json = schemas::parsed(to_json(table));
   const Json plain = {
       {"what", "k_xx"}, {"value", 431.5}, {"interval99", {429.0, 434.0}}, {"wanted", {420.0, 440.0}}, {"met", true}};
   EXPECT_EQ(json.at("rows").at(0), plain);
@@ -368,7 +376,7 @@ TEST(ToJson, AChartKeepsItsNumbers) {
   chart.horizontal.push_back({0.5, "limit"});
   chart.identity = true;
   table.charts.push_back(chart);
-  const Json json = Json::parse(to_json(table));
+  const Json json = schemas::parsed(to_json(table));
   EXPECT_EQ(json.at("notes"), Json({"a note"}));
   const Json& one = json.at("charts").at(0);
   EXPECT_EQ(one.at("x"), Json({{"label", "made"}, {"unit", "N/m"}}));

@@ -5,6 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/schemas.h"
+
 namespace mbk::result {
 namespace {
 
@@ -43,7 +45,7 @@ TEST(ReportJson, HoldsTheResultJustAsItIsWrittenAlone) {
   const std::string alone = to_json(measured());
   const std::string text = to_json(Report{{{measured(), {}, std::nullopt}}, std::nullopt, "mbk measure", ""});
   EXPECT_NE(text.find("\"result\":" + alone), std::string::npos);
-  const Json json = Json::parse(text);
+  const Json json = schemas::parsed(text);
   EXPECT_EQ(json["schema"], "mbk.report/1");
   EXPECT_EQ(json["result"], Json::parse(alone));
   EXPECT_EQ(json["command"], "mbk measure");
@@ -53,14 +55,14 @@ TEST(ReportJson, HoldsTheResultJustAsItIsWrittenAlone) {
 TEST(ReportJson, HoldsSeveralResultsJustAsTheyAreWrittenAlone) {
   Summary summary{2, Motion::rotation, measured().identification.model, measured().identification.standard_error};
   const Report report{{{measured(), {}, std::nullopt}, {measured(), {}, std::nullopt}}, summary, "", "by A. B."};
-  const Json json = Json::parse(to_json(report));
-  EXPECT_EQ(json["result"], Json::parse(to_json(std::vector<Measurement>{measured(), measured()}, summary)));
+  const Json json = schemas::parsed(to_json(report));
+  EXPECT_EQ(json["result"], schemas::parsed(to_json(std::vector<Measurement>{measured(), measured()}, summary)));
   EXPECT_EQ(json["trials"].size(), 2U);
   EXPECT_EQ(json["note"], "by A. B.");
 }
 
 TEST(ReportJson, WritesSignalsByAxisWithSixDigitsAndUndefinedNumbersAsNull) {
-  const Json json = Json::parse(to_json(Report{{{measured(), {}, diagnostics()}}, std::nullopt, "", ""}));
+  const Json json = schemas::parsed(to_json(Report{{{measured(), {}, diagnostics()}}, std::nullopt, "", ""}));
   const Json& d = json["trials"][0]["diagnostics"];
   EXPECT_EQ(d["prediction"]["measured"], Json::parse("[[1.23457, null, 1e-9]]"));
   EXPECT_EQ(d["prediction"]["time_s"], Json::parse("[1, null, 1234.56789]"));
@@ -75,7 +77,7 @@ TEST(ReportJson, WritesAnAccelerometerWhereThereIsOne) {
   Diagnostics with = diagnostics();
   with.acceleration = AccelerationAgreement{Vector::Zero(1), Matrix::Ones(1, 2), Matrix::Zero(1, 2),
                                             Vector::Constant(2, 0.5), Vector::Constant(2, kNaN)};
-  const Json json = Json::parse(to_json(Report{{{measured(), {}, with}}, std::nullopt, "", ""}));
+  const Json json = schemas::parsed(to_json(Report{{{measured(), {}, with}}, std::nullopt, "", ""}));
   const Json& a = json["trials"][0]["diagnostics"]["acceleration"];
   EXPECT_EQ(a["derivative"], Json::parse("[[1], [1]]"));
   EXPECT_EQ(a["rms_difference"], Json::parse("[0.5, 0.5]"));
@@ -85,7 +87,7 @@ TEST(ReportJson, WritesAnAccelerometerWhereThereIsOne) {
 TEST(ReportJson, WritesMetadataAndPosture) {
   const ArmPosture posture{ArmPosture::Of::arm, {{0.0, -0.5}, {0.24, -0.32}, {0.0, 0.0}}, "a note"};
   const RecordingFacts facts{{{"participant", "P1"}, {"bad", "\xff"}}, posture};
-  const Json json = Json::parse(to_json(Report{{{measured(), {facts}, std::nullopt}}, std::nullopt, "", ""}));
+  const Json json = schemas::parsed(to_json(Report{{{measured(), {facts}, std::nullopt}}, std::nullopt, "", ""}));
   const Json& one = json["trials"][0]["recordings"][0];
   EXPECT_EQ(one["metadata"]["participant"], "P1");
   EXPECT_EQ(one["metadata"]["bad"], "\uFFFD");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mbk/model/robot/single_joint.h"
+#include "tests/support/schemas.h"
 
 namespace mbk::result {
 namespace {
@@ -76,7 +77,7 @@ TEST(RobotJson, ComesBackDigitForDigit) {
 }
 
 TEST(RobotJson, SaysHowEachCoefficientWasFound) {
-  const Json json = Json::parse(to_json(identified()));
+  const Json json = schemas::parsed(to_json(identified()));
   EXPECT_EQ(json["schema"], "mbk.robot/1");
   const Json& parameters = json["parameters"];
   EXPECT_EQ(parameters[0]["together_with"], "+ 1·motor_inertia_1");
@@ -99,16 +100,16 @@ TEST(RobotJson, NamesTheInstrumentsWhereTheyWereUsed) {
   found.method = RobotMethod::instrumental_variables;
   found.instrument_motion = InstrumentMotion::smoothed;
   found.motion_cutoff = 5.0;
-  const Json smoothed = Json::parse(to_json(found));
+  const Json smoothed = schemas::parsed(to_json(found));
   EXPECT_EQ(smoothed["instruments"], "smoothed motion");
   EXPECT_EQ(smoothed["motion_cutoff_hz"], 5.0);
   found.instrument_motion = InstrumentMotion::hand_reference;
-  EXPECT_FALSE(Json::parse(to_json(found)).contains("motion_cutoff_hz"));
+  EXPECT_FALSE(schemas::parsed(to_json(found)).contains("motion_cutoff_hz"));
 }
 
 template <typename Change>
 void expect_malformed(const char* says, Change change) {
-  Json json = Json::parse(to_json(identified()));
+  Json json = schemas::parsed(to_json(identified()));
   change(json);
   const auto stored = robot_from_json(json.dump());
   ASSERT_FALSE(stored) << says;
@@ -155,7 +156,7 @@ TEST(ForceJson, HasTheSummaryAndOnlyWhatIsKnown) {
   force.rms = Eigen::Vector2d(1.5, 2.5);
   force.peak = Eigen::Vector2d(4.0, 5.0);
   force.notes = {"so"};
-  Json json = Json::parse(to_json(force));
+  Json json = schemas::parsed(to_json(force));
   EXPECT_EQ(json["schema"], "mbk.force/1");
   EXPECT_EQ(json["force_source"], "observer");
   EXPECT_EQ(json["RMS"], Json::array({1.5, 2.5}));
@@ -164,7 +165,7 @@ TEST(ForceJson, HasTheSummaryAndOnlyWhatIsKnown) {
   EXPECT_FALSE(json.contains("force_comparison"));
   force.standard_error = Eigen::Vector2d(0.1, 0.2);
   force.comparison.emplace();
-  json = Json::parse(to_json(force));
+  json = schemas::parsed(to_json(force));
   EXPECT_EQ(json["standard_error_RMS"], Json::array({0.1, 0.2}));
   EXPECT_TRUE(json.contains("force_comparison"));
 }

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/schemas.h"
+
 namespace mbk::result {
 namespace {
 
@@ -35,7 +37,7 @@ SensorCalibration calibration() {
 
 TEST(SensorJson, ReadsBackWhatItWrote) {
   const std::string written = to_json(calibration());
-  EXPECT_EQ(json::parse(written)["schema"], "mbk.sensor/1");
+  EXPECT_EQ(schemas::parsed(written)["schema"], "mbk.sensor/1");
   const auto read = sensor_calibration_from_json(written);
   ASSERT_TRUE(read) << read.error().line();
   EXPECT_EQ(to_json(*read), written);
@@ -49,7 +51,7 @@ TEST(SensorJson, LeavesOutWhatWasNotFitted) {
   SensorCalibration c = calibration();
   c.crosstalk = c.crosstalk_error = Matrix();
   c.lever_arm.reset();
-  const json written = json::parse(to_json(c));
+  const json written = schemas::parsed(to_json(c));
   EXPECT_FALSE(written.contains("crosstalk"));
   EXPECT_FALSE(written.contains("lever_arm"));
   EXPECT_EQ(sensor_calibration_from_json(to_json(c))->crosstalk.size(), 0);
@@ -61,7 +63,7 @@ TEST(SensorJson, NamesWhatIsWrong) {
   EXPECT_THAT(error("{\"schema\": \"mbk.result/1\"}"), HasSubstr("not a calibration of schema mbk.sensor/1"));
   EXPECT_THAT(error("[]"), HasSubstr("not a calibration"));
   EXPECT_THAT(error("[1e999]"), HasSubstr("a number is beyond"));
-  json document = json::parse(to_json(calibration()));
+  json document = schemas::parsed(to_json(calibration()));
   const auto with = [&](const char* name, const json& value) {
     json changed = document;
     changed[name] = value;
@@ -75,6 +77,12 @@ TEST(SensorJson, NamesWhatIsWrong) {
   EXPECT_THAT(with("lever_arm", -1), HasSubstr("'lever_arm' is not above 0"));
   document["axes"][0].erase("zero_voltage");
   EXPECT_THAT(error(document.dump()), HasSubstr("'zero_voltage' is not a number"));
+}
+
+TEST(SensorJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {
+  SensorCalibration warned = calibration();
+  for (const auto& [code, words] : kSensorWarningTexts) warned.warnings.push_back({code, "so", "again"});
+  EXPECT_TRUE(schemas::fits_its_schema(to_json(warned)));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/schemas.h"
+
 namespace mbk::result {
 namespace {
 
@@ -22,7 +24,7 @@ SpringField field() {
 }
 
 TEST(SpringsJson, FieldHasEveryNumberInSi) {
-  const json read = json::parse(to_json(field()));
+  const json read = schemas::parsed(to_json(field()));
   EXPECT_EQ(read["schema"], "mbk.springs/1");
   EXPECT_EQ(read["what"], "field");
   EXPECT_EQ(read["equilibrium"], json({0.39, -0.01}));
@@ -35,20 +37,20 @@ TEST(SpringsJson, FieldHasEveryNumberInSi) {
 
 TEST(SpringsJson, DesignHasWhatWasWantedAndTheEyes) {
   SpringDesign design{field(), {2, 5}, Eigen::Matrix2d::Identity(), {0.39, 0.0}, 0.5, {2.0, 3.0}};
-  json read = json::parse(to_json(design));
+  json read = schemas::parsed(to_json(design));
   EXPECT_EQ(read["what"], "find");
   EXPECT_EQ(read["wanted"]["K"], json({{1, 0}, {0, 1}}));
   EXPECT_EQ(read["springs"][1]["eye"], 5);
   EXPECT_EQ(read["natural_frequencies_hz"], json({2.0, 3.0}));
   design.payload.reset();
-  EXPECT_FALSE(json::parse(to_json(design)).contains("natural_frequencies_hz"));
+  EXPECT_FALSE(schemas::parsed(to_json(design)).contains("natural_frequencies_hz"));
 }
 
 TEST(SpringsJson, ConstantsSayNullForWhatIsUndefinedAndNothingOfHooksThatAreNotSeen) {
   SpringConstant constant;
   constant.straight.stiffness = constant.whole.stiffness = 120.0;
   constant.whole.stiffness_error = std::numeric_limits<double>::quiet_NaN();
-  const json read = json::parse(to_json(std::vector{constant}))["constants"][0];
+  const json read = schemas::parsed(to_json(std::vector{constant}))["constants"][0];
   EXPECT_EQ(read["straight"]["stiffness"], 120.0);
   EXPECT_TRUE(read["whole"]["stiffness_standard_error"].is_null());
   EXPECT_EQ(read["bias_of_whole"], 0.0);

@@ -1,10 +1,10 @@
 // M, B and K as they are known so far, with what is left of doubt.
-import type { Estimate } from "./stream";
-import { type Value, matrices, unitsOf } from "../../report/src/data";
-import { ellipsePanels } from "../../report/src/ellipses";
-import { h } from "../../report/src/dom";
-import { plainWarnings } from "../../report/src/words";
-import { fixed, withHalfWidth } from "../../report/src/format";
+import type { LiveEstimate, Value } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
+import { ellipsePanels } from "@mbk/shared/ellipses";
+import { fixed, withHalfWidth } from "@mbk/shared/format";
+import { matrices, unitsOf } from "@mbk/shared/result";
+import { plainWarnings } from "@mbk/shared/warnings";
 
 const cells: [number, number][] = [[0, 0], [0, 1], [1, 0], [1, 1]];
 const kept = 24; // half widths of the last estimates that the small picture shows
@@ -42,10 +42,10 @@ export class EstimatePanel {
   private readonly tightening = new Tightening();
 
   constructor() {
-    this.show({});
+    this.show({ type: "estimate" });
   }
 
-  show(estimate: Estimate): void {
+  show(estimate: LiveEstimate): void {
     const { result } = estimate;
     const title = (words: string) => h("h2", { id: "estimate-title" }, "Impedance", h("small", {}, words));
     if (!result) {

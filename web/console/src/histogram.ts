@@ -1,7 +1,7 @@
 // How long ticks took, and how late they came: counts over a logarithmic time.
-import { h, svg } from "../../report/src/dom";
-import { significant } from "../../report/src/format";
-import type { Times } from "./stream";
+import type { Times } from "@mbk/shared/documents";
+import { h, svg } from "@mbk/shared/dom";
+import { significant } from "@mbk/shared/format";
 
 const [low, high] = [1, 1e5]; // [µs]
 const [width, height, foot] = [420, 74, 22];

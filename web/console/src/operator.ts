@@ -1,8 +1,9 @@
 // The operator's page: what happens, whether it is safe, and what to do next.
-import { h } from "../../report/src/dom";
+import type { ConsoleCommand, ListedTrial, RobotState, State, You } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
 import { EstimatePanel } from "./estimate";
 import { histogram } from "./histogram";
-import { type ListedTrial, type Robot, type State, Stream, type You } from "./stream";
+import { Stream } from "./stream";
 import { Traces } from "./traces";
 
 const period = 1000; // of a tick [µs]
@@ -17,7 +18,7 @@ const seconds = (value: number): string => `${Math.max(value, 0).toFixed(1)} s`;
 const clock = (value: number): string => `${Math.floor(value / 60)}:${String(Math.floor(value % 60)).padStart(2, "0")}`;
 
 /** What the robot says of itself, in one line. */
-function robotWords({ motors, confirmed_off, stop_button, link, fault, sentence }: Robot): string {
+function robotWords({ motors, confirmed_off, stop_button, link, fault, sentence }: RobotState): string {
   const reported = { off: "reports its motors off", on: "reports its motors on", unknown: "has not reported whether its motors are on" }[motors];
   return [
     link ? `The robot ${reported}${confirmed_off ? ", confirmed after the stop" : ""}` : "No states come from the robot: what it does is not known",
@@ -28,7 +29,7 @@ function robotWords({ motors, confirmed_off, stop_button, link, fault, sentence 
 
 class OperatorPage {
   private state: State | undefined;
-  private you: You = { controls: false, may_stop: false, dropped_frames: 0 };
+  private you: You = { type: "you", controls: false, may_stop: false, dropped_frames: 0 };
   private connected = false;
   private pressed = false; // stop was pressed, and the answer is not there yet
   private shown = "";
@@ -82,7 +83,7 @@ class OperatorPage {
     notes.addEventListener("submit", (event) => {
       event.preventDefault();
       const words = this.note.value.trim();
-      if (words && this.tell("note", { text: words })) this.note.value = "";
+      if (words && this.tell({ command: "note", text: words })) this.note.value = "";
       this.note.blur();
     });
     root.replaceWith(
@@ -123,13 +124,13 @@ class OperatorPage {
   }
 
   private pressStop(): void {
-    this.pressed = this.tell("stop");
+    this.pressed = this.tell({ command: "stop" });
     this.draw();
   }
 
-  private tell(command: string, more: Record<string, string> = {}): boolean {
+  private tell(command: ConsoleCommand): boolean {
     text(this.said, "");
-    const sent = this.stream.send(command, more);
+    const sent = this.stream.send(command);
     if (!sent) text(this.said, "Not sent: the connection is lost.");
     return sent;
   }
@@ -189,7 +190,7 @@ class OperatorPage {
   }
 
   /** Stays when the connection is lost: nothing has taken it back. */
-  private drawAlarm({ confirmed_off, sentence }: Robot): void {
+  private drawAlarm({ confirmed_off, sentence }: RobotState): void {
     const words = confirmed_off === false ? ["MOTORS NOT CONFIRMED OFF — cut the motors' power with the hardware stop button", sentence].filter(Boolean) : [];
     const shown = [...this.alarm.children].map((line) => line.textContent);
     if (shown.join("\n") !== words.join("\n")) this.alarm.replaceChildren(...words.map((line) => h("p", {}, line)));
@@ -220,7 +221,7 @@ class OperatorPage {
   }
 
   /** Off is what the robot reports, not what it was told. */
-  private motorsAtRest({ motors, link }: Robot): [string, string] {
+  private motorsAtRest({ motors, link }: RobotState): [string, string] {
     if (link && motors === "on") return ["care", "▲ The motors are on"];
     return ["rest", link && motors === "off" ? "○ The motors are off" : "○ No torque is commanded"];
   }
@@ -262,9 +263,9 @@ class OperatorPage {
 
   private buttons(state: State): HTMLElement[] {
     if (!this.you.controls || !this.connected || state.over) return [];
-    const button = (command: string, words: string, more: Record<string, string> = {}, kind = "") => {
+    const button = (command: ConsoleCommand["command"], words: string, more: Omit<ConsoleCommand, "command"> = {}, kind = "") => {
       const made = h("button", { type: "button", class: kind, "data-command": command }, words);
-      made.addEventListener("click", () => this.tell(command, more));
+      made.addEventListener("click", () => this.tell({ command, ...more }));
       return made;
     };
     const last = state.current + 1 >= state.trials.length;

@@ -1,6 +1,7 @@
 // The participant's screen: where the handle is, and where it shall be. Nothing else moves.
-import { h } from "../../report/src/dom";
-import { type Frame, type State, Stream, column } from "./stream";
+import type { State } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
+import { column, type Frame, Stream } from "./stream";
 
 interface View {
   mirrored: boolean; // left and right

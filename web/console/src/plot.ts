@@ -1,6 +1,6 @@
 // Lines over the last seconds. Drawn anew is only what is new: the picture moves to the left by whole pixels, and behind it
 // come the newest columns; all of it is drawn where the scale or the size changes.
-import { h } from "../../report/src/dom";
+import { h } from "@mbk/shared/dom";
 import { type Samples, span, width } from "./samples";
 
 export interface Line {

@@ -1,79 +1,5 @@
 // What the server sends, and what it is told: one WebSocket that opens itself again after it was lost.
-import type { Result } from "../../report/src/data";
-
-export interface Times {
-  median_us: number;
-  p999_us: number;
-  worst_us: number;
-  bins: [number, number, number][]; // from, to [µs], count
-}
-
-export interface ListedTrial {
-  name: string;
-  condition: string;
-  duration_s: number;
-  home_m: [number, number];
-  reference_unit: "m" | "N";
-  progress: "waiting" | "running" | "done" | "stopped";
-  recording: string;
-  ending: string;
-  report: number;
-  report_missing: string;
-}
-
-/** What is known of the robot itself, between trials too. */
-export interface Robot {
-  motors: "off" | "on" | "unknown";
-  confirmed_off: boolean | null; // after a stop; null: nothing to confirm
-  stop_button: boolean;
-  link: boolean;
-  fault: number;
-  sentence: string;
-}
-
-export interface State {
-  protocol: string;
-  software: string;
-  trials: ListedTrial[];
-  current: number;
-  running: boolean;
-  phase: string;
-  perturbing: boolean;
-  time_s: number;
-  perturbation_s: number;
-  duration_s: number;
-  ticks: number;
-  over: boolean;
-  question: "" | "begin" | "after" | "reset";
-  reset_code: string;
-  said: string;
-  safety: { tripped: boolean; reason: string; sentence: string; cut: boolean; enabled: boolean };
-  robot: Robot;
-  times: { compute: Times; lateness: Times };
-  dropped_ticks: number;
-  skipped_samples: number;
-  disk_free_bytes: number;
-  notes: string[]; // the last ones
-  note_count: number; // of all
-  viewers: number;
-  dropped_frames: number;
-  refused: number;
-  participant: string;
-  viewing: string;
-}
-
-export interface Estimate {
-  final?: boolean;
-  perturbed_s?: number;
-  result?: Result;
-  why?: string;
-}
-
-export interface You {
-  controls: boolean;
-  may_stop: boolean;
-  dropped_frames: number;
-}
+import type { ConsoleCommand, ConsoleMessage, LiveEstimate, State, You } from "@mbk/shared/documents";
 
 /** Columns of a frame, as mbk/experiment/console/frame.h says. */
 export const column = { time: 0, hand: 1, force: 3, reference: 5, acceleration: 7, torque: 9, compute: 11, late: 12 };
@@ -105,7 +31,7 @@ export function decode(bytes: ArrayBuffer): Frame | undefined {
 
 export interface Listener {
   state(state: State): void;
-  estimate?(estimate: Estimate): void;
+  estimate?(estimate: LiveEstimate): void;
   frame(frame: Frame): void;
   you?(you: You): void;
   refused?(why: string): void;
@@ -127,9 +53,9 @@ export class Stream {
   }
 
   /** False where it could not be sent. */
-  send(command: string, more: Record<string, string> = {}): boolean {
+  send(command: ConsoleCommand): boolean {
     if (this.socket?.readyState !== WebSocket.OPEN) return false;
-    this.socket.send(JSON.stringify({ command, ...more }));
+    this.socket.send(JSON.stringify(command));
     return true;
   }
 
@@ -166,7 +92,7 @@ export class Stream {
       if (frame) this.listener.frame(frame);
       return;
     }
-    const message = JSON.parse(data);
+    const message: ConsoleMessage = JSON.parse(data);
     if (message.type === "state") this.listener.state(message);
     else if (message.type === "estimate") this.listener.estimate?.(message);
     else if (message.type === "you") this.listener.you?.(message);

@@ -1,8 +1,8 @@
 // Force and position as they come: the last seconds, each pixel column from its lowest to its highest sample.
-import { h } from "../../report/src/dom";
-import { Plot, type Line } from "./plot";
+import { h } from "@mbk/shared/dom";
+import { type Line, Plot } from "./plot";
 import { Samples, span } from "./samples";
-import { type Frame, column } from "./stream";
+import { column, type Frame } from "./stream";
 
 export class Traces {
   readonly element: HTMLElement;

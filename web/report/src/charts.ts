@@ -9,13 +9,13 @@ import {
 } from "echarts/components";
 import { type ECharts, init, use } from "echarts/core";
 import { SVGRenderer } from "echarts/renderers";
-import { type Chart, type Panel, type Series, type Style, dashes, symbols } from "./chart_data";
-import type { Value } from "./data";
-import { h, svg } from "./dom";
-import { plain, significant, superscript } from "./format";
-import { csv, dataTable, download } from "./sheet";
+import { type Chart, dashes, type Panel, type Series, type Style, symbols } from "@mbk/shared/chart_data";
+import type { Value } from "@mbk/shared/documents";
+import { h, svg } from "@mbk/shared/dom";
+import { plain, significant, superscript } from "@mbk/shared/format";
+import { csv, dataTable, download } from "@mbk/shared/sheet";
 
-export type { Chart, Panel, Series, Style } from "./chart_data";
+export type { Chart, Panel, Series, Style } from "@mbk/shared/chart_data";
 
 use([LineChart, GridComponent, TooltipComponent, DataZoomComponent, MarkAreaComponent, MarkLineComponent, SVGRenderer]);
 

@@ -1,183 +1,29 @@
-// The document of schema mbk.report/1 that stands in the page; docs/guide/report.md describes it.
-import type { Alternative, Bootstrap, Disagreement, Energy, Instrument, Method, Passivity } from "./passivity_data";
-import type { Model, Value } from "./values";
+// The document of schema mbk.report/1 that stands in the page.
+import type { Method, Model, Report as ReportDocument, Summary } from "@mbk/shared/documents";
+import type { Trial } from "@mbk/shared/result";
 
-export type { MatrixName, Model, Value } from "./values";
-
-export interface Ellipse {
-  area: Value;
-  shape: Value;
-  orientation_deg: Value;
-  eigenvalues: [Value, Value];
-  symmetric_part?: Value[][];
-  interval95: { area: [Value, Value]; shape: [Value, Value]; orientation_deg: [Value, Value] };
-}
-
-export interface Antisymmetry {
-  value: Value;
-  value_interval95: [Value, Value];
-  zmean_percent: Value;
-  interval95: [Value, Value];
-}
-
-export interface Warning {
-  code: string;
-  message: string;
-  try: string;
-}
-
-export interface Preparation {
-  protocol: string;
-  protocol_rule: string;
-  window_rule: string;
-  from_s: number;
-  to_s: number;
-  split_s?: number;
-  perturbations?: number;
-  procedure?: string;
-  savitzky_golay: { order: number; window: number };
-  cutoff_hz: Value;
-  cutoff_rule: string;
-  excited_band_hz: [Value, Value];
-  force_source?: string;
-  acceleration: string;
-  cut_before_filter: boolean;
-}
-
-export interface Result {
-  schema: string;
-  software: string;
-  inputs: { file: string; sha256: string; format: string; duration_s: Value; rate_hz: Value }[];
-  notes?: string[];
-  mode?: string;
-  protocol?: string;
-  method: Method;
-  axes: number;
-  structure: string;
-  units?: { M: string; B: string; K: string; x0: string; force: string };
-  model: Model;
-  standard_error: Model;
-  fit: { VAF: Value[]; RMSE: Value[]; validated_on: string; VAF_in_sample: Value[] };
-  ellipses?: Record<"inertia" | "damping" | "stiffness", Ellipse>;
-  antisymmetry?: Record<"inertia" | "stiffness", Antisymmetry>;
-  covariance?: { parameters: string[]; matrix: Value[][] };
-  instrument?: Instrument;
-  alternatives?: Alternative[];
-  disagreement?: Disagreement | null;
-  bootstrap?: Bootstrap;
-  passivity?: Passivity;
-  warnings: Warning[];
-  usable: boolean;
-  estimation: {
-    parameters_from: string;
-    samples: number;
-    duration_s: Value;
-    hac_lag_s: Value;
-    handle_mass_kg: Value;
-  };
-  excitation: { rank: number; condition: Value; motion_ratio: Value; motion: Value; inertia_share: Value };
-  decimate_check?: { rate_hz: number; largest_relative_change: number };
-  preparation: Preparation[];
-}
-
-export interface Posture {
-  of: "arm" | "robot" | "hand";
-  points_m: [number, number][];
-  note?: string;
-}
-
-export interface RecordingFacts {
-  metadata: Record<string, string>;
-  posture?: Posture;
-}
-
-/** Signals: one list for each axis. */
-export type Columns = Value[][];
-
-export interface Diagnostics {
-  prediction: { held_back: boolean; time_s: Value[]; measured: Columns; predicted: Columns; residual: Columns };
-  autocorrelation: { lag_s: Value[]; value: Columns; white95: Value; time_constant_s: Value[] };
-  spectra: {
-    frequency_hz: Value[];
-    position: Columns;
-    force: Columns;
-    residual: Columns;
-    coherence: Columns;
-    coherence_significant: Value;
-  };
-  filters: {
-    frequency_hz: Value[];
-    smoothing: Value[];
-    first: Value[];
-    second: Value[];
-    first_ideal: Value[];
-    second_ideal: Value[];
-  };
-  acceleration?: { time_s: Value[]; derivative: Columns; sensor: Columns; rms_difference: Value[]; VAF: Value[] };
-  recording: { time_s: Value[]; position: Columns; force: Columns; reference: Columns };
-}
-
-/** One result with what is drawn for it. */
-export interface Trial {
-  result: Result;
-  recordings: RecordingFacts[];
-  /** One for each recording. */
-  energy?: Energy[];
-  diagnostics?: Diagnostics;
-}
-
+/** The document as the page goes through it. */
 export interface Report {
   software: string;
   command: string;
-  note?: string;
+  note: string | undefined;
   trials: Trial[];
-  summary?: { trials: number; model: Model; between_trial_standard_error: Model };
+  summary: Summary | undefined;
 }
 
 /** Reads the document out of the page. Throws where it is none. */
-export function readReport(json: any): Report {
+export function readReport(json: ReportDocument): Report {
   if (json.schema !== "mbk.report/1") throw new Error(`schema ${String(json.schema)} is not mbk.report/1`);
-  const results: Result[] = json.result.results ?? [json.result];
+  const { software, command, note, result } = json;
+  const several = "results" in result;
   return {
-    software: json.software,
-    command: json.command,
-    note: json.note,
-    summary: json.result.summary,
-    trials: results.map((result, k) => ({ result, ...json.trials[k] })),
+    software,
+    command,
+    note,
+    summary: several ? result.summary : undefined,
+    trials: (several ? result.results : [result]).map((one, k) => ({ ...(json.trials[k] ?? { recordings: [] }), result: one })),
   };
 }
-
-export const matrices = [
-  { symbol: "M", name: "inertia", title: "Inertia" },
-  { symbol: "B", name: "damping", title: "Damping" },
-  { symbol: "K", name: "stiffness", title: "Stiffness" },
-] as const;
-
-export interface Units {
-  M: string;
-  B: string;
-  K: string;
-  x0: string;
-  force: string;
-}
-
-/** Units, also where the file does not say what moves. */
-export function unitsOf(result: Result): Units {
-  return (
-    result.units ?? {
-      M: "kg or kg·m²",
-      B: "N·s/m or N·m·s/rad",
-      K: "N/m or N·m/rad",
-      x0: "m or rad",
-      force: "N or N·m",
-    }
-  );
-}
-
-export const axisNames = (axes: number): string[] => (axes === 1 ? [""] : ["x", "y"]);
-
-/** "x: " before what belongs to one axis; nothing where there is only one. */
-export const axisPrefix = (axes: number, axis: number): string => (axes === 1 ? "" : `${axisNames(axes)[axis]}: `);
 
 const basename = (path: string): string => path.split(/[\\/]/).at(-1) ?? path;
 

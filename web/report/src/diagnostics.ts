@@ -1,8 +1,9 @@
 // The charts that show how good one measurement is.
-import { type Chart, type Panel, figure, styles } from "./charts";
-import { type Columns, type Diagnostics, type Trial, type Value, axisNames, axisPrefix, unitsOf } from "./data";
-import { type HeadingLevel, h, heading } from "./dom";
-import { listed, plain, significant } from "./format";
+import type { Columns, Diagnostics, Value } from "@mbk/shared/documents";
+import { h, heading, type HeadingLevel } from "@mbk/shared/dom";
+import { listed, plain, significant } from "@mbk/shared/format";
+import { axisNames, axisPrefix, type Trial, unitsOf } from "@mbk/shared/result";
+import { type Chart, figure, type Panel, styles } from "./charts";
 
 interface Section {
   title: string;

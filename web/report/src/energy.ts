@@ -1,10 +1,10 @@
 // Energy that the limb absorbed (Dyck 2013, figs. 3.15, 3.17, 4.3 to 4.5).
-import { type Chart, type Series, figure, styleOf, styles, symbolOf } from "./charts";
-import { type Trial, type Value, unitsOf } from "./data";
-import { type HeadingLevel, h, heading, table } from "./dom";
-import { data, fixed, significant, withInterval } from "./format";
+import type { Energy, EnergyAccount, Value } from "@mbk/shared/documents";
+import { h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
+import { data, fixed, significant, withInterval } from "@mbk/shared/format";
+import { type Trial, unitsOf } from "@mbk/shared/result";
+import { type Chart, figure, type Series, styleOf, styles, symbolOf } from "./charts";
 import { threeDigits, verdictBadge } from "./passivity";
-import type { Energy, EnergyAccount } from "./passivity_data";
 
 interface Named {
   name: string;

@@ -1,7 +1,7 @@
 // The force of the stiffness around the equilibrium: −K (x − x₀), and what of it springs could make (Dyck 2013, fig. 3.12).
-import { type Trial, unitsOf } from "./data";
-import { type HeadingLevel, h, heading, svg, table } from "./dom";
-import { data, plain, significant } from "./format";
+import { h, heading, type HeadingLevel, svg, table } from "@mbk/shared/dom";
+import { data, plain, significant } from "@mbk/shared/format";
+import { type Trial, unitsOf } from "@mbk/shared/result";
 
 type Pair = [number, number];
 type Square = [Pair, Pair];

@@ -4,20 +4,22 @@ import apacheNotice from "echarts/NOTICE?raw";
 import d3 from "echarts/licenses/LICENSE-d3?raw";
 import tslib from "tslib/CopyrightNotice.txt?raw";
 import zrender from "zrender/LICENSE?raw";
+import type { TransferFunctionReport } from "@mbk/shared/documents";
+import { facts, h, heading, type HeadingLevel } from "@mbk/shared/dom";
+import type { Trial } from "@mbk/shared/result";
 import { followPageAndPrinter } from "./charts";
-import { type Report, type Trial, conditionOf, fileOf, participantOf, readReport } from "./data";
+import { conditionOf, fileOf, participantOf, readReport, type Report } from "./data";
 import { diagnosticElements } from "./diagnostics";
-import { type HeadingLevel, facts, h, heading } from "./dom";
 import { energySection } from "./energy";
 import { forceFieldSection } from "./force_field";
 import { methodsSection } from "./methods";
 import { inOrder, nameOf, overviewSection } from "./overview";
 import { passivityDetails, passivitySection } from "./passivity";
 import { ellipsesSection, identityFacts, modelSection, provenanceSection, simulatedNote } from "./sections";
-import "./style.css";
 import { summarySection, verdict, warningsSection } from "./summary";
-import { type TransferFunctionReport, transferFunctionHead, transferFunctionSections } from "./transfer_function";
+import { transferFunctionHead, transferFunctionSections } from "./transfer_function";
 import { glossary, transferFunctionGlossary } from "./words";
+import "./style.css";
 
 function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLElement[] {
   const sections = [

@@ -1,8 +1,10 @@
 // How far the numbers can be trusted: the other method beside this one, instruments, bootstrap.
-import { type Trial, type Value, axisNames, matrices, modelBy, unitsOf } from "./data";
-import { type HeadingLevel, h, heading, table } from "./dom";
-import { data, decimalsFor, fixed, perAxis, plain, significant, undefinedText, withHalfWidth } from "./format";
-import { type Bootstrap, type Instrument, type Interval, type Method, methodNames } from "./passivity_data";
+import type { Bootstrap, Instrument, Interval, Method, Value } from "@mbk/shared/documents";
+import { h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
+import { data, decimalsFor, fixed, perAxis, plain, significant, undefinedText, withHalfWidth } from "@mbk/shared/format";
+import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
+import { modelBy } from "./data";
+import { methodNames } from "./words";
 
 const both: Method[] = ["ls", "iv"];
 

@@ -1,19 +1,7 @@
 // The Nyquist plot: a curve in the complex plane, a metre of it as long across as up, in the region that holds it.
-import type { Value } from "./data";
-import { h, svg } from "./dom";
-import { plain, significant } from "./format";
-
-export interface Response {
-  frequency_hz: Value[];
-  magnitude: Value[];
-  magnitude_interval95: [Value[], Value[]];
-  phase_deg: Value[];
-  phase_interval95_deg: [Value[], Value[]];
-  real: Value[];
-  real_interval95: [Value[], Value[]];
-  imaginary: Value[];
-  region95: { longer_half_axis: Value[]; shorter_half_axis: Value[]; angle_deg: Value[] };
-}
+import type { FrequencyResponse } from "@mbk/shared/documents";
+import { h, svg } from "@mbk/shared/dom";
+import { plain, significant } from "@mbk/shared/format";
 
 interface Point {
   f: number;
@@ -33,7 +21,7 @@ interface Box {
 
 const [width, tallest, margin] = [660, 520, { left: 74, right: 22, top: 26, bottom: 44 }];
 
-function points(response: Response): Point[] {
+function points(response: FrequencyResponse): Point[] {
   const { frequency_hz: f, real, imaginary, region95: r } = response;
   return f.flatMap((at, k) => {
     const values = [at, real[k], imaginary[k], r.longer_half_axis[k], r.shorter_half_axis[k], r.angle_deg[k]];
@@ -83,7 +71,7 @@ function marked(all: Point[], place: (p: Point) => [number, number]): Point[] {
   return chosen;
 }
 
-export function nyquist(response: Response, band: { from: number; to: number; name: string } | undefined, id: string, title: string, unit: string): HTMLElement {
+export function nyquist(response: FrequencyResponse, band: { from: number; to: number; name: string } | undefined, id: string, title: string, unit: string): HTMLElement {
   const all = points(response);
   if (all.length === 0) return h("p", {}, "There is no Nyquist plot: the response is undefined.");
   const inside = band ? all.filter((p) => p.f >= band.from && p.f <= band.to) : all;

@@ -1,9 +1,11 @@
 // Several recordings side by side.
-import { type Report, type Trial, type Value, axisNames, conditionOf, fileOf, matrices, participantOf, unitsOf } from "./data";
-import { h, heading, table } from "./dom";
-import { ellipsesSideBySide } from "./ellipses";
+import type { Value } from "@mbk/shared/documents";
+import { h, heading, table } from "@mbk/shared/dom";
+import { ellipsesSideBySide } from "@mbk/shared/ellipses";
+import { data, decimalsFor, fixed, normal95, significant, withInterval } from "@mbk/shared/format";
+import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
+import { conditionOf, fileOf, participantOf, type Report } from "./data";
 import { energySideBySide } from "./energy";
-import { data, decimalsFor, fixed, normal95, significant, withInterval } from "./format";
 import { verdictBadge } from "./passivity";
 import { verdict } from "./summary";
 

@@ -1,10 +1,11 @@
 // Is the limb passive? The verdict in plain words, and what it rests on.
-import { type Chart, type Series, figure, styles } from "./charts";
-import { type Trial, type Value, modelBy, unitsOf } from "./data";
-import { type HeadingLevel, h, heading, table } from "./dom";
-import { data, fixed, plain, significant, withInterval } from "./format";
-import { type Condition, type Interval, type ModelPassivity, type Passivity, type Verdict, methodNames } from "./passivity_data";
-import { verdictWords } from "./words";
+import type { Condition, Interval, ModelPassivity, Passivity, Value, Verdict } from "@mbk/shared/documents";
+import { h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
+import { data, fixed, plain, significant, withInterval } from "@mbk/shared/format";
+import { type Trial, unitsOf } from "@mbk/shared/result";
+import { type Chart, figure, type Series, styles } from "./charts";
+import { modelBy } from "./data";
+import { methodNames, verdictWords } from "./words";
 
 /** Decimals for three digits of the value. */
 export const threeDigits = (value: Value): number => (value ? Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(value))), 0), 9) : 2);

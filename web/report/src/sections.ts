@@ -1,10 +1,13 @@
 // What was measured, the numbers, and where they come from.
-import { type Trial, axisNames, conditionOf, fileOf, isSimulated, matrices, metadataOf, participantOf, unitsOf } from "./data";
-import { type HeadingLevel, facts, h, heading, table } from "./dom";
-import { ellipsesOf } from "./ellipses";
-import { data, fixed, listed, perAxis, plain, significant, withHalfWidth, withInterval } from "./format";
-import { methodNames } from "./passivity_data";
+import type { Value } from "@mbk/shared/documents";
+import { facts, h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
+import { ellipsesOf } from "@mbk/shared/ellipses";
+import { data, fixed, listed, perAxis, plain, significant, withHalfWidth, withInterval } from "@mbk/shared/format";
+import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
+import { conditionOf, fileOf, isSimulated, metadataOf, participantOf } from "./data";
+import { methodNames } from "./words";
 
+const percent = (share: Value): Value => (share === null ? null : 100 * share);
 const onlyOne = (values: string[]): string => [...new Set(values)].join(", ");
 
 /** Numbers as they follow a name: window, filters, mode. */
@@ -144,7 +147,7 @@ export function provenanceSection(trial: Trial, id: string, level: HeadingLevel)
       ["Handle taken off the inertia", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "nothing"],
       ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes === 2 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it across the main direction` : ""}`],
       ["Condition of the regressors", `${significant(x.condition, 2)}, rank ${x.rank}`],
-      ["Fitted again at a lower rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(100 * result.decimate_check.largest_relative_change, 2)} %` : undefined],
+      ["Fitted again at a lower rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(percent(result.decimate_check.largest_relative_change), 2)} %` : undefined],
     ]),
     result.notes?.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted when the file was read")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "",
     metadata.length

@@ -1,8 +1,12 @@
 // The measurement in plain words.
-import { type Trial, type Value, type Warning, fileOf, matrices, unitsOf } from "./data";
-import { type HeadingLevel, h, heading, svg } from "./dom";
-import { data, fixed, listed, significant, withHalfWidth } from "./format";
-import { angleBetween, direction, type PlainWarnings, meanings, plainWarnings } from "./words";
+import { angleBetween, direction } from "@mbk/shared/directions";
+import type { Value, Warning, WarningCode } from "@mbk/shared/documents";
+import { h, heading, type HeadingLevel, svg } from "@mbk/shared/dom";
+import { data, fixed, listed, significant, withHalfWidth } from "@mbk/shared/format";
+import { matrices, type Trial, unitsOf } from "@mbk/shared/result";
+import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
+import { fileOf } from "./data";
+import { meanings } from "./words";
 
 /** What was found, with warnings: a measurement or a transfer function. */
 export interface Judged {
@@ -11,7 +15,7 @@ export interface Judged {
   plainly?: PlainWarnings;
 }
 
-const warningTitle = (code: string, plainly = plainWarnings): string => plainly[code]?.title ?? code;
+const warningTitle = (code: WarningCode, plainly = plainWarnings): string => plainly[code]?.title ?? code;
 
 /** Usable, usable with care, or not: a sign, a word and a reason. */
 export function verdict(trial: Judged): { kind: "good" | "care" | "bad"; sign: string; word: string; reason: string } {

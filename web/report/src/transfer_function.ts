@@ -1,81 +1,13 @@
 // The report of mbk tf: a document of schema mbk.tf_report/1, drawn. Every number in it was computed by mbk.
-import { type Chart, type Panel, figure, styles } from "./charts";
-import type { Value, Warning } from "./data";
-import { facts, h, heading, scrolling, table } from "./dom";
-import { data, fixed, plain, significant, superscript, withHalfWidth } from "./format";
-import { type Response, nyquist } from "./nyquist";
+import type { FrequencyResponse, Root, TransferFunction, TransferFunctionReport, Value } from "@mbk/shared/documents";
+import { facts, h, heading, scrolling, table } from "@mbk/shared/dom";
+import { data, fixed, plain, significant, superscript, withHalfWidth } from "@mbk/shared/format";
+import { type Chart, figure, type Panel, styles } from "./charts";
+import { nyquist } from "./nyquist";
 import { verdict, warningsSection } from "./summary";
 import { transferFunctionWarnings } from "./words";
 
-interface Root {
-  re: Value;
-  im: Value;
-  pair: boolean;
-  frequency_hz: Value;
-  frequency_standard_error_hz: Value;
-  damping: Value;
-  damping_standard_error: Value;
-  outside_band: boolean;
-}
-
-interface Estimate {
-  value: Value;
-  standard_error: Value;
-}
-
-interface Impedance {
-  admittance_to: string;
-  units: { M: string; B: string; K: string };
-  unstable: boolean;
-  M?: Estimate;
-  B?: Estimate;
-  K?: Estimate;
-  force_per_velocity: Response;
-  force_per_displacement: Response;
-}
-
-interface Result {
-  inputs: { file: string; sha256: string; format: string }[];
-  method: string;
-  input: { name: string; unit: string };
-  output: { name: string; unit: string };
-  reference?: string;
-  numerator: Value[];
-  denominator: Value[];
-  variable: "s" | "q^-1";
-  delay_s: number;
-  delay_found: boolean;
-  parameters: { name: string; value: Value; standard_error: Value }[];
-  hac_lag_s: number;
-  poles: Root[];
-  zeros: Root[];
-  gain: Value;
-  gain_standard_error: Value;
-  fit: { R2_in_sample: Value; noise_standard_deviation: Value; YIC: Value; AIC: Value; BIC: Value; R2_held_back?: Value; RMSE_held_back?: Value };
-  residuals: { lags: number; white: boolean; whiteness_p: Value; autocorrelation_outside: Value; independent_of_input: boolean; cross_p: Value; cross_correlation_outside: Value };
-  starts: { converged: boolean }[];
-  orders?: { poles: number; zeros: number; usable: boolean; R2: Value; YIC: Value; AIC: Value; BIC: Value; chosen: boolean }[];
-  frequency_response: Response;
-  impedance?: Impedance;
-  excited_band_hz: [Value, Value];
-  samples: number;
-  experiments: number;
-  even_clock: boolean;
-  sample_time_s: Value;
-  notes: string[];
-  warnings: Warning[];
-  usable: boolean;
-}
-
-export interface TransferFunctionReport {
-  software: string;
-  command: string;
-  note?: string;
-  simulation: { held_back: boolean; time_s: Value[]; measured: Value[]; simulated: Value[] };
-  result: Result;
-}
-
-const methods: Record<string, string> = {
+const methods: Record<TransferFunction["method"], string> = {
   srivc: "refined instrumental variables, continuous time (SRIVC)",
   rivc: "refined instrumental variables, continuous time, with a model of the noise (RIVC)",
   clsrivc: "refined instrumental variables, continuous time, instruments from the reference (CLSRIVC)",
@@ -86,7 +18,7 @@ const methods: Record<string, string> = {
 /** "N·m" as "N.m" is written in files. */
 const shownUnit = (unit: string): string => unit.replaceAll(".", "·");
 
-const ratioUnit = ({ input, output }: Result): string => {
+const ratioUnit = ({ input, output }: TransferFunction): string => {
   const wrapped = /[·./]/.test(input.unit) ? `(${shownUnit(input.unit)})` : input.unit;
   return !input.unit || !output.unit ? "" : input.unit === output.unit ? "" : `${shownUnit(output.unit)}/${wrapped}`;
 };
@@ -113,13 +45,13 @@ export function transferFunctionHead({ result, note }: TransferFunctionReport): 
 
 const named = ({ name, unit }: { name: string; unit: string }): string => (unit ? `${name} [${shownUnit(unit)}]` : name);
 
-function bandOf(result: Result): { from: number; to: number; name: string } | undefined {
+function bandOf(result: TransferFunction): { from: number; to: number; name: string } | undefined {
   const [from, to] = result.excited_band_hz;
   return from === null || to === null || !(from < to) ? undefined : { from, to, name: "excited band" };
 }
 
 /** −6400 s + 1600, or 1 − 1.5 q⁻¹; what machines read stands in the JSON. */
-function polynomial(coefficients: Value[], variable: Result["variable"]): string {
+function polynomial(coefficients: Value[], variable: TransferFunction["variable"]): string {
   const degree = coefficients.length - 1;
   const parts: string[] = [];
   coefficients.forEach((value, k) => {
@@ -134,7 +66,7 @@ function polynomial(coefficients: Value[], variable: Result["variable"]): string
   return parts.join(" ");
 }
 
-function formula(result: Result): HTMLElement {
+function formula(result: TransferFunction): HTMLElement {
   const { numerator, denominator, variable, delay_s: delay } = result;
   const [above, below] = [polynomial(numerator, variable), polynomial(denominator, variable)];
   const name = variable === "s" ? "G(s)" : "G(q)";
@@ -163,7 +95,7 @@ function summary(report: TransferFunctionReport): HTMLElement {
 
 const count = (n: number, word: string): string => `${n} ${word}${n === 1 ? "" : "s"}`;
 
-function coefficientsSection(result: Result): HTMLElement {
+function coefficientsSection(result: TransferFunction): HTMLElement {
   const rows = result.parameters.map(({ name, value, standard_error }) => [
     h("span", {}, name.slice(0, 1), h("sub", {}, name.slice(1))),
     withHalfWidth(value, standard_error, name),
@@ -174,7 +106,7 @@ function coefficientsSection(result: Result): HTMLElement {
       ["", "value ± 95 %"], rows, "numbers"));
 }
 
-function rootsSection(result: Result): HTMLElement {
+function rootsSection(result: TransferFunction): HTMLElement {
   const row = (kind: string, root: Root, id: string): (Node | string)[] => [
     root.pair ? `${kind} pair` : kind,
     h("span", { class: "number" }, withHalfWidth(root.frequency_hz, root.frequency_standard_error_hz, `${id}-frequency`), " Hz"),
@@ -188,7 +120,7 @@ function rootsSection(result: Result): HTMLElement {
     h("p", {}, "Gain at frequency zero: ", withHalfWidth(result.gain, result.gain_standard_error, "gain"), ` ${ratioUnit(result)}.`));
 }
 
-function impedanceSection(result: Result): HTMLElement | undefined {
+function impedanceSection(result: TransferFunction): HTMLElement | undefined {
   const { impedance } = result;
   if (!impedance) return undefined;
   const terms = [["inertia M", "M"], ["damping B", "B"], ["stiffness K", "K"]] as const;
@@ -224,7 +156,7 @@ interface BodeWords {
 const intervalColor = "rgba(213,94,0,0.28)"; // unlike the excited band's
 
 /** The phase with lines at whole parts of a turn. */
-function phasePanel(response: Response): Pick<Panel, "range" | "interval"> {
+function phasePanel(response: FrequencyResponse): Pick<Panel, "range" | "interval"> {
   const known = [response.phase_deg, ...response.phase_interval95_deg].flat().filter((v): v is number => v !== null);
   const line = response.phase_deg.filter((v): v is number => v !== null);
   if (line.length === 0) return {};
@@ -238,7 +170,7 @@ const within = (ends: [Value[], Value[]], [low, high]: [number, number]): [Value
   ends.map((end) => end.map((v) => (v === null ? null : Math.min(Math.max(v, low), high)))) as [Value[], Value[]];
 
 /** Whole powers of ten around the line, and around its interval where that is no more than ten times as far. */
-function decades(response: Response): [number, number] {
+function decades(response: FrequencyResponse): [number, number] {
   const known = (values: Value[]): number[] => values.filter((v): v is number => v !== null && v > 0).map(Math.log10);
   const line = known(response.magnitude);
   if (line.length === 0) return [0.1, 1];
@@ -249,7 +181,7 @@ function decades(response: Response): [number, number] {
   return [10 ** bottom, 10 ** Math.max(top, bottom + 1)];
 }
 
-function bode(response: Response, words: BodeWords): Chart {
+function bode(response: FrequencyResponse, words: BodeWords): Chart {
   const { frequency_hz: x } = response;
   const [from, to] = [x[0] ?? 0, x.at(-1) ?? 0];
   const band = words.band ? { from: Math.max(words.band.from, from), to: Math.min(words.band.to, to), name: words.band.name } : undefined;
@@ -271,7 +203,7 @@ function bode(response: Response, words: BodeWords): Chart {
   };
 }
 
-function responseSection(result: Result): HTMLElement {
+function responseSection(result: TransferFunction): HTMLElement {
   const unit = ratioUnit(result);
   return h("section", { id: "response" }, heading(2, "Frequency response"),
     figure(bode(result.frequency_response, {
@@ -305,7 +237,7 @@ function simulationSection({ simulation: s, result }: TransferFunctionReport): H
     }));
 }
 
-function ordersSection(result: Result): HTMLElement | undefined {
+function ordersSection(result: TransferFunction): HTMLElement | undefined {
   if (!result.orders) return undefined;
   const rows = result.orders.map((one) => [
     `${count(one.poles, "pole")}, ${count(one.zeros, "zero")}`,
@@ -317,7 +249,7 @@ function ordersSection(result: Result): HTMLElement | undefined {
     h("p", { class: "reading" }, "Of the models that leave at most 2 % more than the one that leaves least, the one of least YIC is chosen."));
 }
 
-function residualSection(result: Result): HTMLElement {
+function residualSection(result: TransferFunction): HTMLElement {
   const { residuals: r, fit } = result;
   const share = (value: Value): string => (value === null ? "undefined" : `${fixed(100 * value, 0)} % of ${r.lags} lags`);
   const rows = [
@@ -335,7 +267,7 @@ function residualSection(result: Result): HTMLElement {
     ]));
 }
 
-function provenance(result: Result): HTMLElement {
+function provenance(result: TransferFunction): HTMLElement {
   return h("section", { id: "provenance" }, heading(2, "Where the numbers come from"),
     table("Files", ["file", "format", "SHA-256"], result.inputs.map((input) => [h("span", { class: "path" }, input.file), input.format, h("code", { class: "hash" }, input.sha256)]), "files"),
     result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted when the file was read")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");

@@ -1,9 +1,9 @@
 // Charts as pictures of their own: nothing of an SVG can reach the page. Each opens larger, with its numbers.
-import type { Value } from "../../report/src/data";
-import { h, scrolling } from "../../report/src/dom";
-import { listed, plain, significant } from "../../report/src/format";
-import { download } from "../../report/src/sheet";
-import { type Axis, type Chart, type Exhibit, chartFile, shortName } from "./document";
+import type { Axis, Chart, Exhibit, Value } from "@mbk/shared/documents";
+import { h, scrolling } from "@mbk/shared/dom";
+import { listed, plain, significant } from "@mbk/shared/format";
+import { download } from "@mbk/shared/sheet";
+import { chartFile, shortName } from "./document";
 
 const pictureOf = (svg: string): string => `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
 

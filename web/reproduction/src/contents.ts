@@ -1,8 +1,9 @@
 // The way around: what there is, by chapter, and a filter.
-import { h } from "../../report/src/dom";
-import { type Agreement, type Exhibit, type Group, type Provenance, count, provenancesOf, shortName } from "./document";
+import type { Agreement, Exhibit, Provenance } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
+import { count, type Group, provenancesOf, shortName } from "./document";
 import { showDifferences } from "./tables";
-import { agreements, provenanceSign, provenances, scripted } from "./words";
+import { agreements, provenances, provenanceSign, scripted } from "./words";
 
 export interface Contents {
   element: HTMLElement;

@@ -1,84 +1,8 @@
 // The document of schema mbk.reproduction/1 that stands in the page, with the drawing of each chart.
-import type { Value } from "../../report/src/data";
-
-export type Provenance = "recomputed" | "simulated" | "not recoverable";
-export type Agreement = "not compared" | "within rounding" | "slip" | "differs";
-
-export interface Cell {
-  /** As it stands in print. */
-  printed: string | null;
-  printed_value: Value;
-  rounding: Value;
-  /** A number, words where it is none, null where it cannot be had. */
-  ours: Value | string;
-  difference: Value;
-  spread: Value;
-  range: [Value, Value] | null;
-  agreement: Agreement;
-}
-
-export interface Column {
-  name: string;
-  unit: string;
-  decimals: number;
-}
-
-export interface Table {
-  id: string;
-  title: string;
-  provenance: Provenance;
-  what_rows_are: string;
-  spread_is: string;
-  slip: string | null;
-  columns: Column[];
-  rows: { name: string; cells: Cell[] }[];
-}
-
-export interface Axis {
-  label: string;
-  unit: string;
-  logarithmic: boolean;
-}
-
-export interface Chart {
-  title: string;
-  x: Axis;
-  y: Axis;
-  identity: boolean;
-  horizontal: { value: Value; name: string }[];
-  vertical: { value: Value; name: string }[];
-  notes: string[];
-  series: { name: string; drawn: "line" | "marks"; x: Value[]; y: Value[]; intervals: [Value, Value][] }[];
-}
-
-export interface Exhibit {
-  id: string;
-  kind: "table" | "figure" | "slip" | "question" | "future work";
-  chapter: number;
-  title: string;
-  provenance: Provenance;
-  text: string[];
-  commands: string[];
-  related: string[];
-  tables: Table[];
-  charts: Chart[];
-}
-
-export interface Reproduction {
-  software: string;
-  source: string;
-  agreement: Record<Exclude<Agreement, "not compared">, number>;
-  exhibits: Exhibit[];
-}
-
-export interface Page {
-  reproduction: Reproduction;
-  /** One SVG for each chart, by the id of the exhibit. */
-  drawings: Record<string, string[]>;
-}
+import type { Agreement, Cell, Exhibit, Provenance, ReproductionPage } from "@mbk/shared/documents";
 
 /** Reads the document out of the page. Throws where it is none. */
-export function readPage(json: any): Page {
+export function readPage(json: ReproductionPage): ReproductionPage {
   const schema = json?.reproduction?.schema;
   if (schema !== "mbk.reproduction/1") throw new Error(`schema ${String(schema)} is not mbk.reproduction/1`);
   return { reproduction: json.reproduction, drawings: json.drawings ?? {} };

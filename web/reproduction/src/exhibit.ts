@@ -1,7 +1,8 @@
 // One thing of the source, made again.
-import { h } from "../../report/src/dom";
+import type { Exhibit } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
 import { chartsBlock } from "./charts";
-import { type Exhibit, count, shortName } from "./document";
+import { count, shortName } from "./document";
 import { tableBlock } from "./tables";
 import { agreements, chip, scripted } from "./words";
 

@@ -1,7 +1,8 @@
 // Turns the document in the page into the reproduction, exhibit by exhibit.
-import { h } from "../../report/src/dom";
+import type { ReproductionPage } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
 import { contents } from "./contents";
-import { type Group, type Page, grouped, readPage } from "./document";
+import { type Group, grouped, readPage } from "./document";
 import { exhibitArticle } from "./exhibit";
 import { head, legendSection, tallySection } from "./overview";
 import "./style.css";
@@ -37,7 +38,7 @@ function groupSection(group: Group, articles: Map<string, HTMLElement>): HTMLEle
     h("h2", { id: `${group.id}-heading` }, group.title), ...group.exhibits.map(({ id }) => articles.get(id)));
 }
 
-function draw({ reproduction, drawings }: Page): void {
+function draw({ reproduction, drawings }: ReproductionPage): void {
   const { exhibits } = reproduction;
   const known = new Set(exhibits.map(({ id }) => id));
   const explains = (slip: string) => exhibits.filter(({ tables }) => tables.some((table) => table.slip === slip)).map(({ id }) => id);

@@ -1,7 +1,8 @@
 // What this is, how the printed numbers fare, and what the signs mean.
-import { h } from "../../report/src/dom";
-import { type Provenance, type Reproduction, cellsOf, provenancesOf } from "./document";
-import { agreements, provenanceSign, provenances } from "./words";
+import type { Provenance, Reproduction } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
+import { cellsOf, provenancesOf } from "./document";
+import { agreements, provenances, provenanceSign } from "./words";
 
 export function head(reproduction: Reproduction): HTMLElement {
   return h("header", { class: "page-head" },

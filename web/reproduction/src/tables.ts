@@ -1,9 +1,9 @@
 // A table of the source and ours, cell by cell: ours above, the printed number below it, their difference on demand.
-import type { Value } from "../../report/src/data";
-import { h, scrolling } from "../../report/src/dom";
-import { data, fixed, significant } from "../../report/src/format";
-import { download } from "../../report/src/sheet";
-import { type Cell, type Column, type Exhibit, type Table, shortName, tableFile } from "./document";
+import type { Cell, Column, Exhibit, Table, Value } from "@mbk/shared/documents";
+import { h, scrolling } from "@mbk/shared/dom";
+import { data, fixed, significant } from "@mbk/shared/format";
+import { download } from "@mbk/shared/sheet";
+import { shortName, tableFile } from "./document";
 import { agreements, chip, hidden, scripted } from "./words";
 
 const wide = 8; // columns, from which on ± stands below its number

@@ -1,6 +1,6 @@
 // The three provenances and how numbers agree: a sign, a colour and words for each, so that nothing hangs on one of them.
-import { h } from "../../report/src/dom";
-import type { Agreement, Provenance } from "./document";
+import type { Agreement, Provenance } from "@mbk/shared/documents";
+import { h } from "@mbk/shared/dom";
 
 export const provenances: Record<Provenance, { sign: string; name: string; word: string; meaning: string }> = {
   recomputed: {

@@ -1,7 +1,0 @@
-import { defineConfig } from "vite";
-import { viteSingleFile } from "vite-plugin-singlefile";
-
-export default defineConfig({
-  plugins: [viteSingleFile()],
-  build: { target: "es2022", chunkSizeWarningLimit: 2000 },
-});

@@ -1,0 +1,92 @@
+// Warnings in plain words.
+import type { WarningCode } from "./documents";
+
+/** For each warning a title that needs no training, and what it means for whoever reads the numbers. */
+export type PlainWarnings = Record<WarningCode, { title: string; meaning: string }>;
+
+export const plainWarnings: PlainWarnings = {
+  "force-sign-reversed": {
+    title: "The force was recorded with the opposite sign",
+    meaning: "Everything comes out negative, which no limb can be. The recording itself is probably fine.",
+  },
+  "inertia-not-positive": {
+    title: "The inertia is impossible",
+    meaning: "In some direction the limb would have no mass or less than none. The numbers are not those of a limb.",
+  },
+  "damping-not-positive": {
+    title: "The damping is negative in some direction",
+    meaning: "The limb seems to feed energy into the robot. It may have acted or responded by reflex, or force and position were not recorded at the same time.",
+  },
+  "stiffness-not-positive": {
+    title: "The stiffness is impossible for a limb at rest",
+    meaning: "In some direction the limb would push itself away from where it rests. The numbers are not those of a passive limb.",
+  },
+  "band-too-narrow": {
+    title: "The motion was too slow, or the filter too strong, to see the inertia",
+    meaning: "Stiffness may be right while the inertia is not.",
+  },
+  "motion-on-one-line": {
+    title: "The hand moved along one line only",
+    meaning: "Nothing can be said about the direction in which it hardly moved.",
+  },
+  "motion-too-small": {
+    title: "The hand hardly moved",
+    meaning: "The motion is close to the smallest step that the sensor can tell, so the numbers are coarse.",
+  },
+  "poorly-conditioned": {
+    title: "The motion was too simple to tell inertia, damping and stiffness apart",
+    meaning: "Each of the three could stand in for another.",
+  },
+  "held-back-fit-poor": {
+    title: "The model does worse on the part of the recording that was held back",
+    meaning: "The limb probably changed during the trial, or there is too little data.",
+  },
+  "fit-poor": {
+    title: "Much of the force is not explained",
+    meaning: "The limb may have acted by will or by reflex. Do not read the numbers as those of a relaxed limb.",
+  },
+  "no-held-back-data": {
+    title: "The fit was judged on the data that made it",
+    meaning: "It looks better than it would on new data.",
+  },
+  "clock-jitter": {
+    title: "The clock of the recording was not steady",
+    meaning: "The samples were taken as evenly spaced all the same.",
+  },
+  resampled: {
+    title: "The recording was put on an even clock first",
+    meaning: "Between the samples there are straight lines, which nobody measured.",
+  },
+  clipping: {
+    title: "A sensor was at its limit",
+    meaning: "Parts of the signal are cut off, and the numbers suffer from it.",
+  },
+  "too-little-data": {
+    title: "The recording is short",
+    meaning: "The ± intervals cannot be trusted.",
+  },
+  "decimation-changes-model": {
+    title: "The result depends on the sample rate",
+    meaning: "There is something fast in the signals that does not belong to the limb.",
+  },
+  "torque-unit": {
+    title: "The torques are probably in another unit",
+    meaning: "As they are read, the robot would be a thousand times too heavy or too light.",
+  },
+  "residual-not-white": {
+    title: "What the model leaves over is not noise without memory",
+    meaning: "The ± intervals take it as that, and are narrower than they should be.",
+  },
+  "input-explains-residual": {
+    title: "The model misses a part of what the input does",
+    meaning: "Something of the output follows the input and is not in the model: a faster or slower part, or a delay.",
+  },
+  "pole-outside-band": {
+    title: "The model says something about frequencies that were not tried",
+    meaning: "The input hardly moved the system there, so that this part is a guess by the form of the model.",
+  },
+  "uneven-clock": {
+    title: "The samples are unevenly spaced",
+    meaning: "The model allows for it; the tests of what is left over do not.",
+  },
+};
