@@ -51,8 +51,8 @@ name = "second"
 )";
 }
 
-/// The force sensor drifts by far more than the perturbation's forces.
-constexpr const char* kDrift = "[trial.sensors.force]\nkind = \"load_cell\"\ncoloured_noise_N = 8\n";
+/// The person does more than the perturbation brings about.
+constexpr const char* kDrowned = "[trial.perturbation]\npeak_deg = 0.1\n[trial.participant.remnant]\nfloor_N = 1\n";
 
 /// What happened, and answers that were given beforehand.
 class Script : public Operator {
@@ -153,7 +153,7 @@ TEST_F(Conducted, PoorDataAreNoticedAndARepeatedTrialGetsANameOfItsOwn) {
   script_.answer = [attempts = 0](Session&, const Performed& performed) mutable {
     return performed.poor() && ++attempts < 3 ? Next::repeat : Next::go_on;
   };
-  const Conclusion conclusion = run(planned(trials(experiment_text(kDrift))), session_, script_);
+  const Conclusion conclusion = run(planned(trials(experiment_text(kDrowned))), session_, script_);
   EXPECT_TRUE(conclusion.completed);
   EXPECT_THAT(script_.recordings, ElementsAre("p07_first.h5", "p07_first_2.h5", "p07_first_3.h5", "p07_second.h5"));
   EXPECT_THAT(script_.poor, ElementsAre(true, true, true, false));
@@ -183,14 +183,14 @@ TEST_F(Conducted, WhatCannotBeMeasuredIsPoor) {
 TEST_F(Conducted, WhoeverMeasuresGetsThePerturbationAndTheTrialsOptions) {
   const Measure looking = [](const Recording& recording, const measurement::Options& options) -> Result<Measurement> {
     EXPECT_EQ(options.identify.handle_mass, 0.194);
-    EXPECT_NEAR(recording.time[recording.samples() - 1] - recording.time[0], 10.0, 0.01);  // of the trial's 11.8 s
+    EXPECT_NEAR(recording.time[recording.samples() - 1] - recording.time[0], 10.0, 0.01);  // of the trial's 11.3 s
     return bad_data("only looked at");
   };
   EXPECT_TRUE(run(planned(trials()), session_, script_, looking).completed);
 }
 
 TEST_F(Conducted, WithoutAMeasureTrialsAreOnlyRecorded) {
-  EXPECT_TRUE(run(planned(trials(experiment_text(kDrift))), session_, script_, {}).completed);
+  EXPECT_TRUE(run(planned(trials(experiment_text(kDrowned))), session_, script_, {}).completed);
   EXPECT_EQ(std::ranges::count(script_.told, "not measured"), 2);
   EXPECT_THAT(script_.poor, ElementsAre(false, false));
 }
