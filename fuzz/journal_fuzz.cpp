@@ -40,7 +40,7 @@ std::string written_journal() {
   header.force_latency = 1;
   auto writer = journal::Writer::create(file, header, 0).value();
   for (std::uint64_t k = 0; k < 9; k += 3) require(writer.append(ticks(k, k + 3)).has_value(), "a journal is written");
-  require(writer.end({"completed", "", 0, 0, 9}).has_value(), "a journal is ended");
+  require(writer.end({mbk::journal::Ending::How::completed, "", 0, 0, 9}).has_value(), "a journal is ended");
   std::ifstream in(file, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(in), {}};
   std::filesystem::remove(file);

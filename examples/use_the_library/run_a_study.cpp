@@ -49,7 +49,7 @@ class Conductor : public mbk::conduct::Operator {
     const mbk::session::TrialOutcome& outcome = performed.outcome;
     std::printf("%s: %llu ticks, motors %s\n", outcome.recording.filename().c_str(),
                 static_cast<unsigned long long>(outcome.times.ticks),
-                std::string(mbk::safety::code(outcome.motors.state)).c_str());
+                std::string(mbk::word_of(outcome.motors.state)).c_str());
     if (performed.measured && *performed.measured) {
       const mbk::Matrix& K = (*performed.measured)->identification.model.K;
       std::printf("  K %.1f %.1f %.1f %.1f N/m\n", K(0, 0), K(0, 1), K(1, 0), K(1, 1));

@@ -26,7 +26,7 @@ Result<void> figure_3_4(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-Result<PreparedTrial> prepared(const Recording& recording, preprocess::AccelerationSource acceleration) {
+Result<PreparedTrial> prepared(const Recording& recording, AccelerationSource acceleration) {
   preprocess::Options options;
   options.mode = Mode::reference;
   options.acceleration = acceleration;
@@ -38,7 +38,7 @@ Result<void> figure_3_5(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {report_command(bench, Task::relaxed_sinusoidal) + "      # the report draws its filters"};
   const auto result = first_of(bench, Task::relaxed_sinusoidal);
   if (!result) return tl::unexpected(result.error());
-  const auto trial = prepared((*result)->first, preprocess::AccelerationSource::derivative);
+  const auto trial = prepared((*result)->first, AccelerationSource::derivative);
   if (!trial) return tl::unexpected(trial.error());
   const auto response = analyse::filter_response(*trial);
   if (!response) return tl::unexpected(response.error());
@@ -81,8 +81,8 @@ Result<void> figure_3_6(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {report_command(bench, Task::relaxed_sinusoidal)};
   const auto result = first_of(bench, Task::relaxed_sinusoidal);
   if (!result) return tl::unexpected(result.error());
-  const auto trial = prepared((*result)->first, preprocess::AccelerationSource::derivative);
-  const auto sensed = prepared((*result)->first, preprocess::AccelerationSource::sensor);
+  const auto trial = prepared((*result)->first, AccelerationSource::derivative);
+  const auto sensed = prepared((*result)->first, AccelerationSource::sensor);
   if (!trial) return tl::unexpected(trial.error());
   if (!sensed) return tl::unexpected(sensed.error());
   const auto begin = static_cast<Index>(10.0 / trial->sample_time),

@@ -65,7 +65,7 @@ TEST(Diagnostics, PredictHeldBackDataWithoutHavingSeenThem) {
   options.preprocess.every = 10;
   const Examined one = examined(generated(making), options);
   const Identification& id = one.measured.identification;
-  ASSERT_EQ(id.parameters_from, "all");
+  ASSERT_EQ(id.parameters_from, ParametersFrom::all);
   EXPECT_NE(id.judged.K, id.model.K);
   const ForcePrediction& shown = one.diagnostics[0].prediction;
   for (Index axis = 0; axis < 2; ++axis) {

@@ -11,6 +11,7 @@
 #include "mbk/experiment/device/wiring.h"
 #include "mbk/experiment/drivers/datagram.h"
 #include "mbk/experiment/protocol/trial_sections.h"
+#include "mbk/experiment/safety/motors_off.h"
 #include "mbk/experiment/safety/trip.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/write.h"
@@ -38,15 +39,17 @@ namespace {
 template <class Enum>
 class WordsOf : public testing::Test {};
 
-using Enumerations = testing::Types<
-    dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal, perturbation::MultisinePlan::Phases,
-    perturbation::MultisinePlan::Axes, AccelerationSource, AdmittanceOutput, Agreement, ArmPosture::Of,
-    ChartSeries::Drawn, Exhibit::Kind, ForceSource, InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom,
-    Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod, SensorWarningCode, StabilityCondition,
-    StabilityVerdict, Structure, TransferFunctionMethod, Verdict, WarningCode, journal::Ending::How, recording::Format,
-    calibration::SensorFrame, teleop::Architecture, teleop::Form, teleop::SimulatedArm::Kind, control::Phase,
-    device::Motors, device::Wiring::Frame, drivers::Refusal, safety::Reason, protocol::Machine, console::Action,
-    console::Question, console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;
+using Enumerations =
+    testing::Types<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal,
+                   perturbation::MultisinePlan::Phases, perturbation::MultisinePlan::Axes, AccelerationSource,
+                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, Exhibit::Kind, ForceSource,
+                   InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom, Procedure, Protocol, Provenance,
+                   Readers, ReferenceQuantity, RobotMethod, SensorWarningCode, StabilityCondition, StabilityVerdict,
+                   Structure, TransferFunctionMethod, Verdict, WarningCode, journal::Ending::How, recording::Format,
+                   calibration::SensorFrame, teleop::Architecture, teleop::Form, teleop::SimulatedArm::Kind,
+                   control::Phase, device::Motors, device::Wiring::Frame, drivers::Refusal, safety::Reason,
+                   safety::MotorsOff::State, protocol::Machine, console::Action, console::Question, console::Refusal,
+                   ElbowSide, validation::Force, validation::TrialKind>;
 TYPED_TEST_SUITE(WordsOf, Enumerations);
 
 TYPED_TEST(WordsOf, GoBothWays) {

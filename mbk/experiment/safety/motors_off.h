@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "mbk/base/core/words.h"
+
 namespace mbk::safety {
 
 /// Whether the robot has confirmed that its motors are off.
@@ -24,6 +26,16 @@ struct MotorsOff {
   double torque = 0.0;  ///< that drives or motion show [N·m]
   double limit = 0.0;   ///< what the motion may show of motors that are off [N·m]
 };
+
+/// For files and machines.
+[[nodiscard]] constexpr auto word_table(MotorsOff::State) {
+  using enum MotorsOff::State;
+  return std::to_array<Word<MotorsOff::State>>({{not_asked, "driven"},
+                                                {waiting, "waiting"},
+                                                {confirmed, "confirmed"},
+                                                {missing, "not confirmed"},
+                                                {cannot_say, "not reported"}});
+}
 
 /// "confirmed off by the robot 0.045 s after the stop", "NOT CONFIRMED OFF: …": for people.
 [[nodiscard]] std::string sentence(const MotorsOff& motors);

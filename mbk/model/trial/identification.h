@@ -130,9 +130,9 @@ struct Identification {
   std::optional<InstrumentCheck> instrument;  ///< with instrumental variables only
   std::optional<Replicates> replicates;       ///< where a bootstrap was asked for
   Structure structure = Structure::full;
-  double hac_lag_s = 0;    ///< reach of the autocovariance in the standard errors [s]
-  double handle_mass = 0;  ///< [kg] taken off the diagonal of M
-  ParametersFrom parameters_from = ParametersFrom::identification;
+  double hac_lag_s = 0;                           ///< reach of the autocovariance in the standard errors [s]
+  double handle_mass = 0;                         ///< [kg] taken off the diagonal of M
+  std::optional<ParametersFrom> parameters_from;  ///< absent: a stored result does not say
   Fit fit;
   Excitation excitation;
   std::optional<DecimationCheck> decimation;

@@ -204,7 +204,7 @@ Json result_json(const Measurement& measured) {
   json["warnings"] = warnings_json(id.warnings);
   json["usable"] = id.usable;
   json["covariance"] = {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}};
-  json["estimation"] = {{"parameters_from", word_of(id.parameters_from)},
+  json["estimation"] = {{"parameters_from", id.parameters_from ? word_of(*id.parameters_from) : ""},
                         {"samples", id.samples},
                         {"duration_s", id.excitation.duration},
                         {"hac_lag_s", id.hac_lag_s},
