@@ -131,7 +131,7 @@ TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
 
 TEST(ToJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {
   Measurement warned = measured(2);
-  for (const auto& [code, words] : kWarningTexts) warned.identification.warnings.push_back({code, "so", "again"});
+  for (const auto& [code, word] : kWords<WarningCode>) warned.identification.warnings.push_back({code, "so", "again"});
   EXPECT_TRUE(schemas::fits_its_schema(to_json(warned)));
 }
 
