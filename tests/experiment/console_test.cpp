@@ -65,10 +65,8 @@ class ConsoleOfASession : public testing::Test {
               (std::string("mbk_console_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
-    for (const protocol::Trial& trial :
-         protocol::read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value()) {
-      plans_.push_back(session::make_plan(trial).value());
-    }
+    const auto trials = protocol::read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value();
+    for (const protocol::Trial& trial : trials) plans_.push_back(session::make_plan(trial).value());
     open_console();
   }
   void TearDown() override {

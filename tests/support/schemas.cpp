@@ -23,17 +23,6 @@ const std::set<std::string, std::less<>> kHeld = {"type",     "enum",     "requi
                                                   "anyOf",    "oneOf",    "properties"};
 const std::set<std::string, std::less<>> kSaid = {"$schema", "title", "description", "definitions"};
 
-const Json& file(const std::string& name) {
-  static std::map<std::string, Json> files;
-  const auto [found, is_new] = files.try_emplace(name);
-  if (is_new) {
-    std::ifstream stream(std::filesystem::path(MBK_SCHEMAS) / name);
-    if (!stream) throw std::runtime_error(fmt::format("there is no schema {}", name));
-    found->second = Json::parse(stream);
-  }
-  return found->second;
-}
-
 /// The schema with what it refers to in place of each reference, which RapidJSON would ignore where it is not found.
 Json expanded(const Json& schema, const std::string& in) {
   if (!schema.is_object()) return schema;  // additionalProperties: false
@@ -74,6 +63,17 @@ const rapidjson::SchemaDocument& schema(const std::string& name) {
 }
 
 }  // namespace
+
+const Json& file(const std::string& name) {
+  static std::map<std::string, Json> files;
+  const auto [found, is_new] = files.try_emplace(name);
+  if (is_new) {
+    std::ifstream stream(std::filesystem::path(MBK_SCHEMAS) / name);
+    if (!stream) throw std::runtime_error(fmt::format("there is no schema {}", name));
+    found->second = Json::parse(stream);
+  }
+  return found->second;
+}
 
 testing::AssertionResult fits(std::string_view document, const std::string& name) {
   rapidjson::Document read;

@@ -9,6 +9,10 @@
 /// Documents of mbk against their JSON Schemas in the folder schemas/.
 namespace mbk::schemas {
 
+/// The schema in schemas/`name`, as it stands there.
+/// @throws std::runtime_error where there is none.
+[[nodiscard]] const nlohmann::json& file(const std::string& name);
+
 /// Whether a document fits schemas/`name`.schema.json; if not, where it does not and which keyword of the schema says
 /// so. Not fitting is also what is no JSON.
 /// @throws std::runtime_error where there is no such schema, or it says what this check could not hold it to.

@@ -81,7 +81,7 @@ TEST(SensorJson, NamesWhatIsWrong) {
 
 TEST(SensorJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {
   SensorCalibration warned = calibration();
-  for (const auto& [code, words] : kSensorWarningTexts) warned.warnings.push_back({code, "so", "again"});
+  for (const auto& [code, word] : kWords<SensorWarningCode>) warned.warnings.push_back({code, "so", "again"});
   EXPECT_TRUE(schemas::fits_its_schema(to_json(warned)));
 }
 

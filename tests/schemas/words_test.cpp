@@ -1,0 +1,64 @@
+// A schema has the words of an enumeration that the code has for it, all of them and no other.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "mbk/model/trial/arm_posture.h"
+#include "mbk/model/trial/chart.h"
+#include "mbk/model/trial/frequency_response.h"
+#include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/prepared_dynamics.h"
+#include "mbk/model/trial/prepared_trial.h"
+#include "mbk/model/trial/protocol.h"
+#include "mbk/model/trial/reproduction.h"
+#include "mbk/model/trial/robot_identification.h"
+#include "mbk/model/trial/sensor_calibration.h"
+#include "mbk/model/trial/teleoperation.h"
+#include "mbk/model/trial/transfer_function.h"
+#include "mbk/model/trial/verdict.h"
+#include "mbk/model/trial/warning.h"
+#include "tests/support/schemas.h"
+
+namespace mbk {
+namespace {
+
+template <HasWords Enum>
+void expect_words(const std::string& name, const std::string& place) {
+  const auto& schema = schemas::file(name + ".schema.json").at(nlohmann::json::json_pointer(place));
+  std::set<std::string> wanted;
+  for (const auto& [value, word] : kWords<Enum>) wanted.emplace(word);
+  EXPECT_EQ(schema.at("enum").get<std::set<std::string>>(), wanted) << name << place;
+}
+
+TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
+  expect_words<Method>("common", "/definitions/Method");
+  expect_words<Verdict>("common", "/definitions/Verdict");
+  expect_words<WarningCode>("common", "/definitions/WarningCode");
+  expect_words<ForceSource>("common", "/definitions/ForceSource");
+  expect_words<Protocol>("common", "/definitions/Preparation/properties/protocol");
+  expect_words<Procedure>("common", "/definitions/Preparation/properties/procedure");
+  expect_words<AccelerationSource>("common", "/definitions/Preparation/properties/acceleration");
+  expect_words<ArmPosture::Of>("common", "/definitions/Posture/properties/of");
+  expect_words<Mode>("result", "/properties/mode");
+  expect_words<Protocol>("result", "/properties/protocol");
+  expect_words<Structure>("result", "/properties/structure");
+  expect_words<ParametersFrom>("result", "/definitions/Estimation/properties/parameters_from");
+  expect_words<ReferenceQuantity>("result", "/definitions/Instrument/properties/reference");
+  expect_words<ArmPosture::Of>("result", "/definitions/JointDomain/properties/of");
+  expect_words<RobotMethod>("robot", "/properties/method");
+  expect_words<InstrumentMotion>("robot", "/properties/instruments");
+  expect_words<SensorWarningCode>("sensor", "/definitions/SensorWarning/properties/code");
+  expect_words<TransferFunctionMethod>("tf", "/properties/method");
+  expect_words<AdmittanceOutput>("tf", "/definitions/InvertedAdmittance/properties/admittance_to");
+  expect_words<StabilityVerdict>("teleop", "/definitions/Stability/properties/verdict");
+  expect_words<StabilityCondition>("teleop", "/definitions/Stability/properties/conditions/items/properties/name");
+  expect_words<MotionOutcome>("teleop", "/properties/simulation/properties/runs/items/properties/outcome");
+  expect_words<Provenance>("reproduction", "/definitions/Provenance");
+  expect_words<Agreement>("reproduction", "/definitions/Agreement");
+  expect_words<Exhibit::Kind>("reproduction", "/definitions/Exhibit/properties/kind");
+  expect_words<ChartSeries::Drawn>("reproduction", "/definitions/Chart/properties/series/items/properties/drawn");
+}
+
+}  // namespace
+}  // namespace mbk
