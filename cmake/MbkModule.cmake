@@ -1,3 +1,9 @@
+# Most of what a source costs the compiler is what it includes and instantiates, which its neighbours do, too; so the
+# sources of a module are compiled several at a time. Each still includes what it uses: clang-tidy and the sanitizers
+# compile them one by one.
+option(MBK_UNITY "Compile several sources of a module at a time" ON)
+set(MBK_UNITY_BATCH 5)  # so that none takes more than 15 s
+
 # Nothing of it is linked: an interface without libraries.
 function(mbk_is_header_only library result)
   get_target_property(type ${library} TYPE)
@@ -17,12 +23,13 @@ endfunction()
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
-# program that is no part of the library. TESTS_WAIT: its tests wait for a socket (label waits).
+# program that is no part of the library. TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources that take
+# long to compile, or that have a name in common with another, and so are not compiled with others; ONE_BY_ONE: all are.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT" "" "DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT;ONE_BY_ONE" "" "ALONE;DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -44,6 +51,10 @@ function(mbk_module name)
     add_library(mbk_${name} STATIC ${sources})
     mbk_precompile(mbk_${name} library)
     set(public PUBLIC)
+    if(NOT ARG_ONE_BY_ONE)
+      set_target_properties(mbk_${name} PROPERTIES UNITY_BUILD ${MBK_UNITY} UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH})
+      set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
     target_link_libraries(mbk_${name} PRIVATE $<BUILD_INTERFACE:mbk_settings> ${private_libraries})
   else()
     add_library(mbk_${name} INTERFACE)
