@@ -1,5 +1,5 @@
 # Most of what a source costs the compiler is what it includes and instantiates, which its neighbours do, too; so the
-# sources of a module are compiled several at a time. Each still includes what it uses: clang-tidy and the sanitizers
+# sources of a module are compiled several at a time. Each still includes what it uses: clang-tidy and the preset sanitize
 # compile them one by one.
 option(MBK_UNITY "Compile several sources of a module at a time" ON)
 set(MBK_UNITY_BATCH 5)  # so that none takes more than 15 s

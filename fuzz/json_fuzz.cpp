@@ -14,7 +14,7 @@ Measurement measured(int axes) {
   id.covariance = Matrix::Identity(parameters, parameters);
   id.fit = {Vector::Constant(axes, 98.0), Vector::Constant(axes, 0.5), Vector::Constant(axes, 99.0), true};
   id.parameters.assign(static_cast<std::size_t>(parameters), "p");
-  id.parameters_from = "identification";
+  id.parameters_from = ParametersFrom::identification;
   id.preparations.emplace_back();
   id.sources = {{"log.mat", "MAT v7", "abc"}};
   id.durations = {62.0};
