@@ -43,6 +43,7 @@ WAYS = {
     "thread": ((errno.EAGAIN, False), (errno.EAGAIN, True)),
 }
 MOST = 3000  # n tried of one group and way
+BETWEEN_LINES = 10  # s between two lines that say how far it is
 tasks = {}  # by name; the processes that try them inherit it
 
 
@@ -129,7 +130,12 @@ def main():
         context = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(arguments.jobs, mp_context=context) as pool:
             waiting, left = {}, shuffled(lists, random.Random(arguments.seed))
+            whole, next_line = sum(map(len, lists)), begin + BETWEEN_LINES
             while True:
+                if time.monotonic() >= next_line:
+                    next_line = time.monotonic() + BETWEEN_LINES
+                    print(f"{sum(runs.values())} of {whole} runs in {time.monotonic() - begin:.0f} s, {len(wrong)} wrong",
+                          file=sys.stderr, flush=True)
                 over = not arguments.all and time.monotonic() - begin > arguments.seconds
                 while not over and len(waiting) < 2 * arguments.jobs:
                     case = next(left, None)

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <ctime>
 #include <cmath>
 #include <cstring>
 #include <ctime>
@@ -101,7 +102,9 @@ bool UdpSocket::wait(double longest) const noexcept {
   double whole = 0.0;
   const double part = std::modf(longest, &whole);
   const timespec time{static_cast<std::time_t>(whole), static_cast<long>(1e9 * part)};
-  return ppoll(&what, 1, &time, nullptr) > 0;
+  const int ready = ppoll(&what, 1, &time, nullptr);
+  if (ready < 0 && errno != EINTR) nanosleep(&time, nullptr);  // whoever asks again does not spin
+  return ready > 0;
 }
 
 }  // namespace mbk::drivers
