@@ -283,7 +283,10 @@ int perform(Session& session, const conduct::Experiment& experiment, const sessi
     };
   }
   const int code = code_of(conduct::run(experiment, session, conductor, measure));
-  if (auto ok = console->end(); !ok) return report_error(ok.error());
+  if (auto ok = console->end(); !ok) {
+    const int lost = report_error(ok.error());
+    return code == kFine ? lost : code;  // motors that are not off are worse than notes that are not kept
+  }
   return code;
 }
 

@@ -111,6 +111,8 @@ class Robot(threading.Thread):
             _, _, flags, its_session, _, number, *torque = self.COMMAND.unpack(data[:40])
             if flags & self.GREETING and its_session != session:
                 session, obeyed = its_session, 0
+            if its_session != session:
+                continue  # meant for a robot that had this port before
             if number > obeyed:
                 enabled = bool(flags & self.ENABLED)
                 if not flags & self.GREETING:

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <ctime>
 #include <cmath>
 #include <cstring>
 #include <ctime>
