@@ -24,7 +24,7 @@ endfunction()
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
 # program that is no part of the library. TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources that take
-# long to compile, or that have a name in common with another, and so are not compiled with others; ONE_BY_ONE: all are.
+# long to compile, or have a name in common with another, and so are compiled by themselves; ONE_BY_ONE: all of them.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.

@@ -4,16 +4,13 @@
 #include <sstream>
 #include <string_view>
 
+#include "mbk/base/core/trimmed.h"
+
 namespace mbk::app {
 namespace {
 
 constexpr std::size_t kEntryIndent = 2;
 constexpr std::string_view kExitCodesHeading = "Exit codes:";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t from = text.find_first_not_of(' ');
-  return from == std::string_view::npos ? std::string_view() : text.substr(from, text.find_last_not_of(' ') + 1 - from);
-}
 
 void append(std::string& text, std::string_view line) {
   if (!text.empty()) text += ' ';

@@ -5,50 +5,38 @@
 
 namespace mbk::app {
 
-void add_identify_options(CLI::App& command, IdentifyArguments& a) {
+void add_identify_options(CLI::App& command, identify::Options& options) {
   const char* const model = "Model";
-  add_choice(command, "--method", a.method,
+  add_choice(command, "--method", options.method,
              "ls: least squares; iv: instrumental variables, which need the reference and hold in closed loop too")
       ->group(model);
-  add_choice(command, "--structure", a.structure,
+  add_choice(command, "--structure", options.structure,
              "full; symmetric: M and K symmetric; mass-spring: M = m I, no damping, K symmetric")
       ->group(model);
-  add_choice(command, "--parameters-from", a.parameters_from,
+  add_choice(command, "--parameters-from", options.parameters_from,
              "all: parameters from every window, fit judged on the held-back half (default for underdamped)")
       ->group(model);
-  command.add_option("--handle-mass", a.handle_mass, "mass between sensor and hand, taken off the inertia (0)")
+  command.add_option("--handle-mass", options.handle_mass, "mass between sensor and hand, taken off the inertia (0)")
       ->type_name("KG")
       ->check(not_negative())
       ->group(model);
-  command.add_option("--hac-lag", a.hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
+  command.add_option("--hac-lag", options.hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
       ->type_name("S")
       ->check(positive())
       ->group(model);
   command
-      .add_option("--bootstrap", a.bootstrap,
+      .add_option("--bootstrap", options.bootstrap,
                   "so many fits to data drawn anew from blocks of 2.5 s, for intervals of every parameter, ellipse, "
                   "eigenvalue and the excess of passivity that rest on no formula (0: none; 1000 take a moment)")
       ->type_name("N")
       ->check(whole_number(0, 1'000'000))
       ->group(model);
-  command.add_option("--seed", a.seed, "of the bootstrap (1)")
+  command.add_option("--seed", options.seed, "of the bootstrap (1)")
       ->type_name("N")
       ->check(whole_number(0, 2'000'000'000))
       ->group(model);
-  command.add_flag("--decimate-check", a.decimate_check, "fit again at 100 Hz and say what changes")->group(model);
-}
-
-identify::Options identify_options(const IdentifyArguments& a) {
-  identify::Options options;
-  options.method = a.method;
-  options.structure = a.structure;
-  options.parameters_from = a.parameters_from;
-  options.handle_mass = a.handle_mass;
-  options.hac_lag_s = a.hac_lag_s;
-  options.decimate_check = a.decimate_check;
-  options.bootstrap = a.bootstrap;
-  options.seed = a.seed;
-  return options;
+  command.add_flag("--decimate-check", options.decimate_check, "fit again at 100 Hz and say what changes")
+      ->group(model);
 }
 
 }  // namespace mbk::app

@@ -63,9 +63,8 @@ void say_plainly(std::string_view text) noexcept {
 }
 
 constexpr std::string_view kNoMemory =
-    "mbk: not enough memory; of a recording choose a part with --from and --to; of a trial 'mbk recover' saves what "
-    "its "
-    "journal holds, and what it does not hold is lost\n";
+    "mbk: not enough memory; of a recording choose a part with --from and --to; of a trial 'mbk recover' saves "
+    "what its journal holds, and what it does not hold is lost\n";
 
 /// Where an exception has nowhere to go: before main begins, and out of a destructor that needs memory, as that of a
 /// JSON tree does. No memory is no error of mbk; anything else is, and ends as it would.

@@ -52,7 +52,7 @@ Result<measurement::Options> measurement_options(const MeasureArguments& argumen
   } else if (a.robot) {
     return bad_usage("--robot belongs to --force-source virtual or observer", "add that, or leave --robot out");
   }
-  options.identify = identify_options(arguments.identify);
+  options.identify = arguments.identify;
   if (a.filters.resample_hz) options.resample = Hertz(*a.filters.resample_hz);
   return options;
 }

@@ -16,7 +16,7 @@ struct MeasureArguments {
   ReadingArguments reading;
   SensorArguments sensor;
   PreprocessArguments preprocess;
-  IdentifyArguments identify;
+  identify::Options identify;
   bool pool = false;
   unsigned threads = 0;
   OutputArguments output;

@@ -6,15 +6,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "mbk/base/core/trimmed.h"
+
 namespace mbk::thesis {
 namespace {
 
 using Names = std::set<std::string, std::less<>>;
-
-std::string_view trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(' ');
-  return begin == std::string_view::npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
-}
 
 /// "a: b" in two; b is empty where there is no colon.
 std::pair<std::string, std::string> name_and_title(std::string_view heading) {

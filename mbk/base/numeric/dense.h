@@ -37,45 +37,49 @@ struct SymmetricEigen {
 /// X with the least |A X − B|, for an A of full column rank.
 [[nodiscard]] Matrix householder_solve(const Matrix& A, const Matrix& B);
 
-/// solve() of any right side, by one of vectors and one of matrices that a decomposition defines.
-template <typename Decomposition>
+/// What all decompositions have in common: A is decomposed once, and solved for any right side.
+template <typename Factor>
 class DenseSolver {
  public:
+  explicit DenseSolver(const Matrix& A);
+
   template <typename Right>
   [[nodiscard]] auto solve(const Eigen::MatrixBase<Right>& right) const {
-    const auto& self = static_cast<const Decomposition&>(*this);
     if constexpr (Right::ColsAtCompileTime == 1) {
-      return self.solve_vector(right);
+      return solve_vector(right);
     } else {
-      return self.solve_matrix(right);
+      return solve_matrix(right);
     }
   }
-};
 
-/// L Lᵀ of a positive definite matrix.
-class Cholesky : public DenseSolver<Cholesky> {
- public:
-  explicit Cholesky(const Matrix& A);
-  [[nodiscard]] bool positive_definite() const { return factor_.info() == Eigen::Success; }
-  [[nodiscard]] Matrix upper() const;
-  [[nodiscard]] Vector solve_vector(const Vector& right) const;
-  [[nodiscard]] Matrix solve_matrix(const Matrix& right) const;
+ protected:
+  Factor factor_;
 
  private:
-  Eigen::LLT<Matrix> factor_;
+  [[nodiscard]] Vector solve_vector(const Vector& right) const;
+  [[nodiscard]] Matrix solve_matrix(const Matrix& right) const;
+};
+extern template class DenseSolver<Eigen::LLT<Matrix>>;
+extern template class DenseSolver<Eigen::LDLT<Matrix>>;
+extern template class DenseSolver<Eigen::ColPivHouseholderQR<Matrix>>;
+extern template class DenseSolver<Eigen::CompleteOrthogonalDecomposition<Matrix>>;
+extern template class DenseSolver<Eigen::PartialPivLU<Matrix>>;
+extern template class DenseSolver<Eigen::FullPivLU<Matrix>>;
+
+/// L Lᵀ of a positive definite matrix.
+class Cholesky : public DenseSolver<Eigen::LLT<Matrix>> {
+ public:
+  using DenseSolver::DenseSolver;
+  [[nodiscard]] bool positive_definite() const { return factor_.info() == Eigen::Success; }
+  [[nodiscard]] Matrix upper() const;
 };
 
 /// Pᵀ L D Lᵀ P of a symmetric matrix.
-class PivotedCholesky : public DenseSolver<PivotedCholesky> {
+class PivotedCholesky : public DenseSolver<Eigen::LDLT<Matrix>> {
  public:
-  explicit PivotedCholesky(const Matrix& A);
+  using DenseSolver::DenseSolver;
   [[nodiscard]] bool positive() const { return factor_.isPositive(); }
   [[nodiscard]] Vector pivots() const;
-  [[nodiscard]] Vector solve_vector(const Vector& right) const;
-  [[nodiscard]] Matrix solve_matrix(const Matrix& right) const;
-
- private:
-  Eigen::LDLT<Matrix> factor_;
 };
 
 /// The same of a Hermitian matrix.
@@ -90,57 +94,37 @@ class HermitianPivotedCholesky {
 };
 
 /// Q R Pᵀ by Householder reflections, columns in descending order of length.
-class PivotedQr : public DenseSolver<PivotedQr> {
+class PivotedQr : public DenseSolver<Eigen::ColPivHouseholderQR<Matrix>> {
  public:
-  explicit PivotedQr(const Matrix& A);
+  using DenseSolver::DenseSolver;
   /// Pivots below `threshold` of the largest count as zero.
   PivotedQr(const Matrix& A, double threshold);
   [[nodiscard]] Index rank() const;
   [[nodiscard]] Matrix inverse() const;
   /// What the columns of A cannot make of `of`: (I − Q₁ Q₁ᵀ) of.
   [[nodiscard]] Matrix rest(Matrix of) const;
-  [[nodiscard]] Vector solve_vector(const Vector& right) const;
-  [[nodiscard]] Matrix solve_matrix(const Matrix& right) const;
-
- private:
-  Eigen::ColPivHouseholderQR<Matrix> factor_;
 };
 
 /// The least-norm solution where A lacks rank.
-class CompleteOrthogonal : public DenseSolver<CompleteOrthogonal> {
+class CompleteOrthogonal : public DenseSolver<Eigen::CompleteOrthogonalDecomposition<Matrix>> {
  public:
-  explicit CompleteOrthogonal(const Matrix& A);
+  using DenseSolver::DenseSolver;
   [[nodiscard]] Matrix pseudo_inverse() const;
-  [[nodiscard]] Vector solve_vector(const Vector& right) const;
-  [[nodiscard]] Matrix solve_matrix(const Matrix& right) const;
-
- private:
-  Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
 };
 
 /// P A = L U.
-class Lu : public DenseSolver<Lu> {
+class Lu : public DenseSolver<Eigen::PartialPivLU<Matrix>> {
  public:
-  explicit Lu(const Matrix& A);
+  using DenseSolver::DenseSolver;
   [[nodiscard]] double reciprocal_condition() const;
-  [[nodiscard]] Vector solve_vector(const Vector& right) const;
-  [[nodiscard]] Matrix solve_matrix(const Matrix& right) const;
-
- private:
-  Eigen::PartialPivLU<Matrix> factor_;
 };
 
 /// P A Q = L U.
-class FullyPivotedLu : public DenseSolver<FullyPivotedLu> {
+class FullyPivotedLu : public DenseSolver<Eigen::FullPivLU<Matrix>> {
  public:
-  explicit FullyPivotedLu(const Matrix& A);
+  using DenseSolver::DenseSolver;
   [[nodiscard]] bool invertible() const;
   [[nodiscard]] Matrix inverse() const;
-  [[nodiscard]] Vector solve_vector(const Vector& right) const;
-  [[nodiscard]] Matrix solve_matrix(const Matrix& right) const;
-
- private:
-  Eigen::FullPivLU<Matrix> factor_;
 };
 
 }  // namespace mbk::numeric

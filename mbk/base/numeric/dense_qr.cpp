@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/dense_solver.h"
 
 namespace mbk::numeric {
+
+template class DenseSolver<Eigen::ColPivHouseholderQR<Matrix>>;
+template class DenseSolver<Eigen::CompleteOrthogonalDecomposition<Matrix>>;
 
 Matrix householder_triangle(Matrix A) {
   const Index rows = std::min(A.rows(), A.cols());
@@ -15,9 +18,7 @@ Matrix householder_solve(const Matrix& A, const Matrix& B) {
   return Eigen::HouseholderQR<Matrix>(A).solve(B);
 }
 
-PivotedQr::PivotedQr(const Matrix& A) : factor_(A) {}
-
-PivotedQr::PivotedQr(const Matrix& A, double threshold) : factor_(A) {
+PivotedQr::PivotedQr(const Matrix& A, double threshold) : DenseSolver(A) {
   factor_.setThreshold(threshold);
 }
 
@@ -36,26 +37,8 @@ Matrix PivotedQr::rest(Matrix of) const {
   return of;
 }
 
-Vector PivotedQr::solve_vector(const Vector& right) const {
-  return factor_.solve(right);
-}
-
-Matrix PivotedQr::solve_matrix(const Matrix& right) const {
-  return factor_.solve(right);
-}
-
-CompleteOrthogonal::CompleteOrthogonal(const Matrix& A) : factor_(A) {}
-
 Matrix CompleteOrthogonal::pseudo_inverse() const {
   return factor_.pseudoInverse();
-}
-
-Vector CompleteOrthogonal::solve_vector(const Vector& right) const {
-  return factor_.solve(right);
-}
-
-Matrix CompleteOrthogonal::solve_matrix(const Matrix& right) const {
-  return factor_.solve(right);
 }
 
 }  // namespace mbk::numeric

@@ -111,6 +111,11 @@ void Recorder::write_pending() {
   wake_.notify_all();
 }
 
+void Recorder::write_rest() {
+  while (drain()) write_pending();
+  write_pending();
+}
+
 void Recorder::look_after_file() {
   using Place = journal::Writer::Place;
   const Place place = writer_.place();
@@ -158,10 +163,7 @@ void Recorder::record() noexcept {
     if (!more) std::this_thread::sleep_for(5ms);
   }
   try {
-    while (drain()) {
-      write_pending();
-    }
-    write_pending();
+    write_rest();
   } catch (const std::exception& error) {
     failed(error.what());
   }
@@ -182,10 +184,7 @@ void Recorder::keep_syncing() noexcept {
 
 Result<journal::Ending> Recorder::finish(journal::Ending ending) {
   stop_threads();
-  while (drain()) {
-    write_pending();
-  }
-  write_pending();
+  write_rest();
   look_after_file();
   write_pending();  // what failed under the old name
   ending.dropped = ticks_.dropped() + pending_.size() + given_up_;

@@ -49,6 +49,7 @@ class Recorder {
   void show(std::span<const journal::Tick> ticks) noexcept;
   void failed(const char* why) noexcept;
   void write_pending();
+  void write_rest();
   void look_after_file();
   void stop_threads();
 

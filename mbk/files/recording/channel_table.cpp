@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mbk/base/core/edit_distance.h"
+#include "mbk/base/core/trimmed.h"
 
 namespace mbk::recording {
 namespace {
@@ -84,12 +85,6 @@ bool same_name(std::string_view name, std::string_view known) {
 std::string in_lower_case(std::string_view name) {
   std::string text(name);
   std::ranges::transform(text, text.begin(), lower);
-  return text;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   return text;
 }
 
