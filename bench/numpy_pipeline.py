@@ -24,7 +24,7 @@ from scipy.signal import butter, savgol_filter, sosfiltfilt
 
 RATE = 1000.0  # [Hz]
 BEGIN, END = 11999, 62000  # samples of the published window
-IDENTIFY = 40000  # samples that make the parameters; the rest is held back
+IDENTIFY = 40000  # samples that make the parameters; the rest is held out
 ORDER, WINDOW = 6, 101  # Savitzky-Golay
 CUTOFF = 5.0  # [Hz]
 

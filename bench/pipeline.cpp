@@ -34,8 +34,8 @@ double seconds() {
 nlohmann::json run(const std::vector<dsp::Column>& columns, Index every) {
   const double start = seconds();
   const dsp::FilterChain chain{{6, 101}, value_of(dsp::butterworth_lowpass(5, Hertz(5.0), kRate)), {}};
-  const std::vector<dsp::Wanted> wanted = {{0, 2}, {1, 2}, {0, 1}, {1, 1}, {0, 0}, {1, 0}, {2, 0}, {3, 0}};
-  const Matrix signals = value_of(dsp::smooth_then_lowpass(chain, columns, wanted, kRate, every));
+  const std::vector<dsp::FilterOutput> outputs = {{0, 2}, {1, 2}, {0, 1}, {1, 1}, {0, 0}, {1, 0}, {2, 0}, {3, 0}};
+  const Matrix signals = value_of(dsp::smooth_then_lowpass(chain, columns, outputs, kRate, every));
   const double filtered = seconds();
   const Index rows = (kIdentify - 1) / every + 1;
   Matrix Z(rows, 7);

@@ -1,4 +1,4 @@
-/// The 1 kHz session: an hour of it on the virtual clock with its recording and its memory, and a stretch in real time
+/// The 1 kHz session: an hour of it on the virtual clock with its recording and its memory, and a segment in real time
 /// beside an empty loop, which shows how late this machine wakes any thread.
 ///   bench_session [--minutes 60] [--seconds 20, at least 5] [--out FOLDER]
 #include "mbk/experiment/session/session.h"

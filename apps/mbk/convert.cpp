@@ -26,7 +26,7 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
   if (inputs.empty()) return bad_usage("one file is named where two are needed", "mbk convert IN OUT");
   if (inputs.size() > 1 && !parts) {
     return bad_usage(fmt::format("{} files to read, and one to write", inputs.size()),
-                     "pass --parts where they are numbered parts of one record, else convert each by itself");
+                     "pass --parts where they are numbered parts of one record, else convert each one separately");
   }
   return check_new_file(*output.file, "OUT", output.overwrite, inputs);
 }
@@ -82,7 +82,7 @@ Action add_convert(CLI::App& app) {
       "  mbk convert drive.csv drive.h5 --channels time=1:ms,x=2:mm,F=-3 --axes 1\n"
       "      units and signs are put right on the way: what is written is SI\n\n"
       "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
-      "What was left aside in reading, or has no place in the new format, is said on standard error.");
+      "What was ignored in reading, or has no place in the new format, is said on standard error.");
   add_reading_options(*command, arguments->reading);
   add_sensor_options(*command, arguments->sensor);
   command->get_option("FILE")->description("the recording to read (several with --parts), and last the one to write");

@@ -14,9 +14,10 @@ void add_identify_options(CLI::App& command, identify::Options& options) {
              "full; symmetric: M and K symmetric; mass-spring: M = m I, no damping, K symmetric")
       ->group(model);
   add_choice(command, "--parameters-from", options.parameters_from,
-             "all: parameters from every window, fit judged on the held-back half (default for underdamped)")
+             "all: parameters from every window, fit judged on the held-out half (default for underdamped)")
       ->group(model);
-  command.add_option("--handle-mass", options.handle_mass, "mass between sensor and hand, taken off the inertia (0)")
+  command
+      .add_option("--handle-mass", options.handle_mass, "mass between sensor and hand, subtracted from the inertia (0)")
       ->type_name("KG")
       ->check(not_negative())
       ->group(model);

@@ -74,7 +74,7 @@ Action add_info(CLI::App& app) {
       "      where no channel is recognised, the variables or columns of the file are listed\n"
       "  mbk info --parts log_1.mat log_2.mat\n"
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
-      "Nothing is repaired: gaps, repeated or backward time and values that are no numbers are reported.");
+      "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
   add_reading_options(*command, arguments->reading);
   add_sensor_options(*command, arguments->sensor);
   add_output_options(*command, arguments->output, "mbk.info/1");

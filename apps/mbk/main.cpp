@@ -49,7 +49,7 @@ std::string one_line(const CLI::App* app, const CLI::Error& error) {
   }
   const std::vector<std::string> words = app->remaining();
   if (words.empty()) return "mbk: no command; see 'mbk --help'\n";
-  return fmt::format("mbk: '{}' is no command; see 'mbk --help'\n", words.front());
+  return fmt::format("mbk: '{}' is an unknown command; see 'mbk --help'\n", words.front());
 }
 
 /// On standard error where there is no memory to make a line in. What cannot be written is lost: the exit code tells.

@@ -52,13 +52,13 @@ int run(const Arguments& arguments, CLI::App& app) {
   const CommandText root = describe(app);
   if (arguments.pages) {
     if (arguments.command.empty()) return write_pages(root, *arguments.pages, arguments.overwrite);
-    return report_error({ErrorKind::usage, "--pages writes every page", "leave COMMAND or --pages away", ""});
+    return report_error({ErrorKind::usage, "--pages writes every page", "omit COMMAND or --pages", ""});
   }
   const CommandText* const command = find_command(root, arguments.command);
   if (command == nullptr) {
     return report_error(
         {ErrorKind::usage,
-         fmt::format("there is no command {}", quoted(fmt::format("{}", fmt::join(arguments.command, " ")))),
+         fmt::format("unknown command {}", quoted(fmt::format("{}", fmt::join(arguments.command, " ")))),
          "'mbk --help' names them", ""});
   }
   if (auto ok = Output().write(manual_page(*command, root, std::string(version()))); !ok)

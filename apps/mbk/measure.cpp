@@ -142,7 +142,7 @@ Action add_measure(CLI::App& app, const std::string& typed) {
              "  mbk measure --mode reference log.mat\n"
              "      the published procedure, sample for sample\n"
              "  mbk measure --axes 1 --channels x=position_rad,F=torque_Nm --split 40 ankle.csv\n"
-             "      one joint from a CSV file, the first 40 s to identify, the rest held back\n"
+             "      one joint from a CSV file, the first 40 s to identify, the rest held out\n"
              "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
              "      several trials: one result each, their mean and the standard error between them\n"
              "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"

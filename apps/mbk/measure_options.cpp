@@ -14,7 +14,7 @@ void add_measure_options(CLI::App& command, MeasureArguments& arguments) {
   add_sensor_options(command, arguments.sensor);
   add_protocol_options(command, arguments.preprocess);
   command.add_flag("--pool", arguments.pool, "one fit over all FILEs; otherwise one result each and a summary")
-      ->group("What counts");
+      ->group("Analysed interval");
   add_signal_options(command, arguments.preprocess);
   add_identify_options(command, arguments.identify);
   command.add_option("--threads", arguments.threads, "files measured at a time (as many as there are cores)")

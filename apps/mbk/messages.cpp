@@ -14,7 +14,7 @@
 namespace mbk::app {
 namespace {
 
-constexpr std::size_t kMostWaiting = 512;
+constexpr std::size_t kMaxWaiting = 512;
 constexpr int kNotRead = -1, kNoMemory = -2;  // beside the numbers of errno
 
 /// Never destroyed: a thread that hangs in its last message outlives main.
@@ -89,7 +89,7 @@ void say_text(std::string_view text) noexcept {
     {
       const std::scoped_lock lock(all.mutex);
       if (all.background) {
-        if (all.waiting.size() < kMostWaiting) {
+        if (all.waiting.size() < kMaxWaiting) {
           all.waiting.emplace_back(text);
         } else {
           all.lose(1, kNotRead);

@@ -105,4 +105,16 @@ std::vector<std::string> suggestions(CLI::Option& option) {
   }
 }
 
+void accept_former_name(CLI::App& command, CLI::Option& option, const std::string& former) {
+  command
+      .add_option_function<std::vector<std::string>>(former,
+                                                     [&option](const std::vector<std::string>& given) {
+                                                       for (const std::string& value : given) option.add_result(value);
+                                                       option.run_callback();
+                                                     })
+      ->expected(option.get_expected_min(), option.get_expected_max())
+      ->excludes(&option)
+      ->group("");
+}
+
 }  // namespace mbk::app

@@ -23,6 +23,9 @@ namespace mbk::app {
 /// The words of every one_of() and suggests() that `option` has.
 [[nodiscard]] std::vector<std::string> suggestions(CLI::Option& option);
 
+/// The name that `option` had until the version before: still read, but listed nowhere.
+void accept_former_name(CLI::App& command, CLI::Option& option, const std::string& former);
+
 /// What was given, as it stands in a message: 'abc', cut where it is long.
 [[nodiscard]] std::string quoted(const std::string& given);
 

@@ -150,7 +150,7 @@ Action add_passivity(CLI::App& app) {
                    "the perturbation explains position and force")
       ->type_name("LOW:HIGH")
       ->check(not_empty())
-      ->group("What counts");
+      ->group("Analysed interval");
   add_output_options(*command, arguments->output, "mbk.passivity/1");
   return [arguments] { return run(*arguments); };
 }

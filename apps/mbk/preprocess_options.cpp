@@ -10,7 +10,7 @@
 namespace mbk::app {
 namespace {
 
-constexpr const char* kWindow = "What counts";
+constexpr const char* kWindow = "Analysed interval";
 constexpr const char* kFilters = "Filters";
 
 /// Limits of time must be in order; whether they lie in the recording is seen when it is read.
@@ -32,7 +32,7 @@ void add_window_options(CLI::App& command, WindowArguments& a) {
       ->type_name("S")
       ->check(not_negative())
       ->group(kWindow);
-  command.add_option("--split", a.split_s, "data before it identify, data after it are held back")
+  command.add_option("--split", a.split_s, "data before it identify, data after it are held out")
       ->type_name("S")
       ->check(positive())
       ->group(kWindow);

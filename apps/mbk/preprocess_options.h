@@ -27,7 +27,7 @@ struct FilterArguments {
 
 /// From a recording to a trial that can be identified.
 struct PreprocessArguments {
-  Mode mode = Mode::improved;
+  Mode mode = Mode::default_mode;
   std::optional<Procedure> procedure;
   std::optional<Protocol> protocol;
   WindowArguments window;

@@ -22,7 +22,7 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   options.axes = arguments.axes;
   options.untimed = arguments.untimed;
   options.variable = arguments.variable;
-  options.wanted = arguments.wanted;
+  options.requested = arguments.requested;
   return options;
 }
 

@@ -17,7 +17,7 @@ struct ReadingArguments {
   std::vector<std::filesystem::path> files;
   bool parts = false;
   std::string channels, variable;
-  std::vector<std::string> wanted;  ///< channels that are taken by name, beside those of the map; empty: all
+  std::vector<std::string> requested;  ///< channels that are taken by name, beside those of the map; empty: all
   std::optional<double> rate_hz;
   int axes = 0;
   bool untimed = false;  ///< rows without a time are welcome

@@ -129,7 +129,7 @@ Action add_reproduce(CLI::App& app) {
   CLI::App* command = add_command(app, "reproduce", "the thesis mbk grew from, table by table and figure by figure");
   command->footer(
       "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
-      "University of Alberta, 2013) that can be made again, beside the printed numbers: recomputed from\n"
+      "University of Alberta, 2013) that can be reproduced, beside the printed numbers: recomputed from\n"
       "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the slips\n"
       "in the source, its research questions and its future work.\n\n"
       "Examples:\n"

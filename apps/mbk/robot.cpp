@@ -49,7 +49,7 @@ int run_workspace(const Arguments& arguments) {
   const bool drawing = arguments.output.file && arguments.output.file->extension() == ".svg";
   if (drawing && arguments.json) {
     return report_error(
-        {ErrorKind::usage, "--json does not go into a file named .svg", "name it .json, or leave --json away", ""});
+        {ErrorKind::usage, "--json does not go into a file named .svg", "name it .json, or omit --json", ""});
   }
   robot::PlanarRobot robot;
   if (arguments.d1_mm) robot.geometry.d1 = 1e-3 * *arguments.d1_mm;

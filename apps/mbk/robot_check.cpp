@@ -36,7 +36,7 @@ int run(const Arguments& arguments) {
   if (!setup) return report_error(setup.error());
   if (arguments.live && !setup->has_device) {
     return report_error(
-        {ErrorKind::usage, "it names no robot to connect to", "add [device], or leave --live away", arguments.file});
+        {ErrorKind::usage, "it names no robot to connect to", "add [device], or omit --live", arguments.file});
   }
   const std::vector<session::Finding> findings = session::check_setup(*setup);
   bool wrong = session::worst(findings) == session::Finding::Verdict::wrong;

@@ -89,7 +89,7 @@ Action add_robot_force(CLI::App& group) {
   add_choice(*command, "--acceleration", arguments->acceleration, "where the acceleration comes from (derivative)");
   add_window_options(*command, arguments->window);
   add_filter_options(*command, arguments->filters);
-  command->remove_option(command->get_option("--split"));  // nothing is held back here
+  command->remove_option(command->get_option("--split"));  // nothing is held out here
   command->remove_option(command->get_option("--every"));
   add_output_options(*command, arguments->output, "mbk.force/1");
   command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");

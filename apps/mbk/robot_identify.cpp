@@ -31,12 +31,12 @@ struct Arguments {
   std::optional<std::filesystem::path> robot;
   RobotMethod method = RobotMethod::weighted_least_squares;
   double hac_lag_s = 1.0;
-  std::vector<std::filesystem::path> held_back;
+  std::vector<std::filesystem::path> held_out;
   std::string fixed, terms, delay = "auto", stribeck_velocity;
   std::optional<double> smoothing, motion_cutoff_hz;
 };
 
-/// A number, or the word "auto" as no number.
+/// A number, or the word "auto" as an absent one.
 Result<std::optional<double>> number_or_auto(const std::string& given, const char* option) {
   if (given == "auto") return std::nullopt;
   double value = 0.0;
@@ -151,10 +151,10 @@ int run(const Arguments& arguments) {
   const auto recordings = read_recordings(arguments.reading);
   if (!recordings) return report_error(recordings.error());
   ReadingArguments others = arguments.reading;
-  others.files = arguments.held_back;
-  const auto held_back = read_recordings(others);
-  if (!held_back) return report_error(held_back.error());
-  auto found = measurement::identify_robot(*recordings, *held_back, robot->model, options);
+  others.files = arguments.held_out;
+  const auto held_out = read_recordings(others);
+  if (!held_out) return report_error(held_out.error());
+  auto found = measurement::identify_robot(*recordings, *held_out, robot->model, options);
   if (!found) return report_error(found.error());
   found->description = robot->toml;
   found->urdf = robot->urdf;
@@ -173,17 +173,19 @@ Action add_robot_identify(CLI::App& group) {
       "  mbk simulate free_motion --out free.h5\n"
       "  mbk robot identify free.h5\n"
       "      the thesis's robot: alpha1 … alpha3, friction, and how well the torque is explained\n"
-      "  mbk robot identify free_1.h5 free_2.h5 --held-back free_3.h5 --json --out robot.json\n"
+      "  mbk robot identify free_1.h5 free_2.h5 --held-out free_3.h5 --json --out robot.json\n"
       "      several recordings in one fit, another to judge it; robot.json is what a virtual force needs\n"
       "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml\n"
       "      your own robot, from its URDF\n"
       "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n\n"
       "Record with nothing at the hand, every joint moving, fast and slow, through the places where you\n"
-      "will measure. Torque and motion are filtered alike; what the data cannot tell apart is said.\n\n"
+      "will measure. Torque and motion are filtered alike; what the data cannot distinguish is reported.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(*command, arguments->reading);
-  command->add_option("--held-back", arguments->held_back, "recordings that only judge the fit")->type_name("FILE");
+  CLI::Option* held_out =
+      command->add_option("--held-out", arguments->held_out, "recordings that only judge the fit")->type_name("FILE");
+  accept_former_name(*command, *held_out, "--held-back");
   command
       ->add_option("--robot", arguments->robot,
                    "which robot it is: a description in TOML or a URDF; without it the thesis's robot")

@@ -137,11 +137,11 @@ int dry_run(const std::vector<Trial>& trials, const std::string& experiment) {
 }
 
 /// At a terminal. What was typed before the question is no answer to it.
-bool ask(const char* question, const session::Signals& signals) {
+bool ask(const char* question, const session::LoopFlags& flags) {
   tcflush(STDIN_FILENO, TCIFLUSH);
   say("{} [y/N] ", question);
   pollfd input{STDIN_FILENO, POLLIN, 0};
-  while (!signals.end_session) {
+  while (!flags.end_session) {
     constexpr int kWait = 100;  // [ms]
     if (poll(&input, 1, kWait) <= 0) continue;
     std::array<char, 256> line{};
@@ -181,9 +181,9 @@ int code_of(const conduct::Conclusion& conclusion) {
 /// Signals and keys that stop a trial while it runs, and a line that shows how far it is, beside the page.
 class TrialWatcher : public conduct::Watcher {
  public:
-  TrialWatcher(std::unique_ptr<conduct::Watcher> page, const conduct::Attempt& attempt, session::Signals& signals,
+  TrialWatcher(std::unique_ptr<conduct::Watcher> page, const conduct::Attempt& attempt, session::LoopFlags& flags,
                bool quiet)
-      : page_(std::move(page)), last_words_(attempt.robot), keys_(signals), line_(attempt.plan.trial.name, quiet) {}
+      : page_(std::move(page)), last_words_(attempt.robot), keys_(flags), line_(attempt.plan.trial.name, quiet) {}
 
   void watch(std::span<const journal::Tick> ticks) override {
     line_.show(ticks);
@@ -201,12 +201,11 @@ class TrialWatcher : public conduct::Watcher {
 /// The operator at the terminal, and at the page where there is one: it is asked where it decides.
 class TerminalOperator : public conduct::Operator {
  public:
-  TerminalOperator(const RunConsole& console, session::Signals& signals, const session::Pace& pace, bool quiet)
-      : page_(console.page()), console_(console), signals_(signals), pace_(pace), quiet_(quiet) {}
+  TerminalOperator(const RunConsole& console, session::LoopFlags& flags, const session::Pace& pace, bool quiet)
+      : page_(console.page()), console_(console), flags_(flags), pace_(pace), quiet_(quiet) {}
 
   std::unique_ptr<conduct::Watcher> begin(const conduct::Attempt& attempt) override {
-    return std::make_unique<TrialWatcher>(page_ != nullptr ? page_->begin(attempt) : nullptr, attempt, signals_,
-                                          quiet_);
+    return std::make_unique<TrialWatcher>(page_ != nullptr ? page_->begin(attempt) : nullptr, attempt, flags_, quiet_);
   }
 
   void motors(const safety::MotorsOff& motors) override {
@@ -245,14 +244,14 @@ class TerminalOperator : public conduct::Operator {
     const bool terminal = isatty(STDIN_FILENO) == 1;
     if (performed.stopped()) return terminal ? after_stop(session) : Next::end;
     if (!performed.poor()) return Next::go_on;
-    if (terminal) return ask("The data are poor. Do the trial again?", signals_) ? Next::repeat : Next::go_on;
+    if (terminal) return ask("The data are poor. Do the trial again?", flags_) ? Next::repeat : Next::go_on;
     say("mbk: the data of {} are poor; think of repeating the trial\n", performed.attempt.target.string());
     return Next::go_on;
   }
 
  private:
   Next after_stop(Session& session) {
-    while (ask("Is the reason gone? Reset the gate and do the trial again?", signals_)) {
+    while (ask("Is the reason gone? Reset the gate and do the trial again?", flags_)) {
       const auto reset = session.reset();
       if (reset) return Next::repeat;
       report_error(reset.error());
@@ -262,7 +261,7 @@ class TerminalOperator : public conduct::Operator {
 
   console::PageOperator* page_;
   const RunConsole& console_;
-  session::Signals& signals_;
+  session::LoopFlags& flags_;
   session::Pace pace_;
   bool quiet_;
   std::string text_;                // of the trial that is being judged
@@ -272,10 +271,10 @@ class TerminalOperator : public conduct::Operator {
 /// @returns  the exit code, where no signal ended the session outside of a trial
 int perform(Session& session, const conduct::Experiment& experiment, const session::Pace& pace,
             const Arguments& arguments) {
-  const auto console = RunConsole::open(arguments.console, experiment, session.signals());
+  const auto console = RunConsole::open(arguments.console, experiment, session.flags());
   if (!console) return report_error(console.error());
   if (auto* const page = console->page(); page != nullptr && !page->may_begin(session, experiment)) return kFine;
-  TerminalOperator conductor(*console, session.signals(), pace, arguments.quiet);
+  TerminalOperator conductor(*console, session.flags(), pace, arguments.quiet);
   conduct::Measure measure;
   if (arguments.measure) {
     measure = [&](const Recording& recording, const measurement::Options& options) {
@@ -305,7 +304,7 @@ int run(const Arguments& arguments) {
   Session session(pace);
   int code = kFine, ended_by = 0;
   {
-    const StopSignals signals(session.signals());
+    const StopSignals signals(session.flags());
     const BackgroundMessages messages;
     code = perform(session, *experiment, pace, arguments);
     ended_by = signals.ended_by();

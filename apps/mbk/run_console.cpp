@@ -22,7 +22,7 @@ void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
   command.add_option("--port", arguments.port, "of the console, instead of any that is free")
       ->type_name("N")
       ->check(whole_number(0, 65535));
-  command.add_flag("--wait", arguments.wait, "the console begins each trial; nothing moves before");
+  command.add_flag("--wait", arguments.wait, "the console starts each trial; nothing moves before");
 }
 
 std::string time_text(const realtime::CycleRecord& record) {
@@ -31,15 +31,15 @@ std::string time_text(const realtime::CycleRecord& record) {
 }
 
 Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const conduct::Experiment& experiment,
-                                    session::Signals& signals) {
+                                    session::LoopFlags& flags) {
   RunConsole run;
   if (arguments.wait && arguments.wanted == false) {
-    return bad_usage("--wait waits for the console, which --no-console leaves away", "leave one of the two away");
+    return bad_usage("--wait waits for the console, which --no-console omits", "omit one of the two");
   }
   const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
   if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
   if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
-  auto opened = console::Console::open(arguments.port, experiment.plans, signals,
+  auto opened = console::Console::open(arguments.port, experiment.plans, flags,
                                        [](const std::string& line) { say("mbk: console: {}\n", line); });
   if (!opened) return tl::unexpected(opened.error());
   run.console_ = std::move(*opened);

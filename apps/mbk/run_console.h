@@ -14,7 +14,7 @@ namespace mbk::app {
 struct ConsoleArguments {
   std::optional<bool> wanted;  ///< absent: at a terminal
   std::uint16_t port = 0;      ///< 0: any that is free
-  bool wait = false;           ///< the page begins each trial
+  bool wait = false;           ///< the page starts each trial
 };
 
 void add_console_options(CLI::App& command, ConsoleArguments& arguments);
@@ -27,7 +27,7 @@ class RunConsole {
  public:
   /// Opens it where it is wanted, and prints its addresses.   @fails  as Console::open
   [[nodiscard]] static Result<RunConsole> open(const ConsoleArguments& arguments, const conduct::Experiment& experiment,
-                                               session::Signals& signals);
+                                               session::LoopFlags& flags);
 
   /// Who decides there; null where there is none.
   [[nodiscard]] console::PageOperator* page() const { return page_.get(); }

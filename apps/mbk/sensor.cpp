@@ -77,7 +77,7 @@ Action add_calibrate(CLI::App& sensor) {
       "Each FILE is a run with a zero of its own; the slopes come from all runs, the zero from the last.");
   ReadingArguments& reading = arguments->reading;
   add_reading_options(*command, reading);
-  command->get_option("--axes")->description("1: each axis by itself; otherwise crosstalk is fitted too");
+  command->get_option("--axes")->description("1: each axis separately; otherwise crosstalk is fitted too");
   command->get_option("FILE")->description("tables of loads or recordings: .csv, .h5 or .mat");
   command->add_option("--lever-arm-mm", arguments->lever_arm_mm, "from the gauges to the load, kept for --sensor")
       ->type_name("MM")

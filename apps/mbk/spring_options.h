@@ -10,7 +10,7 @@
 namespace mbk::app {
 
 /// "k=120,l=90mm,anchor=565:183[,hole=8:8]": N/m and mm, each key once; the units N/m and mm may be written.
-/// @fails  usage: a key is unknown, missing or twice; a value is no number (which one is said).
+/// @fails  usage: a key is unknown, missing or twice; a value is not a number (which one is named).
 [[nodiscard]] Result<Spring> parse_spring(const std::string& given);
 
 /// "393:-55", two numbers in mm, as metres.

@@ -33,8 +33,8 @@ struct FieldArguments {
 struct FindArguments {
   std::string stiffness, at, frame = "390:0", spring_stiffness = "20:400", spring_length = "60:160";
   std::vector<std::string> eyes;
-  double travel_mm = 30.0, least_extension_mm = 2.0;
-  int most_springs = 8;
+  double travel_mm = 30.0, min_extension_mm = 2.0;
+  int max_springs = 8;
   std::optional<double> payload_kg;
   bool disc = false, json = false;
   Output output;
@@ -135,8 +135,8 @@ Result<calibration::SpringRequest> request_of(const FindArguments& arguments) {
   if (!length) return tl::unexpected(length.error());
   request.rest_length = {length->first / kMillimetres, length->second / kMillimetres};
   request.travel = arguments.travel_mm / kMillimetres;
-  request.least_extension = arguments.least_extension_mm / kMillimetres;
-  request.most_springs = arguments.most_springs;
+  request.min_extension = arguments.min_extension_mm / kMillimetres;
+  request.max_springs = arguments.max_springs;
   request.payload = arguments.payload_kg;
   return request;
 }
@@ -235,17 +235,17 @@ Action add_field(CLI::App& springs) {
 
 Action add_find(CLI::App& springs) {
   auto arguments = std::make_shared<FindArguments>();
-  CLI::App* command = add_command(springs, "find", "springs for a wanted stiffness and equilibrium");
+  CLI::App* command = add_command(springs, "find", "springs for a target stiffness and equilibrium");
   command->footer(
       "Examples:\n"
       "  mbk springs find --stiffness 443.86,232.34,16.74 --at 393:-55\n"
       "  mbk springs find --stiffness 300,300,0 --disc --payload 1.031 --spring-stiffness 30:250\n\n"
       "Of all springs within the bounds that give exactly this K there, it finds those whose force is the\n"
       "straightest over the travel. The output has them as --spring options and as TOML.");
-  command->add_option("--stiffness", arguments->stiffness, "wanted kxx, kyy and ks in N/m")
+  command->add_option("--stiffness", arguments->stiffness, "target kxx, kyy and ks in N/m")
       ->type_name("KXX,KYY,KS")
       ->required();
-  command->add_option("--at", arguments->at, "wanted equilibrium, mm (the middle of the frame)")->type_name("X:Y");
+  command->add_option("--at", arguments->at, "target equilibrium, mm (the middle of the frame)")->type_name("X:Y");
   command->add_option("--frame", arguments->frame, "middle of the frame, mm (390:0)")->type_name("X:Y");
   command
       ->add_option("--eye", arguments->eyes,
@@ -264,14 +264,17 @@ Action add_find(CLI::App& springs) {
   command->add_option("--travel", arguments->travel_mm, "radius in mm in which all stay in tension (30)")
       ->type_name("MM")
       ->check(positive());
-  command
-      ->add_option("--least-extension", arguments->least_extension_mm,
-                   "by how much each stays longer than at rest in there, mm (2)")
-      ->type_name("MM")
-      ->check(not_negative());
-  command->add_option("--most-springs", arguments->most_springs, "no more springs than this (8)")
-      ->type_name("N")
-      ->check(whole_number(3, 12));
+  CLI::Option* min_extension = command
+                                   ->add_option("--min-extension", arguments->min_extension_mm,
+                                                "by how much each stays longer than at rest in there, mm (2)")
+                                   ->type_name("MM")
+                                   ->check(not_negative());
+  accept_former_name(*command, *min_extension, "--least-extension");
+  CLI::Option* max_springs =
+      command->add_option("--max-springs", arguments->max_springs, "no more springs than this (8)")
+          ->type_name("N")
+          ->check(whole_number(3, 12));
+  accept_former_name(*command, *max_springs, "--most-springs");
   command->add_option("--payload", arguments->payload_kg, "mass in kg, to see the natural frequencies")
       ->type_name("KG")
       ->check(positive());

@@ -15,7 +15,7 @@ struct StopKeys::Terminal {
   termios before{};
 };
 
-StopKeys::StopKeys(session::Signals& signals) {
+StopKeys::StopKeys(session::LoopFlags& flags) {
   // only in the foreground: the keys of a program behind the shell are the shell's
   if (isatty(STDIN_FILENO) != 1 || tcgetpgrp(STDIN_FILENO) != getpgrp()) return;
   terminal_ = std::make_unique<Terminal>();
@@ -24,10 +24,10 @@ StopKeys::StopKeys(session::Signals& signals) {
   termios keys = terminal_->before;
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   tcsetattr(STDIN_FILENO, TCSANOW, &keys);
-  watching_.emplace([&signals](const std::stop_token& over) { watch(signals, over); });
+  watching_.emplace([&flags](const std::stop_token& over) { watch(flags, over); });
 }
 
-void StopKeys::watch(session::Signals& signals, const std::stop_token& over) noexcept {
+void StopKeys::watch(session::LoopFlags& flags, const std::stop_token& over) noexcept {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   while (!over.stop_requested()) {
     constexpr int kWait = 20;  // [ms]
@@ -36,12 +36,12 @@ void StopKeys::watch(session::Signals& signals, const std::stop_token& over) noe
     const ssize_t came = read(STDIN_FILENO, &key, 1);
     if (came < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (came != 1) {  // closed, and nobody at it can stop the robot any more
-      signals.end_session = true;
-      signals.operator_stop = true;
+      flags.end_session = true;
+      flags.operator_stop = true;
       return;
     }
-    if (key == ' ') signals.operator_stop = true;
-    if (key == 'e') signals.end_trial = true;
+    if (key == ' ') flags.operator_stop = true;
+    if (key == 'e') flags.end_trial = true;
   }
 }
 

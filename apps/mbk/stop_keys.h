@@ -12,14 +12,14 @@ namespace mbk::app {
 /// stops the robot and ends the session.
 class StopKeys {
  public:
-  explicit StopKeys(session::Signals& signals);
+  explicit StopKeys(session::LoopFlags& flags);
   StopKeys(const StopKeys&) = delete;
   StopKeys& operator=(const StopKeys&) = delete;
   ~StopKeys();
 
  private:
   struct Terminal;
-  static void watch(session::Signals& signals, const std::stop_token& over) noexcept;
+  static void watch(session::LoopFlags& flags, const std::stop_token& over) noexcept;
 
   std::unique_ptr<Terminal> terminal_;  // as it was; null where standard input is none
   std::optional<std::jthread> watching_;

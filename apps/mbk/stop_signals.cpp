@@ -11,11 +11,11 @@ constexpr std::array kEndingSignals = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT, SIGTS
 /// A program in the background that reads from its terminal or writes to it would be suspended.
 constexpr std::array kHeldSignals = {SIGTTIN, SIGTTOU};
 
-std::atomic<session::Signals*> told{nullptr};
+std::atomic<session::LoopFlags*> told{nullptr};
 std::atomic<bool> in_trial{false};
 std::atomic<int> ended{0};              // by this signal
 std::atomic<bool> came_outside{false};  // of a trial
-static_assert(std::atomic<session::Signals*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+static_assert(std::atomic<session::LoopFlags*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 void act(int signal, void (*handler)(int), struct sigaction* before) {
   struct sigaction action {};
@@ -25,7 +25,7 @@ void act(int signal, void (*handler)(int), struct sigaction* before) {
 }
 
 extern "C" void on_stop_signal(int signal) {
-  session::Signals* const flags = told;
+  session::LoopFlags* const flags = told;
   if (flags == nullptr) return;
   // A trial that begins now either sees end_session, or is seen here.
   if (signal != SIGINT || !in_trial) {
@@ -43,7 +43,7 @@ extern "C" void on_stop_signal(int signal) {
 
 }  // namespace
 
-StopSignals::StopSignals(session::Signals& flags) {
+StopSignals::StopSignals(session::LoopFlags& flags) {
   static_assert(kEndingSignals.size() == kEnding && kHeldSignals.size() == kHeld);
   told = &flags;
   ended = 0;

@@ -33,7 +33,7 @@ std::vector<std::string> chart_names(const Arguments& arguments) {
   std::vector<std::string> names = {"r11", "r22", "third"};
   if (!arguments.excess.empty()) names.emplace_back("excess");
   if (arguments.simulate) {
-    for (int run = 1; run <= laboratory::kMostRuns; ++run) names.push_back(fmt::format("simulated-{}", run));
+    for (int run = 1; run <= laboratory::kMaxRuns; ++run) names.push_back(fmt::format("simulated-{}", run));
   }
   return names;
 }

@@ -38,12 +38,12 @@ struct Arguments {
   std::optional<AdmittanceOutput> invert;
   double hac_lag_s = 1.0;
   unsigned threads = 0;
-  std::vector<std::filesystem::path> held_back;
+  std::vector<std::filesystem::path> held_out;
   std::string input = "input", output_signal = "output", reference, orders, delay = "0", sample_rate;
   std::filesystem::path charts;
   std::optional<long> poles, zeros;
   std::vector<double> start_poles_hz;
-  double most_delay_s = 0.1;
+  double max_delay_s = 0.1;
   long noise_order = 8;
   bool from_rest = false;
 };
@@ -67,16 +67,16 @@ std::optional<double> value_of(const std::string& text) {
 
 /// "2:5" is every model of 2 to 5 poles with fewer zeros; "4/1,4/2" are these.
 Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given) {
-  constexpr Index kMost = 12;
+  constexpr Index kMax = 12;
   std::vector<std::pair<Index, Index>> orders;
   const auto wrong =
       bad_usage(fmt::format("--orders: {} is neither FROM:TO nor POLES/ZEROS,…", quoted(given)),
-                fmt::format("as in 2:5 or 4/1,4/2,5/2, with 1 to {} poles and at most as many zeros", kMost));
+                fmt::format("as in 2:5 or 4/1,4/2,5/2, with 1 to {} poles and at most as many zeros", kMax));
   std::string_view rest = given;
   for (bool more = true; more;) {
     const auto first = take_number(rest);
     const char mark = rest.empty() ? '\0' : rest.front();
-    if (!first || *first < 1 || *first > kMost || (mark != ':' && mark != '/')) return wrong;
+    if (!first || *first < 1 || *first > kMax || (mark != ':' && mark != '/')) return wrong;
     rest.remove_prefix(1);
     const auto second = take_number(rest);
     if (!second || *second < 0) return wrong;
@@ -84,7 +84,7 @@ Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given)
       if (*second > *first) return wrong;
       orders.emplace_back(*first, *second);
     } else {
-      if (*second < *first || *second > kMost) return wrong;
+      if (*second < *first || *second > kMax) return wrong;
       for (Index poles = *first; poles <= *second; ++poles) {
         for (Index zeros = 0; zeros < poles; ++zeros) orders.emplace_back(poles, zeros);
       }
@@ -104,12 +104,12 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
   identify::TransferFunctionOptions& fit = options.fit;
   if (!a.orders.empty()) {
     if (a.poles || a.zeros)
-      return bad_usage("--orders chooses poles and zeros by itself", "leave --poles and --zeros out");
+      return bad_usage("--orders chooses poles and zeros automatically", "leave --poles and --zeros out");
     auto orders = orders_of(a.orders);
     if (!orders) return tl::unexpected(orders.error());
     fit.orders = std::move(*orders);
   } else if (!a.poles) {
-    return bad_usage("how many poles?", "pass --poles 4 --zeros 3, or --orders 1:4 to try several");
+    return bad_usage("--poles is missing", "pass --poles 4 --zeros 3, or --orders 1:4 to try several");
   } else {
     fit.poles = *a.poles;
     fit.zeros = a.zeros.value_or(*a.poles - 1);
@@ -140,8 +140,8 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
           fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'", quoted(a.sample_rate)));
     }
   }
-  fit.most_delay = a.most_delay_s;
-  fit.most_noise_order = a.noise_order;
+  fit.max_delay = a.max_delay_s;
+  fit.max_noise_order = a.noise_order;
   fit.hac_lag_s = a.hac_lag_s;
   fit.free_start = !a.from_rest;
   fit.threads = a.threads;
@@ -181,7 +181,7 @@ Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasuremen
     if (by_name || in_map(name)) {
       signal.to = name;
       if (flipped) *signal.sign = -1.0;
-      if (by_name) a.reading.wanted.push_back(name);
+      if (by_name) a.reading.requested.push_back(name);
       continue;
     }
     a.reading.channels += fmt::format("{}{}={}", a.reading.channels.empty() ? "" : ",", signal.channel, signal.given);
@@ -249,9 +249,9 @@ int run(const Arguments& given, const std::string& typed) {
   if (auto ok = place_signals(arguments, *options); !ok) return report_error(ok.error());
   const auto recordings = read_all(arguments, arguments.reading.files);
   if (!recordings) return report_error(recordings.error());
-  const auto held_back = read_all(arguments, arguments.held_back);
-  if (!held_back) return report_error(held_back.error());
-  auto found = measurement::identify_transfer_function(*recordings, *held_back, *options);
+  const auto held_out = read_all(arguments, arguments.held_out);
+  if (!held_out) return report_error(held_out.error());
+  auto found = measurement::identify_transfer_function(*recordings, *held_out, *options);
   if (!found) return report_error(found.error());
   found->input = shown_name(given.input);
   found->output = shown_name(given.output_signal);
@@ -282,7 +282,7 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       "Examples:\n"
       "  mbk tf arm.csv --input torque_Nm --output acceleration --poles 6 --zeros 5\n"
       "  mbk tf log.mat --input Fx --output x --orders 1:4\n"
-      "      a table of all models of 1 to 4 poles, and the one that the data speak for\n"
+      "      a table of all models of 1 to 4 poles, and the one that the data support\n"
       "  mbk tf log.csv --input 2 --output 3 --rate 500 --poles 2 --zeros 0 --delay auto --json\n"
       "  mbk tf loop.csv --input motor --output angle --reference wanted --method clsrivc --poles 3\n"
       "  mbk tf arm.csv --input torque --output angle --method bj --poles 2 --zeros 2 --sample-rate 50\n"
@@ -304,7 +304,9 @@ Action add_tf(CLI::App& app, const std::string& typed) {
   command->add_option("--reference", arguments->reference, "what drives the loop, likewise, for clsrivc")
       ->type_name("NAME")
       ->check(not_empty());
-  command->add_option("--held-back", arguments->held_back, "recordings that only judge the fit")->type_name("FILE");
+  CLI::Option* held_out =
+      command->add_option("--held-out", arguments->held_out, "recordings that only judge the fit")->type_name("FILE");
+  accept_former_name(*command, *held_out, "--held-back");
   add_window_options(*command, arguments->window);
   command
       ->add_option("--resample", arguments->resample_hz,
@@ -344,10 +346,12 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       ->type_name("S|auto")
       ->check(not_empty())
       ->group(model);
-  command->add_option("--most-delay", arguments->most_delay_s, "how far --delay auto looks, s (0.1)")
-      ->type_name("S")
-      ->check(positive())
-      ->group(model);
+  CLI::Option* max_delay =
+      command->add_option("--max-delay", arguments->max_delay_s, "how far --delay auto looks, s (0.1)")
+          ->type_name("S")
+          ->check(positive())
+          ->group(model);
+  accept_former_name(*command, *max_delay, "--most-delay");
   command
       ->add_option("--start-pole", arguments->start_poles_hz,
                    "a frequency at which the search begins, tried beside six over the band")
@@ -358,7 +362,7 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       ->group(model);
   command
       ->add_flag("--from-rest", arguments->from_rest,
-                 "the system is at rest at zero where a stretch begins; otherwise an initial state and an offset are "
+                 "the system is at rest at zero where a segment begins; otherwise an initial state and an offset are "
                  "found for each")
       ->group(model);
   command->add_option("--noise-order", arguments->noise_order, "greatest order of the noise model of rivc and bj (8)")

@@ -75,7 +75,7 @@ std::string study_lines() {
 /// "FOLDER/coverage-1.svg", "FOLDER/coverage-2.svg", …
 Result<void> write_charts(const ValidationTable& table, const std::filesystem::path& folder, bool overwrite) {
   if (table.charts.empty()) {
-    return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "leave --charts away");
+    return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "omit --charts");
   }
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
   app.add_option("--address", arguments.address, "of the network where it listens (127.0.0.1)");
   app.add_option("--port", arguments.port, "where it listens; 0 for any that is free (25000)");
   app.add_option("--version", arguments.version, "of its states: 1, 2 (what the fault needs)");
-  app.add_option("--for", arguments.longest, "it ends by itself after so many seconds (120)");
+  app.add_option("--for", arguments.longest, "it ends automatically after N seconds (120)");
   CLI::Option* const table = app.add_flag("--list", arguments.list, "what can go wrong");
   scenario->excludes(table);
   CLI11_PARSE(app, argc, argv);

@@ -7,7 +7,7 @@ out=${1:-$(mktemp --directory)}
 mkdir -p "$out"
 
 # A person who holds on answers the motion that the robot makes, and the robot gives way to the force that the person
-# makes: a loop. Least squares is then drawn towards minus the robot. Instrumental variables use only what follows the
+# makes: a loop. Least squares is then biased towards the negative robot impedance. Instrumental variables use only what follows the
 # known perturbation, which no noise of the person can have caused.
 
 # 1. Four trials of one stiff arm under sines of 6 N, with force noise and slow corrections of its own.

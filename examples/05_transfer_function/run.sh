@@ -16,7 +16,7 @@ mkdir -p "$out"
 #    holds the limb, which is a loop: its reference is the instrument (clsrivc). M [kg·m²], B [N·m·s/rad], K [N·m/rad].
 "$mbk" tf "$out/ankle.h5" --input=-F --output x --reference xr --method clsrivc --poles 2 --zeros 0 --invert position
 
-# 3. How many poles does a signal need? A table of orders, and the one that the data speak for: here from the reference
+# 3. How many poles does a signal need? A table of orders, and the one that the data support: here from the reference
 #    of the servo to the position, where nothing acts back.
 "$mbk" tf "$out/ankle.h5" --input xr --output x --orders 1:4 | sed -n '1,22p'
 

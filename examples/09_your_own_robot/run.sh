@@ -8,7 +8,7 @@ mkdir -p "$out"
 here=$(dirname "${BASH_SOURCE[0]}")
 
 # 1. Any serial robot goes in by its URDF and a few lines beside it. What was understood: joints, hand [mm], coefficients
-#    [kg, kg·m, kg·m², N·m], and which of them no motion can tell apart.
+#    [kg, kg·m, kg·m², N·m], and which of them no motion can identify.
 "$mbk" robot describe "$here/../robots/double_pendulum.toml" | tee "$out/described.txt"
 
 # 2. A robot whose two motors both stand at the base is "planar". Links and inertia here are made up: put yours.

@@ -52,13 +52,13 @@ Teleoperator read_teleoperator(const Document& document) {
 
 /// "numerator" or "denominator" of an entry: coefficients, that of the highest power of s first.
 Polynomial read_polynomial(const Section& entry, std::string_view key, std::vector<double> fallback) {
-  constexpr std::size_t kMost = 13;  // degree 12: two-ports beyond that take minutes
+  constexpr std::size_t kMax = 13;  // degree 12: two-ports beyond that take minutes
   std::vector<double> coefficients = entry.numbers(key, std::move(fallback));
   if (coefficients.empty()) {
     entry.reject(key, "has no coefficients", "list them, that of the highest power of s first: [1, 0.5] is s + 0.5");
   }
-  if (coefficients.size() > kMost) {
-    entry.reject(key, fmt::format("has {} coefficients, more than {}", coefficients.size(), kMost),
+  if (coefficients.size() > kMax) {
+    entry.reject(key, fmt::format("has {} coefficients, more than {}", coefficients.size(), kMax),
                  "reduce the order of the model");
     coefficients.clear();
   }
@@ -93,7 +93,7 @@ TwoPort read_two_port(const Section& section) {
 }
 
 std::optional<FrequencyGrid> read_delay(const Section& section, Teleoperator& teleoperator) {
-  constexpr int kHighestOrder = 4, kFewest = 10, kMost = 1'000'000;
+  constexpr int kHighestOrder = 4, kMin = 10, kMax = 1'000'000;
   if (!section.flag("exact", false)) {
     teleoperator.pade_order = section.integer("pade", teleoperator.pade_order, 1, kHighestOrder);
     return std::nullopt;
@@ -101,7 +101,7 @@ std::optional<FrequencyGrid> read_delay(const Section& section, Teleoperator& te
   FrequencyGrid grid;
   grid.low = RadPerSec(section.required_number("grid_from_rad_per_s", config::above(0.0)));
   grid.high = RadPerSec(section.required_number("grid_to_rad_per_s", config::above(0.0)));
-  grid.points = section.required_integer<int>("grid_points", kFewest, kMost);
+  grid.points = section.required_integer<int>("grid_points", kMin, kMax);
   if (!(grid.low < grid.high)) section.reject("grid_to_rad_per_s", "is not above grid_from_rad_per_s");
   return grid;
 }

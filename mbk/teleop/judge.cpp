@@ -259,10 +259,10 @@ Result<Question::Sweep> parse_sweep(std::string_view text) {
 }
 
 Result<Question::Excess> parse_excess(std::string_view text) {
-  constexpr int kMost = 201;
+  constexpr int kMax = 201;
   const auto wrong = [&] {
     return bad_usage(
-        fmt::format("--excess: '{}' is not LOW:HIGH or LOW:HIGH:STEPS with LOW < HIGH, 2 to {} steps", text, kMost),
+        fmt::format("--excess: '{}' is not LOW:HIGH or LOW:HIGH:STEPS with LOW < HIGH, 2 to {} steps", text, kMax),
         "as in --excess 0:10, in N·s/m");
   };
   const auto first = text.find(':'), second = text.find(':', first == text.npos ? text.npos : first + 1);
@@ -276,7 +276,7 @@ Result<Question::Excess> parse_excess(std::string_view text) {
   if (second == text.npos) return excess;
   const std::string_view word = text.substr(second + 1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), excess.steps);
-  if (error != std::errc() || end != word.data() + word.size() || excess.steps < 2 || excess.steps > kMost) {
+  if (error != std::errc() || end != word.data() + word.size() || excess.steps < 2 || excess.steps > kMax) {
     return wrong();
   }
   return excess;

@@ -12,7 +12,7 @@ namespace mbk::teleop {
 /// passive one at the other that let it grow most in a turn, among those of the frequencies; of those that grow by more
 /// than 1 % in a radian, the slowest, which a sampled controller shows best.
 ///
-/// At ω₀, with the z matrix after a is taken off z_ii, one port is closed by the reactance jX₂ that makes
+/// At ω₀, with the z matrix after a is subtracted from z_ii, one port is closed by the reactance jX₂ that makes
 /// R = Re(z₁₁ − z₁₂ z₂₁/(z₂₂ + jX₂)) lowest, which is a mass X₂/ω₀ or a spring −X₂ω₀. Where R < 0, the other is closed
 /// by a mass and a spring together that cancel the imaginary part that is left. What goes round is then R alone, and
 /// near jω₀ the loop has the root

@@ -224,9 +224,9 @@ Result<void> figure_A_4(Workbench& bench, Draft& exhibit) {
         model{.name = "predicted", .drawn = ChartSeries::Drawn::line},
         viscous{.name = "viscous friction", .drawn = ChartSeries::Drawn::line},
         full{.name = "with Coulomb friction", .drawn = ChartSeries::Drawn::line};
-    for (const Stretch& stretch : signals->stretches) {
-      if (stretch.purpose != Purpose::validation) continue;
-      for (Index i = stretch.begin; i < stretch.end; ++i) {
+    for (const Segment& segment : signals->segments) {
+      if (segment.purpose != Purpose::validation) continue;
+      for (Index i = segment.begin; i < segment.end; ++i) {
         const double time = signals->time[i], measured = signals->torque(i, static_cast<Index>(joint));
         for (ChartSeries* series : {&recorded, &model, &viscous, &full}) series->x.push_back(time);
         recorded.y.push_back(measured);

@@ -22,19 +22,19 @@ constexpr std::array kTasks = {Task::relaxed_sinusoidal, Task::relaxed_underdamp
 /// What all participants of a task come to.
 struct Outcome {
   int people = 0, trials = 0;
-  int passive_by_theorem = 0;                ///< trials, by the published rule and procedure
-  int absorbing = 0;                         ///< trials whose energy ended above zero
-  std::array<int, 3> verdicts{};             ///< of people, pooled: passive, active, undecided
-  double least_energy = 0, most_energy = 0;  ///< of a trial [J]
-  double mean_vaf = 0;                       ///< [%], of the published procedure
+  int passive_by_theorem = 0;             ///< trials, by the published rule and procedure
+  int absorbing = 0;                      ///< trials whose energy ended above zero
+  std::array<int, 3> verdicts{};          ///< of people, pooled: passive, active, undecided
+  double min_energy = 0, max_energy = 0;  ///< of a trial [J]
+  double mean_vaf = 0;                    ///< [%], of the published procedure
 };
 
 Result<Outcome> outcome_of(Workbench& bench, Task task) {
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
   Outcome outcome;
-  outcome.least_energy = std::numeric_limits<double>::infinity();
-  outcome.most_energy = -outcome.least_energy;
+  outcome.min_energy = std::numeric_limits<double>::infinity();
+  outcome.max_energy = -outcome.min_energy;
   for (const TaskResult& result : **results) {
     ++outcome.people;
     const Verdict verdict = result.pooled.passivity->verdict;
@@ -44,8 +44,8 @@ Result<Outcome> outcome_of(Workbench& bench, Task task) {
       ++outcome.trials;
       outcome.passive_by_theorem += trial.passive_by_model ? 1 : 0;
       outcome.absorbing += energy > 0.0 ? 1 : 0;
-      outcome.least_energy = std::min(outcome.least_energy, energy);
-      outcome.most_energy = std::max(outcome.most_energy, energy);
+      outcome.min_energy = std::min(outcome.min_energy, energy);
+      outcome.max_energy = std::max(outcome.max_energy, energy);
       outcome.mean_vaf += trial.identification.fit.vaf.mean();
     }
   }
@@ -162,7 +162,7 @@ Result<void> with_other_protocols(Workbench& bench, Draft& exhibit) {
     table.rows.push_back(
         {text(kTasks[k]),
          {words(of(outcome->passive_by_theorem, outcome->trials)), words(of(outcome->absorbing, outcome->trials)),
-          cell(outcome->least_energy), cell(outcome->most_energy), cell(outcome->mean_vaf),
+          cell(outcome->min_energy), cell(outcome->max_energy), cell(outcome->mean_vaf),
           words(fmt::format("{}, {}, {}", outcome->verdicts[0], outcome->verdicts[1], outcome->verdicts[2]))}});
   }
   for (const auto& [of_whom, outcome] : {std::pair{"relaxed_sines", &outcomes[0]},
@@ -215,13 +215,13 @@ Result<double> stiffest_slave(double excess) {
   return set->intervals.empty() ? 0.0 : set->intervals.back().high.value;
 }
 
-Result<ReproducedTable> bought(Workbench& bench, double least_excess, double published, double shortage) {
+Result<ReproducedTable> bought(Workbench& bench, double min_excess, double published, double shortage) {
   ReproducedTable table = computed_table("question-4 teleoperation", "the operator is taken to have",
                                          {{"excess", "N·s/m", 2}, {"stiffest slave", "N/m", 1}});
   for (const auto& [name, excess] :
        {std::pair{"none: passive, as by convention", 0.0},
         {"the least that was said to be useful", bench.given().number("setup", "excess said to be useful, N·s/m")},
-        {"the least of table 3.6, corrected", least_excess},
+        {"the least of table 3.6, corrected", min_excess},
         {"the least of table 3.6, as published", published},
         {"the least shortage of table 4.5", -shortage}}) {
     const auto stiffness = stiffest_slave(excess);

@@ -26,7 +26,7 @@ struct ExhibitName {
 };
 [[nodiscard]] std::vector<ExhibitName> exhibit_names();
 
-/// Every table and figure of the source that can be made again, beside what it printed. Ours rests on `source.given`
+/// Every table and figure of the source that can be reproduced, beside what it printed. Ours rests on `source.given`
 /// and on simulation alone; `source.printed` is put beside it afterwards and changes none of it. The same source,
 /// options and program give the same numbers.
 /// @fails  usage: `only` names what is not there. Otherwise as the laboratory and the measurement.

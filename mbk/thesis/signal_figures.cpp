@@ -43,13 +43,13 @@ Result<void> figure_3_5(Workbench& bench, Draft& exhibit) {
   const auto response = analyse::filter_response(*trial);
   if (!response) return tl::unexpected(response.error());
   // Above it every gain is below what can be drawn.
-  constexpr double kHighest = 40.0, kLeastGain = 1e-6;
+  constexpr double kHighest = 40.0, kMinGain = 1e-6;
   const auto chart = [&](const char* unit, const Vector& gain, const Vector* ideal) {
     Chart drawing;
     drawing.x = {"frequency", "Hz", true};
     drawing.y = {"gain", unit, true};
     const Index count = (response->frequency.array() <= kHighest).count();
-    const Vector shown = (gain.head(count).array() > kLeastGain).select(gain.head(count).array(), std::nan(""));
+    const Vector shown = (gain.head(count).array() > kMinGain).select(gain.head(count).array(), std::nan(""));
     drawing.series.push_back(line("filter", response->frequency.head(count), shown));
     if (ideal != nullptr) {
       drawing.series.push_back(line("ideal differentiator", response->frequency.head(count), ideal->head(count)));

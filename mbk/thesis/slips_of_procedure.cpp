@@ -253,10 +253,10 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
   // The program's window is samples 11999 to 61999, both of them in it.
   const Index window = 62000 - 11999, possible = window - 2 * kSmoothing.half_window();
   Index used = 0, validating = 0, first = trial->recording_duration > 0 ? 1000000 : 0;
-  for (const Stretch& stretch : trial->stretches) {
-    used += stretch.size();
-    if (stretch.purpose == Purpose::validation) validating += stretch.size();
-    first = std::min(first, stretch.first_sample);
+  for (const Segment& segment : trial->segments) {
+    used += segment.size();
+    if (segment.purpose == Purpose::validation) validating += segment.size();
+    first = std::min(first, segment.first_sample);
   }
   ReproducedTable centres =
       computed_table("slip-13", "", {{"possible", "", 0}, {"used by the program", "", 0}, {"seconds", "s", 3}});
@@ -276,7 +276,7 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
       {{"m_yy", "kg", 5}, {"b_yy", "N·s/m", 4}, {"k_yy", "N/m", 4}, {"largest error of M, B, K", "", 6}});
   smear.rows.push_back({"the arm", {cell(model.M(1, 1)), cell(model.B(1, 1)), cell(model.K(1, 1)), cell(0.0)}});
   for (const auto& [name, mode] : {std::pair{"filtered, then cut (reference mode)", Mode::reference},
-                                   {"cut, then filtered (default mode)", Mode::improved}}) {
+                                   {"cut, then filtered (default mode)", Mode::default_mode}}) {
     measurement::Options options;
     options.preprocess.mode = mode;
     options.passivity = false;

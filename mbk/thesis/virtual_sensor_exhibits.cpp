@@ -254,7 +254,7 @@ ReproducedTable vaf_table(const char* id, const Trials& trials, Force force) {
   return table;
 }
 
-double least_vaf(const Trials& trials, Force force) {
+double min_vaf(const Trials& trials, Force force) {
   double least = 100.0;
   for (const ForceTrial& trial : trials) least = std::min(least, trial.of(force).vaf.minCoeff());
   return least;
@@ -262,8 +262,8 @@ double least_vaf(const Trials& trials, Force force) {
 
 ReproducedTable claims_5_5(const Trials& trials) {
   ReproducedTable table = claims_table("5.5 claims");
-  add_claim(table, "least VAF by method 2", fmt::format("{:.2f} %", least_vaf(trials, kMethod2)));
-  add_claim(table, "least VAF by method 1", fmt::format("{:.2f} %", least_vaf(trials, kMethod1)));
+  add_claim(table, "least VAF by method 2", fmt::format("{:.2f} %", min_vaf(trials, kMethod2)));
+  add_claim(table, "least VAF by method 1", fmt::format("{:.2f} %", min_vaf(trials, kMethod1)));
   const auto largest_rmse = [&](Force force) {
     double largest = 0.0;
     for (const ForceTrial& trial : trials) largest = std::max(largest, trial.of(force).rmse.maxCoeff());
@@ -301,8 +301,8 @@ Result<void> table_5_5(Workbench& bench, Draft& exhibit) {
 
 // --- figure 5.3
 
-/// Six seconds of a signal, thinned.
-ChartSeries stretch_of(const char* name, const PreparedTrial& trial, const Matrix& signal, Index axis, double scale,
+/// Six seconds of a signal, decimated.
+ChartSeries segment_of(const char* name, const PreparedTrial& trial, const Matrix& signal, Index axis, double scale,
                        double offset = 0.0) {
   constexpr double kFrom = 30.0, kLength = 6.0;  // [s]
   constexpr double kPoints = 600.0;
@@ -336,19 +336,19 @@ Result<void> figure_5_3(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-5.4", "table-5.5"};
   const impedance::Model& truth = performance->truth;
   Chart place{.x = {"time", "s"}, .y = {"from the equilibrium", "mm"}};
-  place.series = {stretch_of("x", *sensor, sensor->position, 0, 1e3, truth.x0[0]),
-                  stretch_of("y", *sensor, sensor->position, 1, 1e3, truth.x0[1])};
+  place.series = {segment_of("x", *sensor, sensor->position, 0, 1e3, truth.x0[0]),
+                  segment_of("y", *sensor, sensor->position, 1, 1e3, truth.x0[1])};
   Chart velocity{.x = {"time", "s"}, .y = {"velocity", "mm/s"}};
-  velocity.series = {stretch_of("x", *sensor, sensor->velocity, 0, 1e3),
-                     stretch_of("y", *sensor, sensor->velocity, 1, 1e3)};
+  velocity.series = {segment_of("x", *sensor, sensor->velocity, 0, 1e3),
+                     segment_of("y", *sensor, sensor->velocity, 1, 1e3)};
   Chart acceleration{.x = {"time", "s"}, .y = {"acceleration", "m/s²"}};
-  acceleration.series = {stretch_of("x", *sensor, sensor->acceleration, 0, 1.0),
-                         stretch_of("y", *sensor, sensor->acceleration, 1, 1.0)};
+  acceleration.series = {segment_of("x", *sensor, sensor->acceleration, 0, 1.0),
+                         segment_of("y", *sensor, sensor->acceleration, 1, 1.0)};
   exhibit.charts = {std::move(place), std::move(velocity), std::move(acceleration)};
   for (Index axis = 0; axis < 2; ++axis) {
     Chart force{.x = {"time", "s"}, .y = {"force", "N"}};
-    force.series = {stretch_of("sensor", *sensor, sensor->force_hand_on_robot, axis, 1.0),
-                    stretch_of("virtual sensor", *computed, computed->force_hand_on_robot, axis, 1.0)};
+    force.series = {segment_of("sensor", *sensor, sensor->force_hand_on_robot, axis, 1.0),
+                    segment_of("virtual sensor", *computed, computed->force_hand_on_robot, axis, 1.0)};
     exhibit.charts.push_back(std::move(force));
   }
   return {};
@@ -488,8 +488,8 @@ ReproducedTable claims_5_6(const ArmTrials& arms) {
   const auto both = [&](Matrix impedance::Model::*matrix) {
     return fmt::format("{} ({} with Coulomb)", excess(kMethod1, matrix), excess(kMethod1Coulomb, matrix));
   };
-  add_claim(table, "least VAF by method 1", fmt::format("{:.1f} %", least_vaf(arms.first, kMethod1)));
-  add_claim(table, "least VAF by method 2", fmt::format("{:.1f} %", least_vaf(arms.first, kMethod2)));
+  add_claim(table, "least VAF by method 1", fmt::format("{:.1f} %", min_vaf(arms.first, kMethod1)));
+  add_claim(table, "least VAF by method 2", fmt::format("{:.1f} %", min_vaf(arms.first, kMethod2)));
   add_claim(table, "trace of M by method 1, over that by method 2", both(&impedance::Model::M));
   add_claim(table, "trace of B by method 1, over that by method 2", both(&impedance::Model::B));
   add_claim(table, "trace of K by method 1, over that by method 2", both(&impedance::Model::K));

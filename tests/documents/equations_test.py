@@ -49,9 +49,9 @@ class Equations(unittest.TestCase):
         cls.programs = programs()
 
     def test_every_number_has_one_row(self):
-        wanted = [f"({chapter}.{i})" for chapter, last in NUMBERED.items() for i in range(1, last + 1)] + NAMED
+        expected = [f"({chapter}.{i})" for chapter, last in NUMBERED.items() for i in range(1, last + 1)] + NAMED
         sources = [one for cells in self.rows for one in cells[0].split(", ")]
-        for number in wanted:
+        for number in expected:
             self.assertEqual(sources.count(number), 1, f"{number} should stand in one row of {MAP.name}")
 
     def test_every_row_says_where_and_what_holds_it(self):

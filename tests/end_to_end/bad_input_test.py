@@ -119,7 +119,7 @@ class Tables(BadInput):
         result = self.fine("measure", "--json", cut).json
         whole = self.fine("measure", "--json", self.csv("whole.csv")).json
         self.assertEqual(result["model"], whole["model"])
-        note = f"line {SAMPLES + 2} is incomplete (the recording was cut off there) and was left aside"
+        note = f"line {SAMPLES + 2} is incomplete (the recording was cut off there) and was ignored"
         self.assertIn(note, result["notes"])
         self.assertIn(note, self.fine("info", "--json", cut).json["notes"])
         self.assertIn(f"line {SAMPLES + 2} is incomplete", self.fine("measure", cut).out)

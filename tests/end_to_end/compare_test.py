@@ -27,13 +27,13 @@ class Width(Case):
         self.assertEqual(found["schema"], "mbk.compare/1")
         stiffness = found["width"]["stiffness"]
         self.assertAlmostEqual(stiffness["distance"], math.sqrt(2.0) * math.log(7.0), places=9)
-        self.assertTrue(stiffness["told_apart"])
+        self.assertTrue(stiffness["distinguishable"])
         low, high = stiffness["interval95"]
         self.assertTrue(0.0 < low < stiffness["distance"] < high)
         for one in stiffness["second_to_first"]:
             self.assertAlmostEqual(one["ratio"], 7.0, places=9)
         self.assertAlmostEqual(found["width"]["inertia"]["distance"], 0.0, places=9)
-        self.assertFalse(found["width"]["inertia"]["told_apart"])
+        self.assertFalse(found["width"]["inertia"]["distinguishable"])
         self.assertEqual(found["refused"], {})
 
     def test_results_recordings_and_one_of_each_give_the_same(self):
@@ -51,7 +51,7 @@ class Width(Case):
 
     def test_the_text_has_each_matrix_and_both_files(self):
         text = self.fine("compare", self.stored(), self.stored("other.json")).out
-        for word in (*MATRICES, f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not told apart"):
+        for word in (*MATRICES, f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not distinguishable"):
             self.assertIn(word, text)
         self.assert_lines_fit(text)
 

@@ -96,9 +96,9 @@ class Bash(Shell):
         return sorted(self.ran("bash", "--norc", "-c", source, "bash", script, *words).splitlines())
 
     def test_what_is_typed_is_completed(self):
-        for typed, wanted in {**TYPED, ("simulate", "rel"): READY, ("simulate", "--show", "rel"): READY}.items():
+        for typed, expected in {**TYPED, ("simulate", "rel"): READY, ("simulate", "--show", "rel"): READY}.items():
             with self.subTest(typed):
-                self.assertEqual(self.offered(*typed), wanted)
+                self.assertEqual(self.offered(*typed), expected)
 
     def test_a_value_after_an_equals_sign(self):
         self.assertEqual(self.offered("measure", "--mode", "=", "ref"), ["reference"])
@@ -123,9 +123,9 @@ class Fish(Shell):
         return sorted(line.split("\t")[0] for line in lines.splitlines())
 
     def test_what_is_typed_is_completed(self):
-        for typed, wanted in {**TYPED, ("simulate", "rel"): READY}.items():
+        for typed, expected in {**TYPED, ("simulate", "rel"): READY}.items():
             with self.subTest(typed):
-                self.assertEqual(self.offered(*typed), wanted)
+                self.assertEqual(self.offered(*typed), expected)
 
 
 @needs("zsh")
@@ -168,7 +168,7 @@ class Zsh(Shell):
     def test_what_is_typed_is_completed(self):
         self.file("one.mat", "")
         self.file("other.txt", "")
-        for typed, wanted in (("mbk me", "mbk measure "), ("mbk measure --mo", "mbk measure --mode "),
+        for typed, expected in (("mbk me", "mbk measure "), ("mbk measure --mo", "mbk measure --mode "),
                               ("mbk measure --mode r", "mbk measure --mode reference "),
                               ("mbk springs fie", "mbk springs field "),
                               ("mbk springs field --sp", "mbk springs field --spring "),
@@ -176,7 +176,7 @@ class Zsh(Shell):
                               ("mbk simulate relaxed_u", "mbk simulate relaxed_underdamped "),
                               ("mbk measure o", "mbk measure one.mat ")):
             with self.subTest(typed):
-                self.assertEqual(self.line_after(typed).rstrip(), wanted.rstrip())
+                self.assertEqual(self.line_after(typed).rstrip(), expected.rstrip())
 
 
 if __name__ == "__main__":

@@ -100,7 +100,7 @@ class Convert(Case):
     def test_what_is_left_aside_is_said(self):
         path = copy(make_log().path, self.folder / "log.mat")
         ran = self.mbk("convert", path, self.folder / "log.h5")
-        self.assertIn("rows 4, 5, 8, 9, 16 and 17 have no name and were left aside", ran.err)
+        self.assertIn("rows 4, 5, 8, 9, 16 and 17 have no name and were ignored", ran.err)
         self.assertEqual(self.fine("convert", path, self.folder / "quiet.h5", "--quiet").out, "")
 
     def test_simulate_and_make_log_write_every_format_too(self):

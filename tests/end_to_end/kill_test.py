@@ -219,7 +219,7 @@ class Killing(Case):
         self.assertIsNotNone(session.first, ran)
         return what, killed - session.first - times[-1]
 
-    def kill_at_moments(self, most_lost, at_a_time, priority=0):
+    def kill_at_moments(self, max_lost, at_a_time, priority=0):
         whole, kept = self.whole_run()
         unharmed = digest(kept)
         lot = random.Random(SEED)
@@ -232,7 +232,7 @@ class Killing(Case):
             print(f"{what}: {len(lost)} times, at most {max(lost):.0f} ms lost", file=sys.stderr)
         print(f"the machine let a thread wait for {1e3 * stalls.worst:.0f} ms at most", file=sys.stderr)
         for moment, (what, lost) in zip(moments, results):
-            self.assertLessEqual(lost, most_lost + stalls.worst, f"{what}, killed after {moment:.3f} s")
+            self.assertLessEqual(lost, max_lost + stalls.worst, f"{what}, killed after {moment:.3f} s")
         self.assertEqual(digest(kept), unharmed)
 
 
@@ -255,8 +255,8 @@ measured_force_N = 500
 tracking_deg = 90
 speed_mm_per_s = 9000
 excursion_mm = 0
-limited_for_ms = 60000
-frozen_ms = 0
+max_saturation_time_ms = 60000
+frozen_sensor_ms = 0
 motors_reply_ms = 5000
 motors_off_ms = 5000
 [device]

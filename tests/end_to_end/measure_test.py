@@ -43,7 +43,7 @@ class Json(Case):
         self.assertTrue(all(se > 0.0 for part in "MBK" for se in flat(result["standard_error"][part])))
         self.assert_shape(result["fit"]["VAF"], axes)
         self.assert_shape(result["fit"]["RMSE"], axes)
-        self.assertEqual(result["fit"]["validated_on"], "held-back")
+        self.assertEqual(result["fit"]["validated_on"], "held-out")
         self.assertIsInstance(result["alternatives"], list)
         self.assertIn("disagreement", result)
         self.assertEqual(result["warnings"], [])
@@ -118,7 +118,7 @@ class Text(Case):
         text = self.fine("measure", log.path).out
         for line in (rf"{log.path}   62\.1 s at 1000 Hz", r"  protocol +sinusoidal \(the reference varies continuous",
                      r"  inertia M .*±.* kg", r"  damping B .*±.* N·s/m", r"  stiffness K .*±.* N/m",
-                     r"  equilibrium +x .*± .* y .*± .* mm", r"  fit on held-back data +VAF .* % +RMSE .* N"):
+                     r"  equilibrium +x .*± .* y .*± .* mm", r"  fit on held-out data +VAF .* % +RMSE .* N"):
             self.assertRegex(text, rf"(?m)^{line}")
 
     def test_lines_fit_a_terminal_of_100_columns(self):

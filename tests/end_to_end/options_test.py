@@ -229,7 +229,7 @@ class Effects(Case):
         self.assertEqual(check["rate_hz"], 100.0)
         self.assertLess(check["largest_relative_change"], 0.05)
         self.assertIn("at 100 Hz", run("measure", make_log().path, "--decimate-check", "--every", "1").out)
-        # The rows of the fit are thinned to less than that already: then every other one of them.
+        # The rows of the fit are decimated to less than that already: then every other one of them.
         check = self.measured("--decimate-check", "--every", "25")["decimate_check"]
         self.assertEqual(check["rate_hz"], 20.0)
         self.assertLess(check["largest_relative_change"], 0.05)

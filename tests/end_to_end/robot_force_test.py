@@ -83,7 +83,7 @@ class Force(Case):
         path = self.folder / "force.h5"
         self.fine("robot", "force", rig(), "--robot", robot(), "--out", path)
         facts = self.fine("info", path).out
-        for words in ("force_x", "left aside", "force_error_x", "sensor_force_x"):
+        for words in ("force_x", "ignored", "force_error_x", "sensor_force_x"):
             self.assertIn(words, facts)
         on_its_way = self.fine("measure", rig(), "--force-source", "virtual", "--robot", robot(), "--json").json
         afterwards = self.fine("measure", path, "--json").json

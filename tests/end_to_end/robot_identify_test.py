@@ -65,14 +65,14 @@ class Simulated(Case):
 
     def test_files_are_fitted_together_and_others_judge(self):
         one, two, three = (free_motion(seed) for seed in (1, 2, 3))
-        both = self.identify(one, two, "--held-back", three)
+        both = self.identify(one, two, "--held-out", three)
         self.assert_is_the_robot(both)
         self.assertEqual([entry["file"] for entry in both["inputs"]], [str(one), str(two)])
-        self.assertEqual((both["validated_on"], both["held_back_files"]), ("held-back", [str(three)]))
+        self.assertEqual((both["validated_on"], both["held_out_files"]), ("held-out", [str(three)]))
         # Nothing of the first two is kept for judging, so more rows stand behind the coefficients.
         self.assertGreater(both["samples"], 2 * self.identify(one)["samples"])
         # What judges does not change what is found.
-        self.assertEqual(values(both), values(self.identify(one, two, "--held-back", one)))
+        self.assertEqual(values(both), values(self.identify(one, two, "--held-out", one)))
 
     def test_terms_that_are_left_out_are_missed(self):
         found = self.identify(free_motion(), "--terms", "viscous")
@@ -202,7 +202,7 @@ class DoublePendulum(Case):
                         code=code).json
 
     def judged(self, *options):
-        return self.identify(*self.TRAINING, "--held-back", self.JUDGING, *options)["fit"]
+        return self.identify(*self.TRAINING, "--held-out", self.JUDGING, *options)["fit"]
 
     def test_predicts_a_recording_that_it_has_not_seen(self):
         one, two = (fit["VAF"] for fit in self.judged("--cutoff", "5"))

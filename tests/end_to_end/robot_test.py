@@ -45,8 +45,8 @@ class Workspace(Case):
     def test_at_a_place_the_joints_bring_the_hand_there(self):
         for angles in ((30, 40), (80, 5), (-20, 20), (60, 110)):
             at = self.fine("robot", "workspace", "--json", "--at", millimetres(hand(*angles))).json["at"]
-            for found, wanted in zip(at["theta_deg"], angles):
-                self.assertAlmostEqual(found, wanted, places=6)
+            for found, expected in zip(at["theta_deg"], angles):
+                self.assertAlmostEqual(found, expected, places=6)
             (a, b), (c, d) = at["jacobian_m"]
             self.assertAlmostEqual(at["manipulability_m2"], abs(a * d - b * c), places=12)
             self.assertAlmostEqual(at["manipulability_m2"],

@@ -132,14 +132,14 @@ class Apply(Case):
         beside = self.with_voltages("beside.csv", keep_force=True)
         self.mbk("sensor", "calibrate", beside, "--lever-arm-mm", LEVER_ARM_MM, "--json", "--out", self.calibration)
         voltages = self.with_voltages("voltages.csv", keep_force=False, seed=2, arm_mm=90)
-        wanted = self.mbk("measure", self.trial, "--json").json
+        expected = self.mbk("measure", self.trial, "--json").json
         arm = ("--sensor", self.calibration, "--lever-arm-mm", 90)
         measured = self.mbk("measure", voltages, "--json", *arm).json
         for name in "MBK":
-            self.assert_relative(measured["model"][name], wanted["model"][name], 0.01)
+            self.assert_relative(measured["model"][name], expected["model"][name], 0.01)
         # With the arm of the calibration every force is too large by 90/68.8.
         wrong = self.mbk("measure", voltages, "--json", "--sensor", self.calibration).json
-        self.assert_relative(wrong["model"]["K"], [[90 / 68.8 * k for k in row] for row in wanted["model"]["K"]], 0.01)
+        self.assert_relative(wrong["model"]["K"], [[90 / 68.8 * k for k in row] for row in expected["model"]["K"]], 0.01)
         for command in ("identify", "passivity", "info"):
             text = self.mbk(command, voltages, *arm, *(["--json"] if command != "info" else [])).out
             self.assertIn("force_x", text) if command == "info" else self.assertIn("schema", text)

@@ -49,7 +49,7 @@ acceleration_m_per_s2 = 1000
 encoder_jump_deg = 20
 force_jump_N = 100
 speed_mm_per_s = 5000
-frozen_ms = 0
+frozen_sensor_ms = 0
 [device]
 kind = "udp"
 port = {port}

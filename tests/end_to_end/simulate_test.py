@@ -62,8 +62,8 @@ class Recordings(Case):
         self.assertEqual(json.loads(info["metadata"]["truth_M"]), [[1.3, -0.9], [-0.9, 1.9]])
         self.assertEqual(info["metadata"]["handle_mass_kg"], "0.1")
         model = self.fine("measure", "--json", "--handle-mass", "0.1", self.folder / "mine.mat").json["model"]
-        for name, wanted in (("M", 1.3), ("B", 5.8), ("K", 42.0)):
-            self.assertAlmostEqual(model[name][0][0], wanted, delta=0.1 * wanted)
+        for name, expected in (("M", 1.3), ("B", 5.8), ("K", 42.0)):
+            self.assertAlmostEqual(model[name][0][0], expected, delta=0.1 * expected)
 
     def test_ready_scenarios_are_listed_shown_and_run_by_name(self):
         names = re.findall(r"(?m)^  (\w+) ", self.fine("simulate", "--list").out)
@@ -178,7 +178,7 @@ class Refusals(Case):
             SHORT.replace("peak_deg", "peak_dge"): ["line 8", "'peak_dge'", "'peak_deg'"],
             SHORT.replace('"linear"', '"liner"'): ["participant.kind", "'liner'", "linear"],
             SHORT.replace("peak_deg = 2", "peak_Nm = 2"): ["line 8", "perturbation.peak_Nm", "use peak_deg"],
-            SHORT.replace("peak_deg = 2", 'peak_deg = "2"'): ["line 8", "perturbation.peak_deg", "a number is wanted"],
+            SHORT.replace("peak_deg = 2", 'peak_deg = "2"'): ["line 8", "perturbation.peak_deg", "a number is expected"],
             SHORT.replace("peak_deg = 2", "peak_deg = 2\npeak_mm = 2"): ["line 9", "peak_mm", "given twice"],
             SHORT + "[rig]\nmass_kg = 1\nstiffness_N_per_m = [[1, 0], [0, 1]]\n": ["participant and a rig"],
             SHORT.replace('kind = "linear"', ""): ["line 10", "'kind'"],

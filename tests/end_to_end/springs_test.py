@@ -114,7 +114,7 @@ class Find(Case):
     def find(self, *more):
         return self.fine("springs", "find", "--stiffness", ",".join(map(str, WANTED)), "--at", "393:-55", *more)
 
-    def test_gives_the_wanted_stiffness_and_equilibrium(self):
+    def test_gives_the_expected_stiffness_and_equilibrium(self):
         found = self.find("--json", "--payload", "0.293").json
         self.assertEqual(found["what"], "find")
         kxx, kyy, ks = WANTED
@@ -139,7 +139,7 @@ class Find(Case):
             self.assert_lines_fit(text)
 
     def test_keeps_to_the_springs_that_can_be_had(self):
-        found = self.find("--json", "--spring-stiffness", "40:200", "--spring-length", "70:120", "--most-springs",
+        found = self.find("--json", "--spring-stiffness", "40:200", "--spring-length", "70:120", "--max-springs",
                           "5").json
         self.assertLessEqual(len(found["springs"]), 5)
         for spring in found["springs"]:
@@ -151,7 +151,7 @@ class Find(Case):
         for given, says in (("300,300", "kxx,kyy,ks"), ("300,300,x", "kxx,kyy,ks"), ("300,300,400", "principal")):
             self.refused(WRONG_USAGE, "springs", "find", "--stiffness", given, says=says)
         for option, value in (("--spring-stiffness", "400:20"), ("--spring-length", "60"), ("--at", "3"),
-                              ("--most-springs", "2"), ("--payload", "0"), ("--eye", "a:b")):
+                              ("--max-springs", "2"), ("--payload", "0"), ("--eye", "a:b")):
             self.refused(WRONG_USAGE, "springs", "find", "--stiffness", "300,300,0", option, value, says=option)
 
 

@@ -44,7 +44,7 @@ class TransferFunction(Case):
         self.assertAlmostEqual(pole["frequency_hz"], 1.5, delta=0.02)
         self.assertAlmostEqual(pole["damping"], ZETA, delta=0.02)
         self.assertAlmostEqual(found["gain"], GAIN, delta=0.1)
-        self.assertGreater(found["fit"]["R2_held_back"], 0.99)
+        self.assertGreater(found["fit"]["R2_held_out"], 0.99)
         self.assertEqual(len(found["numerator"]), 1)
         self.assertEqual(found["denominator"][0], 1)
         by_number = self.fine("tf", file, "--input", "2", "--output", "3", "--poles", "2", "--zeros", "0", "--json")
@@ -52,7 +52,7 @@ class TransferFunction(Case):
 
     def test_text_says_what_was_found(self):
         ran = self.fine("tf", self.csv(oscillator()), "--input", "force", "--output", "motion", "--orders", "1:3")
-        for words in ("G(s) =", "pole pair", "chosen", "held back", "YIC"):
+        for words in ("G(s) =", "pole pair", "chosen", "held out", "YIC"):
             self.assertIn(words, ran.out)
 
     def test_the_truth_is_chosen_from_a_table_of_orders(self):

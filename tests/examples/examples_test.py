@@ -49,8 +49,8 @@ class Step(unittest.TestCase):
 
     def assert_near(self, found, true, within):
         for row, true_row in zip(found, true):
-            for value, wanted in zip(row, true_row):
-                self.assertAlmostEqual(value, wanted, delta=within)
+            for value, expected in zip(row, true_row):
+                self.assertAlmostEqual(value, expected, delta=within)
 
 
 def snapshot(folder):
@@ -196,7 +196,7 @@ class YourOwnRobot(Step):
             self.assertLess(rms, 0.05)
 
     def test_the_urdf_is_described(self):
-        self.assertIn("tells 13 of 28 coefficients apart", (self.out / "described.txt").read_text())
+        self.assertIn("identifies 13 of 28 coefficients", (self.out / "described.txt").read_text())
 
 
 class UseTheLibrary(unittest.TestCase):

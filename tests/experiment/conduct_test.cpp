@@ -197,7 +197,7 @@ TEST_F(Conducted, WithoutAMeasureTrialsAreOnlyRecorded) {
 
 TEST_F(Conducted, AfterAStopOfTheOperatorNoTrialFollowsAndNothingIsMeasured) {
   script_.watched = [&](const Attempt&, std::span<const journal::Tick> ticks) {
-    if (ticks.back().time > 2.0) session_.signals().operator_stop = true;
+    if (ticks.back().time > 2.0) session_.flags().operator_stop = true;
   };
   const Conclusion conclusion = run(planned(trials()), session_, script_);
   EXPECT_FALSE(conclusion.completed);
@@ -213,7 +213,7 @@ TEST_F(Conducted, AStoppedTrialIsRepeatedOnceTheGateIsReset) {
   script_.watched = [&](const Attempt&, std::span<const journal::Tick> ticks) {
     if (stopped || ticks.back().time < 2.0) return;
     stopped = true;
-    session_.signals().operator_stop = true;
+    session_.flags().operator_stop = true;
   };
   script_.answer = [](Session& session, const Performed& performed) {
     return performed.stopped() && session.reset() ? Next::repeat : Next::go_on;
@@ -225,7 +225,7 @@ TEST_F(Conducted, AStoppedTrialIsRepeatedOnceTheGateIsReset) {
 }
 
 TEST_F(Conducted, WithoutAResetNoTrialFollowsAStop) {
-  script_.watched = [&](const Attempt&, std::span<const journal::Tick>) { session_.signals().operator_stop = true; };
+  script_.watched = [&](const Attempt&, std::span<const journal::Tick>) { session_.flags().operator_stop = true; };
   script_.answer = [](Session&, const Performed&) { return Next::go_on; };
   const Conclusion conclusion = run(planned(trials()), session_, script_);
   ASSERT_TRUE(conclusion.failure);
@@ -234,7 +234,7 @@ TEST_F(Conducted, WithoutAResetNoTrialFollowsAStop) {
 }
 
 TEST_F(Conducted, ARequestToEndIsObeyedBeforeATrialAndAfterIt) {
-  script_.watched = [&](const Attempt&, std::span<const journal::Tick>) { session_.signals().end_session = true; };
+  script_.watched = [&](const Attempt&, std::span<const journal::Tick>) { session_.flags().end_session = true; };
   const Experiment experiment = planned(trials());
   EXPECT_FALSE(run(experiment, session_, script_).completed);
   EXPECT_THAT(script_.told, ElementsAre("begin first", "at rest", "motors", "recorded", "not measured"));

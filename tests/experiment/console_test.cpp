@@ -75,7 +75,7 @@ class ConsoleOfASession : public testing::Test {
   }
 
   void open_console() {
-    console_ = Console::open(0, plans_, session_.signals(), [&](const std::string& line) {
+    console_ = Console::open(0, plans_, session_.flags(), [&](const std::string& line) {
                  const std::scoped_lock lock(mutex_);
                  log_.push_back(line);
                }).value();
@@ -235,16 +235,16 @@ TEST_F(ConsoleOfASession, ListensOnThisMachineOnly) {
 }
 
 TEST_F(ConsoleOfASession, APortThatIsTakenIsSaid) {
-  const auto second = Console::open(static_cast<std::uint16_t>(std::stoi(port_)), plans_, session_.signals(),
-                                    [](const std::string&) {});
+  const auto second =
+      Console::open(static_cast<std::uint16_t>(std::stoi(port_)), plans_, session_.flags(), [](const std::string&) {});
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().line().find("--port"), std::string::npos);
 }
 
 TEST_F(ConsoleOfASession, TheFirstPageControlsAndTheNextTakesOver) {
   auto first = open(token_), second = open(token_), watching = open(viewing_token_);
-  const auto controls = [](bool wanted) {
-    return [=](Page& page) { return page.you == Json() ? false : page.you.at("controls") == wanted; };
+  const auto controls = [](bool expected) {
+    return [=](Page& page) { return page.you == Json() ? false : page.you.at("controls") == expected; };
   };
   EXPECT_TRUE(first->read_until(controls(true)));
   EXPECT_TRUE(second->read_until(controls(false)));
@@ -260,9 +260,9 @@ TEST_F(ConsoleOfASession, TheFirstPageControlsAndTheNextTakesOver) {
   EXPECT_TRUE(console_->take_notes().empty());
   watching->tell(R"({"command":"stop"})");
   EXPECT_TRUE(soon([&] { return logged("'stop' from a page that only watches"); }));
-  EXPECT_FALSE(session_.signals().operator_stop);
+  EXPECT_FALSE(session_.flags().operator_stop);
   second->tell(R"({"command":"stop"})");
-  EXPECT_TRUE(soon([&] { return session_.signals().operator_stop.load(); }));
+  EXPECT_TRUE(soon([&] { return session_.flags().operator_stop.load(); }));
 
   first.reset();
   EXPECT_TRUE(second->read_until(controls(true)));
@@ -279,7 +279,7 @@ TEST_F(ConsoleOfASession, MalformedMessagesAreRefusedLoggedAndAtLastEndTheConnec
   page->tell("stop", false);
   EXPECT_TRUE(soon([&] { return logged("a message is no text"); }));
   page->tell(R"({"command":"a \" b"})");
-  EXPECT_TRUE(page->read_until([](Page& one) { return one.refused.at("why") == "there is no command 'a \" b'"; }));
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.refused.at("why") == "unknown command 'a \" b'"; }));
   EXPECT_THROW(
       {
         for (int k = 0; k < 100; ++k) {
@@ -334,7 +334,7 @@ TEST_F(ConsoleOfASession, AStopWhileNothingRunsHoldsWhatComesNext) {
 TEST_F(ConsoleOfASession, AStopBetweenTrialsIsResetBeforeAnythingElse) {
   auto page = open(token_);
   page->tell(R"({"command":"stop"})");
-  ASSERT_TRUE(soon([&] { return session_.signals().operator_stop.load(); }));
+  ASSERT_TRUE(soon([&] { return session_.flags().operator_stop.load(); }));
   std::thread asking([&] { EXPECT_EQ(console_->ask(Question::after), Action::abort); });
   EXPECT_TRUE(page->read_until([](Page& one) { return one.state != Json() && one.state.at("question") == "reset"; }));
   page->tell(R"({"command":"abort"})");
@@ -357,8 +357,8 @@ TEST_F(ConsoleOfASession, TheLastEstimateIsThatOfTheRecording) {
     for (const char* const matrix : {"M", "B", "K"}) {
       for (std::size_t i : {0U, 1U}) {
         for (std::size_t j : {0U, 1U}) {
-          const double wanted = offline.at(part).at(matrix)[i][j];
-          EXPECT_NEAR(live.at(part).at(matrix)[i][j].get<double>(), wanted, kSame * std::abs(wanted))
+          const double expected = offline.at(part).at(matrix)[i][j];
+          EXPECT_NEAR(live.at(part).at(matrix)[i][j].get<double>(), expected, kSame * std::abs(expected))
               << part << matrix << i << j;
         }
       }
@@ -557,7 +557,7 @@ TEST_F(ConsoleOfASession, NotesOfARecordingAreBoundedAndTheRefusalIsSaid) {
   auto page = open(token_);
   ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
   const std::string text(1800, 'a');
-  const std::size_t fit = kMostNoteBytes / text.size();
+  const std::size_t fit = kMaxNoteBytes / text.size();
   for (std::size_t i = 0; i <= fit; ++i) page->tell(Json{{"command", "note"}, {"text", text}}.dump());
   ASSERT_TRUE(page->read_until([](Page& one) { return !one.refused.is_null(); }));
   EXPECT_NE(page->refused.at("why").get<std::string>().find("takes no further note"), std::string::npos);

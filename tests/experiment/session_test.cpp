@@ -103,7 +103,7 @@ TEST_F(SessionFolder, AStopOfTheOperatorTripsAndStaysUntilReset) {
   auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
-    if (ticks.back().time > 1.5) session.signals().operator_stop = true;
+    if (ticks.back().time > 1.5) session.flags().operator_stop = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->trip.reason, safety::Reason::operator_stop);
@@ -152,7 +152,7 @@ TEST_F(SessionFolder, EndsEarlyWhenAsked) {
   auto robot = laboratory::simulated_robot(t).value();
   Session session(kFast);
   const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
-    if (ticks.back().time > 4.0) session.signals().end_trial = true;
+    if (ticks.back().time > 4.0) session.flags().end_trial = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->ended, "ended early by the operator");
@@ -398,7 +398,7 @@ TEST_F(SessionFolder, WhatASessionWritesIsForItsOwnerUnlessAskedOtherwise) {
     std::atomic<unsigned> seen{0};
     const auto outcome = session.perform(*robot, planned(t), target_, [&](std::span<const journal::Tick>) {
       seen = static_cast<unsigned>(fs::status(journal_of(target_)).permissions());
-      session.signals().end_trial = true;
+      session.flags().end_trial = true;
     });
     ASSERT_TRUE(outcome) << outcome.error().line();
     EXPECT_EQ(seen & 0777U, permissions(readers));
@@ -534,7 +534,7 @@ TEST_F(SessionFolder, ATripDoesNotAllocate) {
   CountingDevice counting(*robot, CountingDevice::Plant::nothing);
   Session session(kFast);
   const auto outcome = session.perform(counting, planned(t), target_, [&](std::span<const journal::Tick> ticks) {
-    if (ticks.back().time > 1.5) session.signals().operator_stop = true;
+    if (ticks.back().time > 1.5) session.flags().operator_stop = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_EQ(outcome->trip.reason, safety::Reason::operator_stop);

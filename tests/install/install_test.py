@@ -49,7 +49,7 @@ class Installed(unittest.TestCase):
     def test_another_project_measures_what_mbk_measures(self):
         recording = self.folder / "recording.mat"
         ran(program("MAKE_LOG"), "--protocol", "sinusoidal", "--out", recording)
-        wanted = json.loads(ran(self.prefix / "bin/mbk", "measure", "--json", recording))["model"]
+        expected = json.loads(ran(self.prefix / "bin/mbk", "measure", "--json", recording))["model"]
         self.configured("example", self.prefix / "share/doc/mbk/examples/use_the_library")
         ran(program("CMAKE"), "--build", self.folder / "example", "--parallel", "2")
         for name in ("measure_recording", "measure_with_two_modules"):  # mbk::mbk, and single modules
@@ -57,7 +57,7 @@ class Installed(unittest.TestCase):
             for matrix in "MBK":
                 numbers = [float(one) for one in said[matrix].split()]
                 # The same code on the same bytes, each printed with every digit.
-                self.assertEqual(numbers, [one for row in wanted[matrix] for one in row], (name, matrix))
+                self.assertEqual(numbers, [one for row in expected[matrix] for one in row], (name, matrix))
         for name in ("filter_a_signal", "judge_a_model", "simulate_a_participant"):  # what they say: tests/examples
             self.assertTrue(ran(self.folder / "example" / name))
         self.assertTrue(ran(self.folder / "example" / "run_a_study", self.folder))

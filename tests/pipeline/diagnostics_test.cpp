@@ -24,7 +24,7 @@ const Recording& sines() {
   return recording;
 }
 
-/// The values that are numbers; a break between two stretches is a row of NaN.
+/// The values that are numbers; a break between two segments is a row of NaN.
 Vector known(const Vector& values) {
   std::vector<double> kept;
   for (const double value : values) {
@@ -34,7 +34,7 @@ Vector known(const Vector& values) {
 }
 
 TEST(Diagnostics, PredictTheForceAsTheFitSays) {
-  // At 10 rows for each period of the cutoff nothing is thinned for display, so the VAF can be had from the rows.
+  // At 10 rows for each period of the cutoff nothing is decimated for display, so the VAF can be had from the rows.
   for (const Protocol protocol : {Protocol::sinusoidal, Protocol::underdamped}) {
     laboratory::PrescribedMotionOptions making;
     making.protocol = protocol;
@@ -45,7 +45,7 @@ TEST(Diagnostics, PredictTheForceAsTheFitSays) {
     options.preprocess.every = protocol == Protocol::underdamped ? 10 : 20;
     const Examined one = examined(generated(making), options);
     const ForcePrediction& shown = one.diagnostics[0].prediction;
-    EXPECT_TRUE(shown.held_back);
+    EXPECT_TRUE(shown.held_out);
     for (Index axis = 0; axis < 2; ++axis) {
       const double vaf =
           numeric::variance_accounted_for(known(shown.measured.col(axis)), known(shown.residual.col(axis)));
@@ -56,7 +56,7 @@ TEST(Diagnostics, PredictTheForceAsTheFitSays) {
   }
 }
 
-TEST(Diagnostics, PredictHeldBackDataWithoutHavingSeenThem) {
+TEST(Diagnostics, PredictHeldOutDataWithoutHavingSeenThem) {
   // The parameters that are reported come from all pulses; the fit, and what is shown of it, from half against half.
   laboratory::PrescribedMotionOptions making;
   making.protocol = Protocol::underdamped;
@@ -159,7 +159,7 @@ TEST(Diagnostics, ResidualHasThePowerThatItsSpectrumSays) {
   EXPECT_NEAR(spectra.residual.col(0).sum() * spectra.frequency[1], 0.09, 0.05);
 }
 
-TEST(Diagnostics, AreThinnedToWhatCanBeSeen) {
+TEST(Diagnostics, AreDecimatedToWhatCanBeSeen) {
   measurement::Options options;
   options.preprocess.every = 1;
   const Diagnostics shown = examined(sines(), options).diagnostics[0];
@@ -258,7 +258,7 @@ TEST(Diagnostics, HoldForOneAxisAndWithoutAModel) {
   EXPECT_EQ(one.diagnostics[0].spectra.coherence.cols(), 1);
   EXPECT_FALSE(one.measured.findings);
 
-  Recording line = sines();  // y follows x: nothing can be told apart
+  Recording line = sines();  // y follows x: nothing can be distinguished
   for (const auto& [to, from] : {std::pair{"hand_y", "hand_x"}, {"reference_y", "reference_x"}}) {
     const Vector values = line.find(from)->values;
     for (Channel& channel : line.channels) {

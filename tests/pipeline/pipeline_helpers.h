@@ -21,9 +21,9 @@ inline Recording generated(const laboratory::PrescribedMotionOptions& options) {
   return laboratory::record_prescribed_motion(options, kRate).value();
 }
 
-/// Largest |got − wanted| over the largest |wanted|, as checks of this project count it.
-inline double difference(const Matrix& got, const Matrix& wanted) {
-  return (got - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff();
+/// Largest |got − expected| over the largest |expected|, as checks of this project count it.
+inline double difference(const Matrix& got, const Matrix& expected) {
+  return (got - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
 }
 
 /// Row by row, as the 113-bit twin and expected.json write it.

@@ -74,16 +74,16 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(ReferenceMode, AgreesWithTheTwin) {
   const Recording recording = generated(noisy(GetParam().protocol, 7));
-  const auto wanted = reference::identify(as_log(recording), settings_of_twin());
-  ASSERT_TRUE(wanted) << wanted.error().line();
+  const auto expected = reference::identify(as_log(recording), settings_of_twin());
+  ASSERT_TRUE(expected) << expected.error().line();
   const auto got = measurement::measure({&recording, 1}, options_of_mbk());
   ASSERT_TRUE(got) << got.error().line();
   const Identification& id = got->identification;
-  const std::pair<const char*, double> differences[] = {{"M", difference(id.model.M, matrix2(wanted->M))},
-                                                        {"B", difference(id.model.B, matrix2(wanted->B))},
-                                                        {"K", difference(id.model.K, matrix2(wanted->K))},
-                                                        {"x0", difference(id.model.x0, vector2(wanted->x0))},
-                                                        {"VAF", difference(id.fit.vaf, vector2(wanted->VAF))}};
+  const std::pair<const char*, double> differences[] = {{"M", difference(id.model.M, matrix2(expected->M))},
+                                                        {"B", difference(id.model.B, matrix2(expected->B))},
+                                                        {"K", difference(id.model.K, matrix2(expected->K))},
+                                                        {"x0", difference(id.model.x0, vector2(expected->x0))},
+                                                        {"VAF", difference(id.fit.vaf, vector2(expected->VAF))}};
   for (const auto& [what, value] : differences) {
     EXPECT_LE(value, kPromised) << what;
     RecordProperty(what, std::to_string(-std::log10(value + 1e-300)));  // digits that agree
@@ -110,7 +110,7 @@ TEST_P(Golden, ReferenceModeAgreesWithItsExpectedNumbers) {
   const auto folder = data_folder();
   if (!folder) GTEST_SKIP() << "MBK_DATA_DIR is not set";
   const auto golden = *folder / "golden";
-  const auto wanted = nlohmann::json::parse(std::ifstream(golden / "expected.json"))[GetParam()]["quad"];
+  const auto expected = nlohmann::json::parse(std::ifstream(golden / "expected.json"))[GetParam()]["quad"];
   const auto recording = recording::read(golden / (std::string(GetParam()) + ".mat"), {});
   ASSERT_TRUE(recording) << recording.error().line();
   measurement::Options options;
@@ -119,7 +119,7 @@ TEST_P(Golden, ReferenceModeAgreesWithItsExpectedNumbers) {
   ASSERT_TRUE(got) << got.error().line();
   const Identification& id = got->identification;
   EXPECT_EQ(word_of(id.preparations[0].protocol), GetParam());
-  const auto numbers = [&](const char* name) { return wanted[name].get<std::vector<double>>(); };
+  const auto numbers = [&](const char* name) { return expected[name].get<std::vector<double>>(); };
   EXPECT_LE(difference(id.model.M, matrix2(numbers("M"))), kPromised);
   EXPECT_LE(difference(id.model.B, matrix2(numbers("B"))), kPromised);
   EXPECT_LE(difference(id.model.K, matrix2(numbers("K"))), kPromised);

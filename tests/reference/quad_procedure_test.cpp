@@ -45,13 +45,13 @@ Log recorded(const PrescribedMotionOptions& options) {
   return as_log(laboratory::record_prescribed_motion(options, Hertz(1000.0)).value());
 }
 
-/// Largest |got − wanted| over the largest |wanted|, as checks of this project count it.
-template <class Got, class Wanted>
-double difference(const Got& got, const Wanted& wanted) {
+/// Largest |got − expected| over the largest |expected|, as checks of this project count it.
+template <class Got, class Expected>
+double difference(const Got& got, const Expected& expected) {
   double worst = 0.0, scale = 0.0;
   for (std::size_t i = 0; i < got.size(); ++i) {
-    worst = std::max(worst, std::abs(got[i] - wanted[i]));
-    scale = std::max(scale, std::abs(wanted[i]));
+    worst = std::max(worst, std::abs(got[i] - expected[i]));
+    scale = std::max(scale, std::abs(expected[i]));
   }
   return worst / scale;
 }
@@ -78,17 +78,17 @@ TEST_P(Golden, AgreesToTheLastDigitsOfADouble) {
   if (!folder) GTEST_SKIP() << "MBK_DATA_DIR is not set";
   const auto [name, protocol] = GetParam();
   const std::filesystem::path golden = std::filesystem::path(folder) / "golden";
-  const auto wanted = nlohmann::json::parse(std::ifstream(golden / "expected.json"))[name]["quad"];
+  const auto expected = nlohmann::json::parse(std::ifstream(golden / "expected.json"))[name]["quad"];
   const auto log = read_log((golden / (std::string(name) + ".mat")).string());
   ASSERT_TRUE(log) << log.error().line();
   const auto answer = identify(*log, {.protocol = protocol});
   ASSERT_TRUE(answer) << answer.error().line();
   const double kLastDigit = 4.5e-16;  // both sides are rounded to double: half a unit each, 2.2e-16, of the largest
-  EXPECT_LE(difference(answer->M, wanted["M"].get<std::vector<double>>()), kLastDigit);
-  EXPECT_LE(difference(answer->B, wanted["B"].get<std::vector<double>>()), kLastDigit);
-  EXPECT_LE(difference(answer->K, wanted["K"].get<std::vector<double>>()), kLastDigit);
-  EXPECT_LE(difference(answer->x0, wanted["x0"].get<std::vector<double>>()), kLastDigit);
-  EXPECT_LE(difference(answer->VAF, wanted["VAF"].get<std::vector<double>>()), kLastDigit);
+  EXPECT_LE(difference(answer->M, expected["M"].get<std::vector<double>>()), kLastDigit);
+  EXPECT_LE(difference(answer->B, expected["B"].get<std::vector<double>>()), kLastDigit);
+  EXPECT_LE(difference(answer->K, expected["K"].get<std::vector<double>>()), kLastDigit);
+  EXPECT_LE(difference(answer->x0, expected["x0"].get<std::vector<double>>()), kLastDigit);
+  EXPECT_LE(difference(answer->VAF, expected["VAF"].get<std::vector<double>>()), kLastDigit);
 }
 
 /// max |H_d(f)/((j2πf)^d H₀(f)) − 1| over d = 1, 2: how far the derivative filters are from the derivatives of the

@@ -24,10 +24,10 @@ namespace mbk {
 namespace {
 
 template <HasWords Enum>
-void expect_words(const std::string& name, const std::string& place, std::set<std::string> wanted = {}) {
+void expect_words(const std::string& name, const std::string& place, std::set<std::string> expected = {}) {
   const auto& schema = schemas::file(name + ".schema.json").at(nlohmann::json::json_pointer(place));
-  for (const auto& [value, word] : kWords<Enum>) wanted.emplace(word);
-  EXPECT_EQ(schema.at("enum").get<std::set<std::string>>(), wanted) << name << place;
+  for (const auto& [value, word] : kWords<Enum>) expected.emplace(word);
+  EXPECT_EQ(schema.at("enum").get<std::set<std::string>>(), expected) << name << place;
 }
 
 TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {

@@ -66,8 +66,8 @@ int main() {
   if (!trials) return 1;
   const auto plan = mbk::session::make_plan(trials->front());
   if (!plan) return 1;
-  mbk::session::Signals signals;
-  auto console = Console::open(0, {*plan}, signals, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  mbk::session::LoopFlags flags;
+  auto console = Console::open(0, {*plan}, flags, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   if (!console) return 1;
   fmt::print("console: {}\n", (*console)->address());
   std::fflush(stdout);

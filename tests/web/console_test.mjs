@@ -90,7 +90,7 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await page.getByLabel("Note for the recording").fill("talked to the nurse");
   await click("Add the note");
   await page.waitForSelector(".cells", { timeout: 60_000 });
-  await page.waitForFunction(() => document.querySelector(".tightening")?.textContent.includes("as wide as"), undefined, { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelector(".tightening")?.textContent.includes("narrowed by"), undefined, { timeout: 60_000 });
   assert.deepEqual(await violations(page), []);
   await take(page, "console-running");
 

@@ -21,7 +21,7 @@ export function withDiagnostics(document) {
     const gains = powers(200, 0.05, 100);
     const whole = range(500, 0, 62);
     trial.diagnostics = {
-      prediction: { held_back: true, time_s: time, measured, predicted, residual },
+      prediction: { held_out: true, time_s: time, measured, predicted, residual },
       autocorrelation: { lag_s: lag, value: each((axis) => lag.map((t) => Math.exp(-t / (0.2 + 0.1 * axis)))), white95: 0.06, time_constant_s: each(() => 0.2) },
       spectra: {
         frequency_hz: frequency,

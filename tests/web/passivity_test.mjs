@@ -79,8 +79,9 @@ for (const [name, { json, file }] of Object.entries(all)) {
     const read = await numbers(page, "#trial-1-energy");
     energy.forEach(({ account }, k) => {
       assertInterval(read, `energy${k}-absorbed`, account.absorbed_J, account.interval95);
-      assertInterval(read, `energy${k}-shortage-end`, account.shortage.at_end, account.shortage.at_end_interval95);
-      assertInterval(read, `energy${k}-shortage-largest`, account.shortage.largest, account.shortage.largest_interval95);
+      const { at_end: end, at_end_interval95: [endLow, endHigh], largest: worst, largest_interval95: [worstLow, worstHigh] } = account.shortage;
+      assertInterval(read, `energy${k}-excess-end`, -end, [-endHigh, -endLow]);
+      assertInterval(read, `energy${k}-excess-worst`, -worst, [-worstHigh, -worstLow]);
     });
     assertAllShown(read);
     const [{ parts }] = energy;
@@ -112,7 +113,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
     close(read["iv-less-ls"].value, json.disagreement.iv_less_ls, "disagreement");
     other.instrument.first_stage_F.forEach((F, k) => close(read[`first-stage-F${k}`].value, F, "F"));
     assert.equal(other.instrument.first_stage_F.length, 3 * json.axes);
-    other.instrument.answered_share.forEach((share, axis) => close(read[`answered${axis}`].value, 100 * share, "answered"));
+    other.instrument.coherent_residual_fraction.forEach((share, axis) => close(read[`answered${axis}`].value, 100 * share, "answered"));
     const text = await page.textContent("#trial-1-methods");
     assert.match(text, other.instrument.strong ? /The instruments are strong/ : /The instruments are weak/);
     assert.match(text, json.disagreement.significant ? /disagree beyond chance.*on its own account/s : /agree within chance/);

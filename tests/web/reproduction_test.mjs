@@ -112,8 +112,8 @@ for (const [name, file] of Object.entries({ "what mbk made": real.file, "every k
             same("-low", cell.range?.[0]);
             same("-high", cell.range?.[1]);
             const decimals = /^-?\d+(?:\.(\d+))?$/.exec(cell.printed ?? "");
-            const wanted = decimals ? (decimals[1] ?? "").length : table.columns[c].decimals;
-            if (typeof cell.ours === "number" && Math.abs(cell.ours) < 1e7) assert.equal((/\.(\d+)$/.exec(read[at].shown)?.[1] ?? "").length, wanted, `${at}: ${read[at].shown} beside ${cell.printed}`);
+            const expected = decimals ? (decimals[1] ?? "").length : table.columns[c].decimals;
+            if (typeof cell.ours === "number" && Math.abs(cell.ours) < 1e7) assert.equal((/\.(\d+)$/.exec(read[at].shown)?.[1] ?? "").length, expected, `${at}: ${read[at].shown} beside ${cell.printed}`);
             if (cell.printed_value !== null) assert.equal(read[`${at}-printed`].shown.replaceAll("−", "-"), cell.printed);
           }
         }

@@ -123,7 +123,7 @@ test("undefined numbers are said to be undefined, and nothing to draw is no erro
     const none = (value) => (Array.isArray(value) ? value.map(none) : value && typeof value === "object" ? Object.fromEntries(Object.entries(value).map(([k, v]) => [k, none(v)])) : typeof value === "number" ? null : value);
     const { result } = document;
     for (const key of ["parameters", "poles", "gain", "frequency_response", "impedance", "fit", "excited_band_hz", "residuals"]) result[key] = none(result[key]);
-    document.simulation = { held_back: false, time_s: [], measured: [], simulated: [] };
+    document.simulation = { held_out: false, time_s: [], measured: [], simulated: [] };
     result.usable = false;
   });
   return onPage(file, async (page) => {

@@ -152,7 +152,7 @@ class Reading {
     return known;
   }
 
-  /// The first in the file. A trial speaks for its own table only, the file for itself and its trials.
+  /// The first in the file. A trial answers for its own table only, the file for itself and its trials.
   [[nodiscard]] std::optional<UnknownKey> first_unknown() const {
     std::optional<UnknownKey> first;
     search(overlay != nullptr ? *overlay : *tree, "", first);
@@ -224,8 +224,8 @@ Result<std::vector<Trial>> Document::trials() const {
   const std::vector<Section> tables = top.sections(kTrialKey);
   if (reading_->problem) return tl::unexpected(*reading_->problem);
   if (tables.empty()) return std::vector<Trial>{{"", *this}};
-  if (tables.size() > kMostTrials) {
-    return tl::unexpected(top.error(kTrialKey, fmt::format("{} trials are more than {}", tables.size(), kMostTrials)));
+  if (tables.size() > kMaxTrials) {
+    return tl::unexpected(top.error(kTrialKey, fmt::format("{} trials are more than {}", tables.size(), kMaxTrials)));
   }
   reading_->trials.clear();
   std::vector<Trial> trials;
@@ -265,6 +265,10 @@ bool Section::given() const {
   return over_ != nullptr || base_ != nullptr;
 }
 
+void Section::rename(std::string_view former, std::string_view now) {
+  former_.insert_or_assign(std::string(now), std::string(former));
+}
+
 bool Section::has(std::string_view key) const {
   return find(key, Need::optional) != nullptr;
 }
@@ -273,6 +277,9 @@ const Node* Section::find(std::string_view key, Need need) const {
   reading_->ask(path_, key);
   const Node* node = entry_of(over_, key);
   if (node == nullptr) node = entry_of(base_, key);
+  if (const auto former = former_.find(key); node == nullptr && former != former_.end()) {
+    return find(former->second, need);
+  }
   if (node == nullptr && need == Need::required && !reading_->missing) {
     const Node* table = over_ != nullptr && reading_->overlay != over_ ? over_ : base_;
     const int line = path_.empty() || table == nullptr ? 0 : table->line;
@@ -345,8 +352,8 @@ std::optional<std::vector<double>> Section::checked_list(std::string_view key, c
     return std::nullopt;
   }
   if (count != kAnyCount && list->size() != count) {
-    reject(key,
-           fmt::format("{}{} number{} where {} are wanted", place, list->size(), list->size() == 1 ? "" : "s", count));
+    reject(key, fmt::format("{}{} number{} where {} are expected", place, list->size(), list->size() == 1 ? "" : "s",
+                            count));
     return std::nullopt;
   }
   std::vector<double> values;
@@ -537,7 +544,7 @@ void Section::reject(std::string_view key, std::string message, std::string reme
 
 void Section::wrong_type(std::string_view key, const Node& node, std::string_view wanted,
                          std::string_view place) const {
-  reject(key, fmt::format("{}{} where {} is wanted", place, kind_of(node), wanted));
+  reject(key, fmt::format("{}{} where {} is expected", place, kind_of(node), wanted));
 }
 
 }  // namespace mbk::config

@@ -50,7 +50,7 @@ class Document {
   /// by table; an array is replaced as a whole. Without [[trial]] it is this document, with an empty name. Each trial
   /// answers with its own finish() for its own lines; the keys that trials share count as known where any of them
   /// asked, which only finish() of this document can tell. That covers its trials too.
-  /// @fails  data: [[trial]] is no array of tables, or has more than kMostTrials; a name is missing, used twice or is
+  /// @fails  data: [[trial]] is no array of tables, or has more than kMaxTrials; a name is missing, used twice or is
   ///         more than letters, digits, _ and - (it becomes part of file names).
   [[nodiscard]] Result<std::vector<Trial>> trials() const;
 
@@ -64,7 +64,7 @@ class Document {
   std::shared_ptr<Reading> reading_;
 };
 
-inline constexpr std::size_t kMostTrials = 1000;
+inline constexpr std::size_t kMaxTrials = 1000;
 
 struct Trial {
   std::string name;
@@ -163,6 +163,10 @@ class Section {
   /// The tables of [[key]], in the order of the file.
   [[nodiscard]] std::vector<Section> sections(std::string_view key) const;
 
+  /// `now` was called `former` until the version before, whose files are still read: from here on the old key stands
+  /// for the new one where that is missing.
+  void rename(std::string_view former, std::string_view now);
+
   /// A problem that the reader finds by itself: "above the Nyquist frequency 500 Hz"
   void reject(std::string_view key, std::string message, std::string remedy = "") const;
   /// The same as a value, with file, line and key, for a reader that goes no further.
@@ -211,9 +215,10 @@ class Section {
   [[nodiscard]] std::string full_name(std::string_view key) const;
 
   std::shared_ptr<Reading> reading_;
-  std::string path_;  // "robot.link[2]"; "" for the root
-  const Node* over_;  // the table of a trial, or nullptr
-  const Node* base_;  // the table of the file, or nullptr
+  std::string path_;                                        // "robot.link[2]"; "" for the root
+  std::map<std::string, std::string, std::less<>> former_;  // the old name of a key
+  const Node* over_;                                        // the table of a trial, or nullptr
+  const Node* base_;                                        // the table of the file, or nullptr
 };
 
 }  // namespace mbk::config

@@ -59,7 +59,7 @@ TEST(Section, GivesSomeOfAFewWords) {
   EXPECT_THAT(chosen("kinds = ['chirp']").second, HasSubstr("'chirp' is not possible; use multisine, pulses"));
   EXPECT_THAT(chosen("kinds = ['pulses', 'pulses']").second, HasSubstr("'pulses' stands there twice"));
   EXPECT_THAT(chosen("kinds = ['pulses', 1]").second, HasSubstr("entry 2"));
-  EXPECT_THAT(chosen("kinds = 'pulses'").second, HasSubstr("a text where an array of words is wanted"));
+  EXPECT_THAT(chosen("kinds = 'pulses'").second, HasSubstr("a text where an array of words is expected"));
 }
 
 TEST(Section, GivesFallbacksInSiUnitsWhereNothingStands) {
@@ -164,21 +164,21 @@ TEST(Section, RefusesOtherTypes) {
   const auto section = [](const Section& s) { (void)s.section("k"); };
   const auto sections = [](const Section& s) { (void)s.sections("k"); };
   const auto choice = [](const Section& s) { (void)s.choice("k", {{"a", 1}, {"b", 2}}, 1); };
-  EXPECT_THAT(said("'fast'", number), HasSubstr("a text where a number is wanted"));
-  EXPECT_THAT(said("2.5", integer), HasSubstr("a number where a whole number is wanted"));
+  EXPECT_THAT(said("'fast'", number), HasSubstr("a text where a number is expected"));
+  EXPECT_THAT(said("2.5", integer), HasSubstr("a number where a whole number is expected"));
   EXPECT_THAT(said("10", integer), HasSubstr("10 is not from 0 to 9"));
-  EXPECT_THAT(said("1", text), HasSubstr("a whole number where a text is wanted"));
-  EXPECT_THAT(said("1", flag), HasSubstr("a whole number where true or false is wanted"));
-  EXPECT_THAT(said("2026-01-01", number), HasSubstr("a date where a number is wanted"));
-  EXPECT_THAT(said("{}", number), HasSubstr("a table where a number is wanted"));
-  EXPECT_THAT(said("true", numbers), HasSubstr("true or false where an array of numbers is wanted"));
-  EXPECT_THAT(said("[1, 'a']", numbers), HasSubstr("entry 2: a text where a number is wanted"));
-  EXPECT_THAT(said("[1]", vector), HasSubstr("1 number where 2 are wanted"));
-  EXPECT_THAT(said("[1, 2]", matrix), HasSubstr("row 1: a whole number where an array of numbers is wanted"));
+  EXPECT_THAT(said("1", text), HasSubstr("a whole number where a text is expected"));
+  EXPECT_THAT(said("1", flag), HasSubstr("a whole number where true or false is expected"));
+  EXPECT_THAT(said("2026-01-01", number), HasSubstr("a date where a number is expected"));
+  EXPECT_THAT(said("{}", number), HasSubstr("a table where a number is expected"));
+  EXPECT_THAT(said("true", numbers), HasSubstr("true or false where an array of numbers is expected"));
+  EXPECT_THAT(said("[1, 'a']", numbers), HasSubstr("entry 2: a text where a number is expected"));
+  EXPECT_THAT(said("[1]", vector), HasSubstr("1 number where 2 are expected"));
+  EXPECT_THAT(said("[1, 2]", matrix), HasSubstr("row 1: a whole number where an array of numbers is expected"));
   EXPECT_THAT(said("[[1, 2]]", matrix), HasSubstr("write [[a, b], [c, d]]"));
-  EXPECT_THAT(said("[[1, 2], [3, 4, 5]]", matrix), HasSubstr("row 2: 3 numbers where 2 are wanted"));
-  EXPECT_THAT(said("1", section), HasSubstr("a whole number where a table is wanted"));
-  EXPECT_THAT(said("{}", sections), HasSubstr("a table where an array of tables ([[k]]) is wanted"));
+  EXPECT_THAT(said("[[1, 2], [3, 4, 5]]", matrix), HasSubstr("row 2: 3 numbers where 2 are expected"));
+  EXPECT_THAT(said("1", section), HasSubstr("a whole number where a table is expected"));
+  EXPECT_THAT(said("{}", sections), HasSubstr("a table where an array of tables ([[k]]) is expected"));
   EXPECT_THAT(said("'c'", choice), HasSubstr("'c' is not possible; use a, b"));
 }
 
@@ -349,9 +349,9 @@ TEST(Trials, NeedNamesThatCanBePartsOfFileNames) {
   EXPECT_THAT(said("[[trial]]\nname = ''\n"), HasSubstr("'' is no name of a trial"));
   EXPECT_THAT(said("[[trial]]\nname = '../a'\n"), HasSubstr("line 2, name: '../a' is no name of a trial"));
   EXPECT_THAT(said("[[trial]]\nname = 'é'\n"), HasSubstr("is no name of a trial"));
-  EXPECT_THAT(said("[[trial]]\nname = 1\n"), HasSubstr("a whole number where a text is wanted"));
+  EXPECT_THAT(said("[[trial]]\nname = 1\n"), HasSubstr("a whole number where a text is expected"));
   EXPECT_THAT(said("[[trial]]\nname = 'a'\n[[trial]]\nname = 'a'\n"), HasSubstr("line 4, name: another trial"));
-  EXPECT_THAT(said("trial = 3\n"), HasSubstr("a whole number where an array of tables ([[trial]]) is wanted"));
+  EXPECT_THAT(said("trial = 3\n"), HasSubstr("a whole number where an array of tables ([[trial]]) is expected"));
 }
 
 TEST(Trials, AreUnknownToAReaderThatDoesNotAskForThem) {

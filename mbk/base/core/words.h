@@ -71,6 +71,16 @@ inline constexpr auto kWords = [] {
   return word_table(Enum{});
 }();
 
+/// Words of the version before that are still read, where there are any: beside the table of words stands that of
+/// former ones.
+///   [[nodiscard]] constexpr auto former_word_table(WarningCode) {
+///     return std::to_array<Word<WarningCode>>({{WarningCode::held_out_fit_poor, "held-back-fit-poor"}});
+///   }
+template <class Enum>
+concept HasFormerWords = HasWords<Enum> && requires(Enum value) {
+  former_word_table(value);
+};
+
 /// The word of a value; "unknown" for a number that is none, as an old reader meets in a newer file.
 template <HasWords Enum>
 [[nodiscard]] constexpr std::string_view word_of(Enum value) {
@@ -80,13 +90,27 @@ template <HasWords Enum>
   return "unknown";
 }
 
-/// The value of a word, where there is one.
+/// The value of a word, or of a former one, where there is one.
 template <HasWords Enum>
 [[nodiscard]] constexpr std::optional<Enum> value_of(std::string_view given) {
   for (const auto& [value, word] : kWords<Enum>) {
     if (word == given) return value;
   }
+  if constexpr (HasFormerWords<Enum>) {
+    for (const auto& [value, word] : former_word_table(Enum{})) {
+      if (word == given) return value;
+    }
+  }
   return std::nullopt;
+}
+
+/// What a value was called in the version before; empty where it is called the same.
+template <HasFormerWords Enum>
+[[nodiscard]] constexpr std::string_view former_word_of(Enum value) {
+  for (const auto& [known, word] : former_word_table(Enum{})) {
+    if (known == value) return word;
+  }
+  return "";
 }
 
 /// Every word, in the order of the table.

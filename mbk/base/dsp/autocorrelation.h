@@ -7,7 +7,7 @@
 namespace mbk::dsp {
 
 /// Autocorrelation r[l] = Σ_t e_t e_{t+l}/Σ_t e_t², l = 0 … last, over pieces of one signal, by the Fourier transform
-/// of pieces continued by `last` zeros. Products never cross a break. The mean is not taken off.
+/// of pieces continued by `last` zeros. Products never cross a break. The mean is not removed.
 ///
 /// Biased: both sums run over what there is, so that a lag of l samples loses l pairs of every piece and r shrinks
 /// towards zero, in one piece of N samples by 1 − l/N. In return r is a positive semidefinite sequence and its spread

@@ -31,7 +31,7 @@ struct CrossSpectra {
 /// output's power that linear responses to the inputs can explain (Bendat & Piersol 2010, ch. 7); of one input it is
 /// the ordinary coherence. With as many segments as inputs or fewer it is 1 whatever the signals are.
 /// @param inputs the first so many signals are inputs, the others outputs
-/// @returns lines×outputs; NaN where the inputs cannot be told apart (whatever their units: judged by the coherence
+/// @returns lines×outputs; NaN where the inputs cannot be distinguished (whatever their units: judged by the coherence
 /// between them) or where a signal has no power.
 [[nodiscard]] Matrix multiple_coherence(const CrossSpectra& spectra, Index inputs);
 

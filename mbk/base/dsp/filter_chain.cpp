@@ -7,29 +7,29 @@
 #include <cmath>
 #include <vector>
 
-#include "mbk/base/dsp/lanes.h"
+#include "mbk/base/dsp/simd_lanes.h"
 
 namespace mbk::dsp {
 namespace {
 
 using FourColumns = std::array<const double*, kLanes>;
 
-/// Columns that go side by side, and what is wanted of them.
+/// Columns that go side by side, and what is made of them.
 struct Batch {
   std::vector<Index> columns;    ///< at most kLanes
-  std::vector<int> derivatives;  ///< at most kMostDerivatives
+  std::vector<int> derivatives;  ///< at most kMaxDerivatives
   struct Output {
     std::size_t from;  ///< 4·(place in derivatives) + place in columns
     Index to;          ///< column of the answer
   };
   std::vector<Output> outputs;
 
-  /// Takes in what is wanted, where there is room for it.
-  bool add(const Wanted& wanted, Index to) {
-    const auto lane = place(columns, wanted.column), order = place(derivatives, wanted.derivative);
-    if (lane == kLanes || order == kMostDerivatives) return false;
-    if (lane == columns.size()) columns.push_back(wanted.column);
-    if (order == derivatives.size()) derivatives.push_back(wanted.derivative);
+  /// Takes in an output, where there is room for it.
+  bool add(const FilterOutput& output, Index to) {
+    const auto lane = place(columns, output.column), order = place(derivatives, output.derivative);
+    if (lane == kLanes || order == kMaxDerivatives) return false;
+    if (lane == columns.size()) columns.push_back(output.column);
+    if (order == derivatives.size()) derivatives.push_back(output.derivative);
     outputs.push_back({kLanes * order + lane, to});
     return true;
   }
@@ -41,12 +41,12 @@ struct Batch {
   }
 };
 
-std::vector<Batch> batches_of(std::span<const Wanted> wanted) {
+std::vector<Batch> batches_of(std::span<const FilterOutput> outputs) {
   std::vector<Batch> batches;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
     const auto to = static_cast<Index>(k);
-    if (std::ranges::any_of(batches, [&](Batch& batch) { return batch.add(wanted[k], to); })) continue;
-    batches.emplace_back().add(wanted[k], to);
+    if (std::ranges::any_of(batches, [&](Batch& batch) { return batch.add(outputs[k], to); })) continue;
+    batches.emplace_back().add(outputs[k], to);
   }
   return batches;
 }
@@ -150,15 +150,15 @@ std::vector<Group> groups_of(const Batch& batch, const FourValues& reference, Ma
   return groups;
 }
 
-/// Each wanted signal by itself: where there are no running sums.
+/// Each output separately: where there are no running sums.
 Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column> columns,
-                               std::span<const Wanted> wanted, Hertz rate) {
+                               std::span<const FilterOutput> outputs, Hertz rate) {
   Matrix smoothed;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const Column& column = columns[static_cast<std::size_t>(wanted[k].column)];
-    const auto one = savitzky_golay(chain.smoothing, wanted[k].derivative, column, rate);
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const Column& column = columns[static_cast<std::size_t>(outputs[k].column)];
+    const auto one = savitzky_golay(chain.smoothing, outputs[k].derivative, column, rate);
     if (!one) return tl::unexpected(one.error());
-    smoothed.conservativeResize(one->rows(), static_cast<Index>(wanted.size()));
+    smoothed.conservativeResize(one->rows(), static_cast<Index>(outputs.size()));
     smoothed.col(static_cast<Index>(k)) = *one;
   }
   if (chain.lowpass.empty()) return smoothed;
@@ -166,14 +166,14 @@ Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column>
 }
 
 /// Every row.
-Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> columns, std::span<const Wanted> wanted,
-                          Hertz rate) {
-  if (!has_running_sums(chain.smoothing)) return smooth_directly(chain, columns, wanted, rate);
+Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> columns,
+                          std::span<const FilterOutput> outputs, Hertz rate) {
+  if (!has_running_sums(chain.smoothing)) return smooth_directly(chain, columns, outputs, rate);
   const Index length = columns.front().size(), count = length - chain.smoothing.window + 1;
 
-  Matrix answer(count, static_cast<Index>(wanted.size()));
+  Matrix answer(count, static_cast<Index>(outputs.size()));
   const Index padding = chain.lowpass.empty() ? 0 : chain.padding.samples;
-  for (const Batch& batch : batches_of(wanted)) {
+  for (const Batch& batch : batches_of(outputs)) {
     const auto sums = running_sums(chain.smoothing, batch.derivatives, rate.value);
     if (!sums) return tl::unexpected(sums.error());
     const FourColumns lanes = lanes_of(batch, columns);
@@ -201,13 +201,13 @@ Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> colu
   return answer;
 }
 
-/// Low-pass first, then the smoothing where it is wanted: right wherever the low-pass has forgotten the ends.
+/// Low-pass first, then the smoothing where it is asked for: right wherever the low-pass has forgotten the ends.
 /// @param answer its rows [first, end) are written, row i from sample i·every on
 Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Column> columns,
-                                 std::span<const Wanted> wanted, Index every, Hertz rate, Index first, Index end,
+                                 std::span<const FilterOutput> outputs, Index every, Hertz rate, Index first, Index end,
                                  Matrix& answer) {
   const Index length = columns.front().size();
-  for (const Batch& batch : batches_of(wanted)) {
+  for (const Batch& batch : batches_of(outputs)) {
     std::vector<double> weights;
     for (const int derivative : batch.derivatives) {
       auto one = savitzky_golay_weights(chain.smoothing, derivative);
@@ -241,7 +241,7 @@ std::vector<Column> part_of(std::span<const Column> columns, Index first, Index 
 }  // namespace
 
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                   std::span<const Wanted> wanted, Hertz sample_rate, Index every) {
+                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every) {
   if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
   const auto length = length_of(columns);
   if (!length) return tl::unexpected(length.error());
@@ -253,21 +253,21 @@ Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Col
   // An end is `memory` rows long, and another `memory` behind it to forget where the piece was cut off.
   const Index piece = 2 * memory + chain.smoothing.window + chain.padding.samples;
   if (every == 1 || *length < 2 * piece) {
-    auto all = filter_all(chain, columns, wanted, sample_rate);
+    auto all = filter_all(chain, columns, outputs, sample_rate);
     if (!all || every == 1) return all;
     return Matrix((*all)(Eigen::seqN(0, count, every), Eigen::all));
   }
   const Index first = (memory + every - 1) / every, end = (*left - memory + every - 1) / every;  // rows of the inside
-  Matrix answer(count, static_cast<Index>(wanted.size()));
-  if (auto ok = lowpass_then_smooth(chain, columns, wanted, every, sample_rate, first, end, answer); !ok) {
+  Matrix answer(count, static_cast<Index>(outputs.size()));
+  if (auto ok = lowpass_then_smooth(chain, columns, outputs, every, sample_rate, first, end, answer); !ok) {
     return tl::unexpected(ok.error());
   }
   if (memory == 0) return answer;
-  const auto at_start = filter_all(chain, part_of(columns, 0, piece), wanted, sample_rate);
+  const auto at_start = filter_all(chain, part_of(columns, 0, piece), outputs, sample_rate);
   if (!at_start) return at_start;
   answer.topRows(first) = (*at_start)(Eigen::seqN(0, first, every), Eigen::all);
   const Index begin = *length - piece;
-  const auto at_end = filter_all(chain, part_of(columns, begin, piece), wanted, sample_rate);
+  const auto at_end = filter_all(chain, part_of(columns, begin, piece), outputs, sample_rate);
   if (!at_end) return at_end;
   answer.bottomRows(count - end) = (*at_end)(Eigen::seqN(end * every - begin, count - end, every), Eigen::all);
   return answer;

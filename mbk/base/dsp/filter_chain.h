@@ -18,8 +18,8 @@ struct FilterChain {
   Padding padding;
 };
 
-/// One signal that is wanted: the derivative of that order of one column.
-struct Wanted {
+/// One output of the filters: the derivative of that order of one column.
+struct FilterOutput {
   Index column = 0;
   int derivative = 0;
 };
@@ -29,17 +29,18 @@ using Column = Eigen::Map<const Vector>;
 /// savitzky_golay and then filter_zero_phase, to rounding, in two passes over the data.
 /// The Savitzky–Golay sums Σ_j C(j, k) x[i + j], k = 0…N, run from sample to sample by Pascal's rule,
 ///   C(j, k) = C(j + 1, k) − C(j, k − 1),
-/// and start anew after each half window, so that rounding has no time to grow; a wanted signal is a sum of N + 1 of
+/// and start anew after each half window, so that rounding has no time to grow; an output is a sum of N + 1 of
 /// them. Four columns go side by side.
 ///
-/// Where only every so many rows are wanted, they are right to kForgotten of the signals: away from the ends the two
-/// filters commute, so that the low-pass goes first and the smoothing is evaluated where it is wanted. Near the ends,
-/// where the low-pass still remembers how the signal was continued, and for short signals, every row is computed.
+/// Where only every Nth row is asked for, the outputs are right to kForgotten of the signals: away from the ends the
+/// two filters commute, so that the low-pass goes first and the smoothing is evaluated where it is asked for. Near the
+/// ends, where the low-pass still remembers how the signal was continued, and for short signals, every row is computed.
 /// @param columns of equal length L, evenly sampled
-/// @returns ⌈(L − W + 1)/every⌉×wanted; row i belongs to sample half window + i·every.   Offline: allocates.
+/// @returns ⌈(L − W + 1)/every⌉×outputs; row i belongs to sample half window + i·every.   Offline: allocates.
 /// @fails as savitzky_golay and filter_zero_phase; every < 1.
 [[nodiscard]] Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                                 std::span<const Wanted> wanted, Hertz sample_rate, Index every = 1);
+                                                 std::span<const FilterOutput> outputs, Hertz sample_rate,
+                                                 Index every = 1);
 inline constexpr double kForgotten = 1e-7;
 
 /// Samples after which the response of a filter to what was before is below a fraction of it: log(fraction)/log|p| of

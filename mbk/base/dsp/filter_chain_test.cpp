@@ -41,7 +41,7 @@ std::vector<Column> columns_of(const std::vector<Vector>& signals) {
   return columns;
 }
 
-const std::vector<Wanted> kTwoAxes = {{0, 0}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {2, 2}, {1, 0}, {3, 0}};
+const std::vector<FilterOutput> kTwoAxes = {{0, 0}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {2, 2}, {1, 0}, {3, 0}};
 
 /// The slow plain twin: one filter after the other, one signal after the other.
 Vector plain(const FilterChain& chain, const Vector& signal, int derivative) {
@@ -77,29 +77,29 @@ TEST(FilterChain, AgreesWithOneFilterAfterTheOther) {
 
 TEST(FilterChain, TakesAnyNumberOfColumnsAndDerivatives) {
   const auto all = signals(800, 6, 2);
-  std::vector<Wanted> wanted;
+  std::vector<FilterOutput> outputs;
   for (Index column = 0; column < 6; ++column) {
     for (int derivative = 0; derivative <= static_cast<int>(column % 5); ++derivative) {
-      wanted.push_back({column, derivative});
+      outputs.push_back({column, derivative});
     }
   }
   const FilterChain c = chain({6, 61}, 15.0);
-  const Matrix filtered = smooth_then_lowpass(c, columns_of(all), wanted, kRate).value();
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const Vector want = plain(c, all[static_cast<std::size_t>(wanted[k].column)], wanted[k].derivative);
+  const Matrix filtered = smooth_then_lowpass(c, columns_of(all), outputs, kRate).value();
+  for (std::size_t k = 0; k < outputs.size(); ++k) {
+    const Vector want = plain(c, all[static_cast<std::size_t>(outputs[k].column)], outputs[k].derivative);
     EXPECT_LT(largest(filtered.col(static_cast<Index>(k)) - want),
-              std::pow(10.0, std::max(wanted[k].derivative, 2) - 12.0) * largest(want))
-        << k << ", derivative " << wanted[k].derivative;
+              std::pow(10.0, std::max(outputs[k].derivative, 2) - 12.0) * largest(want))
+        << k << ", derivative " << outputs[k].derivative;
   }
 }
 
 TEST(FilterChain, ContinuesSignalsAsAsked) {
   const auto all = signals(900, 2, 3);
-  const std::vector<Wanted> wanted = {{0, 0}, {1, 0}};
+  const std::vector<FilterOutput> outputs = {{0, 0}, {1, 0}};
   for (const Extension extension : {Extension::odd, Extension::even, Extension::constant}) {
     FilterChain c = chain({6, 101}, 5.0);
     c.padding = {extension, 60};
-    const Matrix filtered = smooth_then_lowpass(c, columns_of(all), wanted, kRate).value();
+    const Matrix filtered = smooth_then_lowpass(c, columns_of(all), outputs, kRate).value();
     for (Index k = 0; k < 2; ++k) {
       const Vector want = plain(c, all[static_cast<std::size_t>(k)], 0);
       EXPECT_LT(largest(filtered.col(k) - want), 1e-11 * largest(want));
@@ -109,25 +109,25 @@ TEST(FilterChain, ContinuesSignalsAsAsked) {
 
 TEST(FilterChain, KeepsAConstantExactlyAndHasNoDerivativeOfIt) {
   const std::vector<Vector> constant = {Vector::Constant(500, 0.3)};
-  const std::vector<Wanted> wanted = {{0, 0}, {0, 1}, {0, 2}};
+  const std::vector<FilterOutput> outputs = {{0, 0}, {0, 1}, {0, 2}};
   for (const Matrix& filtered :
-       {smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(constant), wanted, kRate).value(),
-        smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(constant), wanted, kRate, 7).value()}) {
+       {smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(constant), outputs, kRate).value(),
+        smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(constant), outputs, kRate, 7).value()}) {
     EXPECT_TRUE((filtered.col(0).array() == 0.3).all());
     EXPECT_TRUE((filtered.rightCols(2).array() == 0.0).all());
   }
 }
 
 TEST(FilterChain, GivesEveryStepthRowOfTheWhole) {
-  const std::vector<Wanted> three = {{0, 0}, {0, 1}, {0, 2}};
+  const std::vector<FilterOutput> three = {{0, 0}, {0, 1}, {0, 2}};
   for (const Index samples : {1200, 9000, 15001, 30000}) {
     const auto all = signals(samples, 4, 4);
     for (FilterChain c : {chain({6, 101}, 5.0), chain({4, 35}, 30.0), FilterChain{{6, 31}, {}, {}}}) {
       c.padding.samples = 30;
       for (const Index step : {1, 7, 20, 500}) {
-        for (const std::vector<Wanted>& wanted : {kTwoAxes, three}) {
-          const Matrix full = smooth_then_lowpass(c, columns_of(all), wanted, kRate).value();
-          const Matrix some = smooth_then_lowpass(c, columns_of(all), wanted, kRate, step).value();
+        for (const std::vector<FilterOutput>& outputs : {kTwoAxes, three}) {
+          const Matrix full = smooth_then_lowpass(c, columns_of(all), outputs, kRate).value();
+          const Matrix some = smooth_then_lowpass(c, columns_of(all), outputs, kRate, step).value();
           ASSERT_EQ(some.rows(), (full.rows() - 1) / step + 1);
           const Matrix want = full(Eigen::seqN(0, some.rows(), step), Eigen::all);
           for (Index k = 0; k < full.cols(); ++k) {
@@ -149,18 +149,19 @@ TEST(FilterChain, KnowsHowLongAFilterRemembers) {
 
 TEST(FilterChain, RefusesWhatItCannotFilter) {
   const auto all = signals(110, 2, 6);
-  const std::vector<Wanted> wanted = {{0, 0}};
+  const std::vector<FilterOutput> outputs = {{0, 0}};
   const auto message = [&](const auto& result) { return result ? std::string() : result.error().message; };
-  EXPECT_NE(message(smooth_then_lowpass(chain({6, 151}, 5.0), columns_of(all), wanted, kRate)).find("window of 151"),
+  EXPECT_NE(message(smooth_then_lowpass(chain({6, 151}, 5.0), columns_of(all), outputs, kRate)).find("window of 151"),
             std::string::npos);
-  EXPECT_NE(message(smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), wanted, kRate)).find("padding of 15"),
+  EXPECT_NE(message(smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), outputs, kRate)).find("padding of 15"),
             std::string::npos);
-  EXPECT_NE(message(smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), wanted, kRate, 1)).find("padding of 15"),
-            std::string::npos);
-  EXPECT_FALSE(smooth_then_lowpass(chain({6, 31}, 5.0), columns_of(all), wanted, kRate, 0));
-  EXPECT_FALSE(smooth_then_lowpass(chain({6, 100}, 5.0), columns_of(all), wanted, kRate));
+  EXPECT_NE(
+      message(smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), outputs, kRate, 1)).find("padding of 15"),
+      std::string::npos);
+  EXPECT_FALSE(smooth_then_lowpass(chain({6, 31}, 5.0), columns_of(all), outputs, kRate, 0));
+  EXPECT_FALSE(smooth_then_lowpass(chain({6, 100}, 5.0), columns_of(all), outputs, kRate));
   std::vector<Vector> unequal = {all[0], all[1].head(50)};
-  EXPECT_FALSE(smooth_then_lowpass(chain({6, 31}, 5.0), columns_of(unequal), wanted, kRate));
+  EXPECT_FALSE(smooth_then_lowpass(chain({6, 31}, 5.0), columns_of(unequal), outputs, kRate));
 }
 
 }  // namespace

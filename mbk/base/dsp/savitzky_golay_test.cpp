@@ -63,7 +63,7 @@ TEST(SavitzkyGolay, HasTheKnownCutoffsOfTheThesisFilter) {
   EXPECT_NEAR(savitzky_golay_gain(filter, 2, Hertz(20.7), kRate).value(), std::sqrt(0.5), 0.01);
 }
 
-TEST(SavitzkyGolay, ChoosesAWindowThatCutsNearTheWantedFrequency) {
+TEST(SavitzkyGolay, ChoosesAWindowThatCutsNearTheExpectedFrequency) {
   for (const double cutoff : {10.0, 23.0, 50.0, 100.0}) {
     const SavitzkyGolay filter{6, savitzky_golay_window(6, Hertz(cutoff), kRate)};
     EXPECT_EQ(filter.window % 2, 1);

@@ -28,17 +28,17 @@ TEST(SignedRemainders, AreThoseOfDivisionUpToPositiveFactors) {
     const Polynomial shared = trial % 4 == 0 ? random_polynomial(random, 2) : Polynomial{-1};
     const Polynomial a = shared * sparse(random, degree);
     const Polynomial b = shared * (trial % 2 == 0 ? sparse(random, degree - trial % 3) : random_polynomial(random, 2));
-    std::vector<Polynomial> wanted{a, b};
+    std::vector<Polynomial> expected{a, b};
     for (;;) {
-      const Polynomial next = -divide(wanted[wanted.size() - 2], wanted.back()).remainder;
+      const Polynomial next = -divide(expected[expected.size() - 2], expected.back()).remainder;
       if (next.is_zero()) break;
-      wanted.push_back(next);
+      expected.push_back(next);
     }
     const auto found = signed_remainders(a, b);
-    ASSERT_EQ(found.size(), wanted.size()) << "trial " << trial;
+    ASSERT_EQ(found.size(), expected.size()) << "trial " << trial;
     for (std::size_t k = 0; k < found.size(); ++k) {
-      EXPECT_EQ(monic(as_rational(found[k])), monic(wanted[k])) << "trial " << trial << ", " << k;
-      EXPECT_EQ(found[k].back().sign(), wanted[k].leading().sign()) << "trial " << trial << ", " << k;
+      EXPECT_EQ(monic(as_rational(found[k])), monic(expected[k])) << "trial " << trial << ", " << k;
+      EXPECT_EQ(found[k].back().sign(), expected[k].leading().sign()) << "trial " << trial << ", " << k;
     }
   }
 }

@@ -149,8 +149,8 @@ bool PositiveRealness::holds() const {
 }
 
 Result<PositiveRealness> positive_real(const RationalMatrix& Z) {
-  if (Z.size() < 1 || Z.size() > kMostPorts) {
-    return bad_usage(fmt::format("a matrix of {} rows: it must have 1 to {}", Z.size(), kMostPorts));
+  if (Z.size() < 1 || Z.size() > kMaxPorts) {
+    return bad_usage(fmt::format("a matrix of {} rows: it must have 1 to {}", Z.size(), kMaxPorts));
   }
   const Polynomial denominator = common_denominator(Z);
   auto [multiple, wrong_residues] = axis_poles(Z, denominator);

@@ -45,12 +45,12 @@ struct PositiveRealness {
   }
 };
 
-inline constexpr Index kMostPorts = 6;  ///< the number of principal minors is 2ⁿ − 1
+inline constexpr Index kMaxPorts = 6;  ///< the number of principal minors is 2ⁿ − 1
 
 /// Decides every condition exactly, in rational arithmetic; only the frequencies that it names are rounded. Marginal
 /// cases, such as a lossless Z or a damping of exactly zero, are positive real.
 /// For Z = M s + B + K/s: M = Mᵀ ⪰ 0, K = Kᵀ ⪰ 0 and B + Bᵀ ⪰ 0, which theorem 3.2 of Dyck 2013 misses on its boundary.
-/// @fails  usage: Z has no entries or more than kMostPorts rows.
+/// @fails  usage: Z has no entries or more than kMaxPorts rows.
 [[nodiscard]] Result<PositiveRealness> positive_real(const RationalMatrix& Z);
 
 }  // namespace mbk::lti

@@ -278,7 +278,7 @@ TEST(PositiveReal, IsDecidedForNumbersAtTheEndsOfADouble) {
 
 TEST(PositiveReal, RefusesSizesThatItCannotJudge) {
   EXPECT_FALSE(positive_real(RationalMatrix(Index{0})));
-  EXPECT_FALSE(positive_real(RationalMatrix(kMostPorts + 1)));
+  EXPECT_FALSE(positive_real(RationalMatrix(kMaxPorts + 1)));
 }
 
 }  // namespace

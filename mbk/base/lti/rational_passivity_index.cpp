@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidth = 1e-10;  // of the proven bounds, relative
-constexpr int kMostTests = 400;
+constexpr int kMaxTests = 400;
 
 /// The infimum over ω of λ_min(P(ω))/q(ω), with P Hermitian, q = factor·|d(jω)|² and P/q bounded, in the way of
 /// Bruinsma & Steinbuch (1990): a level a little below the lowest value that was seen is tested exactly; where it
@@ -39,7 +39,7 @@ class Infimum {
       return fail(ErrorKind::not_usable, "values at zero and infinite frequency are beyond the range of a double");
     }
     std::optional<double> proven;
-    for (int test = 0; test < kMostTests; ++test) {
+    for (int test = 0; test < kMaxTests; ++test) {
       const double width = scale_ > 0.0 ? kWidth * scale_ : kWidth;
       if (proven && lowest_ - *proven <= 1.5 * width) return PassivityIndex{lowest_, *proven, lowest_, RadPerSec(at_)};
       const double level = proven ? *proven + 0.5 * (lowest_ - *proven) : lowest_ - step_ * width;
@@ -51,7 +51,7 @@ class Infimum {
       }
     }
     return fail(ErrorKind::not_usable,
-                fmt::format("the lowest value over all frequencies did not settle in {} steps", kMostTests));
+                fmt::format("the lowest value over all frequencies did not settle in {} steps", kMaxTests));
   }
 
  private:
@@ -138,7 +138,7 @@ tl::unexpected<Error> does_not_exist(const std::string& index, const std::string
 }
 
 /// ν of a matrix under the name by which it is asked for.
-Result<PassivityIndex> least_hermitian_part(const RationalMatrix& G, const std::string& name, const std::string& of) {
+Result<PassivityIndex> min_hermitian_part(const RationalMatrix& G, const std::string& name, const std::string& of) {
   const auto judged = positive_real(G);
   if (!judged) return tl::unexpected(judged.error());
   for (const auto condition :
@@ -152,19 +152,19 @@ Result<PassivityIndex> least_hermitian_part(const RationalMatrix& G, const std::
 }  // namespace
 
 Result<PassivityIndex> input_passivity_index(const RationalMatrix& G) {
-  return least_hermitian_part(G, "input passivity index", "");
+  return min_hermitian_part(G, "input passivity index", "");
 }
 
 Result<PassivityIndex> output_passivity_index(const RationalMatrix& G) {
   const auto inverted = inverse(G);
   if (!inverted) return does_not_exist("output passivity index", inverted.error().message);
-  return least_hermitian_part(*inverted, "output passivity index", "of the inverse, ");
+  return min_hermitian_part(*inverted, "output passivity index", "of the inverse, ");
 }
 
 Result<PassivityIndex> relative_passivity_index(const RationalMatrix& G) {
   const std::string name = "relative passivity index";
-  if (G.size() < 1 || G.size() > kMostPorts) {
-    return bad_usage(fmt::format("a matrix of {} rows: it must have 1 to {}", G.size(), kMostPorts));
+  if (G.size() < 1 || G.size() > kMaxPorts) {
+    return bad_usage(fmt::format("a matrix of {} rows: it must have 1 to {}", G.size(), kMaxPorts));
   }
   const RationalMatrix one = RationalMatrix::scalar(G.size(), 1);
   const auto inverted = inverse(one + G);

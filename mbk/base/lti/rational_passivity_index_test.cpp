@@ -134,16 +134,16 @@ RationalMatrix random_stable(Random& random, Index n) {
   return G;
 }
 
-double least_hermitian(const Eigen::MatrixXcd& value) {
+double min_hermitian(const Eigen::MatrixXcd& value) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(0.5 * (value + value.adjoint())).eigenvalues()[0];
 }
 
 double input_at(const Eigen::MatrixXcd& G) {
-  return least_hermitian(G);
+  return min_hermitian(G);
 }
 
 double output_at(const Eigen::MatrixXcd& G) {
-  return least_hermitian(G.inverse());
+  return min_hermitian(G.inverse());
 }
 
 double minus_relative_at(const Eigen::MatrixXcd& G) {
@@ -196,7 +196,7 @@ TEST(PassivityIndices, ThatDoNotExistSayWhy) {
   expect_none(input_passivity_index(RationalMatrix(RationalFunction(Polynomial{*exact(1e300) * *exact(1e300)}))),
               "beyond the range of a double");
   EXPECT_EQ(input_passivity_index(RationalMatrix(Index{0})).error().kind, ErrorKind::usage);
-  EXPECT_EQ(relative_passivity_index(RationalMatrix(kMostPorts + 1)).error().kind, ErrorKind::usage);
+  EXPECT_EQ(relative_passivity_index(RationalMatrix(kMaxPorts + 1)).error().kind, ErrorKind::usage);
 }
 
 TEST(RelativePassivityIndex, OfAnUnstableMatrixMayExist) {

@@ -47,8 +47,8 @@ TEST(RationalMatrix, OfAnImpedanceHasItsValueOnTheAxis) {
   ASSERT_TRUE(Z);
   const double omega = 3.7;
   const std::complex<double> j(0.0, 1.0);
-  const Eigen::MatrixXcd wanted = j * omega * M + B - j / omega * K;
-  EXPECT_LT(((*Z)(RadPerSec(omega)) - wanted).norm(), kRounding * wanted.norm());
+  const Eigen::MatrixXcd expected = j * omega * M + B - j / omega * K;
+  EXPECT_LT(((*Z)(RadPerSec(omega)) - expected).norm(), kRounding * expected.norm());
   EXPECT_EQ(common_denominator(*Z), (Polynomial{0, 1}));
 }
 

@@ -30,7 +30,7 @@ class Solver {
     right_ = unit_of(z.cwiseSqrt());
   }
 
-  /// Nothing where the terms cannot be told apart.
+  /// Nothing where the terms cannot be distinguished.
   [[nodiscard]] std::optional<Vector> solve(const Moments& moments) const {
     constexpr double kApart = 1e-13;
     Matrix A, b;
@@ -174,7 +174,7 @@ Result<BlockBootstrap> block_bootstrap(const Matrix& Z, const Matrix& R, const M
   const Moments data = resampler->moments(resampler->ranges());
   const Solver solver(data, Z, R, resampler->ranges(), S);
   auto estimate = solver.solve(data);
-  if (!estimate) return fail(ErrorKind::not_usable, "the terms of the regression cannot be told apart");
+  if (!estimate) return fail(ErrorKind::not_usable, "the terms of the regression cannot be distinguished");
   BlockBootstrap result{std::move(*estimate), {}, resampler->blocks()};
   result.coefficients.resize(result.estimate.size(), options.replicates);
   constexpr int kTogether = 64;  // replicates to a turn of a thread
@@ -183,7 +183,7 @@ Result<BlockBootstrap> block_bootstrap(const Matrix& Z, const Matrix& R, const M
       const auto solution =
           solver.solve(resampler->moments(resampler->draw(options.seed, static_cast<std::uint32_t>(i))));
       if (!solution) {
-        return fail(ErrorKind::not_usable, fmt::format("in bootstrap sample {} the terms cannot be told apart", i),
+        return fail(ErrorKind::not_usable, fmt::format("in bootstrap sample {} the terms cannot be distinguished", i),
                     "record longer, or choose shorter blocks");
       }
       result.coefficients.col(i) = *solution;

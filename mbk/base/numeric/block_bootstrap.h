@@ -65,7 +65,7 @@ struct BlockBootstrap {
 /// Right for coloured residuals; their variance may depend on the regressors.
 /// @param S pq×k, full column rank; empty = nothing tied
 /// @fails usage: replicates < 1; S does not fit. data: as BlockResampler. not usable: in the data or in a sample the
-/// terms cannot be told apart.
+/// terms cannot be distinguished.
 [[nodiscard]] Result<BlockBootstrap> block_bootstrap(const Matrix& Z, const Matrix& R, const Matrix& Y, const Matrix& S,
                                                      const std::vector<RowRange>& ranges,
                                                      const BlockBootstrapOptions& options);

@@ -183,18 +183,18 @@ Vector error_of(const Scaled& p, const Point& at, const Vector& positive) {
 
 /// Newton's method with the derivative of Π, for as long as it gets nearer.
 int polish(const Scaled& p, Point& at) {
-  constexpr int kMostSteps = 30, kMostHalvings = 6;
+  constexpr int kMaxSteps = 30, kMaxHalvings = 6;
   const Index v = p.q.size(), m = p.rows();
   Matrix D, J(v + m, v + m);
   Vector positive = clipped(p, at.z, &D);
   Vector error = error_of(p, at, positive);
   int steps = 0;
-  for (; steps < kMostSteps && error.norm() > 0.0; ++steps) {
+  for (; steps < kMaxSteps && error.norm() > 0.0; ++steps) {
     J << p.P, -at.weight * (p.A.transpose() * (D - Matrix::Identity(m, m))), p.A, -D;
     const Vector step = CompleteOrthogonal(J).solve(-error);
     bool nearer = false;
     double length = 1.0;
-    for (int halving = 0; halving < kMostHalvings && !nearer; ++halving, length *= 0.5) {
+    for (int halving = 0; halving < kMaxHalvings && !nearer; ++halving, length *= 0.5) {
       const Point next{at.x + length * step.head(v), at.z + length * step.tail(m), at.weight};
       if (!next.x.allFinite() || !next.z.allFinite()) return steps;
       positive = clipped(p, next.z);
@@ -234,7 +234,7 @@ ConeSolution solution_of(const ConeProgram& program, const Scaled& p, const Poin
 }  // namespace
 
 Result<ConeSolution> solve_cone_program(const ConeProgram& program) {
-  constexpr int kMostIterations = 20000, kBetweenPolishes = 25;
+  constexpr int kMaxIterations = 20000, kBetweenPolishes = 25;
   constexpr double kMet = 1e-10, kRelaxation = 1.6, kUnbalanced = 5.0;
   if (!well_formed(program)) return bad_usage("the shapes of a cone program do not fit, or it is not finite");
   const std::optional<Scaled> p = scaled(program);
@@ -245,7 +245,7 @@ Result<ConeSolution> solve_cone_program(const ConeProgram& program) {
   Cholesky factor = factored();
   Vector s = clipped(*p, at.z), u = at.z - s;
   int wait = kBetweenPolishes;
-  for (int iteration = 1; iteration <= kMostIterations; ++iteration) {
+  for (int iteration = 1; iteration <= kMaxIterations; ++iteration) {
     at.x = factor.solve(-p->q + at.weight * (p->A.transpose() * (s - p->b - u)));
     const Vector affine = p->A * at.x + p->b, previous = s;
     at.z = kRelaxation * affine + (1.0 - kRelaxation) * s + u;

@@ -117,7 +117,7 @@ TEST(ConeProgram, AgreesWithTheBarrierMethod) {
 }
 
 TEST(ConeProgram, FindsACornerWhereAWholeMatrixIsZero) {
-  // Both eigenvalues want to be negative: X = 0, and the multiplier is what was wanted.
+  // Both eigenvalues want to be negative: X = 0, and the multiplier is its target.
   const Matrix X0{{-1.0, 0.3}, {0.3, -2.0}};
   const auto found = solve_cone_program(projection(X0));
   ASSERT_TRUE(found);

@@ -6,7 +6,7 @@
 
 namespace mbk::numeric {
 
-/// Which columns of a regression can be told apart, and what the others are made of.
+/// Which columns of a regression can be distinguished, and what the others are made of.
 struct IndependentColumns {
   std::vector<Index> kept;  ///< in order
   Matrix combination;       ///< kept×p: column j is Z(:, kept) · combination.col(j), to the tolerance

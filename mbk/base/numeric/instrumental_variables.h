@@ -15,7 +15,7 @@ struct InstrumentalFit {
   Vector free;          ///< φ, k
   Matrix structure;     ///< S, pq×k
   Matrix inverse;       ///< A = (Sᵀ(I ⊗ RᵀZ)S)⁻¹, k×k, not symmetric
-  int rank = 0;         ///< of RᵀZ, both scaled to unit length; < p where the instruments cannot tell the terms apart
+  int rank = 0;         ///< of RᵀZ, both scaled to unit length; < p where the instruments do not identify the terms
 };
 
 /// @param Z N×p    @param R N×p    @param Y N×q    @param S pq×k, full column rank; empty = nothing tied

@@ -51,8 +51,8 @@ Matrix tied() {
   return S;
 }
 
-double scaled_difference(const Matrix& got, const Matrix& wanted) {
-  return ((got - wanted).array() / wanted.array()).abs().maxCoeff();
+double scaled_difference(const Matrix& got, const Matrix& expected) {
+  return ((got - expected).array() / expected.array()).abs().maxCoeff();
 }
 
 constexpr double kRounding = 1e-10;  // condition of the scaled moments, about 10, times ε, and room
@@ -128,10 +128,10 @@ TEST(InstrumentalVariables, WithTheRegressorsThemselvesAreLeastSquares) {
     EXPECT_LT(scaled_difference(iv->inverse.diagonal(), ls->inverse_gram.diagonal()), kRounding);
     const Matrix left = Y - data.Z * ls->coefficients;
     const std::vector<RowRange> ranges = {{0, 150}, {170, 400}};
-    const Matrix wanted = newey_west_covariance(*ls, data.Z, left, ranges, 20);
+    const Matrix expected = newey_west_covariance(*ls, data.Z, left, ranges, 20);
     const Matrix got = newey_west_covariance(*iv, data.Z, left, ranges, 20);
-    const Vector scale = wanted.diagonal().cwiseSqrt().cwiseInverse();
-    EXPECT_LT((scale.asDiagonal() * (got - wanted) * scale.asDiagonal()).cwiseAbs().maxCoeff(), kRounding);
+    const Vector scale = expected.diagonal().cwiseSqrt().cwiseInverse();
+    EXPECT_LT((scale.asDiagonal() * (got - expected) * scale.asDiagonal()).cwiseAbs().maxCoeff(), kRounding);
   }
 }
 
@@ -240,9 +240,9 @@ TEST(FirstStageStrength, IsTheConditionalFWhereResidualsAreWhite) {
       const Vector strength = first_stage_strength(data.Z, data.R, {{0, kRows}}, 0);
       ASSERT_EQ(strength.size(), 2);
       for (Index j = 0; j < 2; ++j) {
-        const double wanted = plain_strength(data.Z, data.R, j);
-        EXPECT_GT(wanted, 100.0);
-        EXPECT_NEAR(strength[j] / wanted, 1.0, 0.15) << "seed " << seed << ", " << instruments << ", " << j;
+        const double expected = plain_strength(data.Z, data.R, j);
+        EXPECT_GT(expected, 100.0);
+        EXPECT_NEAR(strength[j] / expected, 1.0, 0.15) << "seed " << seed << ", " << instruments << ", " << j;
       }
     }
   }

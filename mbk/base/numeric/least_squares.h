@@ -21,7 +21,7 @@ struct LinearFit {
   Vector free;           ///< φ, k
   Matrix structure;      ///< S, pq×k; the identity where nothing is tied
   Matrix inverse_gram;   ///< (Sᵀ (I ⊗ ZᵀZ) S)⁻¹, k×k
-  int rank = 0;          ///< of the regressors, each scaled to unit length; < p where they cannot be told apart
+  int rank = 0;          ///< of the regressors, each scaled to unit length; < p where they cannot be distinguished
   double condition = 0;  ///< largest over smallest singular value of the scaled regressors; ∞ where rank < p
 };
 

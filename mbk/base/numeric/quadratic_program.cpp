@@ -32,7 +32,7 @@ bool well_formed(const QuadraticProgram& p) {
 }  // namespace
 
 Result<QuadraticSolution> solve_quadratic_program(const QuadraticProgram& program) {
-  constexpr int kMostSteps = 100;
+  constexpr int kMaxSteps = 100;
   constexpr double kMet = 1e-10;
   constexpr double kBack = 0.995;  // how much of the way to the border a step takes
   if (!well_formed(program)) return bad_usage("the shapes of a quadratic program do not fit, or it is not finite");
@@ -50,7 +50,7 @@ Result<QuadraticSolution> solve_quadratic_program(const QuadraticProgram& progra
     kkt.topRightCorner(n, p) = C.transpose();
     kkt.bottomLeftCorner(p, n) = C;
   }
-  for (now.iterations = 0; now.iterations < kMostSteps; ++now.iterations) {
+  for (now.iterations = 0; now.iterations < kMaxSteps; ++now.iterations) {
     Vector dual = H * now.z + g + G.transpose() * now.lambda;
     Vector equal = -b;
     if (p > 0) {

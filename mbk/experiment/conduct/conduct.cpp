@@ -43,7 +43,7 @@ class Run {
   }
 
  private:
-  [[nodiscard]] bool asked_to_end() const { return session_.signals().end_session; }
+  [[nodiscard]] bool asked_to_end() const { return session_.flags().end_session; }
 
   Next fail(Error error) {
     conclusion_.failure = std::move(error);

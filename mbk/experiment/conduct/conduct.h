@@ -112,7 +112,7 @@ struct Conclusion {
 
 /// Performs the trials of an experiment in their order, each behind the gate into a file of its own, and measures what
 /// was recorded. Between two trials the robot is told "motors off" (IdleWatch). None follows one whose ticks were lost,
-/// nor a request to end (Signals::end_session).
+/// nor a request to end (LoopFlags::end_session).
 /// @param measure  after each trial that was not stopped; empty: trials are only recorded
 /// @returns  with a failure as make_device, Session::perform and Operator::judged; data: ticks were lost
 [[nodiscard]] Conclusion run(const Experiment& experiment, session::Session& session, Operator& conductor,

@@ -45,7 +45,7 @@ Result<Command> parse_command(std::string_view json) {
   if (named == message.end() || !named->is_string()) return refused("a message names no command");
   const auto& name = named->get_ref<const std::string&>();
   const auto action = value_of<Action>(name);
-  if (!action) return refused(fmt::format("there is no command '{:.40}'", name));
+  if (!action) return refused(fmt::format("unknown command '{:.40}'", name));
 
   Command command{*action, {}};
   const char* const key = command.action == Action::note ? "text" : command.action == Action::reset ? "code" : nullptr;

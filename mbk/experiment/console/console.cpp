@@ -21,11 +21,11 @@ namespace {
 using Json = nlohmann::json;
 using journal::Tick;
 
-constexpr std::size_t kMostPending = 8192;  // samples of a frame, at most
-constexpr std::uint64_t kStateBeats = 12;   // a state at least so often
+constexpr std::size_t kMaxPending = 8192;  // samples of a frame, at most
+constexpr std::uint64_t kStateBeats = 12;  // a state at least so often
 constexpr std::uint64_t kDiskBeats = 120;
-constexpr std::size_t kMostReports = 30;  // that can still be opened: of a session of months the last ones
-constexpr std::size_t kShownNotes = 20;   // in a state, and their bytes
+constexpr std::size_t kMaxReports = 30;  // that can still be opened: of a session of months the last ones
+constexpr std::size_t kShownNotes = 20;  // in a state, and their bytes
 constexpr std::size_t kShownNoteBytes = 8 << 10;
 constexpr std::size_t kLongestText = 600;  // in a state, of each sentence [bytes]
 
@@ -77,8 +77,8 @@ std::string dump(const Json& json) {
 
 }  // namespace
 
-Console::Console(const std::vector<session::Plan>& plans, session::Signals& signals)
-    : signals_(signals), protocol_(plans.empty() ? "" : plans.front().trial.protocol) {
+Console::Console(const std::vector<session::Plan>& plans, session::LoopFlags& flags)
+    : flags_(flags), protocol_(plans.empty() ? "" : plans.front().trial.protocol) {
   for (const session::Plan& plan : plans) {
     const protocol::Trial& trial = plan.trial;
     Listed listed;
@@ -90,7 +90,7 @@ Console::Console(const std::vector<session::Plan>& plans, session::Signals& sign
     trials_.push_back(std::move(listed));
   }
   if (const auto html = operator_page()) operator_page_ = make_page(std::string(*html));
-  for (auto* ticks : {&pending_, &sending_}) ticks->reserve(kMostPending);
+  for (auto* ticks : {&pending_, &sending_}) ticks->reserve(kMaxPending);
   live_ = std::make_unique<LiveEstimate>([this](const LiveEstimate::Estimate& one) { estimated(one); });
 }
 
@@ -99,8 +99,8 @@ Console::~Console() {
 }
 
 Result<std::unique_ptr<Console>> Console::open(std::uint16_t port, const std::vector<session::Plan>& plans,
-                                               session::Signals& signals, std::function<void(const std::string&)> log) {
-  std::unique_ptr<Console> console(new Console(plans, signals));
+                                               session::LoopFlags& flags, std::function<void(const std::string&)> log) {
+  std::unique_ptr<Console> console(new Console(plans, flags));
   Console& self = *console;
   auto server = Server::listen(port, {[&self](std::string_view path) { return self.page(path); },
                                       [&self](const Command& command) { return self.command(command); },
@@ -180,7 +180,7 @@ void Console::watch_throwing(std::span<const Tick> ticks) {
       last_ = tick;
       ++ticks_;
     }
-    const std::size_t room = kMostPending - std::min(kMostPending, pending_.size());
+    const std::size_t room = kMaxPending - std::min(kMaxPending, pending_.size());
     const auto taken = ticks.first(std::min(ticks.size(), room));
     pending_.insert(pending_.end(), taken.begin(), taken.end());
     skipped_samples_ += ticks.size() - taken.size();
@@ -215,7 +215,7 @@ void Console::show_report(std::string html, std::string why) {
     trials_[current_].report = last_report_;
   }
   trials_[current_].report_missing = std::move(why);
-  while (reports_.size() > kMostReports) {
+  while (reports_.size() > kMaxReports) {
     const int oldest = reports_.begin()->first;
     reports_.erase(reports_.begin());
     const auto of = std::ranges::find(trials_, oldest, &Listed::report);
@@ -228,13 +228,13 @@ void Console::show_report(std::string html, std::string why) {
 
 Action Console::ask(Question question) {
   std::unique_lock lock(mutex_);
-  question_ = signals_.operator_stop ? Question::reset : question;
+  question_ = flags_.operator_stop ? Question::reset : question;
   decision_.reset();
   reset_code_.clear();
   changed_ = true;
   constexpr auto kLook = std::chrono::milliseconds(100);
   while (!decided_.wait_for(lock, kLook, [&] { return decision_.has_value(); })) {
-    if (signals_.end_session) decision_ = Action::abort;
+    if (flags_.end_session) decision_ = Action::abort;
   }
   question_ = Question::none;
   reset_code_.clear();
@@ -266,7 +266,7 @@ void Console::wait_until_left() {
   }
   constexpr auto kLook = std::chrono::milliseconds(200);
   constexpr int kGrace = 15;  // a page that is loaded again is away for a moment
-  for (int away = 0; away < kGrace && !signals_.end_session; away = status().viewers > 0 ? 0 : away + 1) {
+  for (int away = 0; away < kGrace && !flags_.end_session; away = status().viewers > 0 ? 0 : away + 1) {
     std::this_thread::sleep_for(kLook);
   }
 }
@@ -290,7 +290,7 @@ Page Console::page(std::string_view path) {
 }
 
 Result<void> Console::command(const Command& command) {
-  if (command.action == Action::stop) signals_.operator_stop = true;
+  if (command.action == Action::stop) flags_.operator_stop = true;
   const std::scoped_lock lock(mutex_);
   changed_ = true;
   switch (command.action) {
@@ -300,7 +300,7 @@ Result<void> Console::command(const Command& command) {
       return {};
     case Action::end:
       if (!running_) return bad_usage("no trial is running");
-      signals_.end_trial = true;
+      flags_.end_trial = true;
       return {};
     case Action::note:
       return note(command.text);
@@ -324,9 +324,9 @@ Result<void> Console::reset(const std::string& code) {
 }
 
 Result<void> Console::note(const std::string& text) {
-  if (recording_notes_ == kMostNotes || recording_note_bytes_ + text.size() > kMostNoteBytes) {
+  if (recording_notes_ == kMaxNotes || recording_note_bytes_ + text.size() > kMaxNoteBytes) {
     return bad_usage(fmt::format("the recording takes no further note: it has {} of {}, {} of {} bytes",
-                                 recording_notes_, kMostNotes, recording_note_bytes_, kMostNoteBytes),
+                                 recording_notes_, kMaxNotes, recording_note_bytes_, kMaxNoteBytes),
                      "write it down elsewhere");
   }
   ++recording_notes_;
@@ -380,7 +380,7 @@ std::string Console::state_locked() const {
                       {"report", listed.report},
                       {"report_missing", beginning(listed.report_missing)}});
   }
-  const bool held = signals_.operator_stop && trip_.reason == safety::Reason::none && !running_;
+  const bool held = flags_.operator_stop && trip_.reason == safety::Reason::none && !running_;
   const Server::Status status = server_ ? server_->status() : Server::Status{};
   return dump({{"type", "state"},
                {"protocol", protocol_},

@@ -52,18 +52,18 @@ struct RobotStatus {
 };
 
 /// Notes of one recording, all together.
-inline constexpr std::size_t kMostNotes = 200, kMostNoteBytes = 32 << 10;
+inline constexpr std::size_t kMaxNotes = 200, kMaxNoteBytes = 32 << 10;
 
 /// The pages of a session: what happens is shown, and what is asked for there is done. Fed by the recorder, never by
-/// the loop: the loop sees nothing of it but Signals.
+/// the loop: the loop sees nothing of it but LoopFlags.
 class Console {
  public:
-  /// @param plans  of the trials, in their order    @param signals  of the session; outlives the console
+  /// @param plans  of the trials, in their order    @param flags  of the session; outlives the console
   /// @param log  one line about what was refused; from the server's thread
   /// @fails  as Server::listen
   [[nodiscard]] static Result<std::unique_ptr<Console>> open(std::uint16_t port,
                                                              const std::vector<session::Plan>& plans,
-                                                             session::Signals& signals,
+                                                             session::LoopFlags& flags,
                                                              std::function<void(const std::string&)> log);
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
@@ -96,7 +96,7 @@ class Console {
 
   /// Asks the page, and waits until it decides: start, repeat, next, abort or reset; or a note came, and the question
   /// is to be asked again. A stop while it waits asks for a reset before anything else. Where the program is asked to
-  /// end (Signals::end_session) the answer is abort.
+  /// end (LoopFlags::end_session) the answer is abort.
   [[nodiscard]] Action ask(Question question);
 
   /// What the answer came to, where it could not be done.
@@ -105,7 +105,7 @@ class Console {
   /// Shows it from now on. What is confirmed not to be off is shown as an alarm. From any thread.
   void show_robot(const RobotStatus& robot);
 
-  /// The session is over: waits until nobody watches any more, or Signals::end_session.
+  /// The session is over: waits until nobody watches any more, or LoopFlags::end_session.
   void wait_until_left();
 
   /// Remarks that belong to the recording of the trial that is running or was last, and are not in it yet.
@@ -127,7 +127,7 @@ class Console {
     std::string report_missing;
   };
 
-  Console(const std::vector<session::Plan>& plans, session::Signals& signals);
+  Console(const std::vector<session::Plan>& plans, session::LoopFlags& flags);
   Page page(std::string_view path);
   Result<void> command(const Command& command);
   Result<void> reset(const std::string& code);
@@ -138,7 +138,7 @@ class Console {
   void watch_throwing(std::span<const journal::Tick> ticks);
   [[nodiscard]] std::string state_locked() const;
 
-  session::Signals& signals_;
+  session::LoopFlags& flags_;
   std::string protocol_, reset_code_, said_;
   std::mutex mutex_;
   std::condition_variable decided_;

@@ -40,11 +40,11 @@ TEST(Frame, HoldsEverySampleWhereItsDescriptionSays) {
   EXPECT_EQ(at<double>(bytes, 16), 5.0);
   EXPECT_EQ(at<double>(bytes, 24), 5000.0);
   const auto hand = robot::hand_position(geometry, {0.3, 1.2});
-  const std::vector<double> wanted = {0.002, hand[0], hand[1], 1.5, -2.5, 0.31, -0.04,
-                                      0.25,  0.5,     -0.75,   4.0, 12.0, 3.0};
+  const std::vector<double> expected = {0.002, hand[0], hand[1], 1.5, -2.5, 0.31, -0.04,
+                                        0.25,  0.5,     -0.75,   4.0, 12.0, 3.0};
   for (std::size_t column = 0; column < kFrameColumns; ++column) {
     const float value = at<float>(bytes, kFrameHeader + (2 * kFrameColumns + column) * sizeof(float));
-    EXPECT_NEAR(value, wanted[column], 1e-6 * std::max(1.0, std::abs(wanted[column]))) << column;
+    EXPECT_NEAR(value, expected[column], 1e-6 * std::max(1.0, std::abs(expected[column]))) << column;
   }
 }
 

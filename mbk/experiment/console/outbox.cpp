@@ -5,7 +5,7 @@
 namespace mbk::console {
 
 void Outbox::put_frame(Message frame) {
-  if (frames_.size() == most_frames_) {
+  if (frames_.size() == max_frames_) {
     frames_.pop_front();
     ++dropped_;
   }

@@ -21,7 +21,7 @@ inline constexpr std::size_t kTopics = 4;
 /// frames of samples. Where one too many comes, the oldest frame is dropped and counted.
 class Outbox {
  public:
-  explicit Outbox(std::size_t most_frames) : most_frames_(most_frames) {}
+  explicit Outbox(std::size_t max_frames) : max_frames_(max_frames) {}
 
   void put(Topic topic, Message message) { newest_[static_cast<std::size_t>(topic)] = std::move(message); }
   void put_frame(Message frame);
@@ -37,7 +37,7 @@ class Outbox {
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
  private:
-  std::size_t most_frames_;
+  std::size_t max_frames_;
   std::array<Message, kTopics> newest_;
   std::deque<Message> frames_;
   std::uint64_t dropped_ = 0;

@@ -14,7 +14,7 @@ TEST(Outbox, AStuckViewerKeepsTheNewestFramesAndTheRestIsCounted) {
   for (int k = 0; k < 1000; ++k) outbox.put_frame(message(std::to_string(k)));
   EXPECT_EQ(outbox.frames(), 3U);
   EXPECT_EQ(outbox.dropped(), 997U);
-  for (const char* const wanted : {"997", "998", "999"}) EXPECT_EQ(*outbox.take()->message, wanted);
+  for (const char* const expected : {"997", "998", "999"}) EXPECT_EQ(*outbox.take()->message, expected);
   EXPECT_FALSE(outbox.take());
 }
 

@@ -37,18 +37,18 @@ using namespace std::chrono_literals;
 
 // twice as often as screens are drawn, so that there is something new for every picture
 constexpr auto kBeat = std::chrono::nanoseconds(1'000'000'000 / 120);
-constexpr auto kRequestTime = 2s;        // for a whole request, and for the answer to a stranger
-constexpr auto kPageTime = 30s;          // for a page to its holder, who may sit at the end of a slow tunnel
-constexpr auto kSilence = 20s;           // of a viewer, after which it is gone
-constexpr auto kNoDescriptor = 100ms;    // until it is tried again
-constexpr std::size_t kMostFrames = 60;  // half a second
-constexpr int kSendBuffer = 256 << 10;   // [bytes] of the operating system
-constexpr int kMostTurnedAway = 64;      // in that time
-constexpr std::size_t kMostStrangers = 256;
-constexpr std::size_t kMostHolders = 24;          // connections with the operator's token; as many with that of viewers
+constexpr auto kRequestTime = 2s;       // for a whole request, and for the answer to a stranger
+constexpr auto kPageTime = 30s;         // for a page to its holder, who may sit at the end of a slow tunnel
+constexpr auto kSilence = 20s;          // of a viewer, after which it is gone
+constexpr auto kNoDescriptor = 100ms;   // until it is tried again
+constexpr std::size_t kMaxFrames = 60;  // half a second
+constexpr int kSendBuffer = 256 << 10;  // [bytes] of the operating system
+constexpr int kMaxTurnedAway = 64;      // in that time
+constexpr std::size_t kMaxStrangers = 256;
+constexpr std::size_t kMaxHolders = 24;           // connections with the operator's token; as many with that of viewers
 constexpr std::size_t kLongestMessage = 8 << 10;  // [bytes]
 constexpr std::size_t kLongestRequest = 16 << 10;
-constexpr int kMostMalformed = 20;  // messages of one viewer
+constexpr int kMaxMalformed = 20;  // messages of one viewer
 
 /// So many at once, and so many a second.
 struct Allowance {
@@ -100,16 +100,16 @@ class Spare {
 
 /// How many connections there may be of each sort, so that the recording always finds a descriptor.
 struct Most {
-  std::size_t strangers = kMostStrangers, holders = kMostHolders;
+  std::size_t strangers = kMaxStrangers, holders = kMaxHolders;
 };
 
-Most most_connections() {
+Most max_connections() {
   Most most;
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return most;
   const auto descriptors = static_cast<std::size_t>(limit.rlim_cur);
-  most.strangers = std::clamp<std::size_t>(descriptors / 4, 1, kMostStrangers);
-  most.holders = std::clamp<std::size_t>(descriptors / 8, 2, kMostHolders);
+  most.strangers = std::clamp<std::size_t>(descriptors / 4, 1, kMaxStrangers);
+  most.holders = std::clamp<std::size_t>(descriptors / 8, 2, kMaxHolders);
   return most;
 }
 
@@ -199,11 +199,11 @@ class Server::Implementation {
     if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
     if (error) {
       return bad_usage(fmt::format("the console cannot listen on 127.0.0.1:{}: {}", port, error.message()),
-                       "choose another --port, or leave it away");
+                       "choose another --port, or omit it");
     }
     port_ = acceptor_.local_endpoint().port();
     hosts_ = {fmt::format("127.0.0.1:{}", port_), fmt::format("localhost:{}", port_)};
-    most_ = most_connections();
+    max_ = max_connections();
     accept();
     next_beat_ = std::chrono::steady_clock::now();
     wait_for_beat();
@@ -287,7 +287,7 @@ class Server::Implementation {
   /// Null where none is left.
   [[nodiscard]] Place place(Rights rights) {
     std::size_t& taken = rights == Rights::control ? controlling_ : watching_;
-    if (taken >= most_.holders) return nullptr;
+    if (taken >= max_.holders) return nullptr;
     return Place(&++taken);
   }
 
@@ -301,7 +301,7 @@ class Server::Implementation {
   Handlers handlers_;
   std::string token_, viewing_token_;
   // outlive the connections, which end with the context
-  Most most_;
+  Most max_;
   std::size_t controlling_ = 0, watching_ = 0;  // connections that have shown a token
   std::list<Connection*> strangers_;            // the others, oldest first
   Refusals refusals_;
@@ -432,7 +432,7 @@ class Server::Implementation::Viewer : public std::enable_shared_from_this<Viewe
   websocket::stream<beast::tcp_stream> socket_;
   Rights rights_;
   beast::flat_buffer buffer_;
-  Outbox outbox_{kMostFrames};
+  Outbox outbox_{kMaxFrames};
   Message sending_;
   bool said_ = false, said_controls_ = false;
   std::uint64_t said_dropped_ = 0;
@@ -550,9 +550,9 @@ void Server::Implementation::accept() {
 }
 
 void Server::Implementation::welcome(tcp::socket socket) {
-  if (strangers_.size() >= most_.strangers) {
+  if (strangers_.size() >= max_.strangers) {
     strangers_.front()->close();
-    refuse(Refusal::crowd, fmt::format("the oldest of {} connections that have shown no token", most_.strangers));
+    refuse(Refusal::crowd, fmt::format("the oldest of {} connections that have shown no token", max_.strangers));
   }
   std::make_shared<Connection>(*this, std::move(socket))->run();
 }
@@ -567,7 +567,7 @@ bool Server::Implementation::make_room() {
   spare_.give();
   error_code error;
   acceptor_.non_blocking(true, error);
-  for (int k = 0; k < kMostTurnedAway && !error; ++k) {
+  for (int k = 0; k < kMaxTurnedAway && !error; ++k) {
     tcp::socket refused(context_);
     acceptor_.accept(refused, error);
   }
@@ -624,7 +624,7 @@ std::pair<http::status, Page> Server::Implementation::page_for(const Request& re
   static const Page wrong = sentence_page("This address is not right. Open the one that mbk run printed.");
   if (rights == Rights::none) return {http::status::forbidden, wrong};
   if (!placed) {
-    refuse(Refusal::crowd, fmt::format("a page behind {} with the same token", most_.holders));
+    refuse(Refusal::crowd, fmt::format("a page behind {} with the same token", max_.holders));
     return {http::status::service_unavailable,
             sentence_page("Too many pages are open. Close one, and load this again.")};
   }
@@ -676,14 +676,14 @@ void Server::Implementation::receive(Viewer& viewer, std::string_view text, bool
   auto command = is_text ? parse_command(text) : bad_usage("a message is no text", "reload the page");
   if (!command) {
     refusal(Refusal::message, command.error().message);
-    if (++viewer.malformed > kMostMalformed) viewer.close();
+    if (++viewer.malformed > kMaxMalformed) viewer.close();
     return;
   }
   const bool stop = command->action == Action::stop;
   if (!in_time && !(stop && viewer.rights() == Rights::control)) {
     refusal(Refusal::haste, fmt::format("more than {} messages a second", kMessages.per_second));
     // a page of the operator's stays: a stop may be among what comes next
-    if (viewer.rights() != Rights::control && ++viewer.malformed > kMostMalformed) viewer.close();
+    if (viewer.rights() != Rights::control && ++viewer.malformed > kMaxMalformed) viewer.close();
     return;
   }
   const bool may = viewer.controls || (viewer.rights() == Rights::control && stop);

@@ -278,7 +278,7 @@ TEST_F(FloodedServer, ARefusalIsOneLineOfJsonWhateverTheMessageWas) {
     one->read(buffer);
     message = beast::buffers_to_string(buffer.data());
   }
-  EXPECT_EQ(message, R"({"type":"refused","why":"there is no command 'a?b?\"\\'"})");
+  EXPECT_EQ(message, R"({"type":"refused","why":"unknown command 'a?b?\"\\'"})");
   EXPECT_EQ(lines("\n"), 0U);
 }
 

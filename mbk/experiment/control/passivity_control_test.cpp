@@ -124,8 +124,8 @@ TEST(ParallelPassivityController, NeverLetsTheEnergyFallBelowZero) {
   auto controller = ParallelPassivityController::create(kTick, 1e6).value();
   double energy = 0.0;
   for (int n = 0; n < 5000; ++n) {
-    const double force = std::sin(0.03 * n) + 0.4 * std::cos(0.011 * n), wanted = -0.01 * force + 0.005;
-    const double velocity = controller.step(force, wanted);
+    const double force = std::sin(0.03 * n) + 0.4 * std::cos(0.011 * n), expected = -0.01 * force + 0.005;
+    const double velocity = controller.step(force, expected);
     energy += kTick * force * velocity;
     ASSERT_GE(energy, -kRounding);
     EXPECT_NEAR(controller.energy(), energy, kRounding);

@@ -16,7 +16,7 @@ using realtime::monotonic_ns;
 
 constexpr double kShortestWatchdog = 1e-3, kLongestWatchdog = 10.0;  // [s]
 constexpr double kAskAgain = 0.02;                                   // [s]
-constexpr int kMostAtOnce = 256;  // datagrams of one tick: a flood must not hold the loop up
+constexpr int kMaxAtOnce = 256;  // datagrams of one tick: a flood must not hold the loop up
 constexpr int kGoodbyes = 5;
 
 /// Of the last words: beyond any that a session reaches, exact as a double, and the highest where a robot keeps the low
@@ -112,7 +112,7 @@ Error UdpDevice::no_answer() const {
 void UdpDevice::take_all() noexcept {
   std::array<std::byte, 2 * kStateBytes2> bytes{};
   UdpAddress from;
-  for (int i = 0; i < kMostAtOnce; ++i) {
+  for (int i = 0; i < kMaxAtOnce; ++i) {
     const int size = socket_->receive(bytes, from);
     if (size < 0) return;
     if (from != robot_) {

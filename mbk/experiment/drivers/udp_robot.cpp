@@ -15,7 +15,7 @@ constexpr double kNap = 0.05;                     // [s]
 constexpr double kLongestStall = 2.0;             // that is made up for [s]
 constexpr std::int64_t kForget = 10'000'000'000;  // [ns]
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-constexpr int kMostAtOnce = 256;  // datagrams of one tick
+constexpr int kMaxAtOnce = 256;  // datagrams of one tick
 
 }  // namespace
 
@@ -70,7 +70,7 @@ void UdpRobot::serve(const std::atomic<bool>& over, const std::atomic<bool>& sto
 void UdpRobot::take_all() noexcept {
   std::array<std::byte, 2 * kCommandBytes> bytes{};
   UdpAddress from;
-  for (int i = 0; i < kMostAtOnce; ++i) {
+  for (int i = 0; i < kMaxAtOnce; ++i) {
     const int size = link_->receive(socket_, bytes, from);
     if (size < 0) return;
     CommandDatagram came;

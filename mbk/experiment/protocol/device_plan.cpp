@@ -13,7 +13,7 @@ using device::Wiring;
 using Eigen::Vector2d;
 
 constexpr double kTurn = 6.283185307179586;
-constexpr int kMostLatency = 100;  // ticks
+constexpr int kMaxLatency = 100;  // ticks
 
 Vector2d read_signs(const Section& s, const char* key) {
   const Vector2d signs = s.vector2(key, {1.0, 1.0});
@@ -81,7 +81,7 @@ DevicePlan read_device(const Section& s, const std::filesystem::path& folder) {
   }
   plan.fittings.has_force = s.flag("has_force", true);
   plan.fittings.has_acceleration = s.flag("has_acceleration", true);
-  plan.fittings.force_latency = s.integer("force_latency_ticks", 0, 0, kMostLatency);
+  plan.fittings.force_latency = s.integer("force_latency_ticks", 0, 0, kMaxLatency);
   read_wiring(s.section("wiring"), plan);
   return plan;
 }

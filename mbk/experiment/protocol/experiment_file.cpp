@@ -23,12 +23,15 @@ control::SequenceOptions read_sequence(const Section& s, const control::Mode& co
   return options;
 }
 
-safety::Limits read_limits(const Section& s) {
+safety::Limits read_limits(Section s) {
+  s.rename("limited_for_ms", "max_saturation_time_ms");
+  s.rename("frozen_ms", "frozen_sensor_ms");
+  s.rename("frozen_torque_Nm", "frozen_sensor_torque_Nm");
   safety::Limits l;
   l.handle_force = s.number("handle_force_N", l.handle_force, above(0));
   l.joint_torque = s.vector2("joint_torque_Nm", l.joint_torque, above(0));
   l.torque_rate = s.number("torque_rate_Nm_per_s", l.torque_rate, above(0));
-  l.limited_for = s.number("limited_for_ms", l.limited_for, above(0));
+  l.max_saturation_time = s.number("max_saturation_time_ms", l.max_saturation_time, above(0));
   l.measured_force = s.number("measured_force_N", l.measured_force, above(0));
   l.force_jump = s.number("force_jump_N", l.force_jump, above(0));
   l.speed = s.number("speed_mm_per_s", l.speed, above(0));
@@ -39,8 +42,8 @@ safety::Limits read_limits(const Section& s) {
   l.excursion = s.number("excursion_mm", l.excursion, at_least(0));
   l.tracking = s.number("tracking_deg", l.tracking, above(0));
   l.encoder_jump = s.number("encoder_jump_deg", l.encoder_jump, above(0));
-  l.frozen = s.number("frozen_ms", l.frozen, at_least(0));
-  l.frozen_torque = s.number("frozen_torque_Nm", l.frozen_torque, above(0));
+  l.frozen_sensor = s.number("frozen_sensor_ms", l.frozen_sensor, at_least(0));
+  l.frozen_sensor_torque = s.number("frozen_sensor_torque_Nm", l.frozen_sensor_torque, above(0));
   l.accelerometer = s.number("accelerometer_m_per_s2", l.accelerometer, at_least(0));
   l.link_silence = s.number("link_silence_ms", l.link_silence, above(0));
   l.lateness = s.number("lateness_ms", l.lateness, at_least(0));

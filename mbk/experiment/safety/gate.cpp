@@ -13,7 +13,7 @@ namespace {
 constexpr double kHistory = 2.0;  // [s]
 
 /// Least |det J| with which a torque is turned into a force: a quarter of a percent of d₁d₂ is out of reach anyway.
-constexpr double kLeastDeterminant = 1e-4;
+constexpr double kMinDeterminant = 1e-4;
 
 /// What encoders and accelerometer say is also compared over a longer time, against how much the hand moves at all:
 ///   rms(encoders' − accelerometer's) ≤ kShare rms(accelerometer's) + kFloor limit,
@@ -145,7 +145,7 @@ Gate::Decision Gate::step(const Observation& seen, const Vector2d& asked) noexce
     decision.enabled = true;
     // not reset by a tick that is not cut: a controller that swings between its limits asks for little in between
     cut_for_ = std::max(0.0, cut_for_ + (decision.cut ? 1.0 : -kForgiven) * sample_time_);
-    beyond(Reason::limited_too_long, seen, cut_for_, limits_.limited_for);
+    beyond(Reason::limited_too_long, seen, cut_for_, limits_.max_saturation_time);
   } else if (off()) {
     confirm_off(seen);
   }
@@ -224,16 +224,16 @@ bool Gate::check_stillness(const Observation& seen, const Vector2d& asked) noexc
   seen_before_ = true;
   if (seen.has_force) force_still_.see(seen.force);
   if (seen.has_acceleration) acceleration_still_.see(seen.acceleration);
-  if (limits_.frozen == 0.0) return true;
+  if (limits_.frozen_sensor == 0.0) return true;
   for (Eigen::Index i = 0; i < 2; ++i) {
-    if (torque_high_[i] - torque_low_[i] > limits_.frozen_torque &&
+    if (torque_high_[i] - torque_low_[i] > limits_.frozen_sensor_torque &&
         beyond(Reason::encoder_frozen, seen, encoder_still_[static_cast<std::size_t>(i)] * sample_time_,
-               limits_.frozen)) {
+               limits_.frozen_sensor)) {
       return false;
     }
   }
-  return !beyond(Reason::force_frozen, seen, force_still_.ticks * sample_time_, limits_.frozen) &&
-         !beyond(Reason::accelerometer_frozen, seen, acceleration_still_.ticks * sample_time_, limits_.frozen);
+  return !beyond(Reason::force_frozen, seen, force_still_.ticks * sample_time_, limits_.frozen_sensor) &&
+         !beyond(Reason::accelerometer_frozen, seen, acceleration_still_.ticks * sample_time_, limits_.frozen_sensor);
 }
 
 bool Gate::add_motion(const Observation& seen, double time) noexcept {
@@ -350,7 +350,7 @@ Vector2d Gate::cut(const Vector2d& asked, bool& was_cut) const noexcept {
   const double step = limits_.torque_rate * sample_time_;
   torque = torque.cwiseMax(sent_ - Vector2d::Constant(step)).cwiseMin(sent_ + Vector2d::Constant(step));
   const Eigen::Matrix2d jacobian = robot::jacobian(robot_.geometry, joint_);
-  if (std::abs(jacobian.determinant()) > kLeastDeterminant) {
+  if (std::abs(jacobian.determinant()) > kMinDeterminant) {
     const double force = (jacobian.transpose().inverse() * torque).norm();
     if (force > limits_.handle_force) torque *= limits_.handle_force / force;
   } else {

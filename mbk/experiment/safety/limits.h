@@ -13,7 +13,8 @@ struct Limits {
   double handle_force = 20.0;          ///< |J⁻ᵀτ| as commanded [N] > 0: cut
   Vector2d joint_torque = {6.0, 6.0};  ///< |τ| as commanded [N·m] > 0: cut
   double torque_rate = 400.0;          ///< change of each τ [N·m/s] > 0: cut
-  double limited_for = 0.1;      ///< longest time that the controller is cut; time uncut counts back a quarter [s] > 0
+  double max_saturation_time =
+      0.1;                       ///< longest time that the controller is cut; time uncut counts back a quarter [s] > 0
   double measured_force = 40.0;  ///< |F_h| that the sensor reads [N] > 0
   double force_jump = 20.0;      ///< of |F_h| from one tick to the next [N] > 0
   double speed = 0.6;            ///< of the hand, over 20 ms [m/s] > 0
@@ -24,8 +25,8 @@ struct Limits {
   double excursion = 0.08;                ///< of the hand from home while it is perturbed [m]; 0: not checked
   double tracking = 0.1745;               ///< |θ_r − θ| of a joint that follows a position: 10° [rad] > 0
   double encoder_jump = 0.02;             ///< from one tick to the next [rad] > 0
-  double frozen = 0.25;                   ///< longest time that a reading stays the same to the bit [s]; 0: not checked
-  double frozen_torque = 0.3;             ///< an encoder may rest while its torque changes by less [N·m] > 0
+  double frozen_sensor = 0.25;            ///< longest time that a reading stays the same to the bit [s]; 0: not checked
+  double frozen_sensor_torque = 0.3;      ///< an encoder may rest while its torque changes by less [N·m] > 0
   double accelerometer = 4.0;  ///< |encoders' − accelerometer's|, over 40 ms; over 0.5 s less [m/s²]; 0: not checked
   double link_silence = 0.01;  ///< longest time without a new state [s] > 0
   double lateness = 0.02;      ///< of a command after the one before, beyond a tick [s]; 0: not checked

@@ -48,8 +48,8 @@ Violation ReportCheck::check_clock(const RobotReport& report, double now, bool k
   begun_ = true;
   if (!keeps_time || first) return {};
   if (!settling) {
-    const double jump = step - step_now, most_jump = kClockStep + limits_.link_silence;
-    if (jump > most_jump) return {Reason::robot_clock, jump, most_jump};
+    const double jump = step - step_now, max_jump = kClockStep + limits_.link_silence;
+    if (jump > max_jump) return {Reason::robot_clock, jump, max_jump};
     const double ahead = (report.time - window_) - (now - window_now_);
     if (const double most = kClockStep + kFasterBy * (now - window_now_); ahead > most) {
       return {Reason::robot_clock, ahead, most};

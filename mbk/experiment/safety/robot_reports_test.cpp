@@ -77,12 +77,12 @@ INSTANTIATE_TEST_SUITE_P(
         Lie{"accelerometer", Reason::sensor_missing, 0, [](RobotReport& r, int) { r.accelerometer = false; }},
         Lie{"drives no longer measure", Reason::sensor_missing, 1,
             [](RobotReport& r, int k) { r.drives_measure = k == 0; }},
-        Lie{"measured torque no number", Reason::sensor_missing, 0,
+        Lie{"measured torque not finite", Reason::sensor_missing, 0,
             [](RobotReport& r, int) {
               r.drives_measure = true;
               r.drive_torque[1] = std::numeric_limits<double>::quiet_NaN();
             }},
-        Lie{"clock no number", Reason::robot_clock, 0,
+        Lie{"clock not finite", Reason::robot_clock, 0,
             [](RobotReport& r, int) { r.time = std::numeric_limits<double>::quiet_NaN(); }},
         Lie{"clock stands still", Reason::robot_clock, 1, [](RobotReport& r, int) { r.time = honest(kBegin).time; }},
         Lie{"clock runs backward", Reason::robot_clock, 1,

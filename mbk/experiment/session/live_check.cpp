@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Verdict = Finding::Verdict;
 
 constexpr double kDegree = 0.017453292519943295;
-constexpr double kLeastRate = 0.98;         // of the states that should have come
+constexpr double kMinRate = 0.98;           // of the states that should have come
 constexpr double kMuchForce = 2.0;          // at a handle that nobody touches [N]
 constexpr double kNoisyForce = 0.5;         // standard deviation [N]
 constexpr double kMuchAcceleration = 0.5;   // at rest in a horizontal plane [m/s²]
@@ -32,7 +32,7 @@ class Findings {
   std::vector<Finding> all_;
 };
 
-/// Readings that no living sensor gives.
+/// Readings of a dead sensor.
 void check_readings(const char* name, const std::array<Readings, 2>& both, std::uint64_t frozen_after,
                     Findings& findings) {
   for (std::size_t i = 0; i < 2; ++i) {
@@ -119,7 +119,7 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
                record.link ? "the link held" : fmt::format("the link broke after {:.2f} s", record.duration),
                "see the robot's program and its watchdog");
   const double share = static_cast<double>(record.fresh + record.lost) / static_cast<double>(record.ticks);
-  findings.add(share >= kLeastRate && share <= 2.0 - kLeastRate, Verdict::wrong,
+  findings.add(share >= kMinRate && share <= 2.0 - kMinRate, Verdict::wrong,
                fmt::format("{:.1f} states a second of the robot's, for {:g} ticks of mbk's",
                            share * setup.trial.rate.value, setup.trial.rate.value),
                "both have to run at the same rate: see rate_hz and the robot's clock");
@@ -138,7 +138,8 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
                : record.stop_pressed ? "the stop button is pressed"
                                      : "the stop button is not pressed; press and release it meanwhile to test it",
                "release it");
-  const auto frozen = static_cast<std::uint64_t>(std::max(0.25, setup.trial.limits.frozen) * setup.trial.rate.value);
+  const auto frozen =
+      static_cast<std::uint64_t>(std::max(0.25, setup.trial.limits.frozen_sensor) * setup.trial.rate.value);
   const Vector2d theta(record.joint[0].mean, record.joint[1].mean);
   if (auto ok = robot::check_joints(setup.trial.robot.geometry.limits, theta); !ok) {
     findings.add(false, Verdict::wrong, ok.error().line(),

@@ -44,7 +44,7 @@ safety::RobotReport report_of(const device::Facts& facts, const device::State& s
 }  // namespace
 
 void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
-              realtime::BoundedRing<journal::Tick>& ticks, Signals& signals, LoopTimes& times) noexcept {
+              realtime::BoundedRing<journal::Tick>& ticks, LoopFlags& flags, LoopTimes& times) noexcept {
   const device::Facts& facts = robot.facts();
   device::State state;
   std::uint64_t last_sequence = 0;
@@ -57,7 +57,7 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     const bool reads = robot.read(state);
     const double now = clock.now();  // when the state was here
     link = link && reads;
-    if (signals.end_trial.load(std::memory_order_relaxed)) sequence.end_early();
+    if (flags.end_trial.load(std::memory_order_relaxed)) sequence.end_early();
     const bool over = gate.tripped() || gate.off();
     const control::Sequencer::Step step = over ? control::Sequencer::Step{} : sequence.step(state.joint);
     if (step.phase == control::Phase::done && !gate.tripped()) gate.release();
@@ -71,8 +71,8 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     seen.fresh = state.sequence != last_sequence;
     seen.link = gate.off() ? reads : link;
     seen.stop_button = state.stop;
-    seen.operator_stop = signals.operator_stop.load(std::memory_order_relaxed);
-    seen.recording = signals.recording.load(std::memory_order_relaxed) &&
+    seen.operator_stop = flags.operator_stop.load(std::memory_order_relaxed);
+    seen.recording = flags.recording.load(std::memory_order_relaxed) &&
                      (facts.keeps_time ? ticks.room() > ticks.capacity() / 4 : wait_for_room(ticks));
     // a stall inside a tick is in it, before the command left or behind it
     const double overdue = std::max(0.0, std::max(now - left, interval) - clock.period());

@@ -14,7 +14,7 @@
 namespace mbk::session {
 
 /// What other threads tell the loop, and it them.
-struct Signals {
+struct LoopFlags {
   std::atomic<bool> operator_stop{false};  ///< safety stop by key or console
   std::atomic<bool> end_trial{false};      ///< end the perturbation early, and go back
   std::atomic<bool> end_session{false};    ///< the program is asked to end: no question is asked, no trial begun
@@ -36,6 +36,6 @@ struct LoopTimes {
 /// touches a file. A robot that waits for its commands (Facts::keeps_time) is made to wait for a recorder that lags,
 /// up to two seconds; any other is not, and a lagging recorder trips the gate.
 void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
-              realtime::BoundedRing<journal::Tick>& ticks, Signals& signals, LoopTimes& times) noexcept;
+              realtime::BoundedRing<journal::Tick>& ticks, LoopFlags& flags, LoopTimes& times) noexcept;
 
 }  // namespace mbk::session

@@ -174,9 +174,9 @@ Result<Rehearsal> rehearse(const Plan& plan) {
     }
   });
   realtime::VirtualClock clock(plan.sample_time());
-  Signals signals;
+  LoopFlags flags;
   LoopTimes times;
-  run_loop(**robot, sequence, *gate, clock, ring, signals, times);
+  run_loop(**robot, sequence, *gate, clock, ring, flags, times);
   over = true;
   looking.join();
   rehearsal.trip = gate->trip();

@@ -17,20 +17,16 @@ using namespace std::chrono_literals;
 using journal::Tick;
 
 constexpr auto kBlockTime = 50ms;
-constexpr int kPriority = 70;                     // below the loop's
-constexpr std::size_t kBlock = 256;               // ticks, where there are many
-constexpr std::size_t kMostPending = 1 << 20;     // ticks kept for a disk that does not take them
-constexpr std::uintmax_t kLeastSpace = 16 << 20;  // [bytes] beside what is reserved
+constexpr int kPriority = 70;                   // below the loop's
+constexpr std::size_t kBlock = 256;             // ticks, where there are many
+constexpr std::size_t kMaxPending = 1 << 20;    // ticks kept for a disk that does not take them
+constexpr std::uintmax_t kMinSpace = 16 << 20;  // [bytes] beside what is reserved
 
 }  // namespace
 
-Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch,
+Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, LoopFlags& flags, Watch watch,
                    bool in_real_time)
-    : ticks_(ticks),
-      writer_(std::move(writer)),
-      signals_(signals),
-      watch_(std::move(watch)),
-      in_real_time_(in_real_time) {
+    : ticks_(ticks), writer_(std::move(writer)), flags_(flags), watch_(std::move(watch)), in_real_time_(in_real_time) {
   pending_.reserve(journal::Writer::kLongest);  // where no more memory comes, ticks still reach the file
   try {
     recording_ = std::thread([this] { record(); });
@@ -79,7 +75,7 @@ void Recorder::show(std::span<const Tick> ticks) noexcept {
 }
 
 void Recorder::failed(const char* why) noexcept {
-  signals_.recording = false;
+  flags_.recording = false;
   try {
     remark_ = fmt::format("the recorder failed: {}", why);
   } catch (...) {  // the ticks that are missing tell of it
@@ -98,8 +94,8 @@ void Recorder::write_pending() {
   }
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
   if (failure_) {
-    signals_.recording = false;
-    const std::size_t over = pending_.size() - std::min(pending_.size(), kMostPending);
+    flags_.recording = false;
+    const std::size_t over = pending_.size() - std::min(pending_.size(), kMaxPending);
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(over));
     given_up_ += over;
   }
@@ -120,7 +116,7 @@ void Recorder::look_after_file() {
   using Place = journal::Writer::Place;
   const Place place = writer_.place();
   if (place != Place::here) {
-    signals_.recording = false;
+    flags_.recording = false;
     const std::string lost_name = writer_.file().string();
     if (place == Place::cut && remark_.empty()) {
       remark_ = fmt::format("{} was cut short by another program while it was written", lost_name);
@@ -136,7 +132,7 @@ void Recorder::look_after_file() {
   const std::filesystem::path folder = writer_.file().parent_path();
   std::error_code error;
   const auto space = std::filesystem::space(folder.empty() ? std::filesystem::path(".") : folder, error);
-  if (!error && space.available < kLeastSpace) signals_.recording = false;
+  if (!error && space.available < kMinSpace) flags_.recording = false;
 }
 
 void Recorder::record() noexcept {
@@ -177,7 +173,7 @@ void Recorder::keep_syncing() noexcept {
     if (!dirty_) return;
     dirty_ = false;
     lock.unlock();
-    if (!writer_.reaches_disk()) signals_.recording = false;
+    if (!writer_.reaches_disk()) flags_.recording = false;
     lock.lock();
   }
 }

@@ -21,14 +21,14 @@ using Watch = std::function<void(std::span<const journal::Tick>)>;
 
 /// Takes the loop's ticks to the journal from a thread of its own: a block at least every 50 ms, and a third thread
 /// that waits for the disk, so that a slow disk holds nobody up. Free space, and whether the file is still under its
-/// name, is looked at once a second. Where the file fails, or there is no memory for what comes, Signals::recording
+/// name, is looked at once a second. Where the file fails, or there is no memory for what comes, LoopFlags::recording
 /// falls, and what could not be written is tried again at the end. A file that was removed or replaced goes on under
 /// another name, with all that it holds. A watch that throws is not called again; the recording goes on.
 class Recorder {
  public:
   /// @param in_real_time  its threads go before all that is not in real time, where that is allowed: a machine that is
   ///        busy must not keep what happened from the disk
-  Recorder(realtime::BoundedRing<journal::Tick>& ticks, journal::Writer writer, Signals& signals, Watch watch,
+  Recorder(realtime::BoundedRing<journal::Tick>& ticks, journal::Writer writer, LoopFlags& flags, Watch watch,
            bool in_real_time = false);
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -55,7 +55,7 @@ class Recorder {
 
   realtime::BoundedRing<journal::Tick>& ticks_;
   journal::Writer writer_;
-  Signals& signals_;
+  LoopFlags& flags_;
   Watch watch_;
   bool in_real_time_;
   std::vector<journal::Tick> pending_;

@@ -24,7 +24,7 @@ using Verdict = Finding::Verdict;
 constexpr double kDegree = 0.017453292519943295;
 constexpr double kMillimetre = 1e-3, kMicrometre = 1e-6;
 constexpr double kShortestLink = 0.05, kLongestLink = 2.0;   // [m]: a robot for an arm
-constexpr double kLeastMass = 0.05, kMostMass = 20.0;        // of the robot at the hand [kg]
+constexpr double kMinMass = 0.05, kMaxMass = 20.0;           // of the robot at the hand [kg]
 constexpr double kFineCount = 100e-6, kCoarseCount = 1e-3;   // at the hand [m]
 constexpr double kCoarseForce = 0.05;                        // [N]: a quarter of the published sensor's noise
 constexpr double kLongWatchdog = 0.2;                        // [s]
@@ -76,7 +76,7 @@ void check_inertia(const RobotSetup& setup, const Vector2d& theta, Findings& fin
   if (eigenvalues[0] <= 0.0) {
     findings.judge(Verdict::wrong, text, "no robot has such an inertia: see alpha_kg_m2 and its order α₁, α₂, α₃");
   } else {
-    findings.judge(doubtful_unless(eigenvalues[0] >= kLeastMass && eigenvalues[1] <= kMostMass), text,
+    findings.judge(doubtful_unless(eigenvalues[0] >= kMinMass && eigenvalues[1] <= kMaxMass), text,
                    "is alpha_kg_m2 in kg·m²?");
   }
 }

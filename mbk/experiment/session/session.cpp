@@ -33,10 +33,10 @@ std::string now_text() {
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-journal::Ending ending_of(const safety::Gate& gate, const Signals& signals, const LoopTimes& times) {
+journal::Ending ending_of(const safety::Gate& gate, const LoopFlags& flags, const LoopTimes& times) {
   journal::Ending ending;
   using How = journal::Ending::How;
-  ending.how = gate.tripped() ? How::safety_stop : signals.end_trial ? How::ended_early : How::completed;
+  ending.how = gate.tripped() ? How::safety_stop : flags.end_trial ? How::ended_early : How::completed;
   if (gate.tripped()) {
     ending.detail = safety::sentence(gate.trip());
     ending.trip = word_of(gate.trip().reason);
@@ -135,8 +135,8 @@ Result<void> Session::reset() {
   if (gate_) {
     if (auto ok = gate_->reset(); !ok) return ok;
   }
-  signals_->operator_stop = false;
-  signals_->recording = true;
+  flags_->operator_stop = false;
+  flags_->recording = true;
   return {};
 }
 
@@ -173,22 +173,22 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
 
   gate_ = std::move(*gate);
   control::Sequencer sequence = plan.sequence;
-  signals_->end_trial = false;
-  signals_->recording = true;
+  flags_->end_trial = false;
+  flags_->recording = true;
   realtime::BoundedRing<Tick> ring(kRing);
   const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
-  Recorder recorder(ring, std::move(*writer), *signals_, watch, in_real_time);
+  Recorder recorder(ring, std::move(*writer), *flags_, watch, in_real_time);
   std::thread loop([&] {
     const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
-      run_loop(robot, sequence, *gate_, *pace_.clock, ring, *signals_, outcome.times);
+      run_loop(robot, sequence, *gate_, *pace_.clock, ring, *flags_, outcome.times);
     } else if (pace_.virtual_clock) {
       realtime::VirtualClock clock(sample_time, pace_.speed);
-      run_loop(robot, sequence, *gate_, clock, ring, *signals_, outcome.times);
+      run_loop(robot, sequence, *gate_, clock, ring, *flags_, outcome.times);
     } else {
       outcome.setup = realtime::prepare_thread();
       realtime::WallClock clock(sample_time);
-      run_loop(robot, sequence, *gate_, clock, ring, *signals_, outcome.times);
+      run_loop(robot, sequence, *gate_, clock, ring, *flags_, outcome.times);
     }
   });
   guard.begun = true;
@@ -196,7 +196,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
 
   outcome.trip = gate_->trip();
   outcome.motors = gate_->motors();
-  outcome.ending = ending_of(*gate_, *signals_, outcome.times);
+  outcome.ending = ending_of(*gate_, *flags_, outcome.times);
   const auto closed = recorder.finish(outcome.ending);
   outcome.journal = recorder.journal();
   if (!closed) {

@@ -52,7 +52,7 @@ class Session {
                                              const std::filesystem::path& target, const Watch& watch = {});
 
   /// For other threads, and for signal handlers: a stop, or an early end, of the trial that runs.
-  [[nodiscard]] Signals& signals() { return *signals_; }
+  [[nodiscard]] LoopFlags& flags() { return *flags_; }
 
   /// Of the last trial; null before the first.
   [[nodiscard]] const safety::Gate* gate() const { return gate_ ? &*gate_ : nullptr; }
@@ -67,7 +67,7 @@ class Session {
   Pace pace_;
   std::unique_ptr<std::mutex> gate_mutex_ = std::make_unique<std::mutex>();  // between trials: reset and see_idle
   std::optional<safety::Gate> gate_;
-  std::unique_ptr<Signals> signals_ = std::make_unique<Signals>();
+  std::unique_ptr<LoopFlags> flags_ = std::make_unique<LoopFlags>();
 };
 
 /// What a trial's journal says before the first tick.

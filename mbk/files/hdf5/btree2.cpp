@@ -15,10 +15,10 @@ constexpr std::size_t kFrame = kPrefix + kChecksumSize;  ///< [bytes] of a node 
 
 /// The nodes of one level; level 0 are the leaves.
 struct Level {
-  std::uint64_t most_records = 0;  ///< in a node
-  std::uint64_t most_below = 0;    ///< in a node and everything under it
-  std::size_t pointer_size = 0;    ///< [bytes] of a pointer to a child
-  std::size_t total_size = 0;      ///< [bytes] of that pointer's last field: records in the child and under it
+  std::uint64_t max_records = 0;  ///< in a node
+  std::uint64_t max_below = 0;    ///< in a node and everything under it
+  std::size_t pointer_size = 0;   ///< [bytes] of a pointer to a child
+  std::size_t total_size = 0;     ///< [bytes] of that pointer's last field: records in the child and under it
 };
 
 class Walk {
@@ -51,18 +51,18 @@ class Walk {
   bool find_levels(std::size_t depth) {
     if (node_size_ < kFrame + record_size_) return false;
     Level leaf;
-    leaf.most_records = leaf.most_below = (node_size_ - kFrame) / record_size_;
+    leaf.max_records = leaf.max_below = (node_size_ - kFrame) / record_size_;
     levels_ = {leaf};
-    const std::size_t count_size = bytes_for(leaf.most_records);
+    const std::size_t count_size = bytes_for(leaf.max_records);
     for (std::size_t i = 1; i <= depth; ++i) {
       const Level& below = levels_.back();
       Level level;
-      level.total_size = i > 1 ? bytes_for(below.most_below) : 0;
+      level.total_size = i > 1 ? bytes_for(below.max_below) : 0;
       level.pointer_size = file_.sizes.address + count_size + level.total_size;
       if (level.total_size > 8 || node_size_ < kFrame + level.pointer_size) return false;
-      level.most_records = (node_size_ - kFrame - level.pointer_size) / (record_size_ + level.pointer_size);
-      if (level.most_records == 0 || !multiply(level.most_records + 1, below.most_below, level.most_below) ||
-          __builtin_add_overflow(level.most_below, level.most_records, &level.most_below)) {
+      level.max_records = (node_size_ - kFrame - level.pointer_size) / (record_size_ + level.pointer_size);
+      if (level.max_records == 0 || !multiply(level.max_records + 1, below.max_below, level.max_below) ||
+          __builtin_add_overflow(level.max_below, level.max_records, &level.max_below)) {
         return false;
       }
       levels_.push_back(level);
@@ -73,7 +73,7 @@ class Walk {
   Result<void> node(std::uint64_t address, std::size_t depth, std::uint64_t records) {
     const Level& level = levels_[depth];
     const auto broken = [&] { return damaged(fmt::format("the B-tree node at byte {} is broken", address)); };
-    if (records > level.most_records) return broken();
+    if (records > level.max_records) return broken();
     const std::uint64_t pointers = depth > 0 ? (records + 1) * level.pointer_size : 0;
     const auto block = file_.checked_block(address, kFrame + records * record_size_ + pointers, "a B-tree node");
     if (!block) return tl::unexpected(block.error());
@@ -84,7 +84,7 @@ class Walk {
     for (std::uint64_t i = 0; i <= records; ++i) {
       if (depth > 0) {
         const std::uint64_t child = in.address();
-        const std::uint64_t in_child = in.number(bytes_for(levels_.front().most_records));
+        const std::uint64_t in_child = in.number(bytes_for(levels_.front().max_records));
         in.skip(level.total_size);
         if (auto ok = node(child, depth - 1, in_child); !ok) return ok;
       }

@@ -9,7 +9,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr unsigned kMostPageBits = 32;
+constexpr unsigned kMaxPageBits = 32;
 
 constexpr std::string_view kWhat = "an index of chunks";
 
@@ -106,7 +106,7 @@ struct FixedArray : Array {
     page_bits = in.byte();
     const std::uint64_t count = in.length();
     const std::uint64_t data = in.address();
-    if (!known || !element_size_is_possible() || page_bits > kMostPageBits || count > file.bytes.size()) {
+    if (!known || !element_size_is_possible() || page_bits > kMaxPageBits || count > file.bytes.size()) {
       return broken(address);
     }
     if (data == kUndefined) return {};
@@ -119,10 +119,10 @@ struct FixedArray : Array {
 
 /// Super block u has 2^⌊u/2⌋ data blocks of 2^⌈u/2⌉ times the smallest number of elements.
 struct ExtensibleArray : Array {
-  unsigned bits = 0;                 ///< of the largest index
-  std::uint64_t in_index = 0;        ///< elements in the index block
-  std::uint64_t least = 0;           ///< elements in the smallest data block
-  std::uint64_t least_pointers = 0;  ///< data blocks of the first super block of its own
+  unsigned bits = 0;               ///< of the largest index
+  std::uint64_t in_index = 0;      ///< elements in the index block
+  std::uint64_t least = 0;         ///< elements in the smallest data block
+  std::uint64_t min_pointers = 0;  ///< data blocks of the first super block of its own
 
   Result<void> read(std::uint64_t address) {
     const std::size_t size = 4 + 1 + 1 + 6 + 6 * file.sizes.length + file.sizes.address + kChecksumSize;
@@ -134,12 +134,12 @@ struct ExtensibleArray : Array {
     bits = in.byte();
     in_index = in.byte();
     least = in.byte();
-    least_pointers = in.byte();
+    min_pointers = in.byte();
     page_bits = in.byte();
     in.skip(6 * file.sizes.length);  // statistics
     const std::uint64_t index = in.address();
-    if (!known || !element_size_is_possible() || bits == 0 || bits > 64 || page_bits > kMostPageBits ||
-        !std::has_single_bit(least) || !std::has_single_bit(least_pointers) || log2_of(least) > bits) {
+    if (!known || !element_size_is_possible() || bits == 0 || bits > 64 || page_bits > kMaxPageBits ||
+        !std::has_single_bit(least) || !std::has_single_bit(min_pointers) || log2_of(least) > bits) {
       return broken(address);
     }
     if (index == kUndefined) return {};
@@ -152,8 +152,8 @@ struct ExtensibleArray : Array {
 
   Result<void> index_block(std::uint64_t address) {
     const unsigned supers = 1 + bits - log2_of(least);
-    const unsigned direct = std::min(supers, 2 * log2_of(least_pointers));  // super blocks without one of their own
-    const std::uint64_t pointers = 2 * (least_pointers - 1) + (supers - direct);
+    const unsigned direct = std::min(supers, 2 * log2_of(min_pointers));  // super blocks without one of their own
+    const std::uint64_t pointers = 2 * (min_pointers - 1) + (supers - direct);
     const std::uint64_t size = prefix_size() + in_index * element_size + pointers * file.sizes.address + kChecksumSize;
     const auto block = file.checked_block(address, size, kWhat);
     if (!block) return tl::unexpected(block.error());

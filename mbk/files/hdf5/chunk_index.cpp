@@ -93,7 +93,7 @@ class Reader {
     }
   }
 
-  [[nodiscard]] std::uint64_t most_along(std::size_t dimension) const {
+  [[nodiscard]] std::uint64_t max_along(std::size_t dimension) const {
     const std::uint64_t most = space_.maximum[dimension];
     return most == 0 ? 1 : (most - 1) / index_.chunk[dimension] + 1;
   }
@@ -101,8 +101,8 @@ class Reader {
   [[nodiscard]] std::vector<std::uint64_t> place_of(std::uint64_t number) const {
     std::vector<std::uint64_t> place(rank());
     for (std::size_t k = order_.size(); k-- > 1;) {
-      place[order_[k]] = number % most_along(order_[k]);
-      number /= most_along(order_[k]);
+      place[order_[k]] = number % max_along(order_[k]);
+      number /= max_along(order_[k]);
     }
     place[order_.front()] = number;
     return place;
@@ -124,7 +124,7 @@ class Reader {
     number_chunks(rank());
     std::uint64_t count = 1;
     for (std::size_t i = 0; i < rank(); ++i) {
-      if (!multiply(count, most_along(i), count)) return broken();
+      if (!multiply(count, max_along(i), count)) return broken();
     }
     std::uint64_t bytes = 0;
     if (!multiply(count, chunk_bytes_, bytes) || bytes > file_.bytes.size()) {

@@ -10,7 +10,7 @@ namespace mbk::hdf5 {
 namespace {
 
 /// Deflate cannot expand by more than 1032.
-constexpr std::uint64_t kMostExpansion = 1100;
+constexpr std::uint64_t kMaxExpansion = 1100;
 constexpr std::uint64_t kSlack = 256;  ///< [bytes] of compressed data that say nothing
 
 class Reader {
@@ -61,7 +61,7 @@ class Reader {
     }
     if (seen_[static_cast<std::size_t>(number)]) return damaged("it has a chunk twice");
     seen_[static_cast<std::size_t>(number)] = true;
-    if (chunk_bytes_ / kMostExpansion > chunk.size + kSlack) return damaged("a chunk claims more than it can hold");
+    if (chunk_bytes_ / kMaxExpansion > chunk.size + kSlack) return damaged("a chunk claims more than it can hold");
     chunks_.push_back(chunk);
     return {};
   }

@@ -14,7 +14,7 @@ Result<Dataspace> read_dataspace(Cursor in) {
   const bool has_maximum = (in.byte() & 1u) != 0;
   const int kind = in.byte();  // version 1: reserved
   if (version == 1) in.skip(4);
-  if ((version != 1 && version != 2) || rank > kMostDimensions || !in.ok()) return damaged("its dataspace is broken");
+  if ((version != 1 && version != 2) || rank > kMaxDimensions || !in.ok()) return damaged("its dataspace is broken");
   Dataspace space;
   if (version == 2 && kind == kNull) {
     space.shape = space.maximum = {0};

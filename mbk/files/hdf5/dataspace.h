@@ -6,7 +6,7 @@
 
 namespace mbk::hdf5 {
 
-inline constexpr std::size_t kMostDimensions = 32;  ///< of HDF5
+inline constexpr std::size_t kMaxDimensions = 32;  ///< of HDF5
 
 /// How many elements there are, and how they are arranged.
 struct Dataspace {

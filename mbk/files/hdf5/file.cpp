@@ -23,7 +23,7 @@ Budget::Budget(const ReadLimits& limits)
       available_(limits.available),
       work_(limits.bytes > kUndefined / kWorkPerByte ? kUndefined : limits.bytes * kWorkPerByte),
       objects_(limits.objects),
-      most_objects_(limits.objects) {}
+      max_objects_(limits.objects) {}
 
 Result<void> Budget::keep(std::uint64_t count, std::uint64_t each) {
   std::uint64_t bytes = 0;
@@ -51,7 +51,7 @@ Result<void> Budget::work(std::uint64_t bytes) {
 }
 
 Result<void> Budget::object(std::uint64_t path_size) {
-  if (objects_-- <= 0) return bad_data(fmt::format("more than {} objects", most_objects_), "split the file");
+  if (objects_-- <= 0) return bad_data(fmt::format("more than {} objects", max_objects_), "split the file");
   return keep(1, kObjectMemory + 2 * path_size);
 }
 

@@ -26,7 +26,7 @@ class Budget {
   std::uint64_t memory_, available_;
   std::uint64_t work_;
   int objects_;
-  int most_objects_;
+  int max_objects_;
 };
 
 /// The bytes of a file between its base address and its end, and what reading them has cost.

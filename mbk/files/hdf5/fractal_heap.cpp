@@ -77,7 +77,7 @@ Result<FractalHeap> FractalHeap::open(File& file, std::uint64_t address) {
   in.skip(8 * sizes.length);  // statistics
   heap.width_ = in.word();
   heap.start_ = in.length();
-  heap.most_direct_ = in.length();
+  heap.max_direct_ = in.length();
   heap.bits_ = in.word();
   in.skip(2);  // rows at the start
   heap.root_ = in.address();
@@ -88,8 +88,8 @@ Result<FractalHeap> FractalHeap::open(File& file, std::uint64_t address) {
 
 bool FractalHeap::plausible() const {
   std::uint64_t first_row = 0;
-  return std::has_single_bit(width_) && std::has_single_bit(start_) && std::has_single_bit(most_direct_) &&
-         most_direct_ >= start_ && bits_ > 0 && bits_ <= 64 && rows_ <= 64 && id_size_ > 1 &&
+  return std::has_single_bit(width_) && std::has_single_bit(start_) && std::has_single_bit(max_direct_) &&
+         max_direct_ >= start_ && bits_ > 0 && bits_ <= 64 && rows_ <= 64 && id_size_ > 1 &&
          multiply(width_, start_, first_row);
 }
 
@@ -105,13 +105,13 @@ Result<Bytes> FractalHeap::object(File& file, Cursor id) {
 
 Result<Bytes> FractalHeap::managed(File& file, Cursor id) {
   const std::uint64_t offset = id.number((bits_ + 7) / 8);
-  const std::size_t length_size = std::min<std::size_t>((log2_of(most_direct_) + 7) / 8, bytes_for(largest_));
+  const std::size_t length_size = std::min<std::size_t>((log2_of(max_direct_) + 7) / 8, bytes_for(largest_));
   const std::uint64_t length = id.number(length_size);
   if (!id.ok() || root_ == kUndefined) return broken();
   std::uint64_t address = root_;
   std::uint64_t inside = offset;  // the block at `address`
   std::uint64_t size = start_;
-  const std::uint64_t direct_rows = log2_of(most_direct_ / start_) + std::uint64_t{2};
+  const std::uint64_t direct_rows = log2_of(max_direct_ / start_) + std::uint64_t{2};
   for (std::uint64_t rows = rows_; rows > 0;) {
     const Place place = place_of(inside, width_, start_);
     if (place.row >= rows) return broken();

@@ -30,10 +30,10 @@ class FractalHeap {
   bool has_checksums_ = false;  ///< of direct blocks
   std::uint64_t largest_ = 0;   ///< [bytes] of a managed object
   std::uint64_t huge_tree_ = kUndefined;
-  std::uint64_t width_ = 0;        ///< blocks in a row
-  std::uint64_t start_ = 0;        ///< [bytes] of a block of the first row
-  std::uint64_t most_direct_ = 0;  ///< [bytes] of the largest direct block
-  unsigned bits_ = 0;              ///< of an offset into the heap
+  std::uint64_t width_ = 0;       ///< blocks in a row
+  std::uint64_t start_ = 0;       ///< [bytes] of a block of the first row
+  std::uint64_t max_direct_ = 0;  ///< [bytes] of the largest direct block
+  unsigned bits_ = 0;             ///< of an offset into the heap
   std::uint64_t root_ = kUndefined;
   std::uint64_t rows_ = 0;                                        ///< of the root; 0: it is a direct block
   std::map<std::uint64_t, std::vector<std::uint64_t>> children_;  ///< of indirect blocks that were read

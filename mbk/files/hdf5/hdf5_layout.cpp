@@ -9,7 +9,7 @@ namespace {
 
 /// The shape of a chunk and, as the last dimension, the size of an element.
 bool read_chunk_shape(Cursor& in, std::size_t dimensions, std::size_t bytes_each, ChunkIndex& chunks) {
-  if (dimensions < 2 || dimensions > kMostDimensions + 1 || bytes_each == 0 || bytes_each > 8) return false;
+  if (dimensions < 2 || dimensions > kMaxDimensions + 1 || bytes_each == 0 || bytes_each > 8) return false;
   for (std::size_t i = 0; i + 1 < dimensions; ++i) {
     chunks.chunk.push_back(in.number(bytes_each));
     if (chunks.chunk.back() == 0) return false;

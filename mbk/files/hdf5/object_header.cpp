@@ -13,8 +13,8 @@ namespace {
 
 constexpr unsigned kSharedFlag = 0x02;
 
-/// A stretch of messages that is still to be read.
-struct Stretch {
+/// A segment of messages that is still to be read.
+struct Segment {
   std::uint64_t address;
   std::uint64_t size;
 };
@@ -30,9 +30,9 @@ class Reader {
     Cursor in = file_.cursor(*start);
     const bool is_new = Cursor(*start).is("OHDR");
     if (auto ok = is_new ? read_new(in, address) : read_old(in, address); !ok) return ok;
-    while (!stretches_.empty()) {
-      const Stretch next = stretches_.front();
-      stretches_.pop_front();
+    while (!segments_.empty()) {
+      const Segment next = segments_.front();
+      segments_.pop_front();
       if (!seen_.insert(next.address).second) return damaged("an object header continues in itself");
       const auto block = is_new ? file_.checked_block(next.address, next.size, "an object header's continuation")
                                 : file_.block(next.address, next.size, "an object header's continuation");
@@ -52,7 +52,7 @@ class Reader {
     in.skip(4);  // references to the object
     const std::uint64_t size = in.dword();
     if (version != 1) return damaged(fmt::format("there is no object header at byte {}", address));
-    stretches_.push_back({address + 16, size});
+    segments_.push_back({address + 16, size});
     return {};
   }
 
@@ -107,12 +107,12 @@ class Reader {
     const std::uint64_t address = in.address();
     const std::uint64_t size = in.length();
     if (!in.ok()) return damaged("an object header's continuation is broken");
-    stretches_.push_back({address, size});
+    segments_.push_back({address, size});
     return {};
   }
 
   File& file_;
-  std::deque<Stretch> stretches_;
+  std::deque<Segment> segments_;
   std::set<std::uint64_t> seen_;
   int messages_left_ = 0;  ///< version 1
   bool ordered_ = false;   ///< version 2: every message says when it was made

@@ -10,9 +10,9 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr std::size_t kMostAttributeBytes = 65'000;  ///< a message of an object header has at most 65,535
-constexpr std::size_t kMostAttributes = 60'000;      ///< of one object; its header counts to 65,535
-constexpr std::size_t kMostDimensions = 32;
+constexpr std::size_t kMaxAttributeBytes = 65'000;  ///< a message of an object header has at most 65,535
+constexpr std::size_t kMaxAttributes = 60'000;      ///< of one object; its header counts to 65,535
+constexpr std::size_t kMaxDimensions = 32;
 
 std::string below(const std::string& path, const std::string& name) {
   return path == "/" ? path + name : path + "/" + name;
@@ -53,8 +53,8 @@ class Check {
   }
 
   Result<void> attributes(const Attributes& all, const std::string& path) {
-    if (all.size() > kMostAttributes) {
-      return bad_data(fmt::format("{} attributes are more than {}", all.size(), kMostAttributes), "", path);
+    if (all.size() > kMaxAttributes) {
+      return bad_data(fmt::format("{} attributes are more than {}", all.size(), kMaxAttributes), "", path);
     }
     for (const auto& [name, attribute] : all) {
       const std::string place = fmt::format("{}, attribute '{}'", path, name);
@@ -62,8 +62,8 @@ class Check {
         return bad_data(fmt::format("'{}' cannot be the name of an attribute", name), "use a name of letters", path);
       }
       if (auto ok = value(attribute); !ok) return tl::unexpected(ok.error().in(place));
-      if (const std::size_t bytes = size(name, attribute); bytes > kMostAttributeBytes) {
-        return bad_data(fmt::format("{} bytes are more than the {} of an attribute", bytes, kMostAttributeBytes),
+      if (const std::size_t bytes = size(name, attribute); bytes > kMaxAttributeBytes) {
+        return bad_data(fmt::format("{} bytes are more than the {} of an attribute", bytes, kMaxAttributeBytes),
                         "make it a dataset", place);
       }
     }
@@ -81,8 +81,8 @@ class Check {
   }
 
   Result<void> value(const Value& value) {
-    if (value.shape.size() > kMostDimensions) {
-      return bad_data(fmt::format("{} dimensions are more than {}", value.shape.size(), kMostDimensions));
+    if (value.shape.size() > kMaxDimensions) {
+      return bad_data(fmt::format("{} dimensions are more than {}", value.shape.size(), kMaxDimensions));
     }
     if (const auto* unread = std::get_if<Unread>(&value.data)) {
       return bad_data(fmt::format("is {}, which is not written", unread->what));

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t kSuperblockBytes = 96;
 constexpr std::size_t kLeafHalf = 4, kInternalHalf = 16;  ///< symbols of a node, children of a node: twice as many
 constexpr std::size_t kChunkHalf = 32;                    ///< the same of chunks; superblock 0 leaves no choice
-constexpr std::size_t kLeastPacked = 4096;                ///< [bytes]; less is not worth a tree of chunks
+constexpr std::size_t kMinPacked = 4096;                  ///< [bytes]; less is not worth a tree of chunks
 constexpr unsigned kShuffle = 2, kDeflate = 1;            ///< filters
 
 class Writer {
@@ -110,7 +110,7 @@ class Writer {
     std::optional<Chunks> chunks;
     std::size_t size = 0;
     if (const auto* numbers = std::get_if<Numbers>(&dataset.value.data);
-        numbers != nullptr && !shape.empty() && content.bytes.size() >= kLeastPacked) {
+        numbers != nullptr && !shape.empty() && content.bytes.size() >= kMinPacked) {
       size = size_of(numbers->stored);
       chunks = pack(content.bytes, shape, size);
       std::size_t packed = chunk_node_bytes(shape.size());

@@ -7,7 +7,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr std::size_t kHeapBytes = 65'536, kLeastHeapBytes = 4096;
+constexpr std::size_t kHeapBytes = 65'536, kMinHeapBytes = 4096;
 
 void collect(const Group& group, std::vector<const std::string*>& texts) {
   const auto add = [&](const Value& value) {
@@ -30,7 +30,7 @@ void collect(const Group& group, std::vector<const std::string*>& texts) {
 
 std::uint64_t append_heap(Output objects, Output& out) {
   constexpr std::size_t kHead = 16;
-  const std::size_t size = std::max(kLeastHeapBytes, objects.bytes.size() + kHead);
+  const std::size_t size = std::max(kMinHeapBytes, objects.bytes.size() + kHead);
   Output heap;
   heap.put_text("GCOL");
   heap.put_u32(1);

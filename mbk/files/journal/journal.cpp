@@ -246,10 +246,10 @@ Writer::Place Writer::place() const {
 }
 
 Result<void> Writer::save_elsewhere() {
-  constexpr int kMostTries = 1000;
+  constexpr int kMaxTries = 1000;
   fs::path name;
   int saved = -1;
-  for (int k = 1; k <= kMostTries && saved < 0; ++k) {
+  for (int k = 1; k <= kMaxTries && saved < 0; ++k) {
     name = saved_name(file_, k);
     saved = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (saved < 0 && errno != EEXIST) break;

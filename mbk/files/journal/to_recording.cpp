@@ -13,7 +13,7 @@ namespace mbk::journal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint64_t kMostLost = 100'000, kMostLostPerTick = 100;  // rows of NaN: a number in a file may claim any
+constexpr std::uint64_t kMaxLost = 100'000, kMaxLostPerTick = 100;  // rows of NaN: a number in a file may claim any
 
 /// The samples of the recording: each a tick, or the place of one that was lost.
 struct Rows {
@@ -37,7 +37,7 @@ double period_of(const Journal& journal) {
 Rows rows_of(const Journal& journal) {
   const std::vector<Tick>& ticks = journal.ticks;
   const double period = period_of(journal);
-  std::uint64_t room = kMostLost + kMostLostPerTick * ticks.size();
+  std::uint64_t room = kMaxLost + kMaxLostPerTick * ticks.size();
   Rows rows;
   rows.ticks.reserve(ticks.size() + std::min(room, journal.damage.ticks_lost()));
   rows.times.reserve(rows.ticks.capacity());

@@ -61,7 +61,7 @@ void take_annotations(Contents& contents) {
     if (text.name.starts_with(kMetadataPrefix)) {
       contents.metadata[text.name.substr(kMetadataPrefix.size())] = fmt::format("{}", fmt::join(text.lines, "; "));
     } else {
-      contents.notes.push_back(fmt::format("variable '{}' is text; left aside", text.name));
+      contents.notes.push_back(fmt::format("variable '{}' is text; ignored", text.name));
     }
   }
   contents.texts.clear();

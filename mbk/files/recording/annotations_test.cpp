@@ -23,8 +23,7 @@ TEST(TakeAnnotations, TakesMetadataAndNotesOtherTexts) {
   contents.texts = {{"metadata.name", {"Anna"}}, {"who", {"me"}}, {"metadata.rows", {"a", "b"}}, {"metadata", {"x"}}};
   take_annotations(contents);
   EXPECT_THAT(contents.metadata, ElementsAre(Pair("name", "Anna"), Pair("rows", "a; b")));
-  EXPECT_THAT(contents.notes,
-              ElementsAre("variable 'who' is text; left aside", "variable 'metadata' is text; left aside"));
+  EXPECT_THAT(contents.notes, ElementsAre("variable 'who' is text; ignored", "variable 'metadata' is text; ignored"));
 }
 
 TEST(TakeAnnotations, TakesEventsThatFitTogether) {
@@ -42,7 +41,7 @@ TEST(TakeAnnotations, LeavesEventsOfAnotherShapeAsTheyAre) {
     take_annotations(contents);
     EXPECT_TRUE(contents.events.empty());
     EXPECT_EQ(contents.arrays.size(), 2u);
-    EXPECT_THAT(contents.notes, ElementsAre("variable 'events.name' is text; left aside"));
+    EXPECT_THAT(contents.notes, ElementsAre("variable 'events.name' is text; ignored"));
   }
 }
 

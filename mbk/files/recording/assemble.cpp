@@ -14,7 +14,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr double kRateTolerance = 1e-3;  ///< relative: what clocks of two machines differ by at most
-constexpr std::size_t kMostListed = 12;
+constexpr std::size_t kMaxListed = 12;
 
 /// One row or column of an array.
 struct Line {
@@ -91,7 +91,7 @@ std::string shape(const Array& array) {
 }
 
 std::string quoted(std::vector<std::string> names) {
-  const std::size_t more = names.size() > kMostListed ? names.size() - kMostListed : 0;
+  const std::size_t more = names.size() > kMaxListed ? names.size() - kMaxListed : 0;
   names.resize(names.size() - more);
   return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
@@ -156,7 +156,7 @@ class Assembler {
           fmt::format("--variable {} means a variable of a MAT file, and this is a table", options_.variable),
           "name its columns with --channels");
     }
-    if (options_.channels.empty() || !options_.wanted.empty()) {
+    if (options_.channels.empty() || !options_.requested.empty()) {
       if (auto ok = recognise(); !ok) return tl::unexpected(ok.error());
     }
     if (!options_.channels.empty()) {
@@ -233,7 +233,7 @@ class Assembler {
   Result<void> take_logs(const Array& logs) {
     std::vector<std::string> absent;
     for (const ChannelKind& kind : channel_kinds()) {
-      if (kind.logs_row == 0 || !is_wanted(kind)) continue;
+      if (kind.logs_row == 0 || !is_requested(kind)) continue;
       const Line line{&logs, kind.logs_row - 1, true};
       if (kind.name != "time" && not_recorded(logs.values.row(line.index))) {
         absent.emplace_back(kind.name);
@@ -242,7 +242,7 @@ class Assembler {
       }
     }
     recording_.notes.push_back(fmt::format(
-        "variable '{}' ({}) was read as a logs matrix; its rows 4, 5, 8, 9, 16 and 17 have no name and were left aside",
+        "variable '{}' ({}) was read as a logs matrix; its rows 4, 5, 8, 9, 16 and 17 have no name and were ignored",
         logs.name, shape(logs)));
     if (!absent.empty()) {
       recording_.notes.push_back(fmt::format("not recorded (NaN throughout): {}", quoted(absent)));
@@ -251,9 +251,9 @@ class Assembler {
   }
 
   /// Whether somebody asks for such a channel: otherwise nothing of it can stand in the way.
-  [[nodiscard]] bool is_wanted(const ChannelKind& kind) const {
-    if (kind.name == "time" || options_.wanted.empty()) return !kind.only_if_asked;
-    return std::ranges::any_of(options_.wanted, [&](const std::string& name) {
+  [[nodiscard]] bool is_requested(const ChannelKind& kind) const {
+    if (kind.name == "time" || options_.requested.empty()) return !kind.only_if_asked;
+    return std::ranges::any_of(options_.requested, [&](const std::string& name) {
       const auto kinds = kinds_called(name);
       return std::ranges::find(kinds, &kind) != kinds.end();
     });
@@ -269,7 +269,7 @@ class Assembler {
     std::vector<std::string> aside;
     for (const Array& array : contents_.arrays) {
       ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name));
-      std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_wanted(*kind); });
+      std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_requested(*kind); });
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -282,7 +282,7 @@ class Assembler {
       const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
       if (kind == nullptr) {
         aside.push_back(candidate.array->name);
-      } else if (is_wanted(*kind)) {
+      } else if (is_requested(*kind)) {
         const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
         if (!unit) return tl::unexpected(unit.error());
         signals_.push_back({kind, vector_of(*candidate.array), *unit, false, candidate.array->name});
@@ -290,8 +290,7 @@ class Assembler {
     }
     std::erase(aside, "");
     if (!aside.empty()) {
-      recording_.notes.push_back(
-          fmt::format("left aside, as their names are not those of channels: {}", quoted(aside)));
+      recording_.notes.push_back(fmt::format("ignored, as their names are not those of channels: {}", quoted(aside)));
     }
     return {};
   }
@@ -421,7 +420,7 @@ class Assembler {
   /// @param asked  the whole of what the map says, for messages
   Result<Line> source(const ChannelSource& entry, const std::string& asked) {
     if (const auto at = entry.source.rfind('@'); at != entry.source.npos && find(contents_, entry.source) == nullptr) {
-      return thinned(entry, at, asked);
+      return decimated(entry, at, asked);
     }
     if (const Array* array = find(contents_, entry.source)) {
       if (contents_.table || is_vector(*array)) return vector_of(*array);
@@ -470,7 +469,7 @@ class Assembler {
   }
 
   /// SOURCE@RATE: every k-th sample of a source that runs at k times that rate.
-  Result<Line> thinned(const ChannelSource& entry, std::size_t at, const std::string& asked) {
+  Result<Line> decimated(const ChannelSource& entry, std::size_t at, const std::string& asked) {
     const std::string name = entry.source.substr(0, at);
     auto line = source({entry.channel, name, entry.unit, entry.negate}, asked == entry.source ? name : asked);
     if (!line) return line;
@@ -570,7 +569,7 @@ class Assembler {
       if (said == recording_.metadata.end() || signal.unit != nullptr) continue;
       const Unit* unit = find_unit(said->second);
       if (unit == nullptr || !signal.kind->accepts(*unit)) {
-        recording_.notes.push_back(fmt::format("metadata '{}' is '{}', which {} cannot be in; left aside", said->first,
+        recording_.notes.push_back(fmt::format("metadata '{}' is '{}', which {} cannot be in; ignored", said->first,
                                                said->second, signal.kind->name));
         continue;
       }

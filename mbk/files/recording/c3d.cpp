@@ -22,7 +22,7 @@ constexpr std::size_t kParameterHeader = 4;
 constexpr std::size_t kCoordinates = 3;
 constexpr std::size_t kPointNumbers = 4;  ///< x, y, z, and a word of residual and cameras
 constexpr double kRateTolerance = 1e-3;   ///< relative: what rates of 32 bits and rounded digits differ by
-constexpr std::uint64_t kMostInWord = 0xFFFF;
+constexpr std::uint64_t kMaxInWord = 0xFFFF;
 
 /// Word k of the header, counted from 1 as the format does.
 constexpr std::size_t header_word(std::size_t k) {
@@ -105,11 +105,11 @@ class Decoder {
     const double ratio = layout_.point_rate > 0.0 ? layout_.analog_rate / layout_.point_rate : 0.0;
     const double samples = header_samples > 0.0 ? header_samples : std::max(std::round(ratio), 1.0);
     const double channels = parameters_.number("ANALOG", "USED").value_or(std::floor(in_frame / samples));
-    if (std::max(channels, samples) > static_cast<double>(kMostInWord) || channels != std::floor(channels)) {
+    if (std::max(channels, samples) > static_cast<double>(kMaxInWord) || channels != std::floor(channels)) {
       return bad_data(fmt::format("{} analog channels of {} samples in a frame are not possible", channels, samples),
                       std::string(kRemedy));
     }
-    if (channels * samples != in_frame && channels * samples <= static_cast<double>(kMostInWord)) {
+    if (channels * samples != in_frame && channels * samples <= static_cast<double>(kMaxInWord)) {
       return contradiction(fmt::format("analog numbers in a frame, of {} samples each,", samples), in_frame,
                            channels * samples);
     }
@@ -129,7 +129,7 @@ class Decoder {
   /// The number of frames that the parameters say; nothing where they do not.
   [[nodiscard]] std::optional<double> frames_of_parameters() const {
     const auto frames = parameters_.number("POINT", "FRAMES");
-    if (frames && *frames != static_cast<double>(kMostInWord)) return frames;
+    if (frames && *frames != static_cast<double>(kMaxInWord)) return frames;
     if (const auto frames_long = parameters_.number("POINT", "LONG_FRAMES")) return frames_long;
     const auto first = field("ACTUAL_START_FIELD"), last = field("ACTUAL_END_FIELD");
     if (first && last && *last >= *first) return *last - *first + 1.0;
@@ -152,7 +152,7 @@ class Decoder {
     if (layout_.frames == 0 || static_cast<double>(layout_.frames) != frames) {
       return bad_data(fmt::format("it says that it holds {} frames", frames), "nothing was recorded, or it is damaged");
     }
-    if (frames != in_header && frames < static_cast<double>(kMostInWord)) {
+    if (frames != in_header && frames < static_cast<double>(kMaxInWord)) {
       note(fmt::format("the header counts {} frames ({} to {}), the parameters {}, which are taken", in_header, first,
                        last, frames));
     }
@@ -178,7 +178,7 @@ class Decoder {
     }
     if (const std::uint64_t room = left / layout_.frame_size() - layout_.frames;
         room > 0 && room * layout_.frame_size() >= kC3dBlock) {
-      note(fmt::format("it has more bytes than its {} frames need, enough for {} more; they were left aside",
+      note(fmt::format("it has more bytes than its {} frames need, enough for {} more; they were ignored",
                        layout_.frames, room));
     }
     return {};

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint16_t kFourLetterLabels = 12345;
 constexpr std::size_t kKeyAt = 298, kCountAt = 300, kTimesAt = 304, kLabelsAt = 396;  ///< bytes of the header
-constexpr std::size_t kMostInHeader = 18;
+constexpr std::size_t kMaxInHeader = 18;
 constexpr double kSameTime = 1e-4;  ///< [s]: two records of one event differ by the rounding of 32-bit reals
 
 std::string trimmed(std::string text) {
@@ -61,7 +61,7 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
   }
 
   const std::size_t in_header = file.word(kKeyAt) == kFourLetterLabels ? file.word(kCountAt) : 0;
-  for (std::size_t k = 0; k < in_header && k < kMostInHeader; ++k) {
+  for (std::size_t k = 0; k < in_header && k < kMaxInHeader; ++k) {
     const double time = file.real(kTimesAt + 4 * k);
     std::string name = trimmed(printable(file.view.part(kLabelsAt + 4 * k, 4).padded_text()));
     if (std::isfinite(time)) {
@@ -70,10 +70,10 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
       ++no_time;
     }
   }
-  if (in_header > kMostInHeader) {
-    notes.push_back(fmt::format("the header speaks of {} events and has room for {}", in_header, kMostInHeader));
+  if (in_header > kMaxInHeader) {
+    notes.push_back(fmt::format("the header speaks of {} events and has room for {}", in_header, kMaxInHeader));
   }
-  if (no_time > 0) notes.push_back(fmt::format("{} events have no time and were left aside", no_time));
+  if (no_time > 0) notes.push_back(fmt::format("{} events have no time and were ignored", no_time));
   if (shifted) {
     notes.push_back(fmt::format("the first frame is number {}; the times of events count from there", first_frame));
   }

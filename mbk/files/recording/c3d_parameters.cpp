@@ -10,7 +10,7 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kMostDimensions = 7;
+constexpr std::size_t kMaxDimensions = 7;
 constexpr std::string_view kRemedy = "the file is damaged or cut short: copy it again from where it was recorded";
 
 double vax_real(std::uint32_t words) {
@@ -60,8 +60,8 @@ Result<C3dParameter> parameter_at(const C3dBytes& file, std::size_t offset, std:
   const int type = file.view.at<std::int8_t>(offset);
   const std::size_t count = file.view.at<std::uint8_t>(offset + 1);
   if (!is_type(type)) return bad_data(fmt::format("unknown type {}", type), std::string(kRemedy), where);
-  if (count > kMostDimensions) {
-    return bad_data(fmt::format("{} dimensions are more than {}", count, kMostDimensions), std::string(kRemedy), where);
+  if (count > kMaxDimensions) {
+    return bad_data(fmt::format("{} dimensions are more than {}", count, kMaxDimensions), std::string(kRemedy), where);
   }
   if (!file.view.holds(offset + 2, count)) return short_of();
   C3dParameter parameter{C3dParameter::Type{static_cast<std::int8_t>(type)}, {}, file};

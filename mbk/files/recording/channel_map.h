@@ -11,7 +11,7 @@ namespace mbk::recording {
 /// One entry of --channels: the channel that a source of the file is.
 struct ChannelSource {
   std::string channel;  ///< full name; "x" and "xr" stay as they are until the number of axes is known
-  std::string source;   ///< 1-based column (or row of a wide matrix), or a name in the file; `NAME@HZ` is thinned;
+  std::string source;   ///< 1-based column (or row of a wide matrix), or a name in the file; `NAME@HZ` is decimated;
                         ///< may end in *GAIN, +OFFSET and -OFFSET: see `readings`
   std::string unit;     ///< unit in the file, "" where not said: then SI, or what the column's own name says
   bool negate = false;  ///< the sign of the source is flipped, before an offset is added

@@ -71,7 +71,7 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"output", "output", kAnything, "", 0, 0, false, true},
     {"drive", "drive", kAnything, "", 0, 0, false, true},
 });
-static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMostJoints);
+static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMaxJoints);
 
 char lower(char c) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -28,7 +28,7 @@ struct ChannelKind {
 };
 
 inline constexpr int kLogsRows = 19;
-inline constexpr int kMostJoints = 8;
+inline constexpr int kMaxJoints = 8;
 
 /// Every kind, time first, in the order of the documentation.
 [[nodiscard]] std::span<const ChannelKind> channel_kinds();
@@ -40,7 +40,7 @@ inline constexpr int kMostJoints = 8;
 /// The known name or alias that looks most like `name`.
 [[nodiscard]] std::string_view nearest_channel_name(std::string_view name);
 
-/// 1 or 2, from the names that mean only one thing: `F` speaks for one axis, `y` or `Fx` for two; two where none
+/// 1 or 2, from the names that mean only one thing: `F` means one axis, `y` or `Fx` two; two where none
 /// speaks.
 [[nodiscard]] int axes_of(std::span<const std::vector<const ChannelKind*>> meanings);
 

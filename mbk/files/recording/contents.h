@@ -33,7 +33,7 @@ struct Contents {
   std::vector<Text> texts;
   std::map<std::string, std::string> metadata;  ///< what `take_annotations` found
   std::vector<Event> events;                    ///< the same
-  std::vector<std::string> notes;               ///< one sentence each: what was left aside and why
+  std::vector<std::string> notes;               ///< one sentence each: what was ignored and why
 };
 
 }  // namespace mbk::recording

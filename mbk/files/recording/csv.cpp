@@ -15,7 +15,7 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kMostColumns = 10'000;
+constexpr std::size_t kMaxColumns = 10'000;
 
 struct Line {
   std::size_t number = 0;  ///< from 1
@@ -68,7 +68,7 @@ std::optional<double> number(std::string_view cell) {
   if (end != cell.data() + cell.size()) return std::nullopt;
   if (error == std::errc()) return value;
   if (error != std::errc::result_out_of_range) return std::nullopt;
-  value = std::strtod(std::string(cell).c_str(), nullptr);  // too small is 0 or subnormal; too large is no number
+  value = std::strtod(std::string(cell).c_str(), nullptr);  // too small is 0 or subnormal; too large is not a number
   if (std::isinf(value)) return std::nullopt;
   return value;
 }
@@ -199,8 +199,8 @@ class Table {
     trailing_ = ends_empty && (header_.empty() || header_.size() + 1 == columns_ || header_.back().empty());
     if (trailing_) --columns_;
     if (header_.size() == columns_ + 1 && header_.back().empty()) header_.pop_back();
-    if (columns_ > kMostColumns) {
-      return bad_data(fmt::format("{} columns are more than {}", columns_, kMostColumns), "every sample is one line",
+    if (columns_ > kMaxColumns) {
+      return bad_data(fmt::format("{} columns are more than {}", columns_, kMaxColumns), "every sample is one line",
                       place(first.number));
     }
     if (header_.empty() || header_.size() == columns_) return {};
@@ -232,7 +232,7 @@ class Table {
     if (last && (count < columns_ || (!line.terminated && count == columns_ && last_is_empty) ||
                  (!line.terminated && wrong.data() != nullptr && wrong_column == count))) {
       contents.notes.push_back(
-          fmt::format("line {} is incomplete (the recording was cut off there) and was left aside", line.number));
+          fmt::format("line {} is incomplete (the recording was cut off there) and was ignored", line.number));
       return {};
     }
     if (!complete || (trailing_ && !trailing && !last)) {

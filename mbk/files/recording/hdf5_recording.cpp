@@ -102,7 +102,7 @@ class Decoder {
   }
 
   void aside(const std::string& path, std::string_view what) {
-    contents.notes.push_back(fmt::format("'{}' is {}; left aside", path, what));
+    contents.notes.push_back(fmt::format("'{}' is {}; ignored", path, what));
   }
 
   bool own_layout_ = false;  ///< as encode_hdf5 writes it

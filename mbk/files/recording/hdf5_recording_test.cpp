@@ -119,8 +119,8 @@ TEST(ContentsOfHdf5, ListsOtherFilesByTheirPaths) {
   EXPECT_EQ(contents.arrays[2].name, "trial/pos");
   EXPECT_EQ(contents.arrays[2].values, (Matrix(4, 2) << 0, 1, 2, 3, 4, 5, 6, 7).finished());  // as h5py shows it
   EXPECT_THAT(contents.notes,
-              ElementsAre("'cube' is an array of 3 dimensions; left aside", "'rate' is a single number; left aside",
-                          "'table' is of a compound type; left aside", "variable 'label' is text; left aside"));
+              ElementsAre("'cube' is an array of 3 dimensions; ignored", "'rate' is a single number; ignored",
+                          "'table' is of a compound type; ignored", "variable 'label' is text; ignored"));
 }
 
 TEST(ContentsOfHdf5, LetsAPathBeSaidWithSlashesOrDots) {

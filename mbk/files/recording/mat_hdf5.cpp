@@ -14,7 +14,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::string_view kHeader = "MATLAB 7.3";
-constexpr std::size_t kMostText = std::size_t{64} << 20;  ///< [bytes] of all cell arrays of a file
+constexpr std::size_t kMaxText = std::size_t{64} << 20;  ///< [bytes] of all cell arrays of a file
 constexpr auto kClass = "MATLAB_class";
 
 bool is_numeric_class(std::string_view name) {
@@ -105,11 +105,11 @@ class Decoder {
   }
 
   void aside(const std::string& name, std::string_view what) {
-    contents.notes.push_back(fmt::format("variable '{}' is {}; left aside", name, what));
+    contents.notes.push_back(fmt::format("variable '{}' is {}; ignored", name, what));
   }
 
   const hdf5::Group& root_;
-  std::size_t text_left_ = kMostText;
+  std::size_t text_left_ = kMaxText;
 };
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(DecodeMatHdf5, LeavesCellsOfNumbersAside) {
   Mat_Close(mat);
   const auto recording = read(folder / "log.mat", {});
   ASSERT_TRUE(recording) << recording.error().line();
-  EXPECT_THAT(recording->notes, testing::Contains("variable 'c' is a cell array; left aside"));
+  EXPECT_THAT(recording->notes, testing::Contains("variable 'c' is a cell array; ignored"));
 }
 
 TEST(DecodeMatHdf5, RefusesAFileCutAnywhere) {

@@ -103,7 +103,7 @@ Result<Contents> decode_mat_level4(std::span<const std::byte> bytes) {
     }
     const std::uint64_t size = header->entries * each;
     if (header->complex || header->kind != 0) {
-      contents.notes.push_back(fmt::format("variable '{}' is {}; left aside", header->name,
+      contents.notes.push_back(fmt::format("variable '{}' is {}; ignored", header->name,
                                            header->kind == 1   ? "text"
                                            : header->kind == 2 ? "a sparse matrix"
                                                                : "complex"));

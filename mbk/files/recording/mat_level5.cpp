@@ -14,9 +14,9 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kHeaderSize = 128;
-constexpr int kDeepest = 16;                 ///< structures within structures
-constexpr std::size_t kMostElements = 64;    ///< of a structure array that is still read
-constexpr std::size_t kMostLines = 100'000;  ///< of text in one variable
+constexpr int kDeepest = 16;                ///< structures within structures
+constexpr std::size_t kMaxElements = 64;    ///< of a structure array that is still read
+constexpr std::size_t kMaxLines = 100'000;  ///< of text in one variable
 
 // Types of data elements.
 constexpr std::uint32_t kInt8 = 1, kUint8 = 2, kInt16 = 3, kUint16 = 4, kInt32 = 5, kUint32 = 6, kSingle = 7,
@@ -34,7 +34,7 @@ struct Element {
   ByteView data;
 };
 
-/// The elements that follow each other in a stretch of bytes.
+/// The elements that follow each other in a segment of bytes.
 struct Elements {
   ByteView bytes;
   std::size_t offset = 0;
@@ -233,7 +233,7 @@ class Decoder {
   }
 
   Result<void> aside(const Header& header, std::string_view what) {
-    contents.notes.push_back(fmt::format("variable '{}' is {}; left aside", header.name, what));
+    contents.notes.push_back(fmt::format("variable '{}' is {}; ignored", header.name, what));
     return {};
   }
 
@@ -257,7 +257,7 @@ class Decoder {
     const std::size_t stored = units->data.size() / each;
     const auto count = header.count();
     if (!wide && units->type != kInt8 && units->type != kUint8 && units->type != kUtf8) return Lines();
-    if (header.dimensions.size() != 2 || header.dimensions[0] > kMostLines) return Lines();
+    if (header.dimensions.size() != 2 || header.dimensions[0] > kMaxLines) return Lines();
     // In UTF-8 a character may have several bytes, and only a single row says where it ends.
     const bool fits = units->data.size() % each == 0 && count == stored;
     if (!fits && !(units->type == kUtf8 && header.dimensions[0] == 1 && count < stored)) {
@@ -288,7 +288,7 @@ class Decoder {
   Result<void> cells(const Header& header, Elements& elements) {
     constexpr std::string_view kAside = "a cell array";
     const auto count = header.count();
-    if (!count || *count > kMostLines) return aside(header, kAside);
+    if (!count || *count > kMaxLines) return aside(header, kAside);
     std::vector<std::string> lines;
     for (std::uint64_t k = 0; k < *count; ++k) {
       const auto cell = elements.next("a cell");
@@ -339,7 +339,7 @@ class Decoder {
       fields.push_back(printable(names->data.part(i, static_cast<std::size_t>(width)).padded_text()));
     }
     const auto count = header.count();
-    if (!count || *count > kMostElements) return aside(header, "a large structure array");
+    if (!count || *count > kMaxElements) return aside(header, "a large structure array");
     for (std::uint64_t k = 0; k < *count; ++k) {
       for (const std::string& field : fields) {
         const auto element = elements.next("a field");

@@ -14,10 +14,10 @@
 namespace mbk::recording {
 
 struct ReadOptions {
-  std::vector<ChannelSource> channels;  ///< empty: the file is recognised by itself
-  std::vector<std::string> wanted;  ///< channels that are taken by name, beside those of the map; empty: without a map
-                                    ///< all, and with one none
-  std::optional<Hertz> rate;        ///< needed where the file holds no time; must agree with the time where it does
+  std::vector<ChannelSource> channels;  ///< empty: the file is recognised automatically
+  std::vector<std::string> requested;   ///< channels that are taken by name, beside those of the map; empty: without a
+                                        ///< map all, and with one none
+  std::optional<Hertz> rate;            ///< needed where the file holds no time; must agree with the time where it does
   int axes = 0;          ///< what x and xr mean: 1 position, reference; 2 hand_x, reference_x; 0 by the channels found
   bool untimed = false;  ///< rows without a time and a rate are taken as they are; otherwise that is an error
   std::string variable;  ///< the MAT variable that is meant, where several could be
@@ -31,7 +31,7 @@ struct ReadOptions {
 /// is a column or variable name or "structure.field". A matrix is never transposed silently.
 /// A map that leaves out the time leaves it to its own name, or to row 1 of a logs matrix.
 /// Rows of `logs` that are NaN throughout were not recorded and are no channels.
-/// Recording::notes says what was left aside.
+/// Recording::notes says what was ignored.
 ///
 /// @fails  data: the file cannot be read, is damaged or of another format; nothing is recognised (the message lists
 /// what there is); no time and no rate; a named source is not there; lengths differ.

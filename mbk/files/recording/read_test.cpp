@@ -475,7 +475,7 @@ TEST(ReadRealFiles, AnkleBothAsTableAndAsMatrixBesideObjects) {
   const auto matrix = read(data / "ankle/z.mat", options);
   ASSERT_TRUE(matrix) << matrix.error().line();
   EXPECT_THAT(matrix->notes,
-              Contains("variable 'z_df' is an object of MATLAB class 'nldat', which only MATLAB can read; left aside"));
+              Contains("variable 'z_df' is an object of MATLAB class 'nldat', which only MATLAB can read; ignored"));
   // The table was written with seven significant digits of the torque, eight decimals of the angle.
   EXPECT_LT((matrix->find("position")->values - table->find("position")->values).cwiseAbs().maxCoeff(), 0.6e-8);
   EXPECT_LT((matrix->find("reaction")->values - table->find("reaction")->values).cwiseAbs().maxCoeff(), 0.6e-5);
@@ -494,11 +494,11 @@ TEST(ReadAnySignal, InputAndOutputAreTakenOnlyWhereAsked) {
   EXPECT_DOUBLE_EQ(mapped->find("output")->values[1], 0.008);
 }
 
-TEST(ReadAnySignal, WantedChannelsAreTakenByNameBesideTheMap) {
+TEST(ReadAnySignal, ExpectedChannelsAreTakenByNameBesideTheMap) {
   const test::Folder folder;
   const auto file = folder.write("plant.csv", "time,hand_x_mm,Fx,7\n0,1,5,7\n0.1,2,6,8\n");
   ReadOptions options = with_channels("output=4");
-  options.wanted = {"x"};
+  options.requested = {"x"};
   const auto both = read(file, options);
   ASSERT_TRUE(both) << both.error().line();
   EXPECT_EQ(both->channels.size(), 2U);

@@ -10,16 +10,15 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/measure/analyse/decimation.h"
 #include "mbk/measure/analyse/energy_blocks.h"
-#include "mbk/measure/analyse/thinning.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Samples [first, last] of a recording, both included.
 struct Range {
@@ -50,14 +49,14 @@ struct Exchange {
   }
 };
 
-Index last_sample(const Stretch& stretch, Index every) {
-  return stretch.first_sample + (stretch.size() - 1) * every;
+Index last_sample(const Segment& segment, Index every) {
+  return segment.first_sample + (segment.size() - 1) * every;
 }
 
 /// The window of the trial, as samples of the recording that it says it was made from.
 Result<Range> window_of(const PreparedTrial& trial, const Vector& time) {
-  if (trial.stretches.empty()) return bad_data("the trial has no row that counts");
-  const Stretch &first = trial.stretches.front(), &last = trial.stretches.back();
+  if (trial.segments.empty()) return bad_data("the trial has no row that counts");
+  const Segment &first = trial.segments.front(), &last = trial.segments.back();
   const Range range{first.first_sample, last_sample(last, trial.preparation.every)};
   const auto is_row = [&](Index sample, Index row) {
     return sample >= 0 && sample < time.size() && row >= 0 && row < trial.time.size() &&
@@ -126,8 +125,8 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
 
 /// Where a perturbation begins and ends by its steps in the reference, of which the filters took a part. What they took
 /// is known, so that the search ends there.
-Range perturbation_of(const Exchange& exchange, const Preparation& how, const Stretch& stretch) {
-  Range range{stretch.first_sample, last_sample(stretch, how.every)};
+Range perturbation_of(const Exchange& exchange, const Preparation& how, const Segment& segment) {
+  Range range{segment.first_sample, last_sample(segment, how.every)};
   const Index half = how.cut_before_filter ? (how.smoothing_window - 1) / 2 : 0, reach = half + how.every - 1;
   if (exchange.reference.size() == 0) return range;
   const auto same = [&](Index a, Index b) { return exchange.reference.row(a) == exchange.reference.row(b); };
@@ -189,8 +188,8 @@ bool has_perturbations(const PreparedTrial& trial) {
 std::vector<Range> parts_of(const Exchange& exchange, const PreparedTrial& trial, double block_s) {
   if (!has_perturbations(trial)) return equal_ranges(exchange, block_s);
   std::vector<Range> parts;
-  for (const Stretch& stretch : trial.stretches) {
-    parts.push_back(perturbation_of(exchange, trial.preparation, stretch));
+  for (const Segment& segment : trial.segments) {
+    parts.push_back(perturbation_of(exchange, trial.preparation, segment));
   }
   return parts;
 }
@@ -263,7 +262,7 @@ EnergyCurve curve_of(const Exchange& exchange, const Vector& curl) {
   Matrix sums(exchange.time.size(), curl.size() > 0 ? 2 : 1);
   sums.col(0) = running_sum(exchange.absorbed);
   if (curl.size() > 0) sums.col(1) = running_sum(curl);
-  Series shown = thinned(exchange.time, sums, pieces_between_gaps(exchange.time), Thinning::extremes);
+  Series shown = decimated(exchange.time, sums, pieces_between_gaps(exchange.time), Decimation::extremes);
   EnergyCurve curve;
   curve.time = std::move(shown.time);
   curve.absorbed = shown.values.col(0);

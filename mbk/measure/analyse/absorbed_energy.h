@@ -12,7 +12,7 @@
 namespace mbk::analyse {
 
 struct EnergyOptions {
-  double block_s = 2.5;       ///< of a lasting perturbation, about [s] > 0
+  double block_s = 2.5;       ///< of a sustained perturbation, about [s] > 0
   double first_share = 0.05;  ///< of ∫ v·v dt, from which on the largest shortage is looked for; in (0, 1)
   int replicates = 5000;      ///< of the bootstrap, ≥ 100
   std::uint64_t seed = 1;     ///< of the bootstrap
@@ -28,7 +28,7 @@ struct EnergyOptions {
 /// expectation telescopes. A force that comes late by τ biases it by τ ∫ Ḟ·v dt (docs/theory/energy.md).
 /// v, for ∫ v·v dt and ∫ |v| dt alone, is the first derivative of the preparation's Savitzky–Golay filter at every
 /// sample of the recording; no low-pass. No sum crosses a break: a gap of more than 1.5 sample times, time that does
-/// not rise, a value that is no number. In the window samples whose velocity is not known count for neither sum.
+/// not rise, a non-finite value. In the window samples whose velocity is not known count for neither sum.
 ///
 /// The window runs from the first to the last sample that counts. Intervals come from a bootstrap over blocks: of
 /// pulses, from one onset to the next; otherwise of about `block_s`, the window divided equally. Their percentiles are

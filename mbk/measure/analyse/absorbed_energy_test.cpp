@@ -46,14 +46,14 @@ Vector& values_of(Recording& recording, const std::string& name) {
   return recording.time;
 }
 
-/// A trial of which samples [first, last] count, with one stretch; only what energy asks is filled in.
+/// A trial of which samples [first, last] count, with one segment; only what energy asks is filled in.
 PreparedTrial trial_of(const Recording& recording, Index first, Index last, int axes) {
   PreparedTrial trial;
   trial.axes = axes;
   trial.recording_rate = kRate;
   trial.sample_time = kStep;
   trial.time = recording.time.segment(first, last - first + 1).array() - recording.time[0];
-  trial.stretches = {{0, last - first + 1, Purpose::identification, first}};
+  trial.segments = {{0, last - first + 1, Purpose::identification, first}};
   trial.preparation.smoothing_order = 4;
   trial.preparation.smoothing_window = 21;
   trial.preparation.from_s = trial.time[0];
@@ -88,9 +88,9 @@ TEST(AbsorbedEnergy, OfASineIsThatOfItsDamperUpToTheTrapezoids) {
   const Recording recording = sine_recording();
   const Energy energy = absorbed_energy(recording, sine_trial(recording)).value();
   // Each step of the sum is sin(ωT)/(ωT) of the integral; mass, spring and offset do no work over whole periods.
-  const double wanted = kPower * 20.0, sum = std::sin(kOmega * kStep) / (kOmega * kStep);
-  EXPECT_NEAR(energy.account.absorbed, wanted * sum, 1e-12);
-  EXPECT_NEAR(energy.account.absorbed, wanted, wanted * std::pow(kOmega * kStep, 2) / 6.0);
+  const double expected = kPower * 20.0, sum = std::sin(kOmega * kStep) / (kOmega * kStep);
+  EXPECT_NEAR(energy.account.absorbed, expected * sum, 1e-12);
+  EXPECT_NEAR(energy.account.absorbed, expected, expected * std::pow(kOmega * kStep, 2) / 6.0);
   EXPECT_NEAR(energy.account.duration, 20.0, 1e-9);
   EXPECT_NEAR(energy.account.mean_power, kPower * sum, 1e-12);
   EXPECT_NEAR(energy.curve.end, kPower * 21.0 * sum, 1e-12);  // 42 periods
@@ -147,9 +147,10 @@ TEST(AbsorbedEnergy, IsTheSumOverTheAxesWhateverTheirDirection) {
     };
   };
   const Recording straight = record(6001, circle(0.0), force(0.0)), turned = record(6001, circle(0.5), force(0.5));
-  const double wanted = 2.0 * kPower * 5.0 * std::sin(kOmega * kStep) / (kOmega * kStep);
+  const double expected = 2.0 * kPower * 5.0 * std::sin(kOmega * kStep) / (kOmega * kStep);
   for (const Recording& recording : {straight, turned}) {
-    EXPECT_NEAR(absorbed_energy(recording, trial_of(recording, 500, 5500, 2)).value().account.absorbed, wanted, 1e-12);
+    EXPECT_NEAR(absorbed_energy(recording, trial_of(recording, 500, 5500, 2)).value().account.absorbed, expected,
+                1e-12);
   }
 }
 
@@ -184,9 +185,9 @@ TEST(AbsorbedEnergy, OfALateForceIsOffByTheDelayTimesTheStiffnessAtTheSensor) {
   // F(t − τ): a spring k − m ω² turns by ωτ and generates what a damper of −τ (k − m ω²) would.
   constexpr double kDelay = 0.002;
   const Recording late = record(21001, sine, [](double t) { return force_on_sine(t - kDelay); });
-  const double wanted = kDamping * std::cos(kOmega * kDelay) -
-                        (kStiffness - kMass * kOmega * kOmega) * std::sin(kOmega * kDelay) / kOmega;
-  EXPECT_NEAR(absorbed_energy(late, sine_trial(late)).value().account.shortage_at_end, -wanted, 1e-3);
+  const double expected = kDamping * std::cos(kOmega * kDelay) -
+                          (kStiffness - kMass * kOmega * kOmega) * std::sin(kOmega * kDelay) / kOmega;
+  EXPECT_NEAR(absorbed_energy(late, sine_trial(late)).value().account.shortage_at_end, -expected, 1e-3);
   // To first order in the delay that is what the recording itself foretells.
   const Recording prompt = sine_recording();
   const Energy energy = absorbed_energy(prompt, sine_trial(prompt)).value();
@@ -244,14 +245,14 @@ PreparedTrial pulses_of(Recording& recording, int count) {
   Vector reference = Vector::Zero(recording.samples());
   PreparedTrial trial = trial_of(recording, 0, recording.samples() - 1, 1);
   trial.preparation.protocol = Protocol::underdamped;
-  trial.stretches.clear();
+  trial.segments.clear();
   std::vector<Index> kept;
   for (Index k = 0; k < count; ++k) {
     const Index onset = 400 + 1000 * k;
     reference.segment(onset, 600).setConstant(0.005);
     const auto row = static_cast<Index>(kept.size());
     for (Index i = onset + 10; i < onset + 590; ++i) kept.push_back(i);
-    trial.stretches.push_back({row, row + 580, Purpose::identification, onset + 10});
+    trial.segments.push_back({row, row + 580, Purpose::identification, onset + 10});
   }
   trial.time = recording.time(kept).array() - recording.time[0];
   recording.channels.push_back({"reference", "", "base", reference});
@@ -284,7 +285,7 @@ TEST(Perturbations, AreListedFromOnsetToOffsetAndFillTheWindowFromOnsetToOnset) 
   }
 }
 
-TEST(Perturbations, WithoutAReferenceAreTheStretchesThemselves) {
+TEST(Perturbations, WithoutAReferenceAreTheSegmentsThemselves) {
   Recording recording = sine_recording();
   const PreparedTrial trial = pulses_of(recording, 16);
   recording.channels.pop_back();
@@ -301,11 +302,11 @@ TEST(Perturbations, OfFewerRowsCoverTheSameSamples) {
   trial.preparation.every = 4;
   trial.sample_time = 4.0 * kStep;
   std::vector<Index> kept;
-  for (Stretch& stretch : trial.stretches) {
+  for (Segment& segment : trial.segments) {
     const auto row = static_cast<Index>(kept.size());
-    for (Index i = stretch.begin; i < stretch.end; i += 4) kept.push_back(i);
-    stretch.begin = row;
-    stretch.end = row + 145;
+    for (Index i = segment.begin; i < segment.end; i += 4) kept.push_back(i);
+    segment.begin = row;
+    segment.end = row + 145;
   }
   trial.time = Vector(trial.time(kept));
   const Energy fewer = absorbed_energy(recording, trial).value();
@@ -332,15 +333,16 @@ TEST(CurlWork, OnAnEllipseIsTwiceItsAreaTimesTheAntisymmetricStiffness) {
   const Energy energy = absorbed_energy(recording, trial, {}, &model).value();
   ASSERT_TRUE(energy.curl);
   EXPECT_DOUBLE_EQ(energy.curl->k_a, k_a);
-  const double wanted = -2.0 * kPi * kA * kB * k_a * 30.0;  // thirty turns; polygons of 500 corners are 3e-5 smaller
-  EXPECT_NEAR(energy.curl->absorbed, wanted, 3e-5 * std::abs(wanted));
+  const double expected = -2.0 * kPi * kA * kB * k_a * 30.0;  // thirty turns; polygons of 500 corners are 3e-5 smaller
+  EXPECT_NEAR(energy.curl->absorbed, expected, 3e-5 * std::abs(expected));
   EXPECT_NEAR(energy.curl->share, 1.0, 1e-12);
   EXPECT_NEAR(energy.account.absorbed, energy.curl->absorbed, 1e-12);
-  EXPECT_NEAR(energy.curve.curl[energy.curve.curl.size() - 1], 16.0 / 15.0 * wanted, 1e-4 * std::abs(wanted));
+  EXPECT_NEAR(energy.curve.curl[energy.curve.curl.size() - 1], 16.0 / 15.0 * expected, 1e-4 * std::abs(expected));
   EXPECT_EQ(energy.account.verdict, Verdict::active);
   // Where the equilibrium is not known the middle of the path stands for it.
   model.x0.setConstant(kNaN);
-  EXPECT_NEAR(absorbed_energy(recording, trial, {}, &model).value().curl->absorbed, wanted, 3e-5 * std::abs(wanted));
+  EXPECT_NEAR(absorbed_energy(recording, trial, {}, &model).value().curl->absorbed, expected,
+              3e-5 * std::abs(expected));
   model.K = (Matrix(2, 2) << 42.4, -28.6, -28.6, 125.3).finished();
   EXPECT_EQ(absorbed_energy(recording, trial, {}, &model).value().curl->absorbed, 0.0);
 }
@@ -382,7 +384,7 @@ TEST(AbsorbedEnergy, RefusesATrialOfAnotherRecording) {
   slower.time *= 2.0;
   EXPECT_NE(error_of(slower, trial).find("not the one"), std::string::npos);
   PreparedTrial nothing = trial;
-  nothing.stretches.clear();
+  nothing.segments.clear();
   EXPECT_NE(error_of(recording, nothing).find("no row that counts"), std::string::npos);
   EXPECT_NE(error_of(recording, trial_of(recording, 700, 700, 1)).find("fewer than two samples"), std::string::npos);
 }

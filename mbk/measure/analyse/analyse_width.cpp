@@ -76,10 +76,10 @@ Result<WidthFindings> analyse_width(const Identification& first, const Identific
     WidthFinding finding;
     finding.distance = width->distance;
     finding.surely_positive = surely_positive(first, matrix) && surely_positive(second, matrix);
-    finding.told_apart = differ(one, other, C1 + C2, n);
+    finding.distinguishable = differ(one, other, C1 + C2, n);
     finding.distance95 = numeric::interval95(width->distance, root(variance(width->by_first, width->by_second)));
     const bool known = !std::isnan(finding.distance95.first);
-    if (known) finding.distance95.first = finding.told_apart ? std::max(0.0, finding.distance95.first) : 0.0;
+    if (known) finding.distance95.first = finding.distinguishable ? std::max(0.0, finding.distance95.first) : 0.0;
     for (Index i = 0; i < n; ++i) {
       const double ratio = width->ratios[i];
       const double error = root(variance(width->ratios_by_first.row(i), width->ratios_by_second.row(i)));

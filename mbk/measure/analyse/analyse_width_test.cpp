@@ -55,12 +55,12 @@ TEST(AnalyseWidth, OfSevenfoldStiffnessIsItsClosedForm) {
   ASSERT_TRUE(found.complete());
   const WidthFinding& stiffness = *found.of[2];
   EXPECT_NEAR(stiffness.distance, 2.752, 0.0005);
-  EXPECT_TRUE(stiffness.told_apart);
+  EXPECT_TRUE(stiffness.distinguishable);
   EXPECT_LT(stiffness.distance95.first, 2.752);
   EXPECT_GT(stiffness.distance95.second, 2.752);
   EXPECT_NEAR(stiffness.ratios.at(0).ratio, 7.0, 1e-9);
   EXPECT_NEAR(found.of[0]->distance, 0.0, 1e-9);
-  EXPECT_FALSE(found.of[0]->told_apart);
+  EXPECT_FALSE(found.of[0]->distinguishable);
   EXPECT_EQ(found.of[0]->distance95.first, 0.0);
 }
 
@@ -90,7 +90,7 @@ TEST(AnalyseWidth, TellsTwoMeasurementsOfOneArmApartInFiveOfAHundredCases) {
   int told = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     const WidthFindings found = analyse_width(draw(one), draw(one)).value();
-    for (const auto& finding : found.of) told += finding->told_apart ? 1 : 0;
+    for (const auto& finding : found.of) told += finding->distinguishable ? 1 : 0;
   }
   EXPECT_NEAR(told / (3.0 * kTrials), 0.05, 0.008);  // four standard deviations of 12,000 tests
 }
@@ -136,7 +136,7 @@ TEST(AnalyseWidth, OfOneAxisIsThatOfItsNumbers) {
   EXPECT_NEAR(found.distance, std::log(3.0), 1e-12);
   // d ln k = dk/k of both: √((0.5/10)² + (0.5/30)²)
   EXPECT_NEAR(found.distance95.second - found.distance, kZ95 * std::hypot(0.05, 0.5 / 30.0), 1e-12);
-  EXPECT_TRUE(found.told_apart);
+  EXPECT_TRUE(found.distinguishable);
   Identification hand = joint(10.0);
   hand.motion = Motion::translation;
   EXPECT_EQ(analyse_width(joint(10.0), hand).error().message, "one has its inertia in kg·m² and the other in kg");
@@ -149,7 +149,7 @@ TEST(AnalyseWidth, WithoutACovarianceHasNoInterval) {
   const WidthFinding found = *analyse_width(arm(1.0, 0.02), id)->of[2];
   EXPECT_NEAR(found.distance, std::sqrt(2.0) * std::log(2.0), 1e-12);
   EXPECT_TRUE(std::isnan(found.distance95.second));
-  EXPECT_FALSE(found.told_apart);
+  EXPECT_FALSE(found.distinguishable);
   EXPECT_FALSE(found.surely_positive);
 }
 

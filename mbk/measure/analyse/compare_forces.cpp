@@ -5,20 +5,19 @@
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/option_limits.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::analyse {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 enum class Part { reversal, rest, motion };
 
-Result<void> check(const std::vector<ForcePair>& stretches) {
+Result<void> check(const std::vector<ForcePair>& segments) {
   Index rows = 0;
-  for (const ForcePair& pair : stretches) {
-    const ForcePair& first = stretches.front();
+  for (const ForcePair& pair : segments) {
+    const ForcePair& first = segments.front();
     if (pair.estimated.rows() != pair.measured.rows() || pair.estimated.rows() != pair.joint_velocity.rows() ||
         pair.estimated.cols() != pair.measured.cols() || pair.estimated.cols() != first.estimated.cols() ||
         pair.joint_velocity.cols() != first.joint_velocity.cols()) {
@@ -107,14 +106,14 @@ double correlation(const Vector& a, const Vector& b) {
   return both > 0.0 ? (from_a * from_b).sum() / both : kNaN;
 }
 
-/// The rows of all stretches one after another; of each, `margin` rows at both ends left out, and then `shift` later.
-Vector joined(const std::vector<ForcePair>& stretches, Matrix ForcePair::*signal, Index axis, Index margin = 0,
+/// The rows of all segments one after another; of each, `margin` rows at both ends left out, and then `shift` later.
+Vector joined(const std::vector<ForcePair>& segments, Matrix ForcePair::*signal, Index axis, Index margin = 0,
               Index shift = 0) {
   Index rows = 0;
-  for (const ForcePair& pair : stretches) rows += std::max(Index{0}, pair.measured.rows() - 2 * margin);
+  for (const ForcePair& pair : segments) rows += std::max(Index{0}, pair.measured.rows() - 2 * margin);
   Vector all(rows);
   Index at = 0;
-  for (const ForcePair& pair : stretches) {
+  for (const ForcePair& pair : segments) {
     const Index length = pair.measured.rows() - 2 * margin;
     if (length <= 0) continue;
     all.segment(at, length) = (pair.*signal).col(axis).segment(margin + shift, length);
@@ -127,12 +126,12 @@ struct Lag {
   double rows = kNaN, correlation = kNaN;
 };
 
-Lag lag_of(const std::vector<ForcePair>& stretches, Index axis, Index longest) {
-  const Vector measured = joined(stretches, &ForcePair::measured, axis, longest);
+Lag lag_of(const std::vector<ForcePair>& segments, Index axis, Index longest) {
+  const Vector measured = joined(segments, &ForcePair::measured, axis, longest);
   if (longest < 1 || measured.size() < 2) return {};
   Vector at(2 * longest + 1);
   for (Index shift = -longest; shift <= longest; ++shift) {
-    at[shift + longest] = correlation(measured, joined(stretches, &ForcePair::estimated, axis, longest, shift));
+    at[shift + longest] = correlation(measured, joined(segments, &ForcePair::estimated, axis, longest, shift));
   }
   if (!at.allFinite()) return {};
   Index best = 0;
@@ -145,7 +144,7 @@ Lag lag_of(const std::vector<ForcePair>& stretches, Index axis, Index longest) {
 
 }  // namespace
 
-Result<ForceComparison> compare_forces(const std::vector<ForcePair>& stretches, double sample_time,
+Result<ForceComparison> compare_forces(const std::vector<ForcePair>& segments, double sample_time,
                                        const ForceComparisonOptions& options) {
   if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
   if (auto ok = not_negative({{"speed that counts as rest", options.rest_speed, ""},
@@ -154,12 +153,12 @@ Result<ForceComparison> compare_forces(const std::vector<ForcePair>& stretches, 
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = check(stretches); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check(segments); !ok) return tl::unexpected(ok.error());
 
-  const Index axes = stretches.front().measured.cols();
+  const Index axes = segments.front().measured.cols();
   const auto in_rows = [&](double seconds) { return static_cast<Index>(std::llround(seconds / sample_time)); };
   Agreement all(axes), reversals(axes), rest(axes), motion(axes);
-  for (const ForcePair& pair : stretches) {
+  for (const ForcePair& pair : segments) {
     const std::vector<Part> parts = parts_of(pair.joint_velocity, options.rest_speed, in_rows(options.reversal_window));
     for (Index i = 0; i < pair.measured.rows(); ++i) {
       const Vector error = (pair.estimated.row(i) - pair.measured.row(i)).transpose();
@@ -182,8 +181,8 @@ Result<ForceComparison> compare_forces(const std::vector<ForcePair>& stretches, 
     one->setConstant(axes, kNaN);
   }
   for (Index axis = 0; axis < axes; ++axis) {
-    const Vector estimated = joined(stretches, &ForcePair::estimated, axis),
-                 measured = joined(stretches, &ForcePair::measured, axis);
+    const Vector estimated = joined(segments, &ForcePair::estimated, axis),
+                 measured = joined(segments, &ForcePair::measured, axis);
     const Eigen::ArrayXd about = measured.array() - measured.mean();
     result.measured_rms[axis] = numeric::root_mean_square(about);
     result.vaf[axis] = numeric::variance_accounted_for(measured, measured - estimated);
@@ -191,7 +190,7 @@ Result<ForceComparison> compare_forces(const std::vector<ForcePair>& stretches, 
     if (result.measured_rms[axis] > 0.0) {
       result.gain[axis] = (about * (estimated.array() - estimated.mean())).sum() / about.square().sum();
     }
-    const Lag lag = lag_of(stretches, axis, in_rows(options.longest_lag));
+    const Lag lag = lag_of(segments, axis, in_rows(options.longest_lag));
     result.lag[axis] = sample_time * lag.rows;
     result.correlation_at_lag[axis] = lag.correlation;
   }

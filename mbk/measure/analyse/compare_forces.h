@@ -7,7 +7,7 @@
 
 namespace mbk::analyse {
 
-/// One stretch without a break, evenly sampled.
+/// One segment without a break, evenly sampled.
 struct ForcePair {
   Matrix estimated;       ///< N×n, F_h [N]
   Matrix measured;        ///< N×n, F_h [N]
@@ -20,15 +20,15 @@ struct ForceComparisonOptions {
   double longest_lag = 0.1;        ///< that is tried, earlier and later [s] ≥ 0
 };
 
-/// Compares an estimated force with a measured one, row by row; rows of several stretches count together.
+/// Compares an estimated force with a measured one, row by row; rows of several segments count together.
 /// A joint turns back where its velocity goes from one side of ±rest_speed to the other: at the change of sign in
 /// between, the middle of them where there are several. Where it lingers within longer than twice the window it rests
 /// and starts anew, which is no reversal.
 /// The lag is that of the largest correlation, of which a parabola through the three largest gives fractions of a
-/// row. At every lag the same measured rows count, those with longest_lag before and after them in their stretch.
+/// row. At every lag the same measured rows count, those with longest_lag before and after them in their segment.
 /// @fails  usage: an option or the sample time is out of its range; data: shapes differ, a value is not finite (the
 /// first is named), or there are fewer than two rows.
-[[nodiscard]] Result<ForceComparison> compare_forces(const std::vector<ForcePair>& stretches, double sample_time,
+[[nodiscard]] Result<ForceComparison> compare_forces(const std::vector<ForcePair>& segments, double sample_time,
                                                      const ForceComparisonOptions& options = {});
 
 }  // namespace mbk::analyse

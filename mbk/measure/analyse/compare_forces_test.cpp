@@ -111,7 +111,7 @@ TEST(CompareForces, CountsAReversalOfAnyJoint) {
   EXPECT_EQ(compare_forces({pair}, kTick).value().reversals.rows, 51);
 }
 
-TEST(CompareForces, OfTwoStretchesIsThatOfTheirRowsAndNoLagOrReversalReachesAcross) {
+TEST(CompareForces, OfTwoSegmentsIsThatOfTheirRowsAndNoLagOrReversalReachesAcross) {
   const auto late = [](double t) { return swing(t - 0.01); };
   ForcePair one = pair_of(4000, swing, late, steady),
             other = pair_of(
@@ -135,7 +135,7 @@ TEST(CompareForces, HasNoRelationToAForceThatDoesNotChange) {
   EXPECT_TRUE(std::isfinite(found.all.rmse[0]));
 }
 
-TEST(CompareForces, HasNoLagWhereTheStretchIsTooShortForIt) {
+TEST(CompareForces, HasNoLagWhereTheSegmentIsTooShortForIt) {
   EXPECT_TRUE(std::isnan(compare_forces({pair_of(150, swing, swing, steady)}, kTick).value().lag[0]));
 }
 

@@ -8,7 +8,7 @@
 
 #include "mbk/base/numeric/polynomial_roots.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/measure/analyse/thinning.h"
+#include "mbk/measure/analyse/decimation.h"
 
 namespace mbk::analyse {
 namespace {
@@ -184,8 +184,8 @@ Result<TransferFunctionFindings> describe(const TransferFunctionIdentification& 
   Matrix values(samples, 2);
   std::vector<Rows> pieces;
   Index row = 0;
-  for (const SimulatedOutput* const stretch : shown) {
-    const SimulatedOutput& one = *stretch;
+  for (const SimulatedOutput* const segment : shown) {
+    const SimulatedOutput& one = *segment;
     const Index n = one.time.size();
     time.segment(row, n) = one.time;
     values.block(row, 0, n, 1) = one.measured;
@@ -193,7 +193,7 @@ Result<TransferFunctionFindings> describe(const TransferFunctionIdentification& 
     pieces.push_back({row, row + n, row});
     row += n;
   }
-  const Series drawn = thinned(time, values, pieces, Thinning::extremes);
+  const Series drawn = decimated(time, values, pieces, Decimation::extremes);
   findings.drawn = {drawn.time, drawn.values.col(0), drawn.values.col(1)};
   return findings;
 }

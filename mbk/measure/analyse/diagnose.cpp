@@ -10,15 +10,15 @@
 #include "mbk/base/dsp/autocorrelation.h"
 #include "mbk/base/dsp/integral.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/analyse/decimation.h"
 #include "mbk/measure/analyse/frequencies.h"
-#include "mbk/measure/analyse/thinning.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
 namespace {
 
 constexpr double kLongestLag = 2.0;  ///< of the autocorrelation [s]
-constexpr Index kMostLags = 400;
+constexpr Index kMaxLags = 400;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 bool is_known(const impedance::Model& model, Index axes) {
@@ -33,12 +33,12 @@ Matrix predicted_force(const PreparedTrial& trial, const impedance::Model& model
 }
 
 ForcePrediction prediction_of(const PreparedTrial& trial, const Matrix& predicted, const std::vector<Rows>& judged,
-                              bool held_back) {
+                              bool held_out) {
   const Index n = trial.axes;
   Matrix all(trial.time.size(), 3 * n);
   all << trial.force_hand_on_robot, predicted, trial.force_hand_on_robot - predicted;
-  const Series shown = thinned(trial.time, all, judged, thinning_of(trial, judged));
-  return {held_back, shown.time, shown.values.leftCols(n), shown.values.middleCols(n, n), shown.values.rightCols(n)};
+  const Series shown = decimated(trial.time, all, judged, decimation_of(trial, judged));
+  return {held_out, shown.time, shown.values.leftCols(n), shown.values.middleCols(n, n), shown.values.rightCols(n)};
 }
 
 /// Where it first falls below 1/e, by a straight line between lags.
@@ -58,7 +58,7 @@ Autocorrelation autocorrelation_of(const Matrix& residual, const std::vector<Row
     longest = std::max(longest, one.size());
   }
   const Index last = std::min<Index>(std::llround(kLongestLag / sample_time), longest / 4);
-  const Index every = std::max<Index>(1, (last + kMostLags - 1) / kMostLags);
+  const Index every = std::max<Index>(1, (last + kMaxLags - 1) / kMaxLags);
   const Index count = last / every + 1, n = residual.cols();
   Autocorrelation result{Vector(count), Matrix(count, n), numeric::kNormal95 / std::sqrt(static_cast<double>(total)),
                          Vector(n)};
@@ -92,7 +92,7 @@ AccelerationAgreement agreement_of(const PreparedTrial& trial, const PreparedTri
     result.rms_difference[axis] = numeric::root_mean_square(difference.array() - difference.mean());
     result.vaf[axis] = numeric::variance_accounted_for(sensor, difference);
   }
-  Series shown = thinned(trial.time, both, rows, thinning_of(trial, rows));
+  Series shown = decimated(trial.time, both, rows, decimation_of(trial, rows));
   result.time = std::move(shown.time);
   result.derivative = shown.values.leftCols(n);
   result.sensor = shown.values.rightCols(n);
@@ -133,7 +133,7 @@ void add_recording(const Recording& recording, const Matrix& position, const Mat
   all.leftCols(2 * n) << position, force;
   if (reference.cols() > 0) all.rightCols(n) = reference;
   const Vector time = recording.time.array() - recording.time[0];
-  Series shown = thinned(time, all, pieces_between_gaps(time), Thinning::extremes);
+  Series shown = decimated(time, all, pieces_between_gaps(time), Decimation::extremes);
   result.time = std::move(shown.time);
   result.position = shown.values.leftCols(n);
   result.force = shown.values.middleCols(n, n);
@@ -162,15 +162,15 @@ Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& tr
                              const Identification& identification, const PreparedTrial* other_acceleration) {
   const Matrix position = recorded(recording, kPositionChannels, trial.axes);
   const Matrix force = recorded(recording, kForceChannels, trial.axes);
-  const std::vector<Rows> all = rows_of(trial), held_back = rows_of(trial, Purpose::validation);
+  const std::vector<Rows> all = rows_of(trial), held_out = rows_of(trial, Purpose::validation);
   if (auto ok = check_origin(position, force, trial, all); !ok) return tl::unexpected(ok.error());
 
   Diagnostics result;
   const double handle = identification.handle_mass;
-  const impedance::Model& judged = held_back.empty() ? identification.model : identification.judged;
+  const impedance::Model& judged = held_out.empty() ? identification.model : identification.judged;
   if (is_known(judged, trial.axes)) {
-    result.prediction = prediction_of(trial, predicted_force(trial, judged, handle),
-                                      held_back.empty() ? all : held_back, !held_back.empty());
+    result.prediction = prediction_of(trial, predicted_force(trial, judged, handle), held_out.empty() ? all : held_out,
+                                      !held_out.empty());
   }
   Matrix residual;
   if (is_known(identification.model, trial.axes)) {

@@ -9,8 +9,8 @@
 namespace mbk::analyse {
 
 /// What shows how good a measurement is: prediction, residual, spectra, filters, and the recording itself.
-/// Numbers (autocorrelation, spectra, agreement) come from every row of the trial; only what is drawn is thinned
-/// (thinning.h). The prediction is that of the model which did not see the held-back data, so that it is what the VAF
+/// Numbers (autocorrelation, spectra, agreement) come from every row of the trial; only what is drawn is decimated
+/// (decimation.h). The prediction is that of the model which did not see the held-out data, so that it is what the VAF
 /// says; the residual that is analysed is that of the reported model.
 /// @param recording which the trial was prepared from: put on an even clock first where that was asked
 /// @param identification may stem from other trials too (a pooled fit)

@@ -18,7 +18,7 @@ namespace {
 constexpr double kSegmentsAcross = 6.0;  ///< segments of a spectrum, end to end; eleven with the overlap
 constexpr double kLinesInBand = 96.0;
 constexpr double kBeyondBand = 5.0;  ///< spectra reach so many times the excited band
-constexpr Index kFewestRows = 9;     ///< of a piece: a segment of eight, and the part of a row at its end
+constexpr Index kMinRows = 9;        ///< of a piece: a segment of eight, and the part of a row at its end
 constexpr Index kFilterPoints = 240;
 
 /// The longest that a segment may be: pieces of half the longest or more count whole, shorter ones are left out rather
@@ -29,7 +29,7 @@ Index longest_segment(const std::vector<Rows>& rows) {
   for (const Rows& one : rows) {
     if (2 * one.size() >= longest) shortest = std::min(shortest, one.size());
   }
-  return longest < kFewestRows ? 0 : std::max(shortest, kFewestRows) - 1;
+  return longest < kMinRows ? 0 : std::max(shortest, kMinRows) - 1;
 }
 
 /// [rows] of the trial that one segment takes; 0 where there are too few.

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/measure/analyse/thinning.h"
+#include "mbk/measure/analyse/decimation.h"
 #include "mbk/model/trial/diagnostics.h"
 #include "mbk/model/trial/prepared_trial.h"
 

@@ -19,7 +19,7 @@ Vector noise(Index samples, unsigned seed) {
   return values;
 }
 
-/// Stretches of so many rows, of which each stands for `every` samples; a break lies between two.
+/// Segments of N rows, of which each stands for `every` samples; a break lies between two.
 PreparedTrial trial_of(const std::vector<Index>& sizes, Index every) {
   PreparedTrial trial;
   trial.axes = 1;
@@ -31,7 +31,7 @@ PreparedTrial trial_of(const std::vector<Index>& sizes, Index every) {
   trial.preparation.cutoff = Hertz(5.0);
   Index row = 0;
   for (const Index size : sizes) {
-    trial.stretches.push_back({row, row + size, Purpose::identification, row * every});
+    trial.segments.push_back({row, row + size, Purpose::identification, row * every});
     row += size + 5;
   }
   trial.time = Vector::LinSpaced(row, 0.0, static_cast<double>(row - 1) * trial.sample_time);
@@ -89,7 +89,7 @@ TEST(TrialSpectra, OfTheResidualAreUnknownBeyondHalfTheRateOfItsRows) {
 TEST(TrialSpectra, NeverReachAcrossABreakAndAreNotShortenedByAScrap) {
   const PreparedTrial trial = trial_of({300, 12, 280, 310}, 5);
   Vector force = noise(5000, 8);
-  force.segment(0, 1500).array() += 1000.0;  // whoever joins two stretches sees a step
+  force.segment(0, 1500).array() += 1000.0;  // whoever joins two segments sees a step
   const Spectra spectra = spectra_of(trial, noise(5000, 9), force);
   EXPECT_LT(spectra.force.maxCoeff(), 0.1);
   EXPECT_NEAR(spectra.frequency[1], 200.0 / 144.0, 1e-9);  // 898 intervals over six, made of small factors
@@ -105,7 +105,7 @@ TEST(TrialSpectra, TakeMoreSegmentsWhereTheBandIsWide) {
   EXPECT_LT((spectra.coherence.array() > spectra.coherence_significant).cast<double>().mean(), 0.09);
 }
 
-TEST(TrialSpectra, AreEmptyWhereNoStretchIsLongEnough) {
+TEST(TrialSpectra, AreEmptyWhereNoSegmentIsLongEnough) {
   const Spectra spectra = spectra_of(trial_of({8, 3}, 2), noise(60, 12), noise(60, 13));
   EXPECT_EQ(spectra.frequency.size(), 0);
   EXPECT_EQ(spectra.segments, 0);

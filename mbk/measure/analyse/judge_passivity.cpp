@@ -11,15 +11,15 @@
 #include "mbk/base/dsp/cross_spectrum.h"
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/measure/analyse/thinning.h"
+#include "mbk/measure/analyse/decimation.h"
 #include "mbk/model/impedance/passivity_index.h"
 
 namespace mbk::analyse {
 namespace {
 
-constexpr double kCoherent = 0.8;    ///< above it the band holds
-constexpr double kExplained = 50.0;  ///< [%] of the force: below it no model speaks for the limb
-constexpr double kAnswered = 0.2;    ///< share of the residual: above it the model is not all that there is
+constexpr double kCoherent = 0.8;          ///< above it the band holds
+constexpr double kExplained = 50.0;        ///< [%] of the force: below it no model describes the limb
+constexpr double kCoherentResidual = 0.2;  ///< share of the residual: above it the model is not all that there is
 constexpr double kOneSided95 = 1.6448536269514722;
 constexpr double kOneSidedOfSeven = 2.4499976606;  ///< Φ⁻¹(1 − 0.05/7)
 constexpr Index kCurvePoints = 200;
@@ -174,7 +174,8 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   add(fmt::format("{}K", smallest), "(3.19), (3.20)", units.stiffness, impedance::smallest_eigenvalue(id.model, 2));
   result.symmetric_verdict = common_verdict(result.conditions);
   if (id.instrument) {
-    for (const double share : id.instrument->answered) result.answered = std::max(result.answered, share);
+    for (const double share : id.instrument->coherent_residual)
+      result.coherent_residual = std::max(result.coherent_residual, share);
   }
   result.published_rule =
       std::ranges::all_of(result.conditions, [](const PassivityCondition& c) { return c.value >= 0.0; });
@@ -216,7 +217,7 @@ Passivity decide(std::vector<ModelPassivity> models, double explained, std::opti
             ? "there is no model; what the limb absorbed decides"
             : fmt::format(
                   "no inertia, damping and stiffness explains more than {:.0f} % of the force, so that no model "
-                  "speaks for the limb; what it absorbed decides",
+                  "describes the limb; what it absorbed decides",
                   std::max(0.0, explained));
     if (model != nullptr && model->verdict != result.verdict && model->verdict != Verdict::undecided) {
       result.reason += fmt::format(
@@ -232,13 +233,14 @@ Passivity decide(std::vector<ModelPassivity> models, double explained, std::opti
   }
   result.by_model = true;
   result.verdict = speaks ? model->verdict : Verdict::undecided;
-  if (result.verdict == Verdict::active && model->symmetric_verdict != Verdict::active && model->answered > kAnswered) {
+  if (result.verdict == Verdict::active && model->symmetric_verdict != Verdict::active &&
+      model->coherent_residual > kCoherentResidual) {
     result.verdict = Verdict::undecided;
     result.reason = fmt::format(
         "the antisymmetric part would make it active, but {:.0f} % of what inertia, damping and stiffness leave of the "
         "force answers the perturbation too: a voluntary or reflex response is part of this model, and its intervals "
         "know noise only",
-        100.0 * model->answered);
+        100.0 * model->coherent_residual);
     return result;
   }
   if (!speaks) {

@@ -23,17 +23,17 @@ namespace mbk::analyse {
 /// @fails  the model is not there (NaN); the band is empty or not positive.
 [[nodiscard]] Result<ModelPassivity> model_passivity(const Identification& identification, const PassivityBand& band);
 
-/// Which of two methods' models speaks for the limb: that of instrumental variables where its instruments are strong
+/// Which of two methods' models describes the limb: that of instrumental variables where its instruments are strong
 /// and it differs from least squares by more than chance, otherwise that of least squares.
 [[nodiscard]] bool instruments_speak(const Identification& instrumental,
                                      const std::optional<Disagreement>& disagreement);
 
 /// The verdict on a limb. The model decides where it explains at least half of the force (least squares explains most
-/// of what any M, B and K can, so its held-back VAF is the measure) and is itself decided or the energy is not known;
+/// of what any M, B and K can, so its held-out VAF is the measure) and is itself decided or the energy is not known;
 /// where it does not, the energy decides. A model that leaves much of the limb's answer to the perturbation
 /// unexplained is not called active by its antisymmetric part alone: its intervals know noise, and that answer is none.
-/// @param models  of both methods, or of the only one; the first speaks for the limb
-/// @param explained  [%] held-back VAF of least squares, mean of the axes
+/// @param models  of both methods, or of the only one; the first describes the limb
+/// @param explained  [%] held-out VAF of least squares, mean of the axes
 [[nodiscard]] Passivity decide(std::vector<ModelPassivity> models, double explained,
                                std::optional<EnergyAccount> energy);
 

@@ -224,7 +224,7 @@ std::vector<Index> rows_of(const Group& group, const std::vector<int>& direction
 /// Standard deviation at one load that was reached one way, pooled; absent with fewer than 4 degrees of freedom.
 std::optional<double> noise_at_constant_load(const Vector& voltage, const std::vector<Group>& groups,
                                              const std::vector<int>& direction) {
-  constexpr Index kFewest = 4;
+  constexpr Index kMin = 4;
   double sum = 0.0;
   Index freedom = 0;
   for (const Group& group : groups) {
@@ -236,7 +236,7 @@ std::optional<double> noise_at_constant_load(const Vector& voltage, const std::v
       freedom += values.size() - 1;
     }
   }
-  if (freedom < kFewest) return std::nullopt;
+  if (freedom < kMin) return std::nullopt;
   return std::sqrt(sum / static_cast<double>(freedom));
 }
 
@@ -258,13 +258,13 @@ struct Hysteresis {
 /// Absent with fewer than 3 loads that were reached both ways.
 std::optional<Hysteresis> hysteresis_of(const std::vector<Group>& groups, const std::vector<int>& direction,
                                         const Vector& residual) {
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kMin = 3;
   std::vector<double> differences;
   for (const Group& group : groups) {
     const std::vector<Index> up = rows_of(group, direction, 1), down = rows_of(group, direction, -1);
     if (!up.empty() && !down.empty()) differences.push_back(residual(up).mean() - residual(down).mean());
   }
-  if (differences.size() < kFewest) return std::nullopt;
+  if (differences.size() < kMin) return std::nullopt;
   const Vector all = Eigen::Map<const Vector>(differences.data(), std::ssize(differences));
   return Hysteresis{all.cwiseAbs().maxCoeff(),
                     {all.mean(), std::sqrt(numeric::variance(all) / static_cast<double>(all.size()))}};
@@ -379,13 +379,13 @@ class Calibrator {
       constexpr double kNearlyOneLine = 30.0;
       if (whole->rank < p || !(whole->condition < 1e6)) {
         return fail(ErrorKind::not_usable,
-                    "the loads lie on one line, so that crosstalk cannot be told from the slopes",
-                    "load each axis by itself, or fit each axis alone with --axes 1", runs_.front().source.path);
+                    "the loads lie on one line, so that crosstalk is not distinguishable from the slopes",
+                    "load each axis separately, or fit each axis alone with --axes 1", runs_.front().source.path);
       }
       if (whole->condition > kNearlyOneLine) {
         warn(SensorWarningCode::loads_nearly_collinear,
              fmt::format("the loads are nearly on one line (condition {:.0f})", whole->condition),
-             "load each axis by itself too");
+             "load each axis separately too");
       }
       C_ = whole->C;
       zeros_ = whole->zeros;
@@ -522,13 +522,13 @@ class Calibrator {
   }
 
   void judge_loads(SensorAxis& axis, const Vector& load, bool by_load, const std::vector<Group>& groups) {
-    constexpr Index kFewest = 5;
+    constexpr Index kMin = 5;
     constexpr double kOtherSide = 0.1;
     std::vector<double> loads;
     for (const Group& group : groups) loads.push_back(group.load);
     std::ranges::sort(loads);
     axis.loads = std::unique(loads.begin(), loads.end()) - loads.begin();
-    if (by_load && axis.loads < kFewest) {
+    if (by_load && axis.loads < kMin) {
       warn(SensorWarningCode::few_loads, fmt::format("{} has {} different loads", axis.name, axis.loads),
            "hang on at least five, on both sides");
     }
@@ -730,7 +730,7 @@ Result<SensorCalibration> calibrate_sensor(const std::vector<SensorRun>& runs,
 }
 
 std::optional<double> quantisation_step(const Vector& values) {
-  constexpr std::size_t kFewest = 8;
+  constexpr std::size_t kMin = 8;
   constexpr double kOff = 0.05;
   std::vector<double> sorted(values.begin(), values.end());
   std::ranges::sort(sorted);
@@ -740,7 +740,7 @@ std::optional<double> quantisation_step(const Vector& values) {
     const double gap = sorted[i] - sorted[i - 1];
     if (gap > 1e-9 * spread) gaps.push_back(gap);
   }
-  if (gaps.size() + 1 < kFewest) return std::nullopt;
+  if (gaps.size() + 1 < kMin) return std::nullopt;
   // From the smallest gap up, so that the step is known the better the more of it a gap holds.
   std::ranges::sort(gaps);
   double steps = 0.0, sum = 0.0;

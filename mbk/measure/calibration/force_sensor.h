@@ -28,7 +28,7 @@ struct Converter {
 };
 
 struct SensorCalibrationOptions {
-  bool crosstalk = true;            ///< false: each axis by itself
+  bool crosstalk = true;            ///< false: each axis separately
   std::optional<double> lever_arm;  ///< L₀ [m] > 0
   std::optional<Converter> converter;
   double hac_lag_s = 1.0;       ///< of continuous runs ≥ 0
@@ -50,7 +50,7 @@ enum class SensorFrame {
 /// Loads and voltages of a recording: force_x with voltage_x, force_y with voltage_y. A recording with both voltages
 /// and one force is a run without load on the other axis; a note says so. Where the sensor sits on the last link, the
 /// force is turned into its axes, F_S = R_BS(θ₂)ᵀ F_B (Dyck 2013, eq. E.4).
-/// @fails  data: no force or no voltage; `link` without joint_2 or one of four channels; a value that is no number (the
+/// @fails  data: no force or no voltage; `link` without joint_2 or one of four channels; a non-finite value (the
 ///         sample is named); time that does not increase.
 [[nodiscard]] Result<SensorRun> sensor_run(const Recording& recording, SensorFrame frame);
 
@@ -70,7 +70,7 @@ enum class SensorFrame {
 /// 8.6 ms at 3 Hz.
 /// @fails  usage: an option out of its range; no runs. data: runs of different axes, or of both kinds; fewer rows than
 ///         parameters + 1. not usable: a load that never changes; loads on one line, from which crosstalk cannot be
-///         told (fit each axis by itself then); a voltage that does not follow its load.
+///         told (fit each axis separately then); a voltage that does not follow its load.
 [[nodiscard]] Result<SensorCalibration> calibrate_sensor(const std::vector<SensorRun>& runs,
                                                          const SensorCalibrationOptions& options);
 

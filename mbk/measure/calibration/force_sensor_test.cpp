@@ -119,7 +119,7 @@ TEST(CalibrateSensor, ForceOnVoltageIsFlatterByRSquared) {
 
 /// 95 % of 400 noisy tables: 380 ± 4.4; five standard deviations are allowed.
 TEST(CalibrateSensor, StandardErrorsHoldThePublishedFigures) {
-  constexpr int kRuns = 400, kFewest = 358;
+  constexpr int kRuns = 400, kMin = 358;
   constexpr double kNoise = 0.04;  // [V]: gives the published standard errors, 0.03 to 0.06 N/V
   const Matrix F = loads(2);
   int slopes[2] = {0, 0}, offsets[2] = {0, 0}, zeros[2] = {0, 0}, crosstalk = 0;
@@ -136,7 +136,7 @@ TEST(CalibrateSensor, StandardErrorsHoldThePublishedFigures) {
     crosstalk += std::abs(found->crosstalk(1, 0)) < t * found->crosstalk_error(1, 0);
   }
   for (const int count : {slopes[0], slopes[1], offsets[0], offsets[1], zeros[0], zeros[1], crosstalk}) {
-    EXPECT_GE(count, kFewest);
+    EXPECT_GE(count, kMin);
     EXPECT_LE(count, kRuns - 1);
   }
 }

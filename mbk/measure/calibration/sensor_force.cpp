@@ -134,11 +134,11 @@ Result<Recording> force_from_voltage(Recording recording, const SensorUse& use) 
       use.lever_arm ? fmt::format("; slope times {:.4g}, for a lever arm of {:g} mm after {:g} mm", arm,
                                   kMillimetres * *use.lever_arm, kMillimetres * *calibration.lever_arm)
                     : ""));
-  if (replaced) notes.emplace_back("the force that the recording holds was left aside for it");
+  if (replaced) notes.emplace_back("the force that the recording holds was ignored for it");
   if (use.undo_delay && calibration.delay != 0.0) {
     const Index left = undo_delay(recording.time, calibration.delay, force);
     if (left < 2) return bad_data("the recording is shorter than the sensor's delay", "record longer");
-    notes.push_back(fmt::format("the force was moved earlier by {:.3g} ms, and the last {} samples left aside",
+    notes.push_back(fmt::format("the force was moved earlier by {:.3g} ms, and the last {} samples ignored",
                                 kMilliseconds * calibration.delay, recording.samples() - left));
     force.conservativeResize(left, Eigen::NoChange);
     recording.time.conservativeResize(left);

@@ -116,7 +116,7 @@ TEST(ForceFromVoltage, ReplacesARecordedForceAndSaysSo) {
   const auto made = force_from_voltage(both, use()).value();
   EXPECT_EQ(made.channels.size(), 4u);
   EXPECT_NE(made.find("force_x")->values[0], 1.0);
-  EXPECT_THAT(made.notes, testing::Contains(HasSubstr("left aside")));
+  EXPECT_THAT(made.notes, testing::Contains(HasSubstr("ignored")));
 }
 
 TEST(ForceFromVoltage, RefusesWhatIsMissing) {

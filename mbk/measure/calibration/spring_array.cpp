@@ -159,17 +159,17 @@ Result<void> check_equilibrium(const SpringArray& array, const Vector2d& place, 
 }  // namespace
 
 Result<Vector2d> equilibrium(const SpringArray& array, const Vector2d& start, double disc_rotation) {
-  constexpr int kMostSteps = 200, kMostHalvings = 60;
+  constexpr int kMaxSteps = 200, kMaxHalvings = 60;
   if (!start.allFinite()) return bad_usage("the place where the search begins is not a finite number");
   Vector2d place = start;
   Vector2d force = array.force(place, disc_rotation);
-  for (int step = 0; step < kMostSteps && !(force.norm() <= kEquilibriumForce); ++step) {
+  for (int step = 0; step < kMaxSteps && !(force.norm() <= kEquilibriumForce); ++step) {
     const Matrix2d K = array.stiffness(place, disc_rotation);
     if (!K.allFinite() || K.isZero()) break;
     Vector2d move = downhill_step(K, force);
     const double energy = array.energy(place, disc_rotation);
     bool lower = false;
-    for (int halving = 0; halving < kMostHalvings && !lower; ++halving) {
+    for (int halving = 0; halving < kMaxHalvings && !lower; ++halving) {
       const Vector2d trial = place + move;
       const Vector2d force_there = array.force(trial, disc_rotation);
       // Near the end the energy is flat to its last digit, and the force decides.
@@ -196,11 +196,11 @@ Result<Vector2d> equilibrium(const SpringArray& array, const Vector2d& start, do
 
 Result<GridField> grid_field(const SpringArray& array, const Vector2d& centre, double reach, double step,
                              double disc_rotation) {
-  constexpr double kFewest = 3, kMost = 4000;
+  constexpr double kMin = 3, kMax = 4000;
   const Eigen::Array2d first = ((centre.array() - reach) / step).ceil(),
                        last = ((centre.array() + reach) / step).floor();
   const Eigen::Array2d count = last - first + 1.0;
-  if (!(step > 0.0 && count.minCoeff() >= kFewest && count.maxCoeff() <= kMost)) {
+  if (!(step > 0.0 && count.minCoeff() >= kMin && count.maxCoeff() <= kMax)) {
     return bad_usage(fmt::format("a grid of {:g} mm over {:g} mm has not from 3 to 4000 points along a side",
                                  kMillimetres * step, 2.0 * kMillimetres * reach),
                      "choose another step");

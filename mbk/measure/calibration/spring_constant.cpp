@@ -19,7 +19,7 @@ using numeric::RowRange;
 constexpr double kMillimetres = 1000.0;
 constexpr double kSeen = 4.0;  // standard errors by which a hook's deflection must stand out
 constexpr double kStraightPart = 1.0 / 3.0;
-constexpr double kLeastFit = 0.9;  // R² below which a line says nothing
+constexpr double kMinFit = 0.9;  // R² below which a line says nothing
 
 /// A stretch with s growing with the tension.
 struct Stretch {
@@ -125,7 +125,7 @@ std::optional<HookParameters> first_guess(const Stretch& stretch, double largest
 
 /// Levenberg–Marquardt on T(s). Nothing where the fit leaves sense (no hook, F_h beyond the data) or does not settle.
 std::optional<HookFit> fit_hooks(const Stretch& stretch) {
-  constexpr int kMostSteps = 200;
+  constexpr int kMaxSteps = 200;
   constexpr double kSettled = 1e-12;
   const double largest_tension = stretch.tension.maxCoeff();
   auto start = first_guess(stretch, largest_tension);
@@ -136,7 +136,7 @@ std::optional<HookFit> fit_hooks(const Stretch& stretch) {
   model(p, stretch.s, T, jacobian);
   double error = (stretch.tension - T).squaredNorm(), damping = 1e-3;
   bool settled = false;
-  for (int step = 0; step < kMostSteps && !settled; ++step) {
+  for (int step = 0; step < kMaxSteps && !settled; ++step) {
     const Eigen::Matrix4d normal = jacobian.transpose() * jacobian;
     const HookParameters gradient = jacobian.transpose() * (stretch.tension - T);
     Eigen::Matrix4d damped = normal;
@@ -174,12 +174,12 @@ std::optional<HookFit> fit_hooks(const Stretch& stretch) {
 }
 
 Result<void> check(const Vector& time, const Vector& position, const Vector& reaction, const StretchOptions& options) {
-  constexpr Index kFewest = 20;
+  constexpr Index kMin = 20;
   if (time.size() != position.size() || time.size() != reaction.size()) {
     return bad_data(fmt::format("{} times, {} positions and {} forces", time.size(), position.size(), reaction.size()));
   }
-  if (time.size() < kFewest) {
-    return bad_data(fmt::format("{} samples are fewer than {}", time.size(), kFewest), "record a longer stretch");
+  if (time.size() < kMin) {
+    return bad_data(fmt::format("{} samples are fewer than {}", time.size(), kMin), "record a longer stretch");
   }
   for (const auto& [name, values] :
        {std::pair<const char*, const Vector&>{"time", time}, {"position", position}, {"reaction", reaction}}) {
@@ -208,11 +208,11 @@ Result<void> check(const Vector& time, const Vector& position, const Vector& rea
 }  // namespace
 
 double hook_tension(const HookFit& fit, double s) {
-  constexpr int kMostSteps = 100;
+  constexpr int kMaxSteps = 100;
   const double reach = s - fit.rest;
   if (reach <= 0.0) return reach / compliance(fit, 0.0);
   double T = 0.0;  // s(T) bends downwards, so that Newton's steps from 0 never pass the root
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const double miss = reach - T / fit.stiffness + fit.deflection * std::expm1(-T / fit.force);
     const double move = miss / compliance(fit, T);
     T += move;
@@ -238,10 +238,10 @@ Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& pos
     return fail(ErrorKind::not_usable, "the force pushes the way that the spring is stretched, and a spring pulls back",
                 "turn the sign of the force, as in --channels x=2,F=-3");
   }
-  if (!(whole->r_squared >= kLeastFit)) {
+  if (!(whole->r_squared >= kMinFit)) {
     return fail(ErrorKind::not_usable,
                 fmt::format("a line explains {:.0f} % of the tension's variance, and a spring's at least {:.0f} %",
-                            100.0 * whole->r_squared, 100.0 * kLeastFit),
+                            100.0 * whole->r_squared, 100.0 * kMinFit),
                 "name the channels of position and force; stretch slowly, and further");
   }
   const auto hooks = fit_hooks(stretch);
@@ -264,7 +264,7 @@ Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& pos
   if (!(end - from >= kStraightPart * (end - begin))) {
     return fail(ErrorKind::not_usable,
                 fmt::format("the hooks bend up to {:.2f} N, and the stretch ends at {:.2f} N: {:.1f} of {:.1f} mm are "
-                            "straight, and a third of it is wanted",
+                            "straight, and a third of it is target",
                             tension, constant.whole.tension_to, kMillimetres * std::max(0.0, end - from),
                             kMillimetres * (end - begin)),
                 "stretch the spring further");

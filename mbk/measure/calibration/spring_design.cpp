@@ -45,7 +45,7 @@ Place place_of(const SpringRequest& request, std::size_t i) {
   place.hole = request.holes.empty() ? Vector2d(0.0, 0.0) : request.holes[i];
   const Vector2d d = request.equilibrium + place.hole - place.anchor;
   place.length = d.norm();
-  place.longest = std::min(request.rest_length.second, place.length - request.travel - request.least_extension);
+  place.longest = std::min(request.rest_length.second, place.length - request.travel - request.min_extension);
   const Vector2d u = d / place.length;
   const Matrix2d turn = across(u) / place.length;
   place.row.topRows<2>() << -kStiffnessUnit * d, kForceUnit * u;
@@ -68,13 +68,13 @@ Place place_of(const SpringRequest& request, std::size_t i) {
 using Places = std::vector<const Place*>;
 
 /// The program of a choice of screw eyes: variables k_1 … k_n, m_1 … m_n.
-numeric::QuadraticProgram program_of(const Places& places, const SpringRequest& request, const Vector& wanted) {
+numeric::QuadraticProgram program_of(const Places& places, const SpringRequest& request, const Vector& target) {
   constexpr double kRidge = 1e-6;  // decides where the deviation leaves it open, since it knows nothing of k
   const auto n = static_cast<Index>(places.size());
   Matrix deviation(places.front()->deviation.size(), n);
   numeric::QuadraticProgram program;
   program.C.resize(kEquations, 2 * n);
-  program.b = wanted;
+  program.b = target;
   program.G = Matrix::Zero(4 * n, 2 * n);
   program.h = Vector::Zero(4 * n);
   const double unit_length = kForceUnit / kStiffnessUnit;
@@ -128,12 +128,12 @@ std::vector<Spring> springs_of(const Places& places, const Vector& z) {
 }
 
 Result<void> check(const SpringRequest& request) {
-  constexpr std::size_t kFewestEyes = 3, kMostEyes = 12;
+  constexpr std::size_t kMinEyes = 3, kMaxEyes = 12;
   const Matrix2d& K = request.K;
   const Vector2d lambda = Eigen::SelfAdjointEigenSolver<Matrix2d>(K).eigenvalues();
-  if (!K.allFinite() || K(0, 1) != K(1, 0)) return bad_usage("the wanted stiffness is not symmetric");
+  if (!K.allFinite() || K(0, 1) != K(1, 0)) return bad_usage("the target stiffness is not symmetric");
   if (!(lambda[0] > 0.0)) {
-    return bad_usage(fmt::format("the wanted stiffness has the principal values {:g} and {:g} N/m, and both must be "
+    return bad_usage(fmt::format("the target stiffness has the principal values {:g} and {:g} N/m, and both must be "
                                  "above 0",
                                  lambda[0], lambda[1]),
                      "springs hold the hand in every direction");
@@ -149,15 +149,15 @@ Result<void> check(const SpringRequest& request) {
     return bad_usage(fmt::format("springs from {:g} to {:g} mm long: there are none",
                                  kMillimetres * request.rest_length.first, kMillimetres * request.rest_length.second));
   }
-  if (request.eyes.size() < kFewestEyes || request.eyes.size() > kMostEyes) {
-    return bad_usage(fmt::format("{} screw eyes are not from {} to {}", request.eyes.size(), kFewestEyes, kMostEyes));
+  if (request.eyes.size() < kMinEyes || request.eyes.size() > kMaxEyes) {
+    return bad_usage(fmt::format("{} screw eyes are not from {} to {}", request.eyes.size(), kMinEyes, kMaxEyes));
   }
   if (!request.holes.empty() && request.holes.size() != request.eyes.size()) {
     return bad_usage(fmt::format("{} holes for {} screw eyes", request.holes.size(), request.eyes.size()));
   }
-  if (!(request.travel > 0.0 && request.least_extension >= 0.0)) {
+  if (!(request.travel > 0.0 && request.min_extension >= 0.0)) {
     return bad_usage(fmt::format("a travel of {:g} mm is not above 0, or a least extension of {:g} mm is below it",
-                                 kMillimetres * request.travel, kMillimetres * request.least_extension));
+                                 kMillimetres * request.travel, kMillimetres * request.min_extension));
   }
   if (request.payload && !(*request.payload > 0.0)) {
     return bad_usage(fmt::format("a payload of {:g} kg is not above 0", *request.payload));
@@ -165,14 +165,14 @@ Result<void> check(const SpringRequest& request) {
   return {};
 }
 
-/// What comes nearest to the wanted stiffness, in words.
+/// What comes nearest to the target stiffness, in words.
 tl::unexpected<Error> out_of_reach(const SpringRequest& request, const Places& all, const std::vector<Places>& choices,
-                                   const Vector& wanted) {
+                                   const Vector& target) {
   constexpr double kNoForce = 1e-3;  // [N]
   double best = std::numeric_limits<double>::infinity();
   std::string nearest_words = "no spring of these lengths stays in tension";
   for (const Places& places : choices) {
-    const numeric::QuadraticProgram program = program_of(places, request, wanted);
+    const numeric::QuadraticProgram program = program_of(places, request, target);
     const auto solution = numeric::solve_quadratic_program(nearest(program));
     if (!solution) continue;
     Eigen::Matrix<double, kEquations, 1> reached = Eigen::Matrix<double, kEquations, 1>::Zero();
@@ -181,7 +181,7 @@ tl::unexpected<Error> out_of_reach(const SpringRequest& request, const Places& a
       reached += places[i]->row * Vector2d(solution->z[at], solution->z[n + at]);
     }
     const double force = reached.head<2>().norm();
-    const double miss = (reached - wanted).tail<3>().norm() + force / request.travel;  // [N/m]
+    const double miss = (reached - target).tail<3>().norm() + force / request.travel;  // [N/m]
     if (miss >= best) continue;
     best = miss;
     nearest_words =
@@ -202,11 +202,11 @@ tl::unexpected<Error> out_of_reach(const SpringRequest& request, const Places& a
 
 /// Every choice of at least 3 of the places.
 std::vector<Places> choices_of(const std::vector<Place>& places, int most) {
-  constexpr int kFewest = 3;  // five equations, two unknowns each
+  constexpr int kMin = 3;  // five equations, two unknowns each
   std::vector<Places> choices;
   for (unsigned set = 0; set < (1u << places.size()); ++set) {
     const int size = std::popcount(set);
-    if (size < kFewest || size > most) continue;
+    if (size < kMin || size > most) continue;
     Places chosen;
     for (std::size_t i = 0; i < places.size(); ++i) {
       if ((set >> i) & 1u) chosen.push_back(&places[i]);
@@ -243,19 +243,19 @@ Result<SpringDesign> design_springs(const SpringRequest& request) {
   }
   Places all;
   for (const Place& place : places) all.push_back(&place);
-  const Vector wanted{{0.0, 0.0, request.K(0, 0), request.K(1, 1), request.K(0, 1)}};
-  const std::vector<Places> choices = choices_of(places, request.most_springs);
+  const Vector target{{0.0, 0.0, request.K(0, 0), request.K(1, 1), request.K(0, 1)}};
+  const std::vector<Places> choices = choices_of(places, request.max_springs);
   double least = std::numeric_limits<double>::infinity();
   const Places* best = nullptr;
   Vector best_z;
   for (const Places& chosen : choices) {
-    const auto solution = numeric::solve_quadratic_program(program_of(chosen, request, wanted));
+    const auto solution = numeric::solve_quadratic_program(program_of(chosen, request, target));
     if (!solution || solution->value >= least) continue;
     least = solution->value;
     best = &chosen;
     best_z = solution->z;
   }
-  if (best == nullptr) return out_of_reach(request, all, choices, wanted);
+  if (best == nullptr) return out_of_reach(request, all, choices, target);
   const auto array = SpringArray::create(springs_of(*best, best_z));
   if (!array) return tl::unexpected(array.error());
   auto field = spring_field(*array, request.equilibrium, request.travel);
@@ -263,8 +263,8 @@ Result<SpringDesign> design_springs(const SpringRequest& request) {
   SpringDesign design;
   design.field = std::move(*field);
   for (const Place* place : *best) design.eyes.push_back(place->eye);
-  design.wanted_K = request.K;
-  design.wanted_equilibrium = request.equilibrium;
+  design.target_K = request.K;
+  design.target_equilibrium = request.equilibrium;
   design.payload = request.payload;
   if (request.payload) {
     const Vector2d lambda = Eigen::SelfAdjointEigenSolver<Matrix2d>(design.field.K).eigenvalues();

@@ -54,7 +54,7 @@ TEST_P(EveryPublishedField, IsMadeExactlyBySpringsThatStayInTension) {
     const SpringField& field = design->field;
     EXPECT_LT((field.K - request.K).cwiseAbs().maxCoeff(), kStiffnessMet * request.K.maxCoeff()) << GetParam().name;
     EXPECT_LT((field.equilibrium - request.equilibrium).norm(), kPlaceMet) << GetParam().name;
-    EXPECT_GE(field.linearisation.smallest_extension, request.least_extension - kPlaceMet) << GetParam().name;
+    EXPECT_GE(field.linearisation.smallest_extension, request.min_extension - kPlaceMet) << GetParam().name;
     for (const Spring& spring : field.springs) {
       EXPECT_GE(spring.stiffness, request.stiffness.first - 1e-6);
       EXPECT_LE(spring.stiffness, request.stiffness.second + 1e-6);
@@ -109,7 +109,7 @@ TEST(SpringDesign, IsStraighterThanTheRandomArraysWithTheSameStiffness) {
 
 TEST(SpringDesign, UsesNoMoreSpringsThanAllowed) {
   SpringRequest request = request_for(kPublished[0]);
-  request.most_springs = 4;
+  request.max_springs = 4;
   const auto design = design_springs(request);
   ASSERT_TRUE(design) << design.error().line();
   EXPECT_LE(design->field.springs.size(), 4u);

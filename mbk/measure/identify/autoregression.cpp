@@ -58,8 +58,8 @@ Vector autoregression(const std::vector<Vector>& pieces, Index most) {
 }
 
 Vector explained_by_past(const Vector& reference, const Vector& signal) {
-  constexpr Index kMostLags = 300;
-  const Index total = signal.size(), lags = std::clamp<Index>(total / 20, 1, kMostLags), half = total / 2;
+  constexpr Index kMaxLags = 300;
+  const Index total = signal.size(), lags = std::clamp<Index>(total / 20, 1, kMaxLags), half = total / 2;
   const double mean = signal.mean();
   const Vector r = reference.array() - reference.mean(), s = signal.array() - mean;
   const Vector of_first = finite_impulse_response(r.head(half), s.head(half), lags);

@@ -37,7 +37,7 @@ Matrix coefficients_of(const impedance::Model& model, const Vector& centre, doub
   return coefficients;
 }
 
-/// x₀ of a limb that is free in one direction is no number.
+/// x₀ of a limb that is free in one direction is NaN.
 impedance::Model model_with_equilibrium(const Matrix& coefficients, const Vector& centre, double handle_mass) {
   impedance::Model model = model_of(coefficients, centre, handle_mass);
   if (smallest_eigenvalue(model.K) <= kZero * model.K.norm()) {
@@ -63,7 +63,7 @@ Result<ConsistentCoefficients> nearest_consistent(const Matrix& coefficients, co
     return bad_data("a coefficient, its weight or the handle's mass is not finite");
   }
   if (!numeric::Cholesky(gram).positive_definite()) {
-    return fail(ErrorKind::not_usable, "the motion does not tell the terms of the model apart",
+    return fail(ErrorKind::not_usable, "the terms of the model are not identifiable from this motion",
                 "perturb the limb in more directions and frequencies");
   }
   const Matrix S = structure_matrix(structure == Structure::full ? Structure::symmetric : structure, n);

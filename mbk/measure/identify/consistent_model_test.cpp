@@ -277,7 +277,7 @@ TEST(ConsistentModel, HoldsTheInertiaWithoutTheHandle) {
   EXPECT_FALSE(consistent_model(trials, *identify_impedance(trials, options))->inertia.active);
 }
 
-TEST(ConsistentModel, IsJudgedOnHeldBackDataWithParametersFromTheRest) {
+TEST(ConsistentModel, IsJudgedOnHeldOutDataWithParametersFromTheRest) {
   const std::vector trials = {testing_support::trial(impossible_arm(), {.noise = 0.3, .validation = 0.5})};
   Options options;
   options.parameters_from = ParametersFrom::all;

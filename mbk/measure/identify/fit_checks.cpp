@@ -18,7 +18,7 @@ namespace {
 /// Thresholds of the warnings, each with its reason.
 constexpr double kLargestCondition = 1e3;      // two digits of a 16-bit sensor are left
 constexpr double kSmallestMotionRatio = 0.05;  // across the line of motion the limb moved a twentieth as far
-constexpr double kVafDrop = 10.0;              // points between in-sample and held-back
+constexpr double kVafDrop = 10.0;              // points between in-sample and held-out
 constexpr double kPoorVaf = 70.0;              // relaxed arms give 92 % and more, ankles under tonic contraction 87
 constexpr double kShortestDuration = 12.0;     // s; a dozen reaches of the residual's correlation
 constexpr double kCutIntoBand = 0.5;           // a filter below half of the excited band hides the inertia
@@ -34,7 +34,7 @@ class Checker {
     const Index wanted = 3 * axes() + 1;
     if (excitation.rank < wanted) {
       warn(WarningCode::poorly_conditioned,
-           fmt::format("position, velocity and acceleration cannot be told apart (rank {} of {})", excitation.rank,
+           fmt::format("position, velocity and acceleration cannot be distinguished (rank {} of {})", excitation.rank,
                        wanted),
            "perturb at several frequencies and in both directions");
       id_.usable = false;
@@ -108,7 +108,7 @@ class Checker {
            "leave --cutoff to the default, or raise it");
     } else if (inertia.smallest > 0.0 && inertia.smallest < numeric::kNormal95 * inertia.standard_error) {
       warn(WarningCode::band_too_narrow,
-           fmt::format("in the band up to {:.3g} Hz the inertia cannot be told from zero: {}", top,
+           fmt::format("in the band up to {:.3g} Hz the inertia is not distinguishable from zero: {}", top,
                        stated(inertia, units_.inertia)),
            "perturb at higher frequencies");
     }
@@ -117,16 +117,15 @@ class Checker {
   void check_fit() {
     const Fit& fit = id_.fit;
     const char* const what = axes() == 1 ? "reaction" : "force in one axis";
-    if (!fit.held_back) {
-      warn(WarningCode::no_held_back_data, "no data were held back, so the fit is judged on the data that made it",
+    if (!fit.held_out) {
+      warn(WarningCode::no_held_out_data, "no data were held out, so the fit is judged on the data that made it",
            "record more, or set --split");
     } else if ((fit.vaf_in_sample - fit.vaf).maxCoeff() > kVafDrop) {
-      warn(
-          WarningCode::held_back_fit_poor,
-          fmt::format("the model explains {:.1f} % of the force that made it, and only {:.1f} % of the force held back",
-                      fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
-          "the limb changed during the recording, or there is too little data: look at the parts with --from and "
-          "--to");
+      warn(WarningCode::held_out_fit_poor,
+           fmt::format("the model explains {:.1f} % of the force that made it, and only {:.1f} % of the force held out",
+                       fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
+           "the limb changed during the recording, or there is too little data: look at the parts with --from and "
+           "--to");
     }
     if (!fit.vaf.array().isFinite().all()) {
       warn(WarningCode::fit_poor, fmt::format("the {} never changes, so that nothing of it can be explained", what),

@@ -5,13 +5,13 @@
 
 namespace mbk::identify {
 
-/// How well the motion tells the terms of the model apart.
+/// How well the motion identifies the terms of the model.
 /// @param Z N×(3n+1), [ẍ ẋ x 1]    @param Y N×n, −F_h    @param rank of the regressors, from the fit
 [[nodiscard]] Excitation measure_excitation(const Matrix& Z, const Matrix& Y, const impedance::Model& model, int rank);
 
 /// Adds what the user must know about an otherwise complete Identification, and decides whether it is usable: the
-/// regressors can be told apart, the symmetric parts of M and K are positive definite, and the model explains more
-/// of the held-back force than its mean does.
+/// regressors can be distinguished, the symmetric parts of M and K are positive definite, and the model explains more
+/// of the held-out force than its mean does.
 void add_warnings(Identification& identification);
 
 }  // namespace mbk::identify

@@ -147,11 +147,11 @@ TEST(Warnings, NoMotionAtAllIsUnusable) {
   EXPECT_THAT(codes(*result), Contains("poorly-conditioned"));
 }
 
-TEST(Warnings, AFitThatFallsOnHeldBackDataIsNamed) {
+TEST(Warnings, AFitThatFallsOnHeldOutDataIsNamed) {
   PreparedTrial changed = trial(arm());
-  const Stretch held = changed.stretches[1];
+  const Segment held = changed.segments[1];
   changed.force_hand_on_robot.middleRows(held.begin, held.size()) *= 2.0;  // VAF 75 %
-  EXPECT_THAT(codes(identified(changed)), ElementsAre("held-back-fit-poor"));
+  EXPECT_THAT(codes(identified(changed)), ElementsAre("held-out-fit-poor"));
 }
 
 TEST(Warnings, APoorFitIsNamedAndStaysUsable) {
@@ -164,17 +164,17 @@ TEST(Warnings, APoorFitIsNamedAndStaysUsable) {
 
 TEST(Warnings, AModelWorseThanTheMeanIsUnusable) {
   PreparedTrial changed = trial(arm());
-  const Stretch held = changed.stretches[1];
+  const Segment held = changed.segments[1];
   changed.force_hand_on_robot.middleRows(held.begin, held.size()) *= -1.0;
   const Identification id = identified(changed);
-  EXPECT_THAT(codes(id), ElementsAre("held-back-fit-poor", "fit-poor"));
+  EXPECT_THAT(codes(id), ElementsAre("held-out-fit-poor", "fit-poor"));
   EXPECT_FALSE(id.usable);
 }
 
-TEST(Warnings, AForceThatIsConstantWhereItIsHeldBackIsUnusable) {
+TEST(Warnings, AForceThatIsConstantWhereItIsHeldOutIsUnusable) {
   for (const Index axis : {0, 1}) {
     PreparedTrial dead = trial(arm());
-    const Stretch held = dead.stretches[1];
+    const Segment held = dead.segments[1];
     dead.force_hand_on_robot.col(axis).segment(held.begin, held.size()).setConstant(0.5);  // VAF is 0/0
     const Identification id = identified(dead);
     EXPECT_TRUE(std::isnan(id.fit.vaf[axis]));
@@ -183,10 +183,10 @@ TEST(Warnings, AForceThatIsConstantWhereItIsHeldBackIsUnusable) {
   }
 }
 
-TEST(Warnings, NoHeldBackDataIsNamed) {
+TEST(Warnings, NoHeldOutDataIsNamed) {
   const Identification id = identified(trial(arm(), {.validation = 0.0}));
-  EXPECT_THAT(codes(id), ElementsAre("no-held-back-data"));
-  EXPECT_FALSE(id.fit.held_back);
+  EXPECT_THAT(codes(id), ElementsAre("no-held-out-data"));
+  EXPECT_FALSE(id.fit.held_out);
   EXPECT_EQ(id.fit.vaf, id.fit.vaf_in_sample);
 }
 

@@ -99,7 +99,7 @@ Result<void> Fitter::prepare() {
   if (r_.identification.empty()) return bad_data("no data to identify from", "move --split to a later time");
   S_ = structure_matrix(options_.structure, r_.axes());
   const Preparation& how = trials_.front().preparation;
-  const bool pulses_by_default = how.mode == Mode::improved && how.protocol == Protocol::underdamped;
+  const bool pulses_by_default = how.mode == Mode::default_mode && how.protocol == Protocol::underdamped;
   const ParametersFrom from =
       options_.parameters_from.value_or(pulses_by_default ? ParametersFrom::all : ParametersFrom::identification);
   all_ = from == ParametersFrom::all;
@@ -225,7 +225,8 @@ Result<Identification> Fitter::identify(Method method) {
   if (method == Method::instrumental_variables) {
     result.instrument = InstrumentCheck{instruments_->from, instruments_->strength, Vector::Constant(n, std::nan(""))};
     if (is_full(*fit)) {
-      result.instrument->answered = answered_share(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
+      result.instrument->coherent_residual =
+          coherent_residual_fraction(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
     }
   }
   if (options_.bootstrap > 0 && is_full(*fit)) {
@@ -237,7 +238,7 @@ Result<Identification> Fitter::identify(Method method) {
   result.excitation.duration = static_cast<double>(samples_) * r_.sample_time;
 
   if (options_.decimate_check) {
-    // At least every other one: the rows may be thinned already.
+    // At least every other one: the rows may be decimated already.
     const auto step = std::max<Index>(2, static_cast<Index>(std::llround(1.0 / (100.0 * r_.sample_time))));
     const auto coarse = estimate(method, ranges_, step);
     if (!coarse) return tl::unexpected(coarse.error());

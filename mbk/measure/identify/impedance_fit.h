@@ -15,7 +15,7 @@ struct Options {
   Method method = Method::least_squares;
   Structure structure = Structure::full;
   std::optional<ParametersFrom> parameters_from;  ///< absent: all for underdamped in default mode, else identification
-  double handle_mass = 0.0;                       ///< Λ [kg], taken off the diagonal of M (eq. 3.7)
+  double handle_mass = 0.0;                       ///< Λ [kg], subtracted from the diagonal of M (eq. 3.7)
   double hac_lag_s = 1.0;  ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
   bool decimate_check = false;
   int bootstrap = 0;       ///< replicates; 0: none
@@ -30,11 +30,11 @@ struct Options {
 /// method. Several trials are one fit: rows are stacked, products of residuals never cross a break.
 ///
 /// Do not trust it where the limb pushes back on its own account: position and force are then measured in a closed
-/// loop, and least squares is drawn towards minus the robot's impedance; noise in the position draws the inertia
-/// towards zero. The warnings name what can be seen of this.
-/// Where the regressors cannot be told apart (rank) there is no model: every number of it is NaN, and it is not usable.
-/// With Method::instrumental_variables the same rows are solved by θ = (RᵀZ)⁻¹RᵀY, R from the known perturbation
-/// (instruments.h): what the limb does on its own account, and noise of the position, are then no bias but noise.
+/// loop, and least squares is biased towards the negative robot impedance's impedance; noise in the position draws the
+/// inertia towards zero. The warnings name what can be seen of this. Where the regressors cannot be distinguished
+/// (rank) there is no model: every number of it is NaN, and it is not usable. With Method::instrumental_variables the
+/// same rows are solved by θ = (RᵀZ)⁻¹RᵀY, R from the known perturbation (instruments.h): what the limb does on its own
+/// account, and noise of the position, are then no bias but noise.
 /// @fails trials differ in axes, units or rate; nothing to identify from; fewer samples than parameters; a value is not
 /// finite; no reference for instrumental variables; the lag is negative or not finite; the handle's mass is not finite.
 [[nodiscard]] Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials,

@@ -27,11 +27,11 @@ Vector flat(const impedance::Model& model) {
   return values;
 }
 
-void expect_model(const impedance::Model& got, const impedance::Model& wanted, double tolerance) {
-  EXPECT_LE((got.M - wanted.M).norm(), tolerance * wanted.M.norm()) << got.M;
-  EXPECT_LE((got.B - wanted.B).norm(), tolerance * std::max(1.0, wanted.B.norm())) << got.B;
-  EXPECT_LE((got.K - wanted.K).norm(), tolerance * wanted.K.norm()) << got.K;
-  EXPECT_LE((got.x0 - wanted.x0).norm(), tolerance * wanted.x0.norm()) << got.x0;
+void expect_model(const impedance::Model& got, const impedance::Model& expected, double tolerance) {
+  EXPECT_LE((got.M - expected.M).norm(), tolerance * expected.M.norm()) << got.M;
+  EXPECT_LE((got.B - expected.B).norm(), tolerance * std::max(1.0, expected.B.norm())) << got.B;
+  EXPECT_LE((got.K - expected.K).norm(), tolerance * expected.K.norm()) << got.K;
+  EXPECT_LE((got.x0 - expected.x0).norm(), tolerance * expected.x0.norm()) << got.x0;
 }
 
 Identification identified(const std::vector<PreparedTrial>& trials, const Options& options = {}) {
@@ -88,9 +88,9 @@ TEST(IdentifyImpedance, CarriesTheUncertaintyOfARobotIntoTheModelAsRefitsDo) {
                       flat(identified({with_error(made, -step)}, options).model)) /
                      (2.0 * kStep);
     }
-    const Vector wanted = (slope * made.robot_covariance * slope.transpose()).diagonal().cwiseSqrt();
+    const Vector expected = (slope * made.robot_covariance * slope.transpose()).diagonal().cwiseSqrt();
     ASSERT_TRUE(id.standard_error_of_robot);
-    EXPECT_LE((flat(*id.standard_error_of_robot) - wanted).cwiseAbs().maxCoeff(), 1e-6 * wanted.maxCoeff());
+    EXPECT_LE((flat(*id.standard_error_of_robot) - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.maxCoeff());
   }
 }
 
@@ -178,7 +178,7 @@ TEST(IdentifyImpedance, PooledFitIsTheFitOfTheConcatenation) {
   below(both.force_hand_on_robot, b.force_hand_on_robot);
   both.time.resize(40000);
   both.time << a.time, b.time.array() + 100.0;  // a break
-  both.stretches = {{0, 20000, Purpose::identification}, {20000, 40000, Purpose::identification}};
+  both.segments = {{0, 20000, Purpose::identification}, {20000, 40000, Purpose::identification}};
   const Identification pooled = identified({a, b}), joined = identified({both});
   expect_model(pooled.model, joined.model, kExact);
   EXPECT_LE((flat(pooled.standard_error) - flat(joined.standard_error)).norm(),
@@ -189,7 +189,7 @@ TEST(IdentifyImpedance, PooledFitIsTheFitOfTheConcatenation) {
 TEST(IdentifyImpedance, StandardErrorsDoNotReachAcrossABreak) {
   PreparedTrial unbroken = trial(arm(), {.noise = 0.3, .validation = 0.0});
   PreparedTrial broken = unbroken;
-  broken.stretches = {{0, 20000, Purpose::identification}, {20000, 40000, Purpose::identification}};
+  broken.segments = {{0, 20000, Purpose::identification}, {20000, 40000, Purpose::identification}};
   const Vector whole = flat(identified({unbroken}).standard_error);
   const auto moved = [&] {
     return (flat(identified({broken}).standard_error) - whole).cwiseQuotient(whole).cwiseAbs().maxCoeff();
@@ -207,7 +207,7 @@ TEST(IdentifyImpedance, TrialsPooledInAnotherOrderGiveTheSame) {
   EXPECT_LE((flat(ab.standard_error) - flat(ba.standard_error)).norm(), 1e-9 * flat(ba.standard_error).norm());
 }
 
-TEST(IdentifyImpedance, ParametersFromAllUseEveryStretchAndTheFitStaysThatOfTheSplit) {
+TEST(IdentifyImpedance, ParametersFromAllUseEverySegmentAndTheFitStaysThatOfTheSplit) {
   const PreparedTrial noisy = trial(arm(), {.noise = 0.3});
   const Identification half = identified({noisy}, {.parameters_from = ParametersFrom::identification});
   const Identification all = identified({noisy}, {.parameters_from = ParametersFrom::all});
@@ -217,19 +217,19 @@ TEST(IdentifyImpedance, ParametersFromAllUseEveryStretchAndTheFitStaysThatOfTheS
   EXPECT_EQ(half.fit.vaf, all.fit.vaf);
   EXPECT_EQ(half.fit.rmse, all.fit.rmse);
   PreparedTrial undivided = noisy;
-  undivided.stretches = {{0, 40000, Purpose::identification}};
+  undivided.segments = {{0, 40000, Purpose::identification}};
   expect_model(all.model, identified({undivided}).model, kExact);
 }
 
-TEST(IdentifyImpedance, VafIsOfTheHeldBackPart) {
+TEST(IdentifyImpedance, VafIsOfTheHeldOutPart) {
   PreparedTrial changed = trial(arm());
-  const Stretch held = changed.stretches[1];
+  const Segment held = changed.segments[1];
   changed.force_hand_on_robot.middleRows(held.begin, held.size()) *= 2.0;  // the arm became twice as stiff
   const Identification id = identified({changed});
   // Residual F of a force 2F: VAF = 100 (1 − 1/4).
   EXPECT_NEAR(id.fit.vaf[0], 75.0, 1e-6);
   EXPECT_NEAR(id.fit.vaf_in_sample[0], 100.0, 1e-6);
-  EXPECT_TRUE(id.fit.held_back);
+  EXPECT_TRUE(id.fit.held_out);
 }
 
 TEST(IdentifyImpedance, PulsesInDefaultModeTakeAllForTheParameters) {
@@ -347,13 +347,13 @@ TEST(IdentifyImpedance, RefusesTrialsOfDifferentAxesOrUnits) {
 
 TEST(IdentifyImpedance, RefusesNothingToIdentifyFrom) {
   PreparedTrial held = trial(arm());
-  held.stretches = {{0, 40000, Purpose::validation}};
+  held.segments = {{0, 40000, Purpose::validation}};
   EXPECT_EQ(identify_impedance({held}, {}).error().message, "no data to identify from");
 }
 
 TEST(IdentifyImpedance, RefusesFewerSamplesThanParameters) {
   PreparedTrial few = trial(arm());
-  few.stretches = {{0, 6, Purpose::identification}};
+  few.segments = {{0, 6, Purpose::identification}};
   const auto result = identify_impedance({few}, {});
   ASSERT_FALSE(result);
   EXPECT_THAT(result.error().message, testing::HasSubstr("6 samples cannot determine 7 parameters"));

@@ -87,7 +87,7 @@ Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_ti
   return motion;
 }
 
-/// [motion 1] with the means of the rows that count taken off.
+/// [motion 1] with the means of the rows that count removed.
 Matrix with_constant(const Matrix& motion, const std::vector<RowRange>& ranges) {
   Matrix R(motion.rows(), motion.cols() + 1);
   const Vector mean = rows_of(motion, ranges).colwise().mean();
@@ -150,8 +150,8 @@ Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quan
   return response.strength.minCoeff() > position.strength.minCoeff() ? std::move(response) : std::move(position);
 }
 
-Vector answered_share(const Regression& r, const Instruments& instruments, const Matrix& residual,
-                      const std::vector<RowRange>& ranges) {
+Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments, const Matrix& residual,
+                                  const std::vector<RowRange>& ranges) {
   const Index n = r.axes(), p = instruments.R.cols();
   const Index every = std::max<Index>(1, std::llround(kReach / (r.sample_time * static_cast<double>(kLagsOfAnswer))));
   const Index reach = every * kLagsOfAnswer;

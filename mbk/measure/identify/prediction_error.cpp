@@ -269,7 +269,7 @@ Vector Fitter::coefficients(const Model& at, Parts parts) const {
 /// Levenberg (1944) & Marquardt (1963), until a full step of Gauss & Newton would hardly move a coefficient, and then
 /// on to rounding.
 void Fitter::descend(Search& search, Parts parts) const {
-  constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-9, kMostDamping = 1e12, kLess = 0.1, kMore = 3.0;
+  constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-9, kMaxDamping = 1e12, kLess = 0.1, kMore = 3.0;
   constexpr double kRounding = 1e-11;
   constexpr double kExact = 1e-22;  // of the output's squares: nothing is left but rounding
   constexpr int kRefinements = 8;
@@ -280,7 +280,7 @@ void Fitter::descend(Search& search, Parts parts) const {
   int refinements = 0;
   Linear now = linear(search.at, parts);
   search.squares = now.squares;
-  for (int pass = 0; pass < options_.most_iterations; ++pass, ++start.iterations) {
+  for (int pass = 0; pass < options_.max_iterations; ++pass, ++start.iterations) {
     const Vector full = now.step(0.0), theta = coefficients(search.at, parts);
     const double variance = now.squares / static_cast<double>(std::max<Index>(samples_ - theta.size(), 1));
     const Vector error = (variance * now.inverse().diagonal()).cwiseSqrt();
@@ -294,16 +294,16 @@ void Fitter::descend(Search& search, Parts parts) const {
       damping = 0.0;
     }
     bool moves = false;
-    while (!moves && damping < kMostDamping) {
+    while (!moves && damping < kMaxDamping) {
       const Model trial = moved(search.at, parts, now.step(damping));
       const double reached = is_stable(trial) ? squares(trial) : std::numeric_limits<double>::infinity();
       moves = reached < now.squares;
       if (moves) {
         search.at = trial;
-        damping = damping < kLeastDamping ? 0.0 : kLess * damping;
+        damping = damping < kMinDamping ? 0.0 : kLess * damping;
       } else {
         if (start.converged) return;  // what is left is rounding
-        damping = std::max(kMore * damping, kLeastDamping);
+        damping = std::max(kMore * damping, kMinDamping);
       }
     }
     if (!moves) return;
@@ -420,7 +420,7 @@ void Fitter::model_noise(Model& at) const {
   double least = count * std::log(squares(at));
   Model best = at;
   constexpr int kPatience = 2;
-  for (Index order = 1, rises = 0; order <= options_.most_noise_order && rises < kPatience; ++order, ++rises) {
+  for (Index order = 1, rises = 0; order <= options_.max_noise_order && rises < kPatience; ++order, ++rises) {
     Matrix triangle;
     for (const Vector& v : left) {
       const Vector e = difference_equation(longest, kOne, v);
@@ -554,10 +554,10 @@ Result<PredictionErrorFit> fit_prediction_error(const std::vector<SignalPair>& e
   return Fitter(experiments, options).run();
 }
 
-Result<double> common_step(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_back) {
+Result<double> common_step(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_out) {
   double step = 0.0;
   constexpr double kSame = 1e-4;
-  for (const auto* pairs : {&experiments, &held_back}) {
+  for (const auto* pairs : {&experiments, &held_out}) {
     for (const SignalPair& pair : *pairs) {
       if (!pair.step) {
         return bad_usage("a discrete-time model needs an even clock",

@@ -12,10 +12,10 @@ struct PredictionErrorOptions {
   std::vector<double> start_poles;  ///< [rad/s], tried beside the starts that the method makes by itself
   bool free_start = true;           ///< an initial state and an offset of the output for each experiment
   bool noise_model = false;         ///< Box–Jenkins; otherwise output error
-  Index most_noise_order = 8;       ///< of the noise model
+  Index max_noise_order = 8;        ///< of the noise model
   double hac_lag_s = 0.0;           ///< reach of the innovations' correlation in the covariance [s]; 0: white
   double tolerance = 1e-4;          ///< of a coefficient or of its standard error, by which the last step moves it
-  int most_iterations = 200;
+  int max_iterations = 200;
   unsigned threads = 0;  ///< for the starts; 0: as many as there are cores
 };
 
@@ -55,7 +55,7 @@ struct PredictionErrorFit {
 /// The one step of all clocks [s]; 0 where there is no experiment.
 /// @fails usage: a clock is uneven, or two differ.
 [[nodiscard]] Result<double> common_step(const std::vector<SignalPair>& experiments,
-                                         const std::vector<SignalPair>& held_back = {});
+                                         const std::vector<SignalPair>& held_out = {});
 
 /// What the best initial state and offset leave of `residual`, the error of a simulation from rest.
 /// @param f f₁ … f_n

@@ -151,7 +151,7 @@ TEST(PredictionError, AgreesWithAPlainTwinOnDifferenceQuotients) {
   for (const bool noise_model : {false, true}) {
     PredictionErrorOptions options = four_poles(noise_model);
     options.free_start = false;
-    options.most_noise_order = 1;
+    options.max_noise_order = 1;
     const auto fit = fit_prediction_error({pair}, options);
     ASSERT_TRUE(fit.has_value() && fit->converged);
     const Index k = fit->noise_denominator.size() - 1;
@@ -195,7 +195,7 @@ MonteCarlo monte_carlo(bool noise_model, double c, double hac_lag_s) {
   for (int run = 0; run < kRuns; ++run) {
     PredictionErrorOptions options = four_poles(noise_model);
     options.hac_lag_s = hac_lag_s;
-    options.most_noise_order = 2;
+    options.max_noise_order = 2;
     options.threads = 1;
     const auto fit = fit_prediction_error({noisy(1000, 100U + static_cast<std::uint64_t>(run), 0.05, c)}, options);
     EXPECT_TRUE(fit.has_value() && fit->converged) << run;

@@ -38,7 +38,7 @@ Regression stack(const std::vector<PreparedTrial>& trials) {
   const Index n = trials.front().axes;
   Index rows = 0;
   for (const PreparedTrial& trial : trials) {
-    for (const Stretch& stretch : trial.stretches) rows += stretch.size() + 1;
+    for (const Segment& segment : trial.segments) rows += segment.size() + 1;
   }
   Regression r;
   r.sample_time = trials.front().sample_time;
@@ -55,22 +55,22 @@ Regression stack(const std::vector<PreparedTrial>& trials) {
   Index row = 0;
   for (const PreparedTrial& trial : trials) {
     Index last_end = -1;
-    for (const Stretch& stretch : trial.stretches) {
-      const Index size = stretch.size();
-      const bool broken = stretch.begin != last_end ||
-                          trial.time[stretch.begin] - trial.time[stretch.begin - 1] > 1.5 * trial.sample_time;
+    for (const Segment& segment : trial.segments) {
+      const Index size = segment.size();
+      const bool broken = segment.begin != last_end ||
+                          trial.time[segment.begin] - trial.time[segment.begin - 1] > 1.5 * trial.sample_time;
       if (row > 0 && broken) ++row;  // an empty row keeps the ranges apart; it belongs to none
-      last_end = stretch.end;
-      r.Z.block(row, 0, size, n) = trial.acceleration.middleRows(stretch.begin, size);
-      r.Z.block(row, n, size, n) = trial.velocity.middleRows(stretch.begin, size);
-      r.Z.block(row, 2 * n, size, n) = trial.position.middleRows(stretch.begin, size);
+      last_end = segment.end;
+      r.Z.block(row, 0, size, n) = trial.acceleration.middleRows(segment.begin, size);
+      r.Z.block(row, n, size, n) = trial.velocity.middleRows(segment.begin, size);
+      r.Z.block(row, 2 * n, size, n) = trial.position.middleRows(segment.begin, size);
       r.Z.block(row, 3 * n, size, 1).setOnes();
-      r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(stretch.begin, size);
-      if (known) r.reference.middleRows(row, size) = trial.reference_motion.middleRows(stretch.begin, size);
+      r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(segment.begin, size);
+      if (known) r.reference.middleRows(row, size) = trial.reference_motion.middleRows(segment.begin, size);
       if (computed) {
-        r.force_sensitivity.middleRows(row, size) = trial.force_sensitivity.middleRows(stretch.begin, size);
+        r.force_sensitivity.middleRows(row, size) = trial.force_sensitivity.middleRows(segment.begin, size);
       }
-      (stretch.purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
+      (segment.purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
       row += size;
     }
   }
@@ -175,9 +175,9 @@ Fit judge(const Regression& r, const Matrix& coefficients) {
   Fit fit;
   const Matrix in_sample = residual(r.identification);
   fit.vaf_in_sample = vaf(rows_of(r.Y, r.identification), in_sample);
-  fit.held_back = !r.validation.empty();
-  const Matrix judged = fit.held_back ? residual(r.validation) : in_sample;
-  fit.vaf = fit.held_back ? vaf(rows_of(r.Y, r.validation), judged) : fit.vaf_in_sample;
+  fit.held_out = !r.validation.empty();
+  const Matrix judged = fit.held_out ? residual(r.validation) : in_sample;
+  fit.vaf = fit.held_out ? vaf(rows_of(r.Y, r.validation), judged) : fit.vaf_in_sample;
   fit.rmse.resize(r.axes());
   for (Index j = 0; j < r.axes(); ++j) fit.rmse[j] = numeric::root_mean_square(judged.col(j));
   return fit;

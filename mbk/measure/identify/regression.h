@@ -26,8 +26,8 @@ struct Regression {
   [[nodiscard]] Index axes() const { return Y.cols(); }
 };
 
-/// The stretches of all trials under each other; rows that do not count are left out. A break in time always starts a
-/// new range, and where two stretches follow each other without one, `joined` may merge them.
+/// The segments of all trials under each other; rows that do not count are left out. A break in time always starts a
+/// new range, and where two segments follow each other without one, `joined` may merge them.
 [[nodiscard]] Regression stack(const std::vector<PreparedTrial>& trials);
 
 /// Both lists in order; neighbours without a break in between are one range: the residual's correlation does not stop
@@ -41,7 +41,7 @@ struct Regression {
 [[nodiscard]] Matrix structure_matrix(Structure structure, Index n);
 
 /// The model whose coefficients these are, x₀ = x̄ − K⁻¹c.
-/// @param coefficients (3n+1)×n    @param handle_mass [kg], taken off the diagonal of M
+/// @param coefficients (3n+1)×n    @param handle_mass [kg], subtracted from the diagonal of M
 [[nodiscard]] impedance::Model model_of(const Matrix& coefficients, const Vector& centre, double handle_mass);
 
 /// Covariance of [M B K (row by row) x₀] from that of the free coefficients φ, by the delta method:
@@ -49,7 +49,7 @@ struct Regression {
 [[nodiscard]] Matrix model_covariance(const Matrix& structure, const Matrix& V, const impedance::Model& model,
                                       const Vector& centre);
 
-/// How well the coefficients explain the force: on what was held back, or in sample where nothing was.
+/// How well the coefficients explain the force: on what was held out, or in sample where nothing was.
 [[nodiscard]] Fit judge(const Regression& r, const Matrix& coefficients);
 
 }  // namespace mbk::identify

@@ -34,8 +34,8 @@ Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purp
   Stack stack;
   Index total = 0;
   for (const PreparedDynamics& trial : trials) {
-    for (const Stretch& stretch : trial.stretches) {
-      if (!purpose || stretch.purpose == *purpose) total += stretch.size();
+    for (const Segment& segment : trial.segments) {
+      if (!purpose || segment.purpose == *purpose) total += segment.size();
     }
   }
   const Index n = trials.front().torque.cols(), p = trials.front().regressors.front().cols();
@@ -48,18 +48,18 @@ Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purp
   stack.torque_rate.resize(total, n);
   Index row = 0;
   for (const PreparedDynamics& trial : trials) {
-    for (const Stretch& stretch : trial.stretches) {
-      if (purpose && stretch.purpose != *purpose) continue;
-      const Index rows = stretch.size();
+    for (const Segment& segment : trial.segments) {
+      if (purpose && segment.purpose != *purpose) continue;
+      const Index rows = segment.size();
       for (std::size_t joint = 0; joint < stack.W.size(); ++joint) {
-        stack.W[joint].middleRows(row, rows) = trial.regressors[joint].middleRows(stretch.begin, rows);
+        stack.W[joint].middleRows(row, rows) = trial.regressors[joint].middleRows(segment.begin, rows);
         if (with_instruments) {
-          stack.R[joint].middleRows(row, rows) = trial.instruments[joint].middleRows(stretch.begin, rows);
+          stack.R[joint].middleRows(row, rows) = trial.instruments[joint].middleRows(segment.begin, rows);
         }
-        if (with_smoothed) stack.S[joint].middleRows(row, rows) = trial.smoothed[joint].middleRows(stretch.begin, rows);
+        if (with_smoothed) stack.S[joint].middleRows(row, rows) = trial.smoothed[joint].middleRows(segment.begin, rows);
       }
-      stack.torque.middleRows(row, rows) = trial.torque.middleRows(stretch.begin, rows);
-      stack.torque_rate.middleRows(row, rows) = trial.torque_rate.middleRows(stretch.begin, rows);
+      stack.torque.middleRows(row, rows) = trial.torque.middleRows(segment.begin, rows);
+      stack.torque_rate.middleRows(row, rows) = trial.torque_rate.middleRows(segment.begin, rows);
       stack.ranges.push_back({row, row + rows});
       row += rows;
     }
@@ -67,9 +67,9 @@ Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purp
   return stack;
 }
 
-/// The rows that judge: recordings that are there for it, or else what was held back of the others.
-Stack judging_rows(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_back) {
-  return held_back.empty() ? stack_rows(trials, Purpose::validation) : stack_rows(held_back, std::nullopt);
+/// The rows that judge: recordings that are there for it, or else what was held out of the others.
+Stack judging_rows(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_out) {
+  return held_out.empty() ? stack_rows(trials, Purpose::validation) : stack_rows(held_out, std::nullopt);
 }
 
 /// All joints under each other, each divided by its σ; the columns that are kept and, where wanted, τ̇.
@@ -100,9 +100,9 @@ std::string holds(const numeric::IndependentColumns& columns, Index row, const s
 
 class RobotFitter {
  public:
-  RobotFitter(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_back,
+  RobotFitter(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_out,
               const robot::DynamicModel& model, const RobotFitOptions& options)
-      : trials_(trials), held_back_(held_back), model_(model), options_(options) {}
+      : trials_(trials), held_out_(held_out), model_(model), options_(options) {}
 
   Result<RobotFit> fit();
 
@@ -114,7 +114,7 @@ class RobotFitter {
   void describe(RobotIdentification& found) const;
   void check_inertia(RobotIdentification& found) const;
   [[nodiscard]] bool is_fixed(Index k) const { return std::ranges::find(options_.fixed, k) != options_.fixed.end(); }
-  /// What any motion could tell apart of the coefficients that are not fixed.
+  /// What any motion could identify of the coefficients that are not fixed.
   [[nodiscard]] int structural_rank() const {
     const std::vector<Index> kept = structural_columns(model_, options_.fixed).kept;
     return static_cast<int>(kept.size());
@@ -131,7 +131,7 @@ class RobotFitter {
   }
 
   const std::vector<PreparedDynamics>& trials_;
-  const std::vector<PreparedDynamics>& held_back_;
+  const std::vector<PreparedDynamics>& held_out_;
   const robot::DynamicModel& model_;
   const RobotFitOptions& options_;
   Stack rows_;
@@ -157,7 +157,7 @@ Result<void> RobotFitter::prepare() {
     }
   }
   if (p_ == 0) return bad_usage("a robot without coefficients has nothing to be identified");
-  for (const auto* list : {&trials_, &held_back_}) {
+  for (const auto* list : {&trials_, &held_out_}) {
     for (const PreparedDynamics& trial : *list) {
       if (trial.torque.cols() != n_ || trial.regressors.front().cols() != p_) {
         return bad_data("the recordings are of different robots", "identify each robot by itself");
@@ -173,7 +173,7 @@ Result<void> RobotFitter::prepare() {
   if (!(options_.hac_lag_s >= 0.0 && std::isfinite(options_.hac_lag_s))) {
     return bad_usage(fmt::format("a reach of the autocovariance of {:g} s", options_.hac_lag_s));
   }
-  rows_ = stack_rows(trials_, held_back_.empty() ? std::optional(Purpose::identification) : std::nullopt);
+  rows_ = stack_rows(trials_, held_out_.empty() ? std::optional(Purpose::identification) : std::nullopt);
   if (rows_.rows() * n_ < 3 * p_) {
     return bad_data(fmt::format("{} rows cannot determine {} coefficients", rows_.rows(), p_), "record longer");
   }
@@ -216,7 +216,7 @@ Result<void> RobotFitter::solve() {
       auto fit = numeric::fit_instrumental_variables(Z, stacked(rows_.R, kept_, rate, sigma_), Y);
       if (!fit) return tl::unexpected(fit.error());
       if (fit->rank < Z.cols()) {
-        return bad_data("the instruments cannot tell the coefficients apart",
+        return bad_data("the instruments do not identify the coefficients",
                         "use --method wls, or another --motion-cutoff");
       }
       free = fit->free;
@@ -269,12 +269,12 @@ void RobotFitter::take_covariance() {
 }
 
 void RobotFitter::judge(RobotIdentification& found) const {
-  const Stack other = judging_rows(trials_, held_back_);
-  for (const PreparedDynamics& trial : held_back_) {
-    for (const SourceFile& source : trial.sources) found.held_back_files.push_back(source.path);
+  const Stack other = judging_rows(trials_, held_out_);
+  for (const PreparedDynamics& trial : held_out_) {
+    for (const SourceFile& source : trial.sources) found.held_out_files.push_back(source.path);
   }
-  found.held_back = other.rows() > 0;
-  const Stack& judged = found.held_back ? other : rows_;
+  found.held_out = other.rows() > 0;
+  const Stack& judged = found.held_out ? other : rows_;
   const Matrix e = residuals(judged);
   for (Index joint = 0; joint < n_; ++joint) {
     TorqueFit fit;
@@ -348,7 +348,7 @@ void RobotFitter::check_inertia(RobotIdentification& found) const {
     found.inertia.smallest = smallest;
     found.inertia.where.assign(q.data(), q.data() + q.size());
   }
-  // The middle of the motion: what the hand feels there tells units apart.
+  // The middle of the motion: what the hand feels there distinguishes units.
   for (const robot::JointVector& q : postures) {
     const auto back = robot::hand_from_joints(mechanism, q);
     if (!back) continue;
@@ -403,9 +403,9 @@ void warn(RobotIdentification& found) {
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     constexpr double kPoor = 80.0;
     if (!(found.fit[joint].vaf < kPoor)) continue;  // nor where there was no torque to explain
-    warnings.push_back({found.held_back ? WarningCode::held_back_fit_poor : WarningCode::fit_poor,
+    warnings.push_back({found.held_out ? WarningCode::held_out_fit_poor : WarningCode::fit_poor,
                         fmt::format("only {:.1f} % of the torque of joint {} is explained{}", found.fit[joint].vaf,
-                                    joint + 1, found.held_back ? " on held-back data" : ""),
+                                    joint + 1, found.held_out ? " on held-out data" : ""),
                         "look for terms that are missing (--terms), a delay (--motor-delay auto), a lower --cutoff, or "
                         "noise of the motion (--method iv)"});
   }
@@ -436,7 +436,7 @@ Result<RobotFit> RobotFitter::fit() {
   if (by_instruments()) {
     found.instrument_motion = trials_.front().instrument_motion;
     found.motion_cutoff = trials_.front().motion_cutoff;
-    found.smoothed_cutoff = (held_back_.empty() ? trials_ : held_back_).front().smoothed_cutoff;
+    found.smoothed_cutoff = (held_out_.empty() ? trials_ : held_out_).front().smoothed_cutoff;
   }
   for (const PreparedDynamics& trial : trials_) {
     found.preparations.push_back(trial.preparation);
@@ -479,9 +479,9 @@ numeric::IndependentColumns structural_columns(const robot::DynamicModel& model,
   return numeric::independent_columns(stacked(model.regressors(motion), all, nullptr, Vector::Ones(n)), kApart);
 }
 
-Result<RobotFit> fit_robot(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_back,
+Result<RobotFit> fit_robot(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_out,
                            const robot::DynamicModel& model, const RobotFitOptions& options) {
-  return RobotFitter(trials, held_back, model, options).fit();
+  return RobotFitter(trials, held_out, model, options).fit();
 }
 
 }  // namespace mbk::identify

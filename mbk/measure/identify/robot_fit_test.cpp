@@ -60,7 +60,7 @@ PreparedDynamics trial(const robot::DynamicModel& model, const robot::JointMotio
   made.torque = model.torques(motion);
   made.torque_rate = Matrix::Zero(made.torque.rows(), made.torque.cols());
   made.regressors = model.regressors(motion);
-  made.stretches = {{0, 800, Purpose::identification}, {800, kSamples, Purpose::validation, 800}};
+  made.segments = {{0, 800, Purpose::identification}, {800, kSamples, Purpose::validation, 800}};
   return made;
 }
 
@@ -81,8 +81,8 @@ Vector coloured(numeric::Random& random, double deviation) {
 }
 
 RobotFit fitted(const std::vector<PreparedDynamics>& trials, const robot::DynamicModel& model,
-                const RobotFitOptions& options = {}, const std::vector<PreparedDynamics>& held_back = {}) {
-  auto fit = fit_robot(trials, held_back, model, options);
+                const RobotFitOptions& options = {}, const std::vector<PreparedDynamics>& held_out = {}) {
+  auto fit = fit_robot(trials, held_out, model, options);
   EXPECT_TRUE(fit) << fit.error().line();
   return fit ? *fit : RobotFit{};
 }
@@ -118,7 +118,7 @@ TEST(RobotFit, RecoversCoefficientsExactlyWithoutNoise) {
     EXPECT_LE((found.model.parameters - model.parameters).cwiseAbs().maxCoeff(), kExact);
     EXPECT_EQ(found.rank, found.structural_rank);
     EXPECT_TRUE(found.usable);
-    EXPECT_TRUE(found.held_back);
+    EXPECT_TRUE(found.held_out);
     EXPECT_NEAR(found.fit[1].vaf, 100.0, 1e-9);
     EXPECT_EQ(found.samples, 800);
   }
@@ -300,7 +300,7 @@ TEST(RobotFit, FitsSeveralTrialsTogetherAndJudgesByOthers) {
   EXPECT_EQ(judged.samples, kSamples);  // nothing of the first is kept back
   EXPECT_NEAR(judged.fit[1].rmse, 0.1, 1e-6);
   EXPECT_LT(judged.fit[1].rmse_in_sample, 1e-9);
-  EXPECT_EQ(judged.held_back_files, std::vector<std::string>{"other.csv"});
+  EXPECT_EQ(judged.held_out_files, std::vector<std::string>{"other.csv"});
 }
 
 TEST(RobotFit, IsNotUsableWhereTheInertiaIsNone) {
@@ -327,7 +327,7 @@ TEST(RobotFit, RefusesWhatCannotBeFittedTogether) {
 TEST(RobotFit, RefusesWhatHoldsNothing) {
   const robot::DynamicModel model = planar({});
   PreparedDynamics one = trial(model);
-  one.stretches = {{0, 10, Purpose::identification}};
+  one.segments = {{0, 10, Purpose::identification}};
   expect_refused({one}, model, "10 rows cannot determine 9 coefficients");
   robot::DynamicModel bodies = planar({.viscous = false, .coulomb = false, .offset = false});
   robot::JointMotion still = motion_of(2);

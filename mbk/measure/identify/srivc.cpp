@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "mbk/base/dsp/derivative_filter.h"
-#include "mbk/base/dsp/stretches.h"
+#include "mbk/base/dsp/segments.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/parallel.h"
@@ -23,9 +23,9 @@
 namespace mbk::identify {
 namespace {
 
-constexpr Index kSteps = 16;  // of all stretches in a block: what fits the nearest cache
-constexpr Index kBlock = kSteps * dsp::kStretches;
-constexpr Index kMostPoles = 20;
+constexpr Index kSteps = 16;  // of all segments in a block: what fits the nearest cache
+constexpr Index kBlock = kSteps * dsp::kSegments;
+constexpr Index kMaxPoles = 20;
 
 double step_of(const SignalPair& pair, Index i) {
   return pair.step ? *pair.step : pair.time[i] - pair.time[i - 1];
@@ -129,8 +129,8 @@ struct Layout {
 class Table {
  public:
   Table(Index rows, Index columns)
-      : stride_(columns + dsp::kStretches),  // not a power of two, for the cache's sake
-        values_(static_cast<std::size_t>(rows * stride_ / dsp::kStretches)) {}
+      : stride_(columns + dsp::kSegments),  // not a power of two, for the cache's sake
+        values_(static_cast<std::size_t>(rows * stride_ / dsp::kSegments)) {}
   [[nodiscard]] dsp::Rows from(Index column) { return {values_.data()->values.data() + column, stride_}; }
 
  private:
@@ -142,19 +142,19 @@ dsp::Rows rows_from(dsp::Rows rows, Index first) {
   return {rows.row(first), rows.stride};
 }
 
-/// Columns of a block: samples that follow each other, or those of all stretches at one step after another.
+/// Columns of a block: samples that follow each other, or those of all segments at one step after another.
 struct Block {
   dsp::Rows rows;
-  Index columns;            ///< a multiple of 16
-  Index first;              ///< step, of each stretch
-  Index stretches, length;  ///< length: from one stretch to the next
-  Index samples;            ///< in the record
+  Index columns;           ///< a multiple of 16
+  Index first;             ///< step, of each segment
+  Index segments, length;  ///< length: from one segment to the next
+  Index samples;           ///< in the record
 
   /// Not below `samples`: none.
-  [[nodiscard]] Index sample(Index column) const { return column % stretches * length + first + column / stretches; }
+  [[nodiscard]] Index sample(Index column) const { return column % segments * length + first + column / segments; }
   void skip(Index steps) {
-    rows.data += steps * stretches;
-    columns -= steps * stretches;
+    rows.data += steps * segments;
+    columns -= steps * segments;
     first += steps;
   }
   [[nodiscard]] auto matrix(Index row_count) const {
@@ -165,9 +165,9 @@ struct Block {
   /// One row, sample by sample, to where it belongs.
   void scatter(Index row, Vector& to) const {
     const double* const from = rows.row(row);
-    for (Index l = 0; l < stretches; ++l) {
-      const Index begin = l * length + first, count = std::min(columns / stretches, samples - begin);
-      for (Index i = 0; i < count; ++i) to[begin + i] = from[i * stretches + l];
+    for (Index l = 0; l < segments; ++l) {
+      const Index begin = l * length + first, count = std::min(columns / segments, samples - begin);
+      for (Index i = 0; i < count; ++i) to[begin + i] = from[i * segments + l];
     }
   }
   /// Columns that are no samples become zero.
@@ -180,7 +180,7 @@ struct Block {
   }
 };
 
-/// Which signal of a record's stretches is which.
+/// Which signal of a record's segments is which.
 constexpr Index kInput = 0, kOutput = 1, kCleanInput = 2;
 
 /// One experiment's rows with the free motion projected out.
@@ -289,8 +289,8 @@ class Fitter {
   template <class Use>
   void blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise, Use&& use) const;
   template <class Use>
-  void blocks_of_stretches(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
-                           Use&& use) const;
+  void blocks_of_segments(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                          Use&& use) const;
   template <class Use>
   void blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const;
   [[nodiscard]] static const Vector* free_weights(const Iterate& at, const Layout& layout, std::size_t experiment) {
@@ -315,7 +315,7 @@ class Fitter {
   const std::vector<SignalPair>& experiments_;
   const ContinuousFitOptions& options_;
   Index n_, q_;
-  std::vector<dsp::Stretches> stretched_;
+  std::vector<dsp::Segments> stretched_;
   double output_squares_ = 0;  ///< Σ(y − ȳ)²
   Index samples_ = 0;
 };
@@ -348,16 +348,16 @@ void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Ind
 }
 
 template <class Use>
-void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
-                                 Use&& use) const {
+void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                                Use&& use) const {
   const SignalPair& pair = experiments_[experiment];
-  const dsp::Stretches& signals = stretched_[experiment];
+  const dsp::Segments& signals = stretched_[experiment];
   const Vector* const c = layout.reference ? nullptr : free_weights(at, layout, experiment);
-  const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kStretches;
+  const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kSegments;
   const dsp::HeldStep filter = dsp::held_step(at.a, at.scale * *pair.step);
   const dsp::HeldStep negative{filter.transition, -filter.from_last, -filter.from_next};
   const auto from_rest = [&](const dsp::HeldStep& step, Index signal) {
-    return dsp::StretchFilter(step, dsp::states_at_starts(step, signals, signal));
+    return dsp::SegmentFilter(step, dsp::states_at_starts(step, signals, signal));
   };
   const Index source = layout.reference ? kCleanInput : layout.input;  // of x̂
   // States at the starts: of the source and, below them, what x̂ has of it; the same of the free motion.
@@ -374,8 +374,8 @@ void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, cons
   if (layout.free) {
     of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
   }
-  const dsp::StretchFilter source_filter(filter, of_source.topRows(n_));
-  Filters<dsp::StretchFilter> filters{
+  const dsp::SegmentFilter source_filter(filter, of_source.topRows(n_));
+  Filters<dsp::SegmentFilter> filters{
       from_rest(negative, kOutput), layout.reference ? from_rest(filter, kInput) : source_filter, {}, {}, {}};
   if (layout.reference) filters.clean_u = source_filter;
   if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
@@ -387,19 +387,19 @@ void Fitter::blocks_of_stretches(std::size_t experiment, const Iterate& at, cons
   Table table(layout.rows(), past + kBlock), filtered(layout.rows(), kBlock);
   const dsp::Rows now = table.from(past);
   for (Index begin = 0; begin < length + order; begin += kSteps) {
-    const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kStretches;
+    const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kSegments;
     const Inputs from{signals.row(layout.input, begin), signals.row(kOutput, begin),
                       layout.reference ? signals.row(kCleanInput, begin) : nullptr};
     fill(filters, from, steps, columns, at, layout, c, now);
-    Block block{now, columns, begin, dsp::kStretches, length, pair.time.size()};
+    Block block{now, columns, begin, dsp::kSegments, length, pair.time.size()};
     if (order > 0) {
       block.rows = filtered.from(0);
       for (Index r = 0; r < layout.rows(); ++r) {
         double* const row = now.row(r);
-        dsp::combine(noise.tail(order), {row - dsp::kStretches, -dsp::kStretches}, row, columns, block.rows.row(r));
+        dsp::combine(noise.tail(order), {row - dsp::kSegments, -dsp::kSegments}, row, columns, block.rows.row(r));
         std::copy_n(row + columns - past, past, row - past);
       }
-      // Before there is a past; in all stretches but the first these samples are the last of the one before.
+      // Before there is a past; in all segments but the first these samples are the last of the one before.
       block.skip(std::clamp<Index>(order - begin, 0, steps));
     }
     if (block.columns == 0) continue;
@@ -420,7 +420,7 @@ void Fitter::blocks_of_uneven(std::size_t experiment, const Iterate& at, const L
   double* const output = signals.from(0).row(1);
   for (Index begin = 0; begin < pair.time.size(); begin += kBlock) {
     const Index count = std::min(kBlock, pair.time.size() - begin);
-    const Index columns = (count + dsp::kStretches - 1) / dsp::kStretches * dsp::kStretches;
+    const Index columns = (count + dsp::kSegments - 1) / dsp::kSegments * dsp::kSegments;
     std::copy_n(pair.input.data() + begin, count, input);
     std::copy_n(pair.output.data() + begin, count, output);
     fill(filters, {input, output, nullptr}, count, columns, at, layout, free_weights(at, layout, experiment),
@@ -435,7 +435,7 @@ template <class Use>
 void Fitter::blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
                     Use&& use) const {
   if (experiments_[experiment].step) {
-    blocks_of_stretches(experiment, at, layout, noise, use);
+    blocks_of_segments(experiment, at, layout, noise, use);
   } else {
     blocks_of_uneven(experiment, at, layout, use);
   }
@@ -483,7 +483,7 @@ Vector solved(const Sums& sums) {
 }
 
 /// Roots on the right half plane are reflected, to no less than a damping ratio; false where there was one.
-bool stabilise(Vector& a, double least_damping) {
+bool stabilise(Vector& a, double min_damping) {
   if (!a.allFinite()) return false;
   Vector monic(a.size() + 1);
   monic << a, 1.0;
@@ -492,7 +492,7 @@ bool stabilise(Vector& a, double least_damping) {
   for (auto& root : roots) {
     if (root.real() < 0.0) continue;
     stable = false;
-    root.real(-std::max(root.real(), least_damping * std::abs(root)));
+    root.real(-std::max(root.real(), min_damping * std::abs(root)));
   }
   if (!stable) a = numeric::monic_from_roots(roots);
   return stable;
@@ -534,7 +534,7 @@ void Fitter::iterate(Search& found) const {
   double change = std::numeric_limits<double>::infinity(), least = change;
   bool settled = false;
   found.start.converged = false;
-  for (int pass = 0; pass < options_.most_iterations; ++pass) {
+  for (int pass = 0; pass < options_.max_iterations; ++pass) {
     ++found.start.iterations;
     if (!step(found, change)) return;
     if (settled && change >= 0.5 * least && change < options_.tolerance) break;
@@ -550,9 +550,9 @@ Fitter::Search Fitter::search(double pole) const {
   found.start.pole = pole;
   found.from_clean_input = options_.reference_instruments;
   // Filters so slow that they leave nothing but a free motion of the record determine nothing; faster ones do.
-  constexpr int kMostDoublings = 20;
+  constexpr int kMaxDoublings = 20;
   bool begun = false;
-  for (int k = 0; !begun && k < kMostDoublings; ++k) {
+  for (int k = 0; !begun && k < kMaxDoublings; ++k) {
     found.at = {std::ldexp(pole, k), numeric::monic_from_roots(Eigen::VectorXcd::Constant(n_, -1.0)), {}, {}};
     double change = 0.0;
     ++found.start.iterations;
@@ -569,10 +569,10 @@ Fitter::Search Fitter::search(double pole) const {
   iterate(found);
   if (!found.at.a.allFinite() || !found.at.b.allFinite()) return found;
   // With a noise model: what is left is modelled, and the fit repeated, until neither changes.
-  constexpr int kMostNoisePasses = 30;
-  for (int pass = 0; options_.most_noise_order > 0 && found.start.converged && pass < kMostNoisePasses; ++pass) {
+  constexpr int kMaxNoisePasses = 30;
+  for (int pass = 0; options_.max_noise_order > 0 && found.start.converged && pass < kMaxNoisePasses; ++pass) {
     const Vector before = found.at.physical();
-    found.noise = autoregression(residuals(found.at), options_.most_noise_order);
+    found.noise = autoregression(residuals(found.at), options_.max_noise_order);
     iterate(found);
     const Vector after = found.at.physical();
     if (((after - before).array().abs() <= options_.tolerance * after.array().abs()).all()) break;
@@ -594,7 +594,7 @@ Fitter::Search Fitter::search(double pole) const {
 }
 
 Result<void> Fitter::check() const {
-  if (n_ < 1 || n_ > kMostPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMostPoles));
+  if (n_ < 1 || n_ > kMaxPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMaxPoles));
   if (q_ < 1 || q_ > n_ + 1) {
     return bad_usage(
         fmt::format("{} zeros beside {} poles: a model may have as many zeros as poles, not more", q_ - 1, n_));
@@ -615,7 +615,7 @@ Result<void> Fitter::check() const {
                         "cut it out by --from and --to");
       }
     }
-    if (!pair.step && (options_.most_noise_order > 0 || options_.reference_instruments)) {
+    if (!pair.step && (options_.max_noise_order > 0 || options_.reference_instruments)) {
       return bad_usage("a noise model and the closed-loop variant need an even clock", "take --method srivc");
     }
     if (options_.reference_instruments && pair.reference.size() != pair.time.size()) {
@@ -717,7 +717,7 @@ Result<ContinuousFit> Fitter::run() {
       clean = explained_by_past(pair.reference, pair.input);
       signals.push_back(&clean);
     }
-    stretched_.emplace_back(signals, options_.most_noise_order);
+    stretched_.emplace_back(signals, options_.max_noise_order);
   }
   if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
   if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");

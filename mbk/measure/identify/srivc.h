@@ -12,11 +12,11 @@ struct ContinuousFitOptions {
   std::vector<double> start_poles;     ///< [rad/s] of the first filter; empty: a few over the band of the samples
   bool only_given_starts = false;      ///< otherwise those over the band are tried beside them
   bool free_start = true;              ///< an initial state and an offset of the output for each experiment
-  Index most_noise_order = 0;          ///< RIVC: autoregressive noise model up to this order, by BIC; 0: SRIVC
+  Index max_noise_order = 0;           ///< RIVC: autoregressive noise model up to this order, by BIC; 0: SRIVC
   bool reference_instruments = false;  ///< closed loop: instruments from the reference alone
   double hac_lag_s = 0.0;              ///< reach of the residual's correlation in the covariance [s]; 0: white
   double tolerance = 1e-4;             ///< largest relative change of a coefficient at which the search has settled
-  int most_iterations = 100;
+  int max_iterations = 100;
   bool refine = true;    ///< go on to rounding once it has settled
   unsigned threads = 0;  ///< for the starts; 0: as many as there are cores
 };

@@ -141,7 +141,7 @@ TEST(Srivc, WithANoiseModelIsSharperUnderColouredNoise) {
     options.start_poles = {20.0};
     options.only_given_starts = true;
     const auto srivc = fit_continuous({pair}, options);
-    options.most_noise_order = 5;
+    options.max_noise_order = 5;
     const auto rivc = fit_continuous({pair}, options);
     ASSERT_TRUE(srivc && srivc->converged && rivc && rivc->converged) << run;
     ASSERT_GE(rivc->noise.size(), 2);

@@ -31,7 +31,7 @@ struct Making {
   double sample_time = 0.001;
   double noise = 0.0;  ///< of the force: first-order low-passed at 1.5 Hz, standard deviation [N]
   unsigned seed = 1;
-  double validation = 0.2;  ///< share of the samples at the end that is held back
+  double validation = 0.2;  ///< share of the samples at the end that is held out
   double highest_hz = 3.0;  ///< of the eight sines of each axis
   double across = 1.0;      ///< the motion's second axis is scaled by it
 };
@@ -81,8 +81,8 @@ inline PreparedTrial trial(const impedance::Model& model, const Making& making =
     out.force_hand_on_robot.row(i) = (force + noise).transpose();
   }
   const auto split = static_cast<Index>(std::llround(static_cast<double>(n) * (1.0 - making.validation)));
-  out.stretches.push_back({0, split, Purpose::identification});
-  if (split < n) out.stretches.push_back({split, n, Purpose::validation});
+  out.segments.push_back({0, split, Purpose::identification});
+  if (split < n) out.segments.push_back({split, n, Purpose::validation});
   out.preparation.protocol = Protocol::sinusoidal;
   out.preparation.cutoff = Hertz(making.highest_hz / 0.6);
   out.preparation.band_high = Hertz(making.highest_hz);

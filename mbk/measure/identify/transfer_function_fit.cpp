@@ -113,9 +113,9 @@ Fit fit_of(PredictionErrorFit&& made) {
 
 class Identifier {
  public:
-  Identifier(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_back,
+  Identifier(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_out,
              const TransferFunctionOptions& options)
-      : experiments_(experiments), held_back_(held_back), options_(options), delay_(options.delay) {}
+      : experiments_(experiments), held_out_(held_out), options_(options), delay_(options.delay) {}
 
   Result<TransferFunctionIdentification> run();
 
@@ -137,7 +137,7 @@ class Identifier {
   [[nodiscard]] double median_step() const;
 
   const std::vector<SignalPair>& experiments_;
-  const std::vector<SignalPair>& held_back_;
+  const std::vector<SignalPair>& held_out_;
   const TransferFunctionOptions& options_;
   double delay_;
   TransferFunctionIdentification found_;
@@ -160,7 +160,7 @@ ContinuousFitOptions Identifier::continuous_options(Index poles, Index zeros) co
   options.hac_lag_s = options_.hac_lag_s;
   options.threads = options_.threads;
   options.reference_instruments = options_.method == TransferFunctionMethod::closed_loop;
-  options.most_noise_order = options_.method == TransferFunctionMethod::rivc ? options_.most_noise_order : 0;
+  options.max_noise_order = options_.method == TransferFunctionMethod::rivc ? options_.max_noise_order : 0;
   return options;
 }
 
@@ -171,7 +171,7 @@ PredictionErrorOptions Identifier::discrete_options(Index poles, Index zeros) co
   options.start_poles = options_.start_poles;
   options.free_start = options_.free_start;
   options.noise_model = options_.method == TransferFunctionMethod::box_jenkins;
-  options.most_noise_order = options_.most_noise_order;
+  options.max_noise_order = options_.max_noise_order;
   options.hac_lag_s = options_.hac_lag_s;
   options.threads = options_.threads;
   return options;
@@ -193,9 +193,9 @@ Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
   const auto left = [](const Result<Fit>& made) {
     return made->converged ? made->variance : std::numeric_limits<double>::infinity();
   };
-  constexpr Index kMost = 25;
-  const auto samples = static_cast<Index>(std::floor(options_.most_delay / step + 1e-9));
-  const Index every = discrete() ? 1 : std::max<Index>(1, (samples + kMost - 1) / kMost);
+  constexpr Index kMax = 25;
+  const auto samples = static_cast<Index>(std::floor(options_.max_delay / step + 1e-9));
+  const Index every = discrete() ? 1 : std::max<Index>(1, (samples + kMax - 1) / kMax);
   double best = 0.0, least = std::numeric_limits<double>::infinity();
   const auto look = [&](double delay) -> Result<double> {
     const auto made = fit(poles, zeros, delay);
@@ -219,7 +219,7 @@ Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
   const double whole = best, reach = static_cast<double>(every) * step;
   std::optional<Error> failure;
   numeric::golden_section(
-      std::max(whole - reach, 0.0), std::min(whole + reach, options_.most_delay),
+      std::max(whole - reach, 0.0), std::min(whole + reach, options_.max_delay),
       [&](double delay) {
         const auto variance = look(delay);
         if (!variance && !failure) failure = variance.error();
@@ -364,9 +364,9 @@ void Identifier::test(const Fit& fit) {
   }
   double slowest = 0.0;  // [s]
   for (const Root& pole : found_.poles) slowest = std::max(slowest, 1.0 / std::abs(pole.value.real()));
-  constexpr double kLeastLags = 25, kMostLags = 400;
+  constexpr double kMinLags = 25, kMaxLags = 400;
   const double most = static_cast<double>(std::ranges::min(inputs, {}, &Vector::size).size()) / 5.0;
-  const double lags = std::min(std::clamp(3.0 * slowest / found_.sample_time, kLeastLags, kMostLags), most);
+  const double lags = std::min(std::clamp(3.0 * slowest / found_.sample_time, kMinLags, kMaxLags), most);
   found_.residuals = test_residuals(fit.innovations, inputs, std::max<Index>(1, static_cast<Index>(lags)));
 }
 
@@ -383,7 +383,7 @@ Vector Identifier::simulation_error(const SignalPair& pair) const {
 }
 
 void Identifier::simulate(const Fit& fit) {
-  if (held_back_.empty()) {
+  if (held_out_.empty()) {
     for (std::size_t k = 0; k < experiments_.size(); ++k) {
       const SignalPair& pair = experiments_[k];
       const Vector output = pair.output.tail(pair.samples());
@@ -393,33 +393,32 @@ void Identifier::simulate(const Fit& fit) {
   }
   double squares = 0.0, output = 0.0;
   Index count = 0;
-  for (const SignalPair& pair : delayed(held_back_, delay_)) {
+  for (const SignalPair& pair : delayed(held_out_, delay_)) {
     const Vector left = simulation_error(pair);
     squares += left.squaredNorm();
     found_.simulated.push_back({pair.time, pair.output, pair.output - left});
     output += (pair.output.array() - pair.output.mean()).square().sum();
     count += pair.output.size();
   }
-  found_.held_back_fit = 1.0 - squares / output;
-  found_.held_back_rmse = std::sqrt(squares / static_cast<double>(count));
+  found_.held_out_fit = 1.0 - squares / output;
+  found_.held_out_rmse = std::sqrt(squares / static_cast<double>(count));
 }
 
 void Identifier::warn() {
   auto& warnings = found_.warnings;
   constexpr double kPoor = 0.8;
-  if (found_.held_back_fit && *found_.held_back_fit < kPoor) {
-    warnings.push_back(
-        {WarningCode::held_back_fit_poor,
-         fmt::format("only {:.1f} % of the held-back output is explained", 100.0 * *found_.held_back_fit),
-         "try more poles (--orders), a delay (--delay auto), or look whether the system changes"});
+  if (found_.held_out_fit && *found_.held_out_fit < kPoor) {
+    warnings.push_back({WarningCode::held_out_fit_poor,
+                        fmt::format("only {:.1f} % of the held-out output is explained", 100.0 * *found_.held_out_fit),
+                        "try more poles (--orders), a delay (--delay auto), or look whether the system changes"});
   } else if (found_.fit < kPoor) {
     warnings.push_back({WarningCode::fit_poor,
                         fmt::format("only {:.1f} % of the output is explained", 100.0 * found_.fit),
                         "try more poles (--orders) and a delay (--delay auto); noise may be the rest"});
   }
-  if (held_back_.empty()) {
-    warnings.push_back({WarningCode::no_held_back_data, "no data were held back: the fit is in sample",
-                        "hold some back by --split or --held-back"});
+  if (held_out_.empty()) {
+    warnings.push_back({WarningCode::no_held_out_data, "no data were held out: the fit is in sample",
+                        "hold some back by --split or --held-out"});
   }
   if (!found_.residuals.white() && options_.hac_lag_s == 0.0) {
     warnings.push_back({WarningCode::residual_not_white,
@@ -451,7 +450,7 @@ void Identifier::warn() {
 /// In discrete time everything counts in samples of one clock.
 Result<void> Identifier::check_clock() const {
   if (!discrete()) return {};
-  const auto step = common_step(experiments_, held_back_);
+  const auto step = common_step(experiments_, held_out_);
   if (!step) return tl::unexpected(step.error());
   const double samples = delay_ / *step;
   constexpr double kWhole = 1e-3;
@@ -548,9 +547,9 @@ ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::ve
 }
 
 Result<TransferFunctionIdentification> identify_transfer_function(const std::vector<SignalPair>& experiments,
-                                                                  const std::vector<SignalPair>& held_back,
+                                                                  const std::vector<SignalPair>& held_out,
                                                                   const TransferFunctionOptions& options) {
-  return Identifier(experiments, held_back, options).run();
+  return Identifier(experiments, held_out, options).run();
 }
 
 }  // namespace mbk::identify

@@ -13,10 +13,10 @@ struct TransferFunctionOptions {
   std::vector<std::pair<Index, Index>> orders;  ///< poles and zeros to choose from; empty: those above
   std::vector<double> start_poles;              ///< [rad/s], tried beside those that the method takes by itself
   double delay = 0.0;                           ///< τ [s] ≥ 0
-  bool find_delay = false;                      ///< instead of the one above, up to most_delay
-  double most_delay = 0.1;                      ///< [s]
+  bool find_delay = false;                      ///< instead of the one above, up to max_delay
+  double max_delay = 0.1;                       ///< [s]
   bool free_start = true;                       ///< an initial state and an offset of the output for each experiment
-  Index most_noise_order = 8;                   ///< of the noise model, where the method has one
+  Index max_noise_order = 8;                    ///< of the noise model, where the method has one
   double hac_lag_s = 1.0;                       ///< reach of the residual's correlation in the standard errors [s]
   unsigned threads = 0;                         ///< 0: as many as there are cores
 };
@@ -27,11 +27,11 @@ struct TransferFunctionOptions {
 /// these the one of least YIC (Young 1989). Delay: the one that leaves least, by whole samples first and then by
 /// golden section to a hundredth of a sample. The input between samples is a straight line. In discrete time (output
 /// error, Box–Jenkins; prediction_error.h) the delay is a whole number of samples, of one even clock.
-/// @param held_back  judged by simulation alone, with an initial state and an offset of their own
+/// @param held_out  judged by simulation alone, with an initial state and an offset of their own
 /// @fails  not usable: no start settled on a stable model. As fit_continuous or fit_prediction_error
 /// otherwise; delay < 0 or not finite, or in discrete time no whole number of samples.
 [[nodiscard]] Result<TransferFunctionIdentification> identify_transfer_function(
-    const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_back,
+    const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_out,
     const TransferFunctionOptions& options);
 
 /// Poles or zeros with intervals by the delta method: dp = −Σ pᵏ da_k/A′(p). With a sample time they are roots z of a

@@ -49,7 +49,7 @@ TEST(TransferFunctionFit, GivesFrequencyAndDampingWithIntervals) {
   EXPECT_NEAR(pole.damping, 0.1, 4.0 * pole.damping_standard_error);
   EXPECT_LT(pole.frequency_standard_error, 0.01);
   EXPECT_NEAR(found->gain, 3.0, 4.0 * found->gain_standard_error);
-  EXPECT_GT(found->held_back_fit.value(), 0.999);
+  EXPECT_GT(found->held_out_fit.value(), 0.999);
   EXPECT_TRUE(found->residuals.white());
   EXPECT_TRUE(found->residuals.independent());
   EXPECT_FALSE(pole.outside_band);
@@ -132,7 +132,7 @@ TEST(TransferFunctionFit, GivesADiscreteModelInHertzToo) {
     EXPECT_NEAR(pole.damping, 0.1, 4.0 * pole.damping_standard_error);
     EXPECT_LT(pole.frequency_standard_error, 0.01);
     EXPECT_NEAR(found->gain, 3.0, 4.0 * found->gain_standard_error);
-    EXPECT_GT(found->held_back_fit.value(), 0.999);
+    EXPECT_GT(found->held_out_fit.value(), 0.999);
     EXPECT_TRUE(found->residuals.white());
     EXPECT_TRUE(found->residuals.independent());
   }
@@ -141,7 +141,7 @@ TEST(TransferFunctionFit, GivesADiscreteModelInHertzToo) {
 TEST(TransferFunctionFit, FindsADelayOfWholeSamplesInDiscreteTime) {
   TransferFunctionOptions options = discrete(TransferFunctionMethod::output_error);
   options.find_delay = true;
-  options.most_delay = 0.08;
+  options.max_delay = 0.08;
   const auto found = identify_transfer_function({oscillator(4, 0.05, 1)}, {}, options);
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->model.delay, 0.04, 1e-12);

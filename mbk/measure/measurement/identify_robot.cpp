@@ -59,10 +59,10 @@ Result<std::vector<Recording>> even(std::span<const Recording> recordings, Hertz
 
 /// Both sets of recordings, prepared alike.
 struct Prepared {
-  std::vector<PreparedDynamics> trials, held_back;
+  std::vector<PreparedDynamics> trials, held_out;
 };
 
-Result<Prepared> prepare_both(std::span<const Recording> recordings, std::span<const Recording> held_back,
+Result<Prepared> prepare_both(std::span<const Recording> recordings, std::span<const Recording> held_out,
                               const robot::DynamicModel& model, const preprocess::DynamicsOptions& options) {
   auto trials = prepare_all(recordings, model, options);
   if (!trials) return tl::unexpected(trials.error());
@@ -73,28 +73,28 @@ Result<Prepared> prepare_both(std::span<const Recording> recordings, std::span<c
   }
   judged.signals.window = {};
   if (trials->front().motion_cutoff > 0.0) judged.motion_cutoff = Hertz(trials->front().motion_cutoff);
-  auto others = prepare_all(held_back, model, judged);
+  auto others = prepare_all(held_out, model, judged);
   if (!others) return tl::unexpected(others.error());
   return Prepared{std::move(*trials), std::move(*others)};
 }
 
 /// The pipeline with everything given.
-Result<identify::RobotFit> fit_once(std::span<const Recording> recordings, std::span<const Recording> held_back,
+Result<identify::RobotFit> fit_once(std::span<const Recording> recordings, std::span<const Recording> held_out,
                                     const robot::DynamicModel& model, const RobotOptions& options) {
-  const auto both = prepare_both(recordings, held_back, model, options.preprocess);
+  const auto both = prepare_both(recordings, held_out, model, options.preprocess);
   if (!both) return tl::unexpected(both.error());
-  return identify::fit_robot(both->trials, both->held_back, model, options.fit);
+  return identify::fit_robot(both->trials, both->held_out, model, options.fit);
 }
 
 /// With the delay found where it is wanted.
-Result<RobotIdentification> fit_delay(std::span<const Recording> recordings, std::span<const Recording> held_back,
+Result<RobotIdentification> fit_delay(std::span<const Recording> recordings, std::span<const Recording> held_out,
                                       robot::DynamicModel model, const RobotOptions& options) {
-  constexpr int kMostPasses = 8;
+  constexpr int kMaxPasses = 8;
   constexpr double kSettled = 1e-5;  // [s], a hundredth of a sample at 1 kHz
   for (int pass = 1;; ++pass) {
-    auto made = fit_once(recordings, held_back, model, options);
+    auto made = fit_once(recordings, held_out, model, options);
     if (!made) return tl::unexpected(made.error());
-    if (!options.fit.delay || std::abs(made->delay_correction) < kSettled || pass == kMostPasses) {
+    if (!options.fit.delay || std::abs(made->delay_correction) < kSettled || pass == kMaxPasses) {
       return std::move(made->identification);
     }
     model.delay = std::clamp(model.delay + made->delay_correction, -0.2, 0.2);
@@ -109,7 +109,7 @@ double unexplained(const RobotIdentification& found) {
 
 }  // namespace
 
-Result<RobotIdentification> identify_robot(std::span<const Recording> recordings, std::span<const Recording> held_back,
+Result<RobotIdentification> identify_robot(std::span<const Recording> recordings, std::span<const Recording> held_out,
                                            const robot::DynamicModel& model, const RobotOptions& options) {
   RobotOptions all = options;
   all.preprocess.instruments = options.fit.method == RobotMethod::instrumental_variables;
@@ -117,11 +117,11 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
     all.resample.reset();
     const auto trials = even(recordings, *options.resample);
     if (!trials) return tl::unexpected(trials.error());
-    const auto others = even(held_back, *options.resample);
+    const auto others = even(held_out, *options.resample);
     if (!others) return tl::unexpected(others.error());
     return identify_robot(*trials, *others, model, all);
   }
-  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(recordings, held_back, model, all);
+  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(recordings, held_out, model, all);
 
   // Between the velocity at which the sign is smooth and a hundred times that.
   const double low = std::log(std::max(1.5 * model.drive.smoothing, 1e-4)), high = low + std::log(100.0);
@@ -131,7 +131,7 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
   std::optional<Error> failure;
   const auto left = [&](double log_velocity) {
     tried.drive.stribeck_velocity = std::exp(log_velocity);
-    auto found = fit_delay(recordings, held_back, tried, all);
+    auto found = fit_delay(recordings, held_out, tried, all);
     if (!found) {
       failure = found.error();
       return std::numeric_limits<double>::max();

@@ -22,10 +22,10 @@ struct RobotOptions {
 /// From recordings of a robot that moves by itself to its dynamics: inspect, prepare, fit. Where the delay is to be
 /// found, the torque is shifted and fitted again until the correction is below 1 % of a sample; the Stribeck velocity
 /// is the one that leaves least of the torque, by Brent's search over its logarithm about the best of a grid.
-/// @param held_back  whole recordings that only judge
+/// @param held_out  whole recordings that only judge
 /// @fails  as its steps; where a recording has a source, the message names its file.
 [[nodiscard]] Result<RobotIdentification> identify_robot(std::span<const Recording> recordings,
-                                                         std::span<const Recording> held_back,
+                                                         std::span<const Recording> held_out,
                                                          const robot::DynamicModel& model, const RobotOptions& options);
 
 }  // namespace mbk::measurement

@@ -33,7 +33,7 @@ bool is_even(const Vector& time, Piece piece) {
   return true;
 }
 
-/// Stretches without a gap, and whether their clock is even; an uneven clock has no gaps.
+/// Segments without a gap, and whether their clock is even; an uneven clock has no gaps.
 std::pair<std::vector<Piece>, bool> pieces_of(const Vector& time) {
   const Index n = time.size();
   std::vector<double> steps;
@@ -64,10 +64,10 @@ class Preparer {
  public:
   explicit Preparer(const TransferFunctionMeasurement& options) : options_(options) {}
 
-  /// @param whole  held back altogether
+  /// @param whole  held out altogether
   Result<void> add(const Recording& recording, bool whole, bool hold_back);
 
-  std::vector<SignalPair> experiments, held_back;
+  std::vector<SignalPair> experiments, held_out;
   std::string input_unit, output_unit;
   double recorded_rate_hz = 0.0;  ///< where samples were left out
 
@@ -91,7 +91,7 @@ Result<Index> Preparer::every(const SignalPair& pair) const {
   }
   const double rate = 1.0 / *pair.step;
   constexpr double kRounding = 1e-6;
-  if (!wanted) return static_cast<Index>(std::ceil(rate / kMostDiscreteRate.value * (1.0 - kRounding)));
+  if (!wanted) return static_cast<Index>(std::ceil(rate / kMaxDiscreteRate.value * (1.0 - kRounding)));
   if (*wanted <= rate * (1.0 + kRounding)) return static_cast<Index>(std::llround(rate / *wanted));
   return bad_usage(fmt::format("samples come at {:.6g} Hz, and not at {:g} Hz", rate, *wanted),
                    "choose a lower --sample-rate, or --resample");
@@ -125,9 +125,9 @@ Result<void> Preparer::cut(const Recording& recording, Piece piece, bool even, d
   Index begin = piece.begin, end = piece.end;
   while (begin < end && recording.time[begin] - start < from - kRounding) ++begin;
   while (end > begin && recording.time[end - 1] - start >= to - kRounding) --end;
-  constexpr Index kLeast = 8;
-  if (end - begin < kLeast) return {};
-  const double reach = options_.fit.find_delay ? options_.fit.most_delay : options_.fit.delay;
+  constexpr Index kMin = 8;
+  if (end - begin < kMin) return {};
+  const double reach = options_.fit.find_delay ? options_.fit.max_delay : options_.fit.delay;
   Index past = begin;
   while (past > piece.begin && recording.time[past] > recording.time[begin] - reach) --past;
   for (const std::string& name : {options_.input, options_.output, options_.reference}) {
@@ -189,7 +189,7 @@ Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_bac
       if (auto ok = cut(recording, piece, even, from, split, experiments); !ok) return ok;
     }
     if (split < to) {
-      if (auto ok = cut(recording, piece, even, split, to, held_back); !ok) return ok;
+      if (auto ok = cut(recording, piece, even, split, to, held_out); !ok) return ok;
     }
   }
   return {};
@@ -198,24 +198,24 @@ Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_bac
 }  // namespace
 
 Result<TransferFunctionIdentification> identify_transfer_function(std::span<const Recording> recordings,
-                                                                  std::span<const Recording> held_back,
+                                                                  std::span<const Recording> held_out,
                                                                   const TransferFunctionMeasurement& options) {
   Preparer prepared(options);
   const auto add = [&](const Recording& recording, bool whole) -> Result<void> {
-    auto added = prepared.add(recording, whole, held_back.empty());
+    auto added = prepared.add(recording, whole, held_out.empty());
     if (!added && !recording.sources.empty()) return tl::unexpected(added.error().in(recording.sources[0].path));
     return added;
   };
   for (const Recording& recording : recordings) {
     if (auto ok = add(recording, false); !ok) return tl::unexpected(ok.error());
   }
-  for (const Recording& recording : held_back) {
+  for (const Recording& recording : held_out) {
     if (auto ok = add(recording, true); !ok) return tl::unexpected(ok.error());
   }
   if (prepared.experiments.empty()) {
-    return bad_data("no stretch of at least 8 samples without a gap is left to identify", "choose a longer window");
+    return bad_data("no segment of at least 8 samples without a gap is left to identify", "choose a longer window");
   }
-  auto found = identify::identify_transfer_function(prepared.experiments, prepared.held_back, options.fit);
+  auto found = identify::identify_transfer_function(prepared.experiments, prepared.held_out, options.fit);
   if (!found) return found;
   found->input = options.input;
   found->output = options.output;

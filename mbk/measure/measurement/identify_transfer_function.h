@@ -15,25 +15,25 @@ struct TransferFunctionMeasurement {
   std::string input = "input", output = "output";  ///< channels, by name or alias
   double input_sign = 1, output_sign = 1;          ///< −1 flips
   std::string reference;                           ///< channel that drives the loop; empty: none
-  preprocess::WindowLimits window;  ///< split: what is behind it is held back; absent: the last fifth, unless whole
+  preprocess::WindowLimits window;  ///< split: what is behind it is held out; absent: the last fifth, unless whole
                                     ///< recordings are
-  /// To which even samples are thinned out behind a low-pass (dsp::decimate), to the nearest whole share of theirs.
-  /// Absent: for discrete-time models to at most kMostDiscreteRate, the others take every sample. 0: every sample.
+  /// To which even samples are decimated behind a low-pass (dsp::decimate), to the nearest whole share of theirs.
+  /// Absent: for discrete-time models to at most kMaxDiscreteRate, the others take every sample. 0: every sample.
   std::optional<double> sample_rate_hz;
   identify::TransferFunctionOptions fit;
 };
 
 /// A discrete-time model of fast samples has its poles crowded at z = 1, and spends its fit on what no limb does.
-inline constexpr Hertz kMostDiscreteRate(100.0);
+inline constexpr Hertz kMaxDiscreteRate(100.0);
 
 /// From recordings to one transfer function. A gap in an even clock begins a new experiment; an uneven clock is taken
 /// as it is.
-/// @param held_back  whole recordings that only judge
+/// @param held_out  whole recordings that only judge
 /// @fails  data: a channel is not there; time runs backward or stands still; limits outside the recording; as
 /// identify_transfer_function; the sample rate is above that of the recording, or its clock is uneven. Where a
 /// recording has a source, the message names its file.
 [[nodiscard]] Result<TransferFunctionIdentification> identify_transfer_function(
-    std::span<const Recording> recordings, std::span<const Recording> held_back,
+    std::span<const Recording> recordings, std::span<const Recording> held_out,
     const TransferFunctionMeasurement& options);
 
 }  // namespace mbk::measurement

@@ -46,8 +46,8 @@ TEST(TransferFunction, OfARealFlexibleArmIsReachedByEachStartAlone) {
     pair.output = whole->channels[1].values.segment(begin, kPeriod);
     return pair;
   };
-  const SignalPair held_back = period(8);
-  const double power = (held_back.output.array() - held_back.output.mean()).square().sum();
+  const SignalPair held_out = period(8);
+  const double power = (held_out.output.array() - held_out.output.mean()).square().sum();
   constexpr int kStarts = 40;
   for (int k = 0; k < kStarts; ++k) {
     identify::ContinuousFitOptions options;
@@ -57,8 +57,8 @@ TEST(TransferFunction, OfARealFlexibleArmIsReachedByEachStartAlone) {
     options.only_given_starts = true;
     const auto fit = identify::fit_continuous({period(3)}, options);
     ASSERT_TRUE(fit.has_value() && fit->converged) << options.start_poles[0];
-    const Vector error = held_back.output - identify::simulate_continuous(fit->a, fit->b, held_back);
-    const double left = identify::without_free_motion(fit->a, held_back, error).squaredNorm();
+    const Vector error = held_out.output - identify::simulate_continuous(fit->a, fit->b, held_out);
+    const double left = identify::without_free_motion(fit->a, held_out, error).squaredNorm();
     EXPECT_GE(1.0 - left / power, 0.975) << options.start_poles[0];
   }
 }
@@ -98,7 +98,7 @@ TEST_F(FlexibleArm, HoldsFromAnyStart) {
     options_.fit.start_poles = {start};
     const auto found = identified();
     ASSERT_TRUE(found.has_value()) << found.error().line();
-    EXPECT_GE(found->held_back_fit.value(), 0.975) << start;
+    EXPECT_GE(found->held_out_fit.value(), 0.975) << start;
     expect_modes(*found);
     EXPECT_EQ(found->recorded_rate_hz, 0.0);
   }
@@ -110,7 +110,7 @@ TEST_F(FlexibleArm, HoldsAsOutputErrorAtAHundredHertz) {
   ASSERT_TRUE(found.has_value()) << found.error().line();
   EXPECT_NEAR(found->recorded_rate_hz, 500.0, 1e-9);
   EXPECT_NEAR(found->model.sample_time, 0.01, 1e-9);
-  EXPECT_GE(found->held_back_fit.value(), 0.975);
+  EXPECT_GE(found->held_out_fit.value(), 0.975);
   expect_modes(*found);
 }
 
@@ -176,7 +176,7 @@ TEST(TransferFunction, KeepsTheSamplesOfADelayWhenItLeavesSomeOut) {
   options.fit.delay = 0.1;
   const auto found = identify_transfer_function({&recording, 1}, {}, options);
   ASSERT_TRUE(found.has_value()) << found.error().line();
-  EXPECT_GT(found->held_back_fit.value(), 0.99999);
+  EXPECT_GT(found->held_out_fit.value(), 0.99999);
 }
 
 TEST(TransferFunction, SaysWhichChannelIsMissing) {

@@ -105,15 +105,15 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
   return trial;
 }
 
-/// The computed force beside the sensor's, on one stretch that counts: both filtered alike.
+/// The computed force beside the sensor's, on one segment that counts: both filtered alike.
 analyse::ForcePair force_pair(const Source& source, const PreparedTrial& computed, const PreparedTrial& sensed,
-                              const Stretch& stretch) {
-  analyse::ForcePair pair{computed.force_hand_on_robot.middleRows(stretch.begin, stretch.size()),
-                          sensed.force_hand_on_robot.middleRows(stretch.begin, stretch.size()),
-                          Matrix(stretch.size(), source.computed->joint_velocity.cols())};
-  for (Index i = 0; i < stretch.size(); ++i) {
+                              const Segment& segment) {
+  analyse::ForcePair pair{computed.force_hand_on_robot.middleRows(segment.begin, segment.size()),
+                          sensed.force_hand_on_robot.middleRows(segment.begin, segment.size()),
+                          Matrix(segment.size(), source.computed->joint_velocity.cols())};
+  for (Index i = 0; i < segment.size(); ++i) {
     pair.joint_velocity.row(i) =
-        source.computed->joint_velocity.row(stretch.first_sample + i * computed.preparation.every);
+        source.computed->joint_velocity.row(segment.first_sample + i * computed.preparation.every);
   }
   return pair;
 }
@@ -127,7 +127,7 @@ Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& source
     if (!trial) return source.in_file(trial.error());
     trials.push_back(std::move(*trial));
   }
-  // Where each trial by itself would be thinned differently, the finest will do for all.
+  // Where each trial by itself would be decimated differently, the finest will do for all.
   Index finest = std::numeric_limits<Index>::max();
   for (const PreparedTrial& trial : trials) finest = std::min(finest, trial.preparation.every);
   options.preprocess.every = finest;
@@ -235,7 +235,7 @@ Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::
     how.instruments = true;
     auto trial = preprocess::prepare(sensed, recording::inspect(sensed), how);
     if (!trial || trial->time.size() != trials[k].time.size()) return {};  // a sensor that did not work
-    for (const Stretch& stretch : trial->stretches) pairs.push_back(force_pair(source, trials[k], *trial, stretch));
+    for (const Segment& segment : trial->segments) pairs.push_back(force_pair(source, trials[k], *trial, segment));
     by_sensor.push_back(std::move(*trial));
   }
   auto comparison = analyse::compare_forces(pairs, trials.front().sample_time);

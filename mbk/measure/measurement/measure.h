@@ -37,7 +37,7 @@ struct Examined {
 
 /// `measure` with the diagnostics, from the same prepared trials. Where a recording holds an accelerometer, it is
 /// prepared a second time, with ẍ from the source that was not used; an accelerometer that cannot be (values that are
-/// no numbers) is left out.
+/// not finite) is omitted.
 /// @fails as measure and analyse::diagnose
 [[nodiscard]] Result<Examined> examine(std::span<const Recording> recordings, const Options& options);
 

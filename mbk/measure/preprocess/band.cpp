@@ -63,8 +63,8 @@ Result<Hertz> motion_top(const Vector& position, const std::vector<Cut>& cuts, H
   const Vector density = spectrum->density.array() * f.array().pow(4);
   const auto above = [&f](Hertz edge) { return std::ranges::upper_bound(f, edge.value) - f.begin(); };
   const Index begin = above(excited->high), end = above(limit);
-  constexpr Index kFewest = 5;
-  if (end - begin < kFewest) return limit;
+  constexpr Index kMin = 5;
+  if (end - begin < kMin) return limit;
   const double floor = numeric::upper_median({density.begin() + begin, density.begin() + end});
   for (Index i = begin; i < end; ++i) {
     if (density[i] < 2.0 * floor) return Hertz(f[i]);

@@ -17,7 +17,7 @@ constexpr double kSmoothingOverCutoff = 4.6;
 /// At ten samples for each period of the cutoff the low-pass leaves 1e-7 above half of their rate.
 constexpr double kRateOverCutoff = 10.0;
 /// Rows of the shortest cut that are kept at least, so that its ends stay where they are.
-constexpr Index kFewestRows = 1000;
+constexpr Index kMinRows = 1000;
 
 FilterPlan with_choices(FilterPlan plan, const Options& options) {
   if (options.smoothing_order) plan.smoothing.order = *options.smoothing_order;
@@ -58,11 +58,11 @@ FilterPlan reference_filters(const Options& options) {
 
 FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut) {
   FilterPlan plan;
-  const double wanted = options.cutoff.value_or(Hertz(band.high.value / kPassed)).value;
-  const double cutoff = std::min(wanted, 0.4 * rate.value);
+  const double asked = options.cutoff.value_or(Hertz(band.high.value / kPassed)).value;
+  const double cutoff = std::min(asked, 0.4 * rate.value);
   plan.cutoff = Hertz(cutoff);
   plan.rule = fmt::format("{:.3g} Hz, the top of the excited band, over 0.6", band.high.value);
-  if (cutoff < wanted) plan.rule += ", limited to 0.4 of the sample rate";
+  if (cutoff < asked) plan.rule += ", limited to 0.4 of the sample rate";
   const int order = options.smoothing_order.value_or(6);
   plan.smoothing.order = order;
   plan.smoothing.window =
@@ -73,7 +73,7 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   if (!options.no_lowpass) {
     // A clock is read to rounding only: a whole number must not fall below itself.
     const auto enough = static_cast<Index>(rate.value / (kRateOverCutoff * cutoff) * (1.0 + 1e-9));
-    plan.every = std::max<Index>(1, std::min(enough, shortest_cut / kFewestRows));
+    plan.every = std::max<Index>(1, std::min(enough, shortest_cut / kMinRows));
   }
   return with_choices(std::move(plan), options);
 }
@@ -98,9 +98,9 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
       columns.emplace_back(quantity->col(k).data() + cut.begin + trim, length - 2 * trim);
     }
   }
-  std::vector<dsp::Wanted> wanted;
+  std::vector<dsp::FilterOutput> outputs;
   const auto want = [&](Index first, int derivative) {
-    for (Index k = 0; k < n; ++k) wanted.push_back({first + k, derivative});
+    for (Index k = 0; k < n; ++k) outputs.push_back({first + k, derivative});
   };
   want(0, 0);
   want(0, 1);
@@ -114,8 +114,8 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
     for (const int derivative : {2, 1, 0}) want(2 * n + signals.acceleration.cols(), derivative);
   }
   const Index computed = signals.force_sensitivity.cols();
-  for (Index k = 0; k < computed; ++k) wanted.push_back({static_cast<Index>(columns.size()) - computed + k, 0});
-  return dsp::smooth_then_lowpass(*chain, columns, wanted, rate, filters.every);
+  for (Index k = 0; k < computed; ++k) outputs.push_back({static_cast<Index>(columns.size()) - computed + k, 0});
+  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate, filters.every);
 }
 
 Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,
@@ -123,12 +123,12 @@ Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, H
   const auto chain = chain_of(filters, padding, rate);
   if (!chain) return tl::unexpected(chain.error());
   std::vector<dsp::Column> columns;
-  std::vector<dsp::Wanted> wanted;
+  std::vector<dsp::FilterOutput> outputs;
   for (Index k = 0; k < signals.cols(); ++k) {
     columns.emplace_back(signals.col(k).data(), signals.rows());
-    wanted.push_back({k, 0});
+    outputs.push_back({k, 0});
   }
-  return dsp::smooth_then_lowpass(*chain, columns, wanted, rate);
+  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate);
 }
 
 }  // namespace mbk::preprocess

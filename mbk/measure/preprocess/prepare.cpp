@@ -20,8 +20,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
   const bool published = options.mode == Mode::reference;
   const Index samples = recording.samples();
-  constexpr Index kFewest = 20;  // about three for each parameter of one axis
-  if (samples < kFewest || !(inspection.rate_hz > 0.0)) {
+  constexpr Index kMin = 20;  // about three for each parameter of one axis
+  if (samples < kMin || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
   const Hertz rate(inspection.rate_hz);
@@ -67,7 +67,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   FilterPlan filters = reference_filters(options);
   auto plan = published ? reference_windows(how.protocol, signals->reference, clock, options.window,
                                             filters.smoothing.half_window())
-                        : improved_windows(how.protocol, signals->reference, clock, options.window);
+                        : default_windows(how.protocol, signals->reference, clock, options.window);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = check_clock(clock, inspection.interval_median, *plan, trial.warnings); !ok) {
     return tl::unexpected(ok.error());
@@ -123,16 +123,16 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
       trial.force_sensitivity.middleRows(row, rows) = piece.rightCols(trial.force_sensitivity.cols());
     }
     if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference(kept, Eigen::all);
-    append_stretches(cut, first, every, row, rows, trial.stretches);
+    append_segments(cut, first, every, row, rows, trial.segments);
     row += rows;
   }
-  if (trial.stretches.empty()) return bad_data("no sample is left after filtering", "record longer");
+  if (trial.segments.empty()) return bad_data("no sample is left after filtering", "record longer");
 
   how.window_rule = plan->rule;
-  how.from_s = trial.time[trial.stretches.front().begin];
-  how.to_s = trial.time[trial.stretches.back().end - 1];
+  how.from_s = trial.time[trial.segments.front().begin];
+  how.to_s = trial.time[trial.segments.back().end - 1];
   how.split_s = plan->split_s;
-  how.perturbations = static_cast<int>(how.protocol == Protocol::underdamped ? trial.stretches.size() : 1);
+  how.perturbations = static_cast<int>(how.protocol == Protocol::underdamped ? trial.segments.size() : 1);
   how.smoothing_order = filters.smoothing.order;
   how.smoothing_window = filters.smoothing.window;
   how.cutoff = filters.cutoff;

@@ -31,7 +31,7 @@ robot::JointVector joints_at(const robot::Mechanism& mechanism, const robot::Joi
   return q;
 }
 
-/// One cut after another, filtered and thinned.
+/// One cut after another, filtered and decimated.
 class Maker {
  public:
   Maker(const JointSignals& signals, const robot::DynamicModel& model, const DynamicsOptions& options,
@@ -71,13 +71,13 @@ class Maker {
 
  private:
   Result<Matrix> through(const dsp::SectionCascade& filter, const Matrix& all) const {
-    if (filter.empty()) return thinned(all);
+    if (filter.empty()) return decimated(all);
     auto filtered = dsp::filter_zero_phase(filter, all, options_.signals.padding);
     if (!filtered) return filtered;
-    return thinned(*filtered);
+    return decimated(*filtered);
   }
 
-  [[nodiscard]] Matrix thinned(const Matrix& all) const {
+  [[nodiscard]] Matrix decimated(const Matrix& all) const {
     const Index rows = (all.rows() + filters_.every - 1) / filters_.every;
     return all(Eigen::seqN(0, rows, filters_.every), Eigen::all);
   }
@@ -150,8 +150,8 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   if (!(std::abs(model.delay) < 1.0)) {
     return bad_usage(fmt::format("a motor delay of {:g} s is not below 1 s", model.delay));
   }
-  constexpr Index kFewest = 100;
-  if (recording.samples() < kFewest || !(inspection.rate_hz > 0.0)) {
+  constexpr Index kMin = 100;
+  if (recording.samples() < kMin || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} samples cannot show a robot's dynamics", recording.samples()), "record longer");
   }
   const Hertz rate(inspection.rate_hz);
@@ -166,7 +166,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   made.notes = recording.notes;
   made.recording_rate = rate.value;
   made.recording_duration = inspection.duration + inspection.interval_median;
-  const auto plan = improved_windows(Protocol::free, {}, clock, options.signals.window);
+  const auto plan = default_windows(Protocol::free, {}, clock, options.signals.window);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = check_clock(clock, inspection.interval_median, *plan, made.warnings); !ok) {
     return tl::unexpected(ok.error());
@@ -224,10 +224,10 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
     const Index rows = pieces[k].rows(), first = cut.begin + lost;
     all.middleRows(row, rows) = pieces[k];
     made.time.segment(row, rows) = recording.time(Eigen::seqN(first, rows, every)).array() - recording.time[0];
-    append_stretches(cut, first, every, row, rows, made.stretches);
+    append_segments(cut, first, every, row, rows, made.segments);
     row += rows;
   }
-  if (made.stretches.empty()) return bad_data("no sample is left after filtering", "record longer");
+  if (made.segments.empty()) return bad_data("no sample is left after filtering", "record longer");
   made.sample_time = static_cast<double>(every) / rate.value;
   made.torque = all.leftCols(n);
   made.torque_rate = all.middleCols(n, n);
@@ -242,8 +242,8 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   Preparation& how = made.preparation;
   how.protocol_rule = "a robot by itself";
   how.window_rule = plan->rule;
-  how.from_s = made.time[made.stretches.front().begin];
-  how.to_s = made.time[made.stretches.back().end - 1];
+  how.from_s = made.time[made.segments.front().begin];
+  how.to_s = made.time[made.segments.back().end - 1];
   how.split_s = plan->split_s;
   how.smoothing_order = filters.smoothing.order;
   how.smoothing_window = filters.smoothing.window;

@@ -11,7 +11,7 @@
 namespace mbk::preprocess {
 
 struct DynamicsOptions {
-  Options signals;           ///< smoothing, cutoff, padding, window and thinning
+  Options signals;           ///< smoothing, cutoff, padding, window and decimation
   bool instruments = false;  ///< make them too
   std::optional<Hertz>
       motion_cutoff;  ///< of the smoothed motion that serves as instrument; absent: the band of the torque

@@ -166,7 +166,7 @@ TEST(Prepare, SinesKeepTheirVelocityAndAccelerationUpToTheFilters) {
 }
 
 class BothModes : public testing::TestWithParam<Mode> {};
-INSTANTIATE_TEST_SUITE_P(All, BothModes, testing::Values(Mode::improved, Mode::reference),
+INSTANTIATE_TEST_SUITE_P(All, BothModes, testing::Values(Mode::default_mode, Mode::reference),
                          [](const auto& mode) { return std::string(word_of(mode.param)); });
 
 TEST_P(BothModes, ALinearRelationOfForceAndMotionSurvivesTheFilters) {
@@ -269,9 +269,9 @@ TEST_P(BothModes, TheWindowIsRecordedInSeconds) {
   EXPECT_NEAR(trial.preparation.from_s, 2.0 + lost, 1e-12);
   EXPECT_NEAR(trial.preparation.to_s, 17.999 - lost, 1e-12);
   EXPECT_EQ(trial.preparation.split_s, 10.0);
-  ASSERT_EQ(trial.stretches.size(), 2u);
-  EXPECT_NEAR(trial.time[trial.stretches[1].begin], 10.0, 1e-12);
-  EXPECT_EQ(trial.stretches[1].purpose, Purpose::validation);
+  ASSERT_EQ(trial.segments.size(), 2u);
+  EXPECT_NEAR(trial.time[trial.segments[1].begin], 10.0, 1e-12);
+  EXPECT_EQ(trial.segments[1].purpose, Purpose::validation);
 }
 
 TEST(Prepare, RefusesFiltersThatAreNone) {
@@ -295,7 +295,7 @@ TEST(Prepare, DefaultModeSeesNothingOfWhatLiesJustOutsideAPulse) {
     disturbed.channels[1].values[edge] -= 1000.0;
   }
   const PreparedTrial a = prepared(quiet).value(), b = prepared(disturbed).value();
-  ASSERT_EQ(a.stretches.size(), 4u);
+  ASSERT_EQ(a.segments.size(), 4u);
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.acceleration, b.acceleration);
   EXPECT_EQ(a.force_hand_on_robot, b.force_hand_on_robot);
@@ -307,24 +307,24 @@ TEST(Prepare, ReferenceModeSmearsWhatLiesOutsideIntoThePulse) {
   for (Index k = 0; k < 12; ++k) disturbed.channels[1].values[2000 + 4000 * k - 1] += 100.0;
   const Options reference{.mode = Mode::reference};
   const PreparedTrial a = prepared(quiet, reference).value(), b = prepared(disturbed, reference).value();
-  const Stretch first = a.stretches[2];
+  const Segment first = a.segments[2];
   EXPECT_GT((a.force_hand_on_robot - b.force_hand_on_robot).middleRows(first.begin, 100).cwiseAbs().maxCoeff(), 0.1);
 }
 
-TEST(Prepare, EveryPulseIsAStretchWithItsPurpose) {
+TEST(Prepare, EveryPulseIsASegmentWithItsPurpose) {
   const PreparedTrial trial = prepared(pulses(4)).value();
   EXPECT_EQ(trial.preparation.protocol, Protocol::underdamped);
   EXPECT_EQ(trial.preparation.perturbations, 4);
-  ASSERT_EQ(trial.stretches.size(), 4u);
+  ASSERT_EQ(trial.segments.size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_EQ(trial.stretches[k].purpose, k < 2 ? Purpose::identification : Purpose::validation);
-    EXPECT_EQ(trial.stretches[k].size(), 1700 - trial.preparation.smoothing_window + 1);
+    EXPECT_EQ(trial.segments[k].purpose, k < 2 ? Purpose::identification : Purpose::validation);
+    EXPECT_EQ(trial.segments[k].size(), 1700 - trial.preparation.smoothing_window + 1);
   }
 }
 
 TEST(Prepare, AShortPulseKeepsThreeQuartersOfItsSamples) {
   const PreparedTrial trial = prepared(pulses(4), {.cutoff = Hertz(0.5)}).value();
-  EXPECT_GE(trial.stretches[0].size(), 1700 * 3 / 4 - 1);
+  EXPECT_GE(trial.segments[0].size(), 1700 * 3 / 4 - 1);
 }
 
 // What it refuses.
@@ -390,7 +390,7 @@ TEST(Prepare, NaNInAChannelThatIsNotUsedDoesNotMatter) {
 TEST(Prepare, NaNInTheReferenceIsRefusedByName) {
   Recording recording = sines(20000).recording;
   values_of(recording, "reference_x")[9000] = kNaN;
-  for (const Mode mode : {Mode::improved, Mode::reference}) {
+  for (const Mode mode : {Mode::default_mode, Mode::reference}) {
     const auto trial = prepared(recording, {.mode = mode, .window = {.from_s = 0.0}});
     ASSERT_FALSE(trial);
     EXPECT_THAT(trial.error().message, HasSubstr("'reference_x' is not a number at sample 9001"));
@@ -516,7 +516,7 @@ TEST(Prepare, AxesFollowTheChannelsOrTheUser) {
 TEST(Prepare, CarriesSourcesNotesAndDuration) {
   Recording recording = noise(5000);
   recording.sources.push_back({"a.csv", "CSV", "00"});
-  recording.notes.push_back("column 9 was left aside");
+  recording.notes.push_back("column 9 was ignored");
   const PreparedTrial trial = prepared(recording).value();
   EXPECT_EQ(trial.sources[0].path, "a.csv");
   EXPECT_EQ(trial.notes, recording.notes);

@@ -28,7 +28,7 @@ double rms(const Matrix& values) {
 /// Torques that are a thousand times too large or too small give forces that no hand exerts.
 Result<void> check_torque_unit(const Matrix& force, const Matrix& torque, const Matrix& of_model, bool slides) {
   constexpr double kStrongest = 1000.0;  // [N], rms, of a hand
-  constexpr double kLeastTorque = 0.02;  // of what the robot's own motion takes
+  constexpr double kMinTorque = 0.02;    // of what the robot's own motion takes
   const char* const unit = slides ? "N" : "N·m";
   if (rms(force) > kStrongest) {
     return bad_data(fmt::format("the force at the hand would be {:.3g} kN (rms): the torques (rms {:.3g}) are probably "
@@ -36,7 +36,7 @@ Result<void> check_torque_unit(const Matrix& force, const Matrix& torque, const 
                                 1e-3 * rms(force), rms(torque), unit),
                     "say their unit in --channels, as in tau1=14:N.mm,tau2=15:N.mm");
   }
-  if (rms(torque) < kLeastTorque * rms(of_model)) {
+  if (rms(torque) < kMinTorque * rms(of_model)) {
     return bad_data(
         fmt::format("the torques (rms {:.3g} {unit}) are {:.2g} % of what the robot's own motion takes "
                     "({:.3g} {unit}): they or the robot's parameters are in another unit",
@@ -73,8 +73,8 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
   const robot::Mechanism& mechanism = *model.mechanism;
   const Index samples = recording.samples(), n = mechanism.joints(), axes = mechanism.hand_axes();
-  constexpr Index kFewest = 100;
-  if (samples < kFewest || !(inspection.rate_hz > 0.0)) {
+  constexpr Index kMin = 100;
+  if (samples < kMin || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} samples cannot show a force", samples), "record longer");
   }
   const Hertz rate(inspection.rate_hz);
@@ -88,7 +88,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   if (!signals) return tl::unexpected(signals.error());
   const WindowLimits limits =
       published ? WindowLimits{} : WindowLimits{options.window.from_s, std::nullopt, options.window.to_s};
-  const auto plan = improved_windows(Protocol::free, {}, clock, limits);
+  const auto plan = default_windows(Protocol::free, {}, clock, limits);
   if (!plan) return tl::unexpected(plan.error());
   std::vector<Warning> warnings;
   if (auto ok = check_missing(clock, inspection.missing, limits); !ok) return tl::unexpected(ok.error());

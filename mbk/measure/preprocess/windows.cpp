@@ -13,8 +13,8 @@ bool differs(const Matrix& reference, Index a, Index b) {
 }
 
 /// Maximal runs [begin, end) within [first, last) in which the reference differs from its value at `rest`.
-std::vector<Stretch> displacements(const Matrix& reference, Index rest, Index first, Index last) {
-  std::vector<Stretch> runs;
+std::vector<Segment> displacements(const Matrix& reference, Index rest, Index first, Index last) {
+  std::vector<Segment> runs;
   for (Index i = first; i < last; ++i) {
     if (!differs(reference, i, rest)) continue;
     if (runs.empty() || runs.back().end != i) runs.push_back({i, i, Purpose::identification});
@@ -48,7 +48,7 @@ struct SampleLimits {
 tl::unexpected<Error> split_outside(double split_s, Index from, Index to, const Clock& clock) {
   return bad_data(
       fmt::format("--split {:g} s is not between {:g} s and {:g} s", split_s, clock.seconds(from), clock.seconds(to)),
-      "it divides the data to identify from the data held back");
+      "it divides the data to identify from the data held out");
 }
 
 Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to, const Clock& clock) {
@@ -82,8 +82,8 @@ Cut divided(Index begin, Index end, Index split) {
   return cut;
 }
 
-/// Where a lasting perturbation begins and ends.
-std::pair<Index, Index> lasting_range(const Matrix& reference, Index from, Index to) {
+/// Where a sustained perturbation begins and ends.
+std::pair<Index, Index> steady_range(const Matrix& reference, Index from, Index to) {
   Index last = to - 1;
   while (last > from && !differs(reference, last, last - 1)) --last;
   Index first = from;
@@ -169,14 +169,14 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
   return plan;
 }
 
-Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
-                                    const WindowLimits& limits) {
+Result<WindowPlan> default_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+                                   const WindowLimits& limits) {
   auto range = in_samples(limits, 0, clock.samples(), clock);
   if (!range) return tl::unexpected(range.error());
   WindowPlan plan;
   if (protocol == Protocol::underdamped) {
     const Index rest = longest_rest(reference, range->from, range->to);
-    const std::vector<Stretch> runs = displacements(reference, rest, range->from, range->to);
+    const std::vector<Segment> runs = displacements(reference, rest, range->from, range->to);
     if (runs.empty()) {
       return bad_data("the reference is not displaced anywhere in the window", "choose --from and --to, or --protocol");
     }
@@ -192,10 +192,10 @@ Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, 
   }
   Index begin = range->from, end = range->to;
   if (protocol == Protocol::sinusoidal) {
-    const auto [first, last] = lasting_range(reference, begin, end);
+    const auto [first, last] = steady_range(reference, begin, end);
     if (!limits.from_s) begin = first;
     if (!limits.to_s) end = last;
-    plan.rule = fmt::format("{:g} s to {:g} s, where the reference keeps to its lasting range", clock.seconds(begin),
+    plan.rule = fmt::format("{:g} s to {:g} s, while the reference is in steady state", clock.seconds(begin),
                             clock.seconds(end));
   } else {
     plan.rule = fmt::format("{:g} s to {:g} s", clock.seconds(begin), clock.seconds(end));
@@ -209,15 +209,15 @@ Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, 
   return plan;
 }
 
-void append_stretches(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,
-                      std::vector<Stretch>& stretches) {
+void append_segments(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,
+                     std::vector<Segment>& segments) {
   const auto row_at = [&](Index sample) {
     return std::clamp<Index>((sample - first_sample + every - 1) / every, 0, rows);
   };
-  for (const Stretch& keep : cut.keep) {
+  for (const Segment& keep : cut.keep) {
     const Index begin = row_at(keep.begin), end = row_at(keep.end);
     if (begin >= end) continue;
-    stretches.push_back({first_row + begin, first_row + end, keep.purpose, first_sample + begin * every});
+    segments.push_back({first_row + begin, first_row + end, keep.purpose, first_sample + begin * every});
   }
 }
 

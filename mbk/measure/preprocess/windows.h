@@ -13,11 +13,11 @@
 
 namespace mbk::preprocess {
 
-/// Samples [begin, end) of the recording that are filtered as one piece, and the stretches of it that count.
+/// Samples [begin, end) of the recording that are filtered as one piece, and the segments of it that count.
 /// All indices are those of the recording.
 struct Cut {
   Index begin = 0, end = 0;
-  std::vector<Stretch> keep;
+  std::vector<Segment> keep;
 };
 
 /// What counts, and why.
@@ -40,10 +40,10 @@ struct ProtocolFinding {
 [[nodiscard]] ProtocolFinding detect_protocol(const Matrix& reference);
 
 /// The published windows (Dyck 2013, appendix C): sinusoidal [11999, 62000) with 40,000 samples to identify;
-/// underdamped from 15999, the stretches in which the reference is displaced, up to the ninth onset to identify; the
+/// underdamped from 15999, the segments in which the reference is displaced, up to the ninth onset to identify; the
 /// whole log is filtered before anything is cut out. Limits, where given, replace them.
 /// @fails the recording is not at 1 kHz, where these numbers of samples mean something else; it ends before the window
-/// begins; limits as for improved_windows.
+/// begins; limits as for default_windows.
 [[nodiscard]] Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
                                                    const WindowLimits& limits, Index half_window);
 
@@ -52,13 +52,13 @@ struct ProtocolFinding {
 /// last change; underdamped: each displacement of the reference is a piece of its own, the first half of them to
 /// identify; free: everything. Sinusoidal and free identify on the first 80 %.
 /// @fails limits out of order or outside the recording; no displacement of the reference inside the limits.
-[[nodiscard]] Result<WindowPlan> improved_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
-                                                  const WindowLimits& limits);
+[[nodiscard]] Result<WindowPlan> default_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+                                                 const WindowLimits& limits);
 
-/// The stretches of a cut as rows of what was made of it, behind those that are there.
+/// The segments of a cut as rows of what was made of it, behind those that are there.
 /// @param first_sample  that the first of its rows belongs to   @param every  samples between rows
 /// @param rows  of the cut, beginning at `first_row`
-void append_stretches(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,
-                      std::vector<Stretch>& stretches);
+void append_segments(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,
+                     std::vector<Segment>& segments);
 
 }  // namespace mbk::preprocess

@@ -112,7 +112,7 @@ TEST(ReferenceWindows, UnderdampedKeepsTheDisplacedRunsAndValidatesFromTheNinthO
   const WindowPlan plan = reference_windows(Protocol::underdamped, pulses(n, runs), clock(n), {}, kHalf).value();
   ASSERT_EQ(plan.cuts[0].keep.size(), 16u);
   for (std::size_t k = 0; k < 16; ++k) {
-    const Stretch& keep = plan.cuts[0].keep[k];
+    const Segment& keep = plan.cuts[0].keep[k];
     EXPECT_EQ(keep.begin, runs[k].first) << k;
     EXPECT_EQ(keep.end, runs[k].second) << k;
     EXPECT_EQ(keep.purpose, k < 8 ? Purpose::identification : Purpose::validation) << k;
@@ -172,35 +172,35 @@ TEST(ReferenceWindows, GivenLimitsReplaceThePublishedOnes) {
 
 // mbk's own windows.
 
-TEST(ImprovedWindows, LeavesTheMovingInOut) {
+TEST(DefaultWindows, LeavesTheMovingInOut) {
   Matrix reference = sine(40000);
-  // The hand is brought in from 5 (five times the lasting range) over 4 s.
+  // The hand is brought in from 5 (five times the steady-state range) over 4 s.
   for (Index i = 0; i < 4000; ++i) reference(i, 0) = 5.0 * (1.0 - static_cast<double>(i) / 4000.0);
-  const WindowPlan plan = improved_windows(Protocol::sinusoidal, reference, clock(40000), {}).value();
+  const WindowPlan plan = default_windows(Protocol::sinusoidal, reference, clock(40000), {}).value();
   // A quarter of the range (2) beyond the range [−1, 1] is allowed: 5 (1 − i/4000) ≤ 1.5 from sample 2800 on.
   EXPECT_NEAR(static_cast<double>(plan.cuts[0].begin), 2800.0, 1.0);
   EXPECT_EQ(plan.cuts[0].end, 40000);
 }
 
-TEST(ImprovedWindows, LeavesTheStillEndsOut) {
+TEST(DefaultWindows, LeavesTheStillEndsOut) {
   Matrix reference = Matrix::Zero(30000, 1);
   reference.middleRows(5000, 20000) = sine(20000);
-  const WindowPlan plan = improved_windows(Protocol::sinusoidal, reference, clock(30000), {}).value();
+  const WindowPlan plan = default_windows(Protocol::sinusoidal, reference, clock(30000), {}).value();
   EXPECT_NEAR(static_cast<double>(plan.cuts[0].begin), 5000.0, 1.0);
   EXPECT_NEAR(static_cast<double>(plan.cuts[0].end), 25000.0, 1.0);
 }
 
-TEST(ImprovedWindows, SinusoidalIdentifiesOnTheFirstFourFifths) {
-  const WindowPlan plan = improved_windows(Protocol::sinusoidal, sine(20000), clock(20000), {}).value();
+TEST(DefaultWindows, SinusoidalIdentifiesOnTheFirstFourFifths) {
+  const WindowPlan plan = default_windows(Protocol::sinusoidal, sine(20000), clock(20000), {}).value();
   ASSERT_EQ(plan.cuts[0].keep.size(), 2u);
   EXPECT_EQ(plan.cuts[0].keep[0].end, 16000);
   EXPECT_EQ(plan.cuts[0].keep[1].purpose, Purpose::validation);
   EXPECT_EQ(plan.split_s, 16.0);
 }
 
-TEST(ImprovedWindows, EachPulseIsACutOfItsOwnAndTheFirstHalfIdentifies) {
+TEST(DefaultWindows, EachPulseIsACutOfItsOwnAndTheFirstHalfIdentifies) {
   const auto runs = train(2000, 5);
-  const WindowPlan plan = improved_windows(Protocol::underdamped, pulses(20000, runs), clock(20000), {}).value();
+  const WindowPlan plan = default_windows(Protocol::underdamped, pulses(20000, runs), clock(20000), {}).value();
   ASSERT_EQ(plan.cuts.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_EQ(plan.cuts[k].begin, runs[k].first);
@@ -210,53 +210,53 @@ TEST(ImprovedWindows, EachPulseIsACutOfItsOwnAndTheFirstHalfIdentifies) {
   }
 }
 
-TEST(ImprovedWindows, RestIsWhereTheReferenceStaysLongestEvenIfTheWindowBeginsInAPulse) {
+TEST(DefaultWindows, RestIsWhereTheReferenceStaysLongestEvenIfTheWindowBeginsInAPulse) {
   const WindowPlan plan =
-      improved_windows(Protocol::underdamped, pulses(20000, {{0, 1000}, {9000, 10000}}), clock(20000), {}).value();
+      default_windows(Protocol::underdamped, pulses(20000, {{0, 1000}, {9000, 10000}}), clock(20000), {}).value();
   ASSERT_EQ(plan.cuts.size(), 2u);
   EXPECT_EQ(plan.cuts[0].end, 1000);
   EXPECT_EQ(plan.cuts[1].begin, 9000);
 }
 
-TEST(ImprovedWindows, ASplitInSecondsDividesThePulses) {
+TEST(DefaultWindows, ASplitInSecondsDividesThePulses) {
   const WindowPlan plan =
-      improved_windows(Protocol::underdamped, pulses(20000, train(2000, 5)), clock(20000), {.split_s = 6.0}).value();
+      default_windows(Protocol::underdamped, pulses(20000, train(2000, 5)), clock(20000), {.split_s = 6.0}).value();
   EXPECT_EQ(plan.cuts[1].keep[0].purpose, Purpose::identification);  // begins at 5 s
   EXPECT_EQ(plan.cuts[2].keep[0].purpose, Purpose::validation);      // at 8 s
 }
 
-TEST(ImprovedWindows, RefusesAWindowWithoutADisplacement) {
-  const auto plan = improved_windows(Protocol::underdamped, pulses(20000, {{15000, 16000}}), clock(20000),
-                                     {.from_s = 0.0, .to_s = 10.0});
+TEST(DefaultWindows, RefusesAWindowWithoutADisplacement) {
+  const auto plan = default_windows(Protocol::underdamped, pulses(20000, {{15000, 16000}}), clock(20000),
+                                    {.from_s = 0.0, .to_s = 10.0});
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().message, "the reference is not displaced anywhere in the window");
 }
 
-TEST(ImprovedWindows, FreeTakesEverything) {
-  const WindowPlan plan = improved_windows(Protocol::free, Matrix(), clock(10000), {}).value();
+TEST(DefaultWindows, FreeTakesEverything) {
+  const WindowPlan plan = default_windows(Protocol::free, Matrix(), clock(10000), {}).value();
   EXPECT_EQ(plan.cuts[0].begin, 0);
   EXPECT_EQ(plan.cuts[0].end, 10000);
   EXPECT_EQ(plan.cuts[0].keep[0].end, 8000);
 }
 
-TEST(ImprovedWindows, LimitsAreSecondsFromTheFirstSample) {
-  const WindowPlan plan = improved_windows(Protocol::free, Matrix(), clock(10000, Hertz(500.0)),
-                                           {.from_s = 2.0, .split_s = 9.0, .to_s = 11.0})
+TEST(DefaultWindows, LimitsAreSecondsFromTheFirstSample) {
+  const WindowPlan plan = default_windows(Protocol::free, Matrix(), clock(10000, Hertz(500.0)),
+                                          {.from_s = 2.0, .split_s = 9.0, .to_s = 11.0})
                               .value();
   EXPECT_EQ(plan.cuts[0].begin, 1000);
   EXPECT_EQ(plan.cuts[0].end, 5500);
   EXPECT_EQ(plan.cuts[0].keep[1].begin, 4500);
 }
 
-TEST(ImprovedWindows, ToMayNameTheEndOfTheRecording) {
-  EXPECT_EQ(improved_windows(Protocol::free, Matrix(), clock(10000), {.to_s = 10.0})->cuts[0].end, 10000);
+TEST(DefaultWindows, ToMayNameTheEndOfTheRecording) {
+  EXPECT_EQ(default_windows(Protocol::free, Matrix(), clock(10000), {.to_s = 10.0})->cuts[0].end, 10000);
 }
 
-TEST(ImprovedWindows, ASplitOutsideTheLastingRangeIsRefused) {
+TEST(DefaultWindows, ASplitOutsideTheSteadyRangeIsRefused) {
   Matrix reference = Matrix::Zero(30000, 1);
   reference.middleRows(5000, 20000) = sine(20000);
   for (const double split : {3.0, 28.0}) {
-    const auto plan = improved_windows(Protocol::sinusoidal, reference, clock(30000), {.split_s = split});
+    const auto plan = default_windows(Protocol::sinusoidal, reference, clock(30000), {.split_s = split});
     ASSERT_FALSE(plan) << split;
     EXPECT_THAT(plan.error().message, HasSubstr("--split"));
   }
@@ -283,7 +283,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(BadLimits, AreRefusedInBothModes) {
   const WindowLimits& limits = GetParam().second;
-  const auto improved = improved_windows(Protocol::free, Matrix(), clock(10000), limits);
+  const auto improved = default_windows(Protocol::free, Matrix(), clock(10000), limits);
   const auto published = reference_windows(Protocol::free, Matrix(), clock(10000), limits, kHalf);
   ASSERT_FALSE(improved);
   ASSERT_FALSE(published);
@@ -293,7 +293,7 @@ TEST_P(BadLimits, AreRefusedInBothModes) {
 
 TEST_P(BadLimits, AreNamedAsTheUserGaveThem) {
   const WindowLimits& limits = GetParam().second;
-  const auto plan = improved_windows(Protocol::free, Matrix(), clock(10000), limits);
+  const auto plan = default_windows(Protocol::free, Matrix(), clock(10000), limits);
   ASSERT_FALSE(plan);
   EXPECT_THAT(plan.error().message, testing::Not(HasSubstr("e+15")));  // a time that nobody gave
 }

@@ -9,7 +9,7 @@ namespace mbk::impedance {
 /// (Z + Zᵀ)/2: the part whose forces come from a potential (Dyck 2013, eq. 3.11).
 [[nodiscard]] Matrix symmetric_part(const Matrix& Z);
 
-/// z_a = (z_xy − z_yx)/2, signed: the part whose forces curl. @param Z 2×2
+/// z_a = (z_xy − z_yx)/2, signed: the rotational part. @param Z 2×2
 [[nodiscard]] double antisymmetric_part(const Matrix& Z);
 
 /// z_mean = 100 |z_a|/√(λ_max λ_min) [%], relative to the symmetric part (Dyck 2013, eq. 3.26).

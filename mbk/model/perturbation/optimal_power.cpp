@@ -84,12 +84,12 @@ Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmon
   }
 
   constexpr double kGap = 1e-7;
-  constexpr int kMostIterations = 1'000'000;
+  constexpr int kMaxIterations = 1'000'000;
   const double free = 1.0 - options.floor * static_cast<double>(n);
   Vector v = Vector::Constant(n, 1.0 / static_cast<double>(n));
   OptimalPower power;
   power.sensitivity.resize(n);
-  for (power.iterations = 1; power.iterations <= kMostIterations; ++power.iterations) {
+  for (power.iterations = 1; power.iterations <= kMaxIterations; ++power.iterations) {
     power.shares = (options.floor + free * v.array()).matrix();
     Eigen::Matrix3d I = Eigen::Matrix3d::Zero();
     for (Index k = 0; k < n; ++k) I += power.shares[k] * information[static_cast<std::size_t>(k)];
@@ -104,7 +104,7 @@ Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmon
     v = v.cwiseProduct(power.sensitivity) / mean;
   }
   return fail(ErrorKind::not_usable,
-              fmt::format("the shares of power are {:.1e} from optimal after {} steps", power.gap, kMostIterations),
+              fmt::format("the shares of power are {:.1e} from optimal after {} steps", power.gap, kMaxIterations),
               "leave out lines that stand close to others");
 }
 

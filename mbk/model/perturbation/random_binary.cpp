@@ -22,9 +22,9 @@ Result<void> check(const RandomBinaryOptions& o, double duration) {
     return bad_usage(
         fmt::format("switching time {} s is not above 0 and at most the duration {} s", o.switching_time, duration));
   }
-  if (duration / o.switching_time > RandomBinary::kMostIntervals) {
+  if (duration / o.switching_time > RandomBinary::kMaxIntervals) {
     return bad_usage(fmt::format("switching time {} s divides the duration {} s into more than {} intervals",
-                                 o.switching_time, duration, RandomBinary::kMostIntervals),
+                                 o.switching_time, duration, RandomBinary::kMaxIntervals),
                      "take a longer switching time");
   }
   return {};

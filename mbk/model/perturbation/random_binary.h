@@ -23,11 +23,11 @@ struct RandomBinaryOptions {
 /// eq. 3.5 and §4.4.2): y = G u from rest at t = 0, exact at any time. Spectral density of u: A² T_s sinc²(f T_s).
 class RandomBinary {
  public:
-  static constexpr int kMostIntervals = 1'000'000;
+  static constexpr int kMaxIntervals = 1'000'000;
 
   /// @param duration  of the sequence [s] > 0; the last interval may be cut short by it
   /// @fails  A ≤ 0; T_s ≤ 0; ζ outside (0, 1); ωₙ ≤ 0; T_s above the duration, or below it by more than the factor
-  /// kMostIntervals; zero mean is asked for and the duration is no even number of switching times; a value is not
+  /// kMaxIntervals; zero mean is asked for and the duration is no even number of switching times; a value is not
   /// finite.
   [[nodiscard]] static Result<RandomBinary> create(const RandomBinaryOptions& options, double duration);
 

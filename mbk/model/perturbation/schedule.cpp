@@ -152,9 +152,9 @@ Hertz Schedule::fastest() const {
 
 Result<Schedule> Schedule::with_countable_cycles(Schedule schedule) {
   const double cycles = schedule.fastest().value * schedule.duration();
-  if (cycles <= kMostCycles) return schedule;
+  if (cycles <= kMaxCycles) return schedule;
   return bad_usage(fmt::format("{:.4g} Hz over {:g} s are more than {:g} cycles", schedule.fastest().value,
-                               schedule.duration(), kMostCycles),
+                               schedule.duration(), kMaxCycles),
                    "lower the highest frequency, or make several trials");
 }
 

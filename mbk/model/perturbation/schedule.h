@@ -72,26 +72,26 @@ struct Limits {
 class Schedule {
  public:
   static constexpr double kLongest = 3600.0;  ///< [s]; longer trials are several schedules
-  static constexpr double kMostCycles = 1e5;  ///< of the highest frequency within the duration
+  static constexpr double kMaxCycles = 1e5;   ///< of the highest frequency within the duration
 
   /// One multisine for each axis, r = g(t) [s₁(t), s₂(t)], with g from 0 to 1 by minimum jerk. The periods may differ.
   /// @param moving_in  time in which g grows [s]
   /// @fails  moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest or not finite; more than
-  /// kMostCycles of the highest line.
+  /// kMaxCycles of the highest line.
   [[nodiscard]] static Result<Schedule> multisine(Multisine first, Multisine second, Quantity quantity, Space space,
                                                   double duration, double moving_in);
 
   /// Underdamped pulses; in Space::joint, direction +x is the first joint's.
   /// @param tail  from the last offset to the end [s]; not below the time of the way back
   /// @fails  as PulseSchedule::create; the tail is too short or not finite; the whole is longer than kLongest; more
-  /// than kMostCycles of the filter's bandwidth.
+  /// than kMaxCycles of the filter's bandwidth.
   [[nodiscard]] static Result<Schedule> pulses(const PulseSchedule::Options& options, Quantity quantity, double tail,
                                                Space space = Space::hand);
 
   /// A filtered random binary sequence along one direction.
   /// @param angle  of the direction of +A from +x, base frame, or from the first joint's axis in Space::joint [rad]
   /// @fails  as RandomBinary::create; the angle is not finite; duration above kLongest; more than
-  /// kMostCycles of the filter's bandwidth.
+  /// kMaxCycles of the filter's bandwidth.
   [[nodiscard]] static Result<Schedule> random_binary(const RandomBinaryOptions& options, double angle,
                                                       Quantity quantity, double duration, Space space = Space::hand);
 

@@ -79,12 +79,12 @@ Matrix shares(const MultisinePlan& plan) {
 TEST(MakeSchedule, OptimalPowerIsSharedAmongTheLinesAsItSays) {
   MultisinePlan plan;
   plan.optimal_power.emplace();
-  const Vector wanted = optimal_power(plan.period, plan.harmonics, *plan.optimal_power)->shares;
-  EXPECT_GT(wanted.maxCoeff(), 10.0 * wanted.minCoeff());
+  const Vector expected = optimal_power(plan.period, plan.harmonics, *plan.optimal_power)->shares;
+  EXPECT_GT(expected.maxCoeff(), 10.0 * expected.minCoeff());
   for (const auto phases : {MultisinePlan::Phases::random, MultisinePlan::Phases::low_crest}) {
     plan.phases = phases;
     const Matrix power = shares(plan);
-    for (Index axis = 0; axis < 2; ++axis) EXPECT_LT((power.col(axis) - wanted).cwiseAbs().maxCoeff(), 1e-12);
+    for (Index axis = 0; axis < 2; ++axis) EXPECT_LT((power.col(axis) - expected).cwiseAbs().maxCoeff(), 1e-12);
   }
 }
 

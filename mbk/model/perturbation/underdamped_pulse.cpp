@@ -26,9 +26,9 @@ Result<void> check(const PulseSchedule::Options& o) {
   if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} is not above 0", o.amplitude));
   if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
   if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
-  if (o.repetitions > PulseSchedule::kMostPulses / o.directions) {
+  if (o.repetitions > PulseSchedule::kMaxPulses / o.directions) {
     return bad_usage(fmt::format("{} directions, {} times each, are more than {} pulses", o.directions, o.repetitions,
-                                 PulseSchedule::kMostPulses));
+                                 PulseSchedule::kMaxPulses));
   }
   if (!(o.shortest_duration > 0.0 && o.shortest_duration <= o.longest_duration && std::isfinite(o.longest_duration))) {
     return bad_usage(

@@ -42,14 +42,14 @@ class UnderdampedPulse {
 /// is a force on it: whatever the amplitude is in.
 class PulseSchedule {
  public:
-  static constexpr int kMostPulses = 10000;
+  static constexpr int kMaxPulses = 10000;
 
   struct Options {
     double amplitude = kPublishedPulseAmplitude;               ///< A [m or N], steady value; > 0
     double damping_ratio = kPublishedDampingRatio;             ///< ζ
     RadPerSec natural_frequency = kPublishedNaturalFrequency;  ///< ωₙ
     int directions = 8;              ///< evenly around the circle, the first along +x; 2 gives ±x
-    int repetitions = 2;             ///< pulses in each direction; at most kMostPulses in all
+    int repetitions = 2;             ///< pulses in each direction; at most kMaxPulses in all
     double shortest_duration = 1.5;  ///< of a pulse, onset to offset [s]
     double longest_duration = 2.0;   ///< [s]
     double shortest_pause = 2.0;     ///< from the end of `quiet`, or from the previous offset, to the onset [s]

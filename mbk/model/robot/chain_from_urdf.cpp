@@ -312,10 +312,10 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
   std::vector<JointOfTree> moving;
   std::copy_if(joints->begin(), joints->end(), std::back_inserter(moving),
                [](const JointOfTree& joint) { return joint->type != urdf::Joint::FIXED; });
-  if (moving.empty() || moving.size() > kMostJoints) {
+  if (moving.empty() || moving.size() > kMaxJoints) {
     return bad_data(
         fmt::format("{} joints move between link '{}' and link '{}'", moving.size(), (*base)->name, (*tip)->name),
-        fmt::format("1 to {} are supported", kMostJoints));
+        fmt::format("1 to {} are supported", kMaxJoints));
   }
   if (auto ok = check_readings(options, moving.size()); !ok) return tl::unexpected(ok.error());
 

@@ -63,8 +63,8 @@ Matrix DynamicModel::torques(const JointMotion& motion) const {
 JointVector DynamicModel::drive_torque(const JointVector& position, const JointVector& velocity,
                                        const JointVector& acceleration) const {
   const Index terms = drive.per_joint();
-  constexpr Index kMostTerms = 6;
-  Eigen::Matrix<double, kMostTerms, 1> row;
+  constexpr Index kMaxTerms = 6;
+  Eigen::Matrix<double, kMaxTerms, 1> row;
   JointVector torque(position.size());
   for (Index joint = 0; joint < position.size(); ++joint) {
     drive.regressor(position[joint], velocity[joint], acceleration[joint], row.data());

@@ -8,14 +8,14 @@
 
 namespace mbk::robot {
 
-inline constexpr int kMostJoints = 8;
+inline constexpr int kMaxJoints = 8;
 
 /// One number for each joint [rad, or m where it slides]; never on the heap.
-using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostJoints, 1>;
-using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostJoints, kMostJoints>;
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
+using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
 /// Along the axes in which the hand is measured: one or two.
 using HandVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
-using HandJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, kMostJoints>;
+using HandJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, kMaxJoints>;
 
 /// A number that the dynamics are linear in.
 struct Coefficient {
@@ -54,7 +54,7 @@ class Mechanism {
  public:
   virtual ~Mechanism() = default;
 
-  /// n, 1 … kMostJoints.
+  /// n, 1 … kMaxJoints.
   [[nodiscard]] virtual int joints() const = 0;
   /// What the joint is called; "1", "2", … where nobody named it.
   [[nodiscard]] virtual std::string joint_name(int joint) const;

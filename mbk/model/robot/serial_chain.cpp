@@ -18,13 +18,13 @@ using KDL::Twist;
 using KDL::Vector;
 using KDL::Wrench;
 
-constexpr auto kMost = static_cast<std::size_t>(kMostJoints);
+constexpr auto kMax = static_cast<std::size_t>(kMaxJoints);
 
 /// One body while a recursion runs from base to tip: everything in its frame, at its origin.
 struct Motion {
   Twist velocity;
-  Twist acceleration;             ///< spatial, less gravity
-  std::array<Twist, kMost> axes;  ///< ∂(twist)/∂q̇_j for the joints j up to it
+  Twist acceleration;            ///< spatial, less gravity
+  std::array<Twist, kMax> axes;  ///< ∂(twist)/∂q̇_j for the joints j up to it
 
   /// From the body before to that of joint i, with the joint at q and moving with q̇ and q̈.
   void pass(const ChainJoint& joint, std::size_t i, double q, double dq, double ddq) {
@@ -54,7 +54,7 @@ struct Body {
 
 /// Joint axes and the origins on them, base frame.
 struct Lines {
-  std::array<Vector, kMost> axis, origin;
+  std::array<Vector, kMax> axis, origin;
   Vector hand;
 
   Lines(const ChainParts& parts, const JointVector& position) {
@@ -150,7 +150,7 @@ JointTerms SerialChain::terms(const JointVector& position, const JointVector& ve
   JointTerms terms{JointMatrix::Zero(n, n), JointVector::Zero(n), JointVector::Zero(n)};
   Motion body;
   Twist weight(-parts_->gravity, Vector::Zero());
-  std::array<Twist, kMost> drift;  // v_k × s_k
+  std::array<Twist, kMax> drift;  // v_k × s_k
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const ChainJoint& joint = parts_->joints[at];
@@ -189,7 +189,7 @@ HandJacobian SerialChain::jacobian(const JointVector& position) const {
 HandJacobian SerialChain::jacobian_rate(const JointVector& position, const JointVector& velocity) const {
   const Lines lines(*parts_, position);
   const std::size_t n = parts_->joints.size();
-  std::array<Vector, kMost> axis_rate, origin_rate;
+  std::array<Vector, kMax> axis_rate, origin_rate;
   Vector turning, moving, before;  // ω, velocity and place of the origin, of the body before
   for (std::size_t i = 0; i < n; ++i) {
     const double rate = velocity[static_cast<Index>(i)];
@@ -238,9 +238,9 @@ Result<void> SerialChain::check_joints(const JointVector& position) const {
 }
 
 std::vector<JointVector> SerialChain::postures(int per_joint) const {
-  constexpr double kMostPostures = 50'000.0;
+  constexpr double kMaxPostures = 50'000.0;
   const Index n = joints();
-  const auto root = static_cast<int>(std::pow(kMostPostures, 1.0 / static_cast<double>(n)) + 1e-9);
+  const auto root = static_cast<int>(std::pow(kMaxPostures, 1.0 / static_cast<double>(n)) + 1e-9);
   const int steps = std::max(1, std::min(per_joint, root));
   const auto at = [&](Index i, int step) {
     const JointRange range = joint_range(static_cast<int>(i));

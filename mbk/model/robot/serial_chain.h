@@ -44,7 +44,7 @@ class SerialChain : public Mechanism {
   /// Joints that branch off between base and tip, or come after the tip, count as held at zero.
   /// @fails  data: it is no URDF; a joint on the way is planar, floating or mimics another, has an axis of no length,
   /// or limits that leave nothing; a body that moves has no `<inertial>` or a number that is not finite; not 1 …
-  /// kMostJoints joints move; a link has two parents; several leaves and no tip_link.   usage: a link is unknown, the
+  /// kMaxJoints joints move; a link has two parents; several leaves and no tip_link.   usage: a link is unknown, the
   /// tip does not hang on the base; hand_axes are not one or two different ones; zero or sign does not fit the joints;
   /// a number is not finite.
   [[nodiscard]] static Result<std::shared_ptr<const SerialChain>> from_urdf(std::string_view urdf,

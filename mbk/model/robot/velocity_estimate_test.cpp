@@ -21,7 +21,7 @@ TEST(VelocityEstimate, IsTheSlopeOfALineOnceItHasSettled) {
 }
 
 TEST(VelocityEstimate, BeginsAtRestWhereverTheJointsAreAndHoweverManyThereAre) {
-  for (const Index joints : {1, 2, 3, kMostJoints}) {
+  for (const Index joints : {1, 2, 3, kMaxJoints}) {
     VelocityEstimate velocity = VelocityEstimate::create(kTick, Hertz(50.0)).value();
     EXPECT_EQ(velocity.step(JointVector::Constant(joints, 7.0)), JointVector::Zero(joints));
   }

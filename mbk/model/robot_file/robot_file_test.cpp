@@ -220,8 +220,8 @@ TEST(Urdf, SaysInWhichFileWhatIsWrong) {
   EXPECT_THAT(refusal(start + "hand_axes = ['x', 'q']\n", urdf), HasSubstr("x.toml, line 4, robot.hand_axes: 'q'"));
   EXPECT_THAT(refusal(start + "hand_axes = []\n", urdf), HasSubstr("along one or two axes"));
   EXPECT_THAT(refusal(start + "signs = [1, 2, 1]\n", urdf), HasSubstr("2 is neither 1 nor -1"));
-  EXPECT_THAT(refusal(start + "signs = [1, 1]\n", urdf), HasSubstr("2 numbers where 3 are wanted"));
-  EXPECT_THAT(refusal(start + "zero_deg = [1, 2, 3]\n", urdf), HasSubstr("3 numbers where 2 are wanted"));
+  EXPECT_THAT(refusal(start + "signs = [1, 1]\n", urdf), HasSubstr("2 numbers where 3 are expected"));
+  EXPECT_THAT(refusal(start + "zero_deg = [1, 2, 3]\n", urdf), HasSubstr("3 numbers where 2 are expected"));
   EXPECT_THAT(refusal(start + "tip = 'hand'\n", urdf), HasSubstr("'tip' is no key of [robot]"));
   EXPECT_THAT(refusal(start + "[drive]\nstribeck_Nm = [1, 1]\n", urdf),
               HasSubstr("\"stribeck\" is not among the terms of the drives"));

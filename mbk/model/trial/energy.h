@@ -17,16 +17,16 @@ namespace mbk {
 }
 
 /// Energy that the limb absorbed up to each instant of the whole recording. Where the clock has a gap or a value is no
-/// number the energy is not known: it stays as it was. Thinned for display, no extreme is lost; a row of NaN stands
+/// number the energy is not known: it stays as it was. Decimated for display, no extreme is lost; a row of NaN stands
 /// where the clock has a gap that can be seen.
 struct EnergyCurve {
   Vector time;      ///< [s] from the recording's first sample
-  Vector absorbed;  ///< E [J], 0 at the first sample; a lasting fall means that the limb generates
+  Vector absorbed;  ///< E [J], 0 at the first sample; a sustained fall means that the limb generates
   Vector curl;      ///< what the antisymmetric stiffness absorbed, from the first sample [J]; empty without a model
   double end = 0;   ///< E at the last sample [J]
 };
 
-/// Energy in one part of the window: a perturbation, from its onset to its end, or a block of a lasting one.
+/// Energy in one part of the window: a perturbation, from its onset to its end, or a block of a sustained one.
 struct EnergyPart {
   double from_s = 0, to_s = 0;      ///< [s] from the recording's first sample
   double absorbed = 0;              ///< by the limb in this part [J]

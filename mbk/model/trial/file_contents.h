@@ -22,7 +22,7 @@ struct FileContents {
   SourceFile source;
   bool table = false;  ///< the arrays are columns, counted from 1
   std::vector<StoredArray> arrays;
-  std::vector<std::string> notes;  ///< what was left aside, and why
+  std::vector<std::string> notes;  ///< what was ignored, and why
 };
 
 }  // namespace mbk

@@ -59,7 +59,7 @@ struct SimulatedOutput {
 struct TransferFunctionFindings {
   FrequencyResponse response;
   std::optional<InvertedAdmittance> inverse;
-  SimulatedOutput drawn;  ///< thinned; NaN between two stretches
+  SimulatedOutput drawn;  ///< decimated; NaN between two segments
 };
 
 }  // namespace mbk

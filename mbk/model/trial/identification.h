@@ -36,10 +36,10 @@ enum class Method {
   return std::to_array<Word<Method>>({{least_squares, "ls"}, {instrumental_variables, "iv"}});
 }
 
-/// Which data stand behind the parameters; the fit is always judged on held-back data where there are any.
+/// Which data stand behind the parameters; the fit is always judged on held-out data where there are any.
 enum class ParametersFrom {
-  identification,  ///< the stretches that are there to identify
-  all,             ///< every stretch (Dyck 2013, §3.6.2: parameters from 16 pulses, VAF from 8 against 8)
+  identification,  ///< the segments that are there to identify
+  all,             ///< every segment (Dyck 2013, §3.6.2: parameters from 16 pulses, VAF from 8 against 8)
 };
 
 [[nodiscard]] constexpr auto word_table(ParametersFrom) {
@@ -51,7 +51,8 @@ enum class ParametersFrom {
 struct InstrumentCheck {
   ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
   Vector strength;  ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; below 10 the instrument is weak
-  Vector answered;  ///< n, share of what the model leaves that answers the perturbation linearly within half a second
+  Vector coherent_residual;  ///< n, perturbation-coherent fraction of the residual: what follows the perturbation
+                             ///< linearly within half a second
 
   [[nodiscard]] double weakest() const { return strength.minCoeff<Eigen::PropagateNaN>(); }
   [[nodiscard]] bool strong() const { return weakest() > 10.0; }
@@ -59,10 +60,10 @@ struct InstrumentCheck {
 
 /// How well the model explains the force, axis by axis.
 struct Fit {
-  Vector vaf;             ///< [%], on held-back data where there are any (eq. 3.10)
-  Vector rmse;            ///< [N], on the same data; a constant error counts
-  Vector vaf_in_sample;   ///< [%], on the data that made the parameters of this check
-  bool held_back = true;  ///< false: no data were held back, and vaf is in-sample
+  Vector vaf;            ///< [%], on held-out data where there are any (eq. 3.10)
+  Vector rmse;           ///< [N], on the same data; a constant error counts
+  Vector vaf_in_sample;  ///< [%], on the data that made the parameters of this check
+  bool held_out = true;  ///< false: no data were held out, and vaf is in-sample
 };
 
 /// Did the perturbation ask enough of the limb?
@@ -131,7 +132,7 @@ struct Identification {
   std::optional<Replicates> replicates;       ///< where a bootstrap was asked for
   Structure structure = Structure::full;
   double hac_lag_s = 0;                           ///< reach of the autocovariance in the standard errors [s]
-  double handle_mass = 0;                         ///< [kg] taken off the diagonal of M
+  double handle_mass = 0;                         ///< [kg] subtracted from the diagonal of M
   std::optional<ParametersFrom> parameters_from;  ///< absent: a stored result does not say
   Fit fit;
   Excitation excitation;

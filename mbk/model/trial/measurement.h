@@ -22,7 +22,7 @@ struct Measurement {
   std::optional<Identification> alternative;
   std::optional<Disagreement> disagreement;
   std::optional<BootstrapFindings> bootstrap;  ///< where it was asked for
-  std::optional<ConsistentFit> consistent;     ///< nearest to the model that speaks for the limb
+  std::optional<ConsistentFit> consistent;     ///< nearest to the model that describes the limb
   std::optional<Passivity> passivity;
   std::optional<JointDomain> joints;  ///< where it was asked for
   /// Where the force was computed and a sensor recorded it too: how both agree, and the model by the sensor.

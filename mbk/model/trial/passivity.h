@@ -49,8 +49,8 @@ struct ModelPassivity {
   Method method = Method::least_squares;  ///< that found the model
   Verdict verdict = Verdict::undecided;
   Verdict symmetric_verdict = Verdict::undecided;  ///< of M_s, B_s, K_s alone
-  double answered = 0;  ///< largest share of what the model leaves that answers the perturbation; 0 where not known
-  bool published_rule = false;  ///< theorem 3.2 as it was applied: estimates without intervals, symmetric parts only
+  double coherent_residual = 0;  ///< largest perturbation-coherent fraction of the residual; 0 where not known
+  bool published_rule = false;   ///< theorem 3.2 as it was applied: estimates without intervals, symmetric parts only
   PassivityBand band;
   std::vector<PassivityCondition> conditions;
   PassivityIndexCurve curve;
@@ -66,8 +66,8 @@ struct Passivity {
   Verdict verdict = Verdict::undecided;
   bool by_model = false;  ///< false: the energy decided
   std::string reason;     ///< in words
-  double explained = 0;   ///< [%] of the held-back force, mean of the axes, by the M, B, K that explain most
-  std::vector<ModelPassivity> models;  ///< one for each method; the one that speaks for the limb comes first
+  double explained = 0;   ///< [%] of the held-out force, mean of the axes, by the M, B, K that explain most
+  std::vector<ModelPassivity> models;  ///< one for each method; the one that describes the limb comes first
   std::optional<EnergyAccount> energy;
 };
 

@@ -38,9 +38,9 @@ struct PreparedDynamics {
   std::vector<Matrix> smoothed;
   double smoothed_cutoff = 0;  ///< [Hz]
   InstrumentMotion instrument_motion = InstrumentMotion::none;
-  double motion_cutoff = 0;        ///< [Hz] of the smoothed motion, where that is it
-  std::vector<bool> stands;        ///< n: the joint did not move beyond the steps of its encoder
-  std::vector<Stretch> stretches;  ///< in order of time
+  double motion_cutoff = 0;       ///< [Hz] of the smoothed motion, where that is it
+  std::vector<bool> stands;       ///< n: the joint did not move beyond the steps of its encoder
+  std::vector<Segment> segments;  ///< in order of time
   Preparation preparation;
   std::vector<SourceFile> sources;
   double recording_rate = 0, recording_duration = 0;  ///< [Hz], [s]

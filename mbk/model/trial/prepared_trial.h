@@ -20,11 +20,11 @@ enum class Motion {
   unknown,      ///< one axis whose file says neither
 };
 
-/// What a stretch of samples is for.
+/// What a segment of samples is for.
 enum class Purpose { identification, validation };
 
 /// Rows [begin, end) of a PreparedTrial, consecutive in time; a perturbation or a part of one.
-struct Stretch {
+struct Segment {
   Index begin = 0, end = 0;
   Purpose purpose = Purpose::identification;
   Index first_sample = 0;  ///< of the recording: what row `begin` was made around
@@ -54,16 +54,16 @@ enum class ForceSource {
   return std::to_array<Word<ForceSource>>({{sensor, "sensor"}, {virtual_sensor, "virtual"}, {observer, "observer"}});
 }
 
-/// How the signals of a PreparedTrial were made, so that any number can be traced and made again.
+/// How the signals of a PreparedTrial were made, so that any number can be traced and reproduced.
 struct Preparation {
-  Mode mode = Mode::improved;
+  Mode mode = Mode::default_mode;
   Procedure procedure = Procedure::chapter3;  ///< meaningful in reference mode
   Protocol protocol = Protocol::free;
   std::string protocol_rule;      ///< why that protocol, in words
   std::string window_rule;        ///< which samples count, in words
   double from_s = 0, to_s = 0;    ///< [s] from the recording's first sample: first and last sample that count
   std::optional<double> split_s;  ///< [s] where identification ends and validation begins
-  int perturbations = 1;          ///< stretches that were cut out
+  int perturbations = 1;          ///< segments that were cut out
   int smoothing_order = 6;        ///< Savitzky–Golay N
   int smoothing_window = 101;     ///< Savitzky–Golay W [samples]
   std::optional<Hertz> cutoff;    ///< zero-phase Butterworth low-pass of kLowpassOrder; none = not applied
@@ -101,7 +101,7 @@ struct PreparedTrial {
   Matrix reference;         ///< N×n, unfiltered; empty where none was recorded
   Matrix reference_motion;  ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
-  std::vector<Stretch> stretches;  ///< in order of time; rows outside them do not count
+  std::vector<Segment> segments;  ///< in order of time; rows outside them do not count
   Preparation preparation;
   std::vector<SourceFile> sources;
   double recording_duration = 0;   ///< [s]

@@ -6,13 +6,13 @@ namespace mbk {
 
 /// How the limb was perturbed; it decides which samples count.
 enum class Protocol {
-  sinusoidal,   ///< the reference varies continuously: a multisine, or any other lasting perturbation
+  sinusoidal,   ///< the reference varies continuously: a multisine, or any other sustained perturbation
   underdamped,  ///< the reference is constant but for steps: pulses, each cut out by itself
   free,         ///< no reference: the whole recording
 };
 
-/// `reference` reproduces the published procedure sample for sample; `improved` is mbk's default.
-enum class Mode { improved, reference };
+/// `reference` reproduces the published procedure sample for sample; `default_mode` is mbk's own.
+enum class Mode { default_mode, reference };
 
 /// The two published procedures (Dyck 2013): chapter 3 takes the acceleration from the position, W = 101, 5 Hz;
 /// chapter 5 takes it from the accelerometer, W = 151, 4.5 Hz.
@@ -25,7 +25,7 @@ enum class Procedure { chapter3, chapter5 };
 
 [[nodiscard]] constexpr auto word_table(Mode) {
   using enum Mode;
-  return std::to_array<Word<Mode>>({{improved, "default"}, {reference, "reference"}});
+  return std::to_array<Word<Mode>>({{default_mode, "default"}, {reference, "reference"}});
 }
 
 [[nodiscard]] constexpr auto word_table(Procedure) {

@@ -78,7 +78,7 @@ struct ReproducedTable {
   std::string slip;  ///< id of the slip that explains cells that differ; empty: none does
 };
 
-/// One thing of the source, made again: a table, a figure, a slip, a question or a piece of future work.
+/// One item of the source, reproduced: a table, a figure, a slip, a question or a piece of future work.
 struct Exhibit {
   enum class Kind { table, figure, slip, question, future_work };
   std::string id;     ///< "table-3.6", "figure-4.3", "slip-1", "question-2", "future-work-4"
@@ -99,7 +99,7 @@ struct Exhibit {
       {{table, "table"}, {figure, "figure"}, {slip, "slip"}, {question, "question"}, {future_work, "future work"}});
 }
 
-/// What of a source was made again.
+/// What of a source was reproduced.
 struct Reproduction {
   std::string source;  ///< what it is a reproduction of
   std::vector<Exhibit> exhibits;

@@ -38,7 +38,7 @@ struct RobotCoefficient {
 
 /// How well the torque of one joint is explained; NaN where no torque of it counts.
 struct TorqueFit {
-  double vaf = 0, rmse = 0;                      ///< [%], [N·m or N]; held back where anything was
+  double vaf = 0, rmse = 0;                      ///< [%], [N·m or N]; held out where anything was
   double vaf_in_sample = 0, rmse_in_sample = 0;  ///< on the data behind the coefficients
   std::optional<double> vaf_smoothed;            ///< of vaf's data, predicted from the smoothed motion
 };
@@ -58,15 +58,14 @@ struct RobotIdentification {
   InstrumentMotion instrument_motion = InstrumentMotion::none;
   double motion_cutoff = 0;    ///< [Hz], where the motion was smoothed for it
   double smoothed_cutoff = 0;  ///< [Hz] of the motion behind vaf_smoothed, in the first recording that judges
-  std::optional<double> delay_standard_error;  ///< [s]; absent where the delay was not estimated
-  std::vector<TorqueFit> fit;                  ///< of each joint
-  bool held_back = true;                       ///< false: vaf and rmse are in-sample
-  std::vector<std::string> held_back_files;    ///< where whole recordings were
-  int rank = 0;                                ///< coefficients that the data tell apart
-  int structural_rank = 0;                     ///< that any motion could
-  double condition = 0;                        ///< of the regressors kept, each scaled to unit length
-  std::vector<std::pair<std::string, double>>
-      weakest;  ///< what is hardest to tell apart: coefficients with their shares
+  std::optional<double> delay_standard_error;           ///< [s]; absent where the delay was not estimated
+  std::vector<TorqueFit> fit;                           ///< of each joint
+  bool held_out = true;                                 ///< false: vaf and rmse are in-sample
+  std::vector<std::string> held_out_files;              ///< where whole recordings were
+  int rank = 0;                                         ///< coefficients that the data identify
+  int structural_rank = 0;                              ///< that any motion could
+  double condition = 0;                                 ///< of the regressors kept, each scaled to unit length
+  std::vector<std::pair<std::string, double>> weakest;  ///< what is hardest to identify: coefficients with their shares
   InertiaCheck inertia;
   double hac_lag_s = 0;
   Index samples = 0;

@@ -48,12 +48,12 @@ struct SpringField {
   std::optional<GridField> grid;  ///< where it was asked for
 };
 
-/// Springs for a wanted stiffness.
+/// Springs for a target stiffness.
 struct SpringDesign {
   SpringField field;                        ///< of the springs that were found
   std::vector<int> eyes;                    ///< of each spring: the screw eye that it hangs in, from 1
-  Eigen::Matrix2d wanted_K;                 ///< [N/m]
-  Eigen::Vector2d wanted_equilibrium;       ///< [m]
+  Eigen::Matrix2d target_K;                 ///< [N/m]
+  Eigen::Vector2d target_equilibrium;       ///< [m]
   std::optional<double> payload;            ///< [kg]
   Eigen::Vector2d natural_frequency{0, 0};  ///< √(λ/m)/2π of payload and principal stiffnesses, low, high [Hz]
 };

@@ -101,9 +101,9 @@ struct TransferFunctionIdentification {
   double fit = 0;                            ///< R_T² in sample
   double noise_standard_deviation = 0;       ///< of the residual [unit of the output]
   double yic = 0, aic = 0, bic = 0;
-  std::optional<double> held_back_fit;  ///< R² of the simulation on data that were held back
-  double held_back_rmse = 0;
-  std::vector<SimulatedOutput> simulated;  ///< of what was held back; where nothing was, of what the model is made of
+  std::optional<double> held_out_fit;  ///< R² of the simulation on data that were held out
+  double held_out_rmse = 0;
+  std::vector<SimulatedOutput> simulated;  ///< of what was held out; where nothing was, of what the model is made of
   Vector noise_denominator;                ///< C: 1, c₁ … of the noise model e = ε/C(q⁻¹); empty without one
   Vector noise_numerator;                  ///< D: 1, d₁ … with e = D/C ε; empty without one
   bool delay_found = false;
@@ -113,7 +113,7 @@ struct TransferFunctionIdentification {
   double band_low = 0, band_high = 0;  ///< [Hz] excited by the input
   bool even = true;                    ///< the samples are on an even clock
   double sample_time = 0;              ///< [s], the median one
-  double recorded_rate_hz = 0;         ///< of the recording, where its samples were thinned out; 0: they were not
+  double recorded_rate_hz = 0;         ///< of the recording, where its samples were decimated; 0: they were not
   Index samples = 0, experiments = 0;
   std::string input, output, reference, input_unit, output_unit;  ///< names of channels and their units
   std::vector<SourceFile> sources;

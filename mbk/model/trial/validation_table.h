@@ -10,19 +10,19 @@
 
 namespace mbk {
 
-/// One quantity of a study against known truth: what came out, how sure that is, and what is wanted.
+/// One quantity of a study against known truth: what came out, how sure that is, and what is expected.
 struct ValidationRow {
   std::string what;
   double value = 0;
-  std::pair<double, double> interval99;             ///< of the value, from the number of runs
-  std::optional<std::pair<double, double>> wanted;  ///< met where interval99 overlaps it; absent: only reported
-  std::optional<std::string> unit;                  ///< of this row, in place of the table's
-  std::optional<double> spread;                     ///< standard deviation over the runs, in the row's unit
-  std::optional<double> coverage;                   ///< share of the runs whose 95 % interval holds the truth, 0 to 1
+  std::pair<double, double> interval99;               ///< of the value, from the number of runs
+  std::optional<std::pair<double, double>> expected;  ///< met where interval99 overlaps it; absent: only reported
+  std::optional<std::string> unit;                    ///< of this row, in place of the table's
+  std::optional<double> spread;                       ///< standard deviation over the runs, in the row's unit
+  std::optional<double> coverage;                     ///< share of the runs whose 95 % interval holds the truth, 0 to 1
 
-  [[nodiscard]] bool judged() const { return wanted.has_value(); }
+  [[nodiscard]] bool judged() const { return expected.has_value(); }
   [[nodiscard]] bool met() const {
-    return !wanted || (interval99.second >= wanted->first && interval99.first <= wanted->second);
+    return !expected || (interval99.second >= expected->first && interval99.first <= expected->second);
   }
 };
 

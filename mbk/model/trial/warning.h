@@ -17,9 +17,9 @@ enum class WarningCode {
   motion_on_one_line,
   motion_too_small,
   poorly_conditioned,
-  held_back_fit_poor,
+  held_out_fit_poor,
   fit_poor,
-  no_held_back_data,
+  no_held_out_data,
   clock_jitter,
   resampled,
   clipping,
@@ -44,9 +44,9 @@ enum class WarningCode {
       {motion_on_one_line, "motion-on-one-line"},
       {motion_too_small, "motion-too-small"},
       {poorly_conditioned, "poorly-conditioned"},
-      {held_back_fit_poor, "held-back-fit-poor"},
+      {held_out_fit_poor, "held-out-fit-poor"},
       {fit_poor, "fit-poor"},
-      {no_held_back_data, "no-held-back-data"},
+      {no_held_out_data, "no-held-out-data"},
       {clock_jitter, "clock-jitter"},
       {resampled, "resampled"},
       {clipping, "clipping"},
@@ -57,6 +57,15 @@ enum class WarningCode {
       {input_explains_residual, "input-explains-residual"},
       {pole_outside_band, "pole-outside-band"},
       {uneven_clock, "uneven-clock"},
+  });
+}
+
+/// Codes that changed since the version before: "was" in JSON, for one version.
+[[nodiscard]] constexpr auto former_word_table(WarningCode) {
+  using enum WarningCode;
+  return std::to_array<Word<WarningCode>>({
+      {held_out_fit_poor, "held-back-fit-poor"},
+      {no_held_out_data, "no-held-back-data"},
   });
 }
 

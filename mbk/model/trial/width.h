@@ -21,8 +21,8 @@ struct WidthRatio {
 /// How far the inertia, damping or stiffness of two limbs are apart (impedance/width.h).
 struct WidthFinding {
   double distance = 0;  ///< d = √(Σ ln²λᵢ(Z₁⁻¹Z₂)) of the symmetric parts
-  Interval distance95;  ///< by the delta method from both covariances; begins at 0 where both are not told apart
-  bool told_apart =
+  Interval distance95;  ///< by the delta method from both covariances; begins at 0 where both are not distinguishable
+  bool distinguishable =
       false;  ///< the symmetric parts differ by more than chance gives in 5 % (Wald's test of all at once)
   /// Both symmetric parts are positive definite with 95 % confidence each; otherwise the distance has no upper end.
   bool surely_positive = false;

@@ -104,9 +104,9 @@ struct Tick {
   std::string label;
 };
 
-/// Multiples of 1, 2 or 5 × 10ᵏ within a range, about `wanted` of them, with the decimals that tell them apart.
-std::vector<Tick> ticks_of(const Range& range, int wanted) {
-  const double raw = range.size() / wanted, power = std::pow(10.0, std::floor(std::log10(raw)));
+/// Multiples of 1, 2 or 5 × 10ᵏ within a range, about `expected` of them, with the decimals that distinguish them.
+std::vector<Tick> ticks_of(const Range& range, int expected) {
+  const double raw = range.size() / expected, power = std::pow(10.0, std::floor(std::log10(raw)));
   double step = 10.0 * power;
   for (const double factor : {5.0, 2.0, 1.0}) {
     if (factor * power >= raw) step = factor * power;
@@ -122,9 +122,9 @@ std::vector<Tick> ticks_of(const Range& range, int wanted) {
 }
 
 /// Powers of ten within a range of logarithms, and twice and five times these where there is room.
-std::vector<Tick> logarithmic_ticks_of(const Range& range, int wanted) {
-  const double every = std::max(1.0, std::ceil(range.size() / wanted));
-  const bool between = 3.0 * range.size() <= wanted;
+std::vector<Tick> logarithmic_ticks_of(const Range& range, int expected) {
+  const double every = std::max(1.0, std::ceil(range.size() / expected));
+  const bool between = 3.0 * range.size() <= expected;
   std::vector<Tick> ticks;
   for (double power = every * std::floor(range.low / every); power <= range.high; power += every) {
     for (const double factor : {1.0, 2.0, 5.0}) {
@@ -136,8 +136,8 @@ std::vector<Tick> logarithmic_ticks_of(const Range& range, int wanted) {
   return ticks;
 }
 
-std::vector<Tick> ticks_of(const Range& range, int wanted, const ChartAxis& axis) {
-  return axis.logarithmic ? logarithmic_ticks_of(range, wanted) : ticks_of(range, wanted);
+std::vector<Tick> ticks_of(const Range& range, int expected, const ChartAxis& axis) {
+  return axis.logarithmic ? logarithmic_ticks_of(range, expected) : ticks_of(range, expected);
 }
 
 std::string with_unit(const ChartAxis& axis) {
@@ -229,7 +229,7 @@ void draw_references(Plot& plot, const Chart& chart, const Ranges& ranges) {
   if (chart.identity) plot.line(ranges.x.low, ranges.x.low, ranges.x.high, ranges.x.high, kReferenceDash, done);
 }
 
-/// Numbers under the axis, each in the middle under its tick, left away where the one before stands too near.
+/// Numbers under the axis, each in the middle under its tick, omitted where the one before stands too near.
 std::string under_axis(const std::vector<Tick>& ticks, const Plot& plot, std::size_t indent, std::size_t width) {
   std::string line(indent + width + 8, ' ');
   std::size_t free_from = 0;
@@ -257,7 +257,7 @@ std::string references_sentence(const Chart& chart) {
   };
   for (const ChartReference& at : shown(chart.horizontal)) add("across: " + named(at, chart.y));
   for (const ChartReference& at : shown(chart.vertical)) add("upright: " + named(at, chart.x));
-  if (chart.identity) add("slanting: where both axes agree");
+  if (chart.identity) add("diagonal: identity line");
   return text;
 }
 

@@ -92,12 +92,12 @@ TEST(ChartText, TicksStandBesideTheValuesThatTheyName) {
 TEST(ChartText, HasTitleUnitsLegendReferencesAndNotes) {
   Chart c = chart();
   c.series.push_back({"theory", {100.0, 300.0}, {100.0, 300.0}, {}, Drawn::line});
-  c.horizontal.push_back({200.0, "wanted"});
+  c.horizontal.push_back({200.0, "expected"});
   c.vertical.push_back({150.0, ""});
   c.identity = true;
   c.notes.emplace_back("Twenty seeds.");
   const std::string text = chart_text(c);
-  for (const char* words : {"Stiffness", "found [N/m]", "made [N/m]", "o  k_xx", "⠒⠒⠒⠒  theory", "wanted (200 N/m)",
+  for (const char* words : {"Stiffness", "found [N/m]", "made [N/m]", "o  k_xx", "⠒⠒⠒⠒  theory", "expected (200 N/m)",
                             "made = 150 N/m", "where both axes agree", "Twenty seeds."}) {
     EXPECT_THAT(text, HasSubstr(words));
   }
@@ -233,10 +233,10 @@ TEST(ChartSvg, NamesAreTextAndNeverMarkup) {
 
 TEST(ChartSvg, SaysInWordsWhatItShows) {
   Chart c = chart();
-  c.horizontal.push_back({200.0, "wanted"});
+  c.horizontal.push_back({200.0, "expected"});
   const std::string svg = chart_svg(c);
   EXPECT_THAT(svg, HasSubstr("<title id=\"title\">Stiffness</title>"));
-  EXPECT_THAT(svg, HasSubstr("found [N/m] over made [N/m]. k_xx: 3 points. Lines across: wanted (200 N/m)."));
+  EXPECT_THAT(svg, HasSubstr("found [N/m] over made [N/m]. k_xx: 3 points. Lines across: expected (200 N/m)."));
   EXPECT_THAT(svg, HasSubstr("aria-labelledby=\"title description\""));
 }
 

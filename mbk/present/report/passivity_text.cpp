@@ -50,7 +50,7 @@ std::string model_text(const ModelPassivity& model) {
 
 std::string energy_text(const EnergyAccount& account, const char* unit) {
   const char* const what = account.shortage_at_end < 0.0 ? "excess at the end" : "shortage at the end";
-  const char* const largest = account.shortage_largest < 0.0 ? "smallest excess" : "largest shortage";
+  const char* const largest = account.shortage_largest < 0.0 ? "excess, worst case" : "shortage, worst case";
   const auto shortage = [](double value, const Interval& interval) {
     return value < 0.0 ? std::pair{-value, Interval{-interval.second, -interval.first}} : std::pair{value, interval};
   };

@@ -41,8 +41,8 @@ std::string drives_text(const robot::DynamicModel& model) {
   const std::pair<const char*, bool> terms[] = {
       {"motor inertia", drive.motor_inertia}, {"viscous", drive.viscous}, {"Coulomb", drive.coulomb},
       {"Stribeck", drive.stribeck},           {"cable", drive.cable},     {"offset", drive.offset}};
-  for (const auto& [word, wanted] : terms) {
-    if (wanted) words.emplace_back(word);
+  for (const auto& [word, expected] : terms) {
+    if (expected) words.emplace_back(word);
   }
   std::string text = words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ", "));
   if (drive.coulomb || drive.stribeck) {
@@ -54,7 +54,7 @@ std::string drives_text(const robot::DynamicModel& model) {
   return text;
 }
 
-/// Coefficient j by those that can be told apart: "in 0.04·upper.inertia_yy − 0.2·upper.mass_z".
+/// Coefficient j by those that can be distinguished: "in 0.04·upper.inertia_yy − 0.2·upper.mass_z".
 std::string part_of(const numeric::IndependentColumns& base, Index j, const std::vector<robot::Coefficient>& names) {
   constexpr double kNone = 1e-6;
   std::string text;
@@ -97,12 +97,11 @@ std::string robot_description_text(const robot::RobotDescription& description,
   }
   text += "\n" + table(rows);
   const std::size_t all = coefficients.size(), apart = base.kept.size();
-  text +=
-      paragraph("  ", apart == all ? fmt::format("A motion that is rich enough tells all {} coefficients apart.", all)
-                                   : fmt::format("A motion that is rich enough tells {} of {} coefficients apart; "
-                                                 "the others act only in those that stand behind them, or not at "
-                                                 "all.",
-                                                 apart, all));
+  text += paragraph("  ", apart == all ? fmt::format("A sufficiently rich motion identifies all {} coefficients.", all)
+                                       : fmt::format("A sufficiently rich motion identifies {} of {} coefficients; "
+                                                     "the others act only in those that stand behind them, or not at "
+                                                     "all.",
+                                                     apart, all));
   return text;
 }
 

@@ -55,7 +55,7 @@ std::string how_found(const RobotIdentification& found) {
   rows.push_back({"window", how.window_rule});
   rows.push_back({"filters", filters_text(how)});
   rows.push_back(
-      {"excitation", fmt::format("{} of {} coefficients told apart ({} in any motion), condition {:.3g}", found.rank,
+      {"excitation", fmt::format("{} of {} coefficients identifiable ({} in any motion), condition {:.3g}", found.rank,
                                  found.coefficients.size(), found.structural_rank, found.condition)});
   const double delay = 1e3 * found.model.delay;
   rows.push_back(
@@ -88,12 +88,12 @@ std::string robot_text(const RobotIdentification& found) {
   text += table(rows) + "  (± is the 95 % interval; W θ = τ + Jᵀ F, τ the motors', F the hand's force on the robot)\n";
   if (combined) {
     text += paragraph("  ",
-                      "What stands behind a value is part of it: only these sums can be told apart (base "
+                      "What stands behind a value is part of it: only these sums can be distinguished (base "
                       "parameters), and they are all that torque and force need.");
   }
-  if (!nothing.empty()) text += paragraph("  not told apart, or without effect: ", nothing);
+  if (!nothing.empty()) text += paragraph("  not distinguishable, or without effect: ", nothing);
 
-  rows = {{found.held_back ? "held back" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
+  rows = {{found.held_out ? "held out" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
   const bool smoothed =
       std::ranges::any_of(found.fit, [](const TorqueFit& fit) { return fit.vaf_smoothed.has_value(); });
   if (smoothed) rows.front().push_back(fmt::format("VAF %, motion smoothed at {:.3g} Hz", found.smoothed_cutoff));

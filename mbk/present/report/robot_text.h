@@ -8,7 +8,7 @@
 namespace mbk::report {
 
 /// The dynamics of a robot for the terminal: how they were found, every coefficient with its 95 % interval and unit,
-/// what could not be told apart, the fit joint by joint, and warnings with what to try.
+/// what could not be identifiable, the fit joint by joint, and warnings with what to try.
 [[nodiscard]] std::string robot_text(const RobotIdentification& found);
 
 /// A computed force in short, beside the sensor's where there is one.

@@ -37,8 +37,8 @@ TEST(RobotText, HasEachCoefficientWithItsIntervalAndWhatItHolds) {
   EXPECT_THAT(text, HasSubstr("a.csv   20.0 s at 1000 Hz   CSV"));
   EXPECT_THAT(text, ::testing::ContainsRegex("mass +95.11 ± 0.49 +kg +\\+ 1·motor_inertia_1"));
   EXPECT_THAT(text, ::testing::ContainsRegex("viscous_1 +203.5 +N·s/m +given"));
-  EXPECT_THAT(text, HasSubstr("not told apart, or without effect: motor_inertia_1"));
-  EXPECT_THAT(text, HasSubstr("only these sums can be told apart"));
+  EXPECT_THAT(text, HasSubstr("not distinguishable, or without effect: motor_inertia_1"));
+  EXPECT_THAT(text, HasSubstr("only these sums can be distinguished"));
   EXPECT_THAT(text, ::testing::ContainsRegex("torque of joint 1 +98.50 +2.3 N +99.10 +2.1 N\n"));
   EXPECT_THAT(text, HasSubstr("0.4 ms, given"));
   EXPECT_THAT(text, HasSubstr("smallest eigenvalue 95"));
@@ -51,11 +51,11 @@ TEST(RobotText, SaysNothingOfSumsWhereEveryCoefficientStandsForItself) {
   EXPECT_THAT(robot_text(found), Not(HasSubstr("only these sums")));
 }
 
-TEST(RobotText, SaysWhetherDataWereHeldBack) {
+TEST(RobotText, SaysWhetherDataWereHeldOut) {
   RobotIdentification found = identified();
-  EXPECT_THAT(robot_text(found), HasSubstr("held back"));
-  found.held_back = false;
-  EXPECT_THAT(robot_text(found), Not(HasSubstr("held back")));
+  EXPECT_THAT(robot_text(found), HasSubstr("held out"));
+  found.held_out = false;
+  EXPECT_THAT(robot_text(found), Not(HasSubstr("held out")));
 }
 
 TEST(RobotText, NamesInstrumentsAndWhatTheSmoothedMotionPredicts) {

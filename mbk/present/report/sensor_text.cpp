@@ -98,7 +98,7 @@ std::string crosstalk(const SensorCalibration& c) {
                                 kPublishedLoad * c.crosstalk(j, i), on, kPublishedLoad));
     }
   }
-  if (text.empty() && c.axes.size() > 1) text = paragraph("  crosstalk    ", "not fitted: each axis by itself");
+  if (text.empty() && c.axes.size() > 1) text = paragraph("  crosstalk    ", "not fitted: each axis separately");
   return text;
 }
 
@@ -123,7 +123,7 @@ std::string sensor_text(const SensorCalibration& c) {
                     c.continuous ? fmt::format("{} samples over time; standard errors hold for residuals that are "
                                                "correlated over {:g} s",
                                                c.rows, c.hac_lag_s)
-                                 : fmt::format("{} rows, each a load by itself", c.rows));
+                                 : fmt::format("{} rows, each an independent load", c.rows));
   for (const std::string& note : c.notes) text += paragraph("  read         ", note);
   text += "\n" + slopes(c) + "\n" + qualities(c) + "\n" + crosstalk(c) + published(c);
   if (c.delay != 0.0) {

@@ -31,7 +31,7 @@ SensorCalibration calibration() {
 
 TEST(SensorText, SaysSlopesCrosstalkResolutionAndThePublishedForm) {
   const std::string text = sensor_text(calibration());
-  for (const char* words : {"132 rows, each a load by itself", "-8.560 ± 0.030", "0.25 (0.5 %)", "4.883 (0.0418)",
+  for (const char* words : {"132 rows, each an independent load", "-8.560 ± 0.030", "0.25 (0.5 %)", "4.883 (0.0418)",
                             "0.012", "x feels 2.50 ± 0.10 % of a load on y: 0.5 N where y goes from 0 to 20 N",
                             "Fx = (-8.560 ± 0.030) Vx + (0.540 ± 0.060), R² = 0.9996", "not said; --lever-arm-mm"}) {
     EXPECT_THAT(text, HasSubstr(words));
@@ -46,7 +46,7 @@ TEST(SensorText, SaysWhatWasNotFittedAndEveryWarningWithWhatToTry) {
   c.lever_arm = 0.0688;
   c.warnings = {{SensorWarningCode::one_sided_loads, "all pull", "push"}};
   const std::string text = sensor_text(c);
-  for (const char* words : {"not fitted: each axis by itself", "8.6 ms after the load", "68.8 mm in this calibration",
+  for (const char* words : {"not fitted: each axis separately", "8.6 ms after the load", "68.8 mm in this calibration",
                             "  ! one-sided-loads: all pull\n    try: push\n"}) {
     EXPECT_THAT(text, HasSubstr(words));
   }

@@ -12,7 +12,7 @@ namespace mbk::report {
 [[nodiscard]] std::string spring_field_text(const SpringField& field);
 
 /// The same for springs that were looked for, and then as options of 'mbk springs field' and as TOML, with the digits
-/// that give the wanted stiffness back.
+/// that give the expected stiffness back.
 [[nodiscard]] std::string spring_design_text(const SpringDesign& design);
 
 /// Spring constants from stretches, with how the straight part was chosen and what a line through everything would

@@ -11,7 +11,7 @@
 namespace mbk::report {
 namespace {
 
-constexpr std::size_t kMostPlaces = 5;  // bands or frequencies that are named in one cell
+constexpr std::size_t kMaxPlaces = 5;  // bands or frequencies that are named in one cell
 
 std::string value_text(double value) {
   if (std::isinf(value)) return value > 0.0 ? "infinity" : "minus infinity";
@@ -35,8 +35,8 @@ std::string outcome_text(const StabilityOutcome& outcome) {
   if (outcome.violated.empty()) return "holds";
   std::vector<std::string> places;
   for (const ViolatedBand& band : outcome.violated) {
-    if (places.size() == kMostPlaces) {
-      places.push_back(fmt::format("and {} more", outcome.violated.size() - kMostPlaces));
+    if (places.size() == kMaxPlaces) {
+      places.push_back(fmt::format("and {} more", outcome.violated.size() - kMaxPlaces));
       break;
     }
     places.push_back(band_text(band));
@@ -68,7 +68,7 @@ std::string touches_text(const AbsoluteStability& stability) {
   if (stability.touches_everywhere) return "a condition holds with equality at every frequency";
   std::vector<std::string> places;
   for (const RadPerSec omega : stability.touches) places.push_back(value_text(omega.value));
-  if (places.size() > kMostPlaces) places.resize(kMostPlaces);
+  if (places.size() > kMaxPlaces) places.resize(kMaxPlaces);
   return fmt::format("a condition holds with equality at {} rad/s", fmt::join(places, ", "));
 }
 

@@ -78,9 +78,9 @@ std::string how_made(const Identification& id) {
   if (id.axes == 2) motion += fmt::format(", {:.0f} % of it across the main direction", 100.0 * e.motion_ratio);
   rows.push_back({"motion", motion + fmt::format("; condition of the regressors {:.2g}", e.condition)});
   if (id.handle_mass > 0.0) {
-    rows.push_back({"handle", fmt::format("{:g} kg taken off the inertia", id.handle_mass)});
+    rows.push_back({"handle", fmt::format("{:g} kg subtracted from the inertia", id.handle_mass)});
   } else if (how.mode == Mode::reference && how.procedure == Procedure::chapter5) {
-    rows.push_back({"handle", "nothing taken off the inertia (the published handle of 0.135 kg: --handle-mass 0.135)"});
+    rows.push_back({"handle", "no mass subtracted (the published handle of 0.135 kg: --handle-mass 0.135)"});
   }
   if (id.structure != Structure::full) rows.push_back({"structure", std::string(word_of(id.structure))});
   return table(rows);
@@ -127,10 +127,10 @@ int decimals_of(const ValidationRow& row) {
   return std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 2, 9);
 }
 
-std::string wanted_text(const Interval& wanted) {
-  if (!std::isfinite(wanted.second)) return fmt::format("at least {:g}", wanted.first);
-  if (!std::isfinite(wanted.first)) return fmt::format("at most {:g}", wanted.second);
-  return fmt::format("[{:g}, {:g}]", wanted.first, wanted.second);
+std::string expected_text(const Interval& expected) {
+  if (!std::isfinite(expected.second)) return fmt::format("at least {:g}", expected.first);
+  if (!std::isfinite(expected.first)) return fmt::format("at most {:g}", expected.second);
+  return fmt::format("[{:g}, {:g}]", expected.first, expected.second);
 }
 
 std::string source_line(const SourceFile& source) {
@@ -195,7 +195,7 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
   std::string text = inputs_line(id) + how_made(id) + "\n";
   text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
   text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n\n";
-  text += table({{id.fit.held_back ? "fit on held-back data" : "fit on the same data",
+  text += table({{id.fit.held_out ? "fit on held-out data" : "fit on the same data",
                   "VAF " + per_axis(id.fit.vaf, "%", 2), "RMSE " + per_axis(id.fit.rmse, units_of(id.motion).force, 3)},
                  {"fit in sample", "VAF " + per_axis(id.fit.vaf_in_sample, "%", 2)}});
   if (id.standard_error_of_robot) {
@@ -225,7 +225,7 @@ std::string alternative_text(const Identification& id, const Identification& alt
   if (!instrumental.instrument->strong()) {
     return paragraph("  ",
                      fmt::format("instrumental variables cannot check this: what the reference alone moves is too "
-                                 "little beside the rest (first-stage F {:.2g}, wanted above 10)",
+                                 "little beside the rest (first-stage F {:.2g}, expected above 10)",
                                  instrumental.instrument->weakest()));
   }
   const std::string largest = fmt::format("largest difference {} = {:.3g} ± {:.2g}", disagreement.parameter,
@@ -446,7 +446,7 @@ std::string validation_text(const ValidationTable& validation) {
   rows[0] = {"", validation.unit, "99 % interval"};
   if (spread) rows[0].emplace_back("spread of runs");
   if (coverage) rows[0].emplace_back("95 % intervals hold");
-  rows[0].insert(rows[0].end(), {"wanted: overlaps", ""});
+  rows[0].insert(rows[0].end(), {"expected: overlaps", ""});
   for (const ValidationRow& row : validation.rows) {
     const int decimals = decimals_of(row);
     std::vector<std::string> cells = {row.what, fmt::format("{:.{}f}", row.value, decimals),
@@ -455,7 +455,7 @@ std::string validation_text(const ValidationTable& validation) {
     if (row.unit && !row.unit->empty()) cells[1] += " " + *row.unit;
     if (spread) cells.push_back(row.spread ? fmt::format("{:.{}f}", *row.spread, decimals) : "");
     if (coverage) cells.push_back(row.coverage ? fmt::format("{:.1f} %", 100.0 * *row.coverage) : "");
-    cells.push_back(row.wanted ? wanted_text(*row.wanted) : "");
+    cells.push_back(row.expected ? expected_text(*row.expected) : "");
     cells.emplace_back(!row.judged() ? "reported" : row.met() ? "ok" : "FALLS SHORT");
     rows.push_back(std::move(cells));
   }

@@ -60,7 +60,7 @@ inline constexpr std::size_t kLineColumns = 100;
 [[nodiscard]] std::string workspace_text(const robot::Workspace& workspace,
                                          const std::optional<robot::Posture>& posture);
 
-/// A study against known truth, row by row, with what is wanted, then its charts.
+/// A study against known truth, row by row, with what is expected, then its charts.
 [[nodiscard]] std::string validation_text(const ValidationTable& table);
 
 }  // namespace mbk::report

@@ -134,7 +134,7 @@ TEST(ResultText, ColumnsBeginWhereTheirHeadingDoes) {
 TEST(ResultText, HasNoTrailingBlanks) {
   Identification id = identification();
   id.warnings.push_back({WarningCode::fit_poor, "poor", "again"});
-  id.notes.push_back("row 9 left aside");
+  id.notes.push_back("row 9 ignored");
   id.decimation.emplace();
   for (const std::string& text :
        {result_text(id, findings()), result_text(identification(1), std::nullopt), ellipses_text(findings()),
@@ -160,8 +160,8 @@ TEST(ResultText, WhatIsNotUsableSaysSo) {
 
 TEST(ResultText, TheFitSaysOnWhatItIsJudged) {
   Identification id = identification();
-  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on held-back data  VAF x 97.12, y 97.12 %"));
-  id.fit.held_back = false;
+  EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on held-out data  VAF x 97.12, y 97.12 %"));
+  id.fit.held_out = false;
   EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("fit on the same data"));
 }
 
@@ -175,7 +175,7 @@ TEST(ResultText, SaysHowItWasMade) {
   EXPECT_THAT(text, HasSubstr("reference, chapter3 of the published procedure"));
   EXPECT_THAT(text, HasSubstr("free (the reference varies continuously)"));
   EXPECT_THAT(text, HasSubstr("Savitzky–Golay N 6 W 101, then zero-phase Butterworth 5 Hz: given"));
-  EXPECT_THAT(text, HasSubstr("0.194 kg taken off the inertia"));
+  EXPECT_THAT(text, HasSubstr("0.194 kg subtracted from the inertia"));
   EXPECT_THAT(text, HasSubstr("symmetric"));
   id.preparations[0].cutoff.reset();
   EXPECT_THAT(result_text(id, std::nullopt), HasSubstr("no low-pass"));
@@ -243,7 +243,7 @@ TEST(ValidationText, ShowsARowWithItsIntervalAndVerdict) {
   ValidationTable table = validation();
   EXPECT_THAT(line_with(validation_text(table), "k_xx"),
               testing::ContainsRegex("431.50 +.429.00, 434.00. +.420, 440. +ok$"));
-  table.rows[0].wanted = {435.0, 440.0};
+  table.rows[0].expected = {435.0, 440.0};
   EXPECT_THAT(line_with(validation_text(table), "k_xx"), HasSubstr("FALLS SHORT"));
   EXPECT_FALSE(table.met());
 }
@@ -270,9 +270,9 @@ TEST(ValidationText, SpreadCoverageAndUnitStandWhereARowHasThem) {
 TEST(ValidationText, AWishWithOneEndIsWords) {
   const double infinity = std::numeric_limits<double>::infinity();
   ValidationTable table = validation();
-  table.rows[0].wanted = {400.0, infinity};
+  table.rows[0].expected = {400.0, infinity};
   EXPECT_THAT(validation_text(table), HasSubstr("at least 400"));
-  table.rows[0].wanted = {-infinity, 500.0};
+  table.rows[0].expected = {-infinity, 500.0};
   EXPECT_THAT(validation_text(table), HasSubstr("at most 500"));
 }
 

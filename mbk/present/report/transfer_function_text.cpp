@@ -141,12 +141,12 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
                {"method", method_text(found.method)}};
   rows.push_back(
       {"samples",
-       fmt::format("{} in {} stretch{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "es",
+       fmt::format("{} in {} segment{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "es",
                    found.even ? fmt::format("every {:.6g} ms", 1e3 * found.sample_time)
                               : fmt::format("unevenly spaced, about every {:.6g} ms", 1e3 * found.sample_time))});
   if (found.recorded_rate_hz > 0.0) {
-    rows.push_back({"thinned out", fmt::format("from {:.6g} to {:.6g} Hz, behind a low-pass", found.recorded_rate_hz,
-                                               1.0 / found.sample_time)});
+    rows.push_back({"decimated", fmt::format("from {:.6g} to {:.6g} Hz, behind a low-pass", found.recorded_rate_hz,
+                                             1.0 / found.sample_time)});
   }
   if (found.band_high > 0.0) {
     rows.push_back({"excited", fmt::format("{:.3g} to {:.3g} Hz hold 96 % of the input's power", found.band_low,
@@ -163,9 +163,9 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
   rows.push_back({"gain at 0 Hz", with_interval(found.gain, numeric::kNormal95 * found.gain_standard_error)});
   text += table(rows) + "\n";
   rows.clear();
-  if (found.held_back_fit) {
-    rows.push_back({"held back", fmt::format("R² {:.5f}, RMSE {:.4g} {} (simulated)", *found.held_back_fit,
-                                             found.held_back_rmse, found.output_unit)});
+  if (found.held_out_fit) {
+    rows.push_back({"held out", fmt::format("R² {:.5f}, RMSE {:.4g} {} (simulated)", *found.held_out_fit,
+                                            found.held_out_rmse, found.output_unit)});
   }
   rows.push_back({"in sample", fmt::format("R_T² {:.5f}, noise {:.4g} {}, YIC {:.2f}", found.fit,
                                            found.noise_standard_deviation, found.output_unit, found.yic)});

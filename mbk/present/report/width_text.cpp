@@ -37,7 +37,7 @@ std::string width_text(const WidthFindings& widths) {
     directed = one.ratios.size() > 1;
     rows.push_back({name, between(one.distance, one.distance95), times(one.ratios.front(), directed)});
     if (directed) rows.back().push_back(times(one.ratios.back(), directed));
-    rows.back().emplace_back(one.told_apart ? "" : "not told apart");
+    rows.back().emplace_back(one.distinguishable ? "" : "not distinguishable");
     if (!one.surely_positive) {
       notes.push_back(
           fmt::format("{}: a smallest eigenvalue is not surely above zero, and without it the distance has "
@@ -52,7 +52,7 @@ std::string width_text(const WidthFindings& widths) {
     text += table(rows);
     text += paragraph("  ",
                       "(width √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % intervals. Noise alone gives "
-                      "a width above 0: it means something where both are told apart)");
+                      "a width above 0: it means something where both are identifiable)");
   }
   for (const std::string& note : notes) text += paragraph("  ! ", note);
   return text;

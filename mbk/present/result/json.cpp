@@ -86,7 +86,7 @@ Json antisymmetry_json(const Findings& findings) {
 Json fit_json(const Fit& fit) {
   return {{"VAF", list(fit.vaf)},
           {"RMSE", list(fit.rmse)},
-          {"validated_on", validated_on(fit.held_back)},
+          {"validated_on", validated_on(fit.held_out)},
           {"VAF_in_sample", list(fit.vaf_in_sample)}};
 }
 
@@ -95,7 +95,7 @@ Json instrument_json(const InstrumentCheck& check) {
           {"first_stage_F", list(check.strength)},
           {"weakest_F", number(check.weakest())},
           {"strong", check.strong()},
-          {"answered_share", list(check.answered)}};
+          {"coherent_residual_fraction", list(check.coherent_residual)}};
 }
 
 /// A second method beside the first, without what both have in common.
@@ -288,7 +288,8 @@ Fit fit_from(const Json& json, Index n) {
   fit.rmse = list_from(json, "RMSE", n);
   fit.vaf_in_sample =
       json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n) : Vector::Constant(n, kUnknown);
-  fit.held_back = json.value("validated_on", validated_on(true)) == validated_on(true);
+  const std::string on = json.value("validated_on", validated_on(true));
+  fit.held_out = on == validated_on(true) || on == "held-back";  // so until the version before
   return fit;
 }
 
@@ -421,7 +422,7 @@ std::string to_json(const ValidationTable& table) {
     Json one = {{"what", row.what},
                 {"value", number(row.value)},
                 {"interval99", interval(row.interval99)},
-                {"wanted", row.wanted ? interval(*row.wanted) : Json(nullptr)},
+                {"expected", row.expected ? interval(*row.expected) : Json(nullptr)},
                 {"met", row.judged() ? Json(row.met()) : Json(nullptr)}};
     if (row.unit) one["unit"] = *row.unit;
     if (row.spread) one["spread"] = number(*row.spread);

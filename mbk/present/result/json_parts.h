@@ -64,8 +64,8 @@ inline std::string dumped(const Json& json) {
 }
 
 /// What the fit was judged on.
-inline const char* validated_on(bool held_back) {
-  return held_back ? "held-back" : "in-sample";
+inline const char* validated_on(bool held_out) {
+  return held_out ? "held-out" : "in-sample";
 }
 
 inline Json header(const char* schema) {
@@ -83,7 +83,9 @@ inline Json inputs_json(const std::vector<SourceFile>& sources) {
 inline Json warnings_json(const std::vector<Warning>& warnings) {
   Json array = Json::array();
   for (const Warning& warning : warnings) {
-    array.push_back({{"code", word_of(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
+    Json one = {{"code", word_of(warning.code)}, {"message", warning.message}, {"try", warning.remedy}};
+    if (const auto was = former_word_of(warning.code); !was.empty()) one["was"] = was;
+    array.push_back(std::move(one));
   }
   return array;
 }

@@ -83,7 +83,7 @@ TEST_P(BothAxes, ModelCovarianceFitWarningsAndInputsComeBackToTheLastBit) {
   EXPECT_EQ(back.fit.vaf, id.fit.vaf);
   EXPECT_EQ(back.fit.rmse, id.fit.rmse);
   EXPECT_EQ(back.fit.vaf_in_sample, id.fit.vaf_in_sample);
-  EXPECT_EQ(back.fit.held_back, id.fit.held_back);
+  EXPECT_EQ(back.fit.held_out, id.fit.held_out);
   EXPECT_EQ(back.motion, id.motion);
   EXPECT_EQ(back.usable, id.usable);
   ASSERT_EQ(back.warnings.size(), 1u);
@@ -118,7 +118,7 @@ TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   }
   EXPECT_EQ(json.at("fit").at("VAF").size(), n);
   EXPECT_EQ(json.at("fit").at("RMSE").size(), n);
-  EXPECT_EQ(json.at("fit").at("validated_on"), "held-back");
+  EXPECT_EQ(json.at("fit").at("validated_on"), "held-out");
   EXPECT_EQ(json.at("alternatives"), Json::array());
   EXPECT_TRUE(json.at("disagreement").is_null());
   EXPECT_EQ(json.at("warnings").at(0).at("code"), "fit-poor");
@@ -355,10 +355,10 @@ TEST(ToJson, AValidationKeepsItsRowsAndAddsWhatTheyHave) {
   table.rows.push_back({"m_xx", 1.3, {1.2, 1.4}, std::nullopt, "kg", 0.01, 0.95});
   Json json = schemas::parsed(to_json(table));
   const Json plain = {
-      {"what", "k_xx"}, {"value", 431.5}, {"interval99", {429.0, 434.0}}, {"wanted", {420.0, 440.0}}, {"met", true}};
+      {"what", "k_xx"}, {"value", 431.5}, {"interval99", {429.0, 434.0}}, {"expected", {420.0, 440.0}}, {"met", true}};
   EXPECT_EQ(json.at("rows").at(0), plain);
   const Json& reported = json.at("rows").at(1);
-  EXPECT_TRUE(reported.at("wanted").is_null() && reported.at("met").is_null());
+  EXPECT_TRUE(reported.at("expected").is_null() && reported.at("met").is_null());
   EXPECT_EQ(reported.at("unit"), "kg");
   EXPECT_EQ(reported.at("spread"), 0.01);
   EXPECT_EQ(reported.at("coverage"), 0.95);

@@ -27,7 +27,7 @@ Json diagnostics_json(const Diagnostics& diagnostics) {
   const Spectra& spectra = diagnostics.spectra;
   const FilterResponse& filters = diagnostics.filters;
   Json json = {{"prediction",
-                {{"held_back", prediction.held_back},
+                {{"held_out", prediction.held_out},
                  {"time_s", rounded(prediction.time, kTimeDigits)},
                  {"measured", by_axis(prediction.measured)},
                  {"predicted", by_axis(prediction.predicted)},

@@ -25,8 +25,8 @@ Json drives_json(const robot::DynamicModel& model) {
   const std::pair<const char*, bool> all[] = {
       {"motor_inertia", drive.motor_inertia}, {"viscous", drive.viscous}, {"coulomb", drive.coulomb},
       {"stribeck", drive.stribeck},           {"cable", drive.cable},     {"offset", drive.offset}};
-  for (const auto& [word, wanted] : all) {
-    if (wanted) terms.push_back(word);
+  for (const auto& [word, expected] : all) {
+    if (expected) terms.push_back(word);
   }
   return {{"terms", terms},
           {"smoothing", number(drive.smoothing)},

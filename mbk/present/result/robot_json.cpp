@@ -108,8 +108,8 @@ std::string to_json(const RobotIdentification& found) {
     json["fit"].push_back(std::move(entry));
   }
   if (found.smoothed_cutoff > 0.0) json["smoothed_motion_cutoff_hz"] = found.smoothed_cutoff;
-  json["validated_on"] = validated_on(found.held_back);
-  if (!found.held_back_files.empty()) json["held_back_files"] = found.held_back_files;
+  json["validated_on"] = validated_on(found.held_out);
+  if (!found.held_out_files.empty()) json["held_out_files"] = found.held_out_files;
   json["excitation"] = {{"rank", found.rank},
                         {"structural_rank", found.structural_rank},
                         {"condition", number(found.condition)},

@@ -17,7 +17,7 @@ namespace mbk::result {
 /// Schema "mbk.force/1": a computed force in short, beside the sensor's where there is one.
 [[nodiscard]] std::string to_json(const ForceSummary& force);
 
-/// What a stored robot says, by itself: which robot it is stands in its description.
+/// What a stored robot says, alone: which robot it is stands in its description.
 struct StoredRobot {
   std::string description, urdf;  ///< empty for the thesis's robot
   robot::DriveTerms drive;

@@ -43,7 +43,7 @@ RobotIdentification identified() {
   found.coefficients[2].standard_error = kNaN;
   found.fit.push_back({98.5, 2.3, 99.1, 2.1, 97.5});
   found.smoothed_cutoff = 6.0;
-  found.held_back_files = {"judge.csv"};
+  found.held_out_files = {"judge.csv"};
   found.rank = 2;
   found.structural_rank = 4;
   found.condition = 4.5;
@@ -87,7 +87,7 @@ TEST(RobotJson, SaysHowEachCoefficientWasFound) {
   EXPECT_TRUE(parameters[2]["standard_error"].is_null());
   EXPECT_EQ(json["fit"][0]["VAF_from_smoothed_motion"], 97.5);
   EXPECT_EQ(json["smoothed_motion_cutoff_hz"], 6.0);
-  EXPECT_EQ(json["held_back_files"], Json::array({"judge.csv"}));
+  EXPECT_EQ(json["held_out_files"], Json::array({"judge.csv"}));
   EXPECT_EQ(json["excitation"]["weakest"][0]["name"], "offset_1");
   EXPECT_EQ(json["inputs"][0]["rate_hz"], 1000.0);
   EXPECT_EQ(json["warnings"][0]["code"], "torque-unit");

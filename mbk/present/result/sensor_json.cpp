@@ -57,9 +57,9 @@ class Reader {
     return found != json.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
   }
   static Index count(const Json& json, const char* name) {
-    constexpr double kMost = 1e15;
+    constexpr double kMax = 1e15;
     const double value = maybe(json, name).value_or(0.0);
-    return value >= 0.0 && value <= kMost ? static_cast<Index>(value) : 0;
+    return value >= 0.0 && value <= kMax ? static_cast<Index>(value) : 0;
   }
   Matrix matrix(const Json& json, const char* name, Index n) {
     Matrix values = Matrix::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
@@ -81,8 +81,8 @@ class Reader {
     }
     return values;
   }
-  double wrong(const char* name, const std::string& wanted) {
-    if (problem.empty()) problem = fmt::format("'{}' is not {}", name, wanted);
+  double wrong(const char* name, const std::string& expected) {
+    if (problem.empty()) problem = fmt::format("'{}' is not {}", name, expected);
     return std::numeric_limits<double>::quiet_NaN();
   }
 

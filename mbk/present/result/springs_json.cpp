@@ -71,7 +71,7 @@ std::string to_json(const SpringField& field) {
 
 std::string to_json(const SpringDesign& design) {
   Json json = springs_json("find");
-  json["wanted"] = {{"K", rows(design.wanted_K)}, {"equilibrium", list(design.wanted_equilibrium)}};
+  json["target"] = {{"K", rows(design.target_K)}, {"equilibrium", list(design.target_equilibrium)}};
   add_field(json, design.field);
   for (std::size_t i = 0; i < design.eyes.size(); ++i) json["springs"][i]["eye"] = design.eyes[i];
   if (design.payload) {

@@ -12,7 +12,7 @@ namespace mbk::result {
 /// what = "field".
 [[nodiscard]] std::string to_json(const SpringField& field);
 
-/// what = "find": a field with what was wanted.
+/// what = "find": a field with its target.
 [[nodiscard]] std::string to_json(const SpringDesign& design);
 
 /// what = "calibrate": one entry of `constants` for each recording.

@@ -35,11 +35,11 @@ TEST(SpringsJson, FieldHasEveryNumberInSi) {
   EXPECT_FALSE(read.contains("grid"));
 }
 
-TEST(SpringsJson, DesignHasWhatWasWantedAndTheEyes) {
+TEST(SpringsJson, DesignHasItsTargetAndTheEyes) {
   SpringDesign design{field(), {2, 5}, Eigen::Matrix2d::Identity(), {0.39, 0.0}, 0.5, {2.0, 3.0}};
   json read = schemas::parsed(to_json(design));
   EXPECT_EQ(read["what"], "find");
-  EXPECT_EQ(read["wanted"]["K"], json({{1, 0}, {0, 1}}));
+  EXPECT_EQ(read["target"]["K"], json({{1, 0}, {0, 1}}));
   EXPECT_EQ(read["springs"][1]["eye"], 5);
   EXPECT_EQ(read["natural_frequencies_hz"], json({2.0, 3.0}));
   design.payload.reset();

@@ -104,9 +104,9 @@ Json document(const TransferFunctionIdentification& found, const TransferFunctio
                  {"YIC", number(found.yic)},
                  {"AIC", number(found.aic)},
                  {"BIC", number(found.bic)}};
-  if (found.held_back_fit) {
-    json["fit"]["R2_held_back"] = number(*found.held_back_fit);
-    json["fit"]["RMSE_held_back"] = number(found.held_back_rmse);
+  if (found.held_out_fit) {
+    json["fit"]["R2_held_out"] = number(*found.held_out_fit);
+    json["fit"]["RMSE_held_out"] = number(found.held_out_rmse);
   }
   if (found.noise_denominator.size() > 1) json["noise"]["denominator"] = list(found.noise_denominator);
   if (found.noise_numerator.size() > 1) json["noise"]["numerator"] = list(found.noise_numerator);
@@ -162,7 +162,7 @@ std::string report_json(const TransferFunctionIdentification& found, const Trans
   Json json = header("mbk.tf_report/1");
   json["command"] = command;
   if (!note.empty()) json["note"] = note;
-  json["simulation"] = {{"held_back", found.held_back_fit.has_value()},
+  json["simulation"] = {{"held_out", found.held_out_fit.has_value()},
                         {"time_s", rounded(findings.drawn.time, kTimeDigits)},
                         {"measured", rounded(findings.drawn.measured)},
                         {"simulated", rounded(findings.drawn.simulated)}};

@@ -28,7 +28,7 @@ std::string width_to_json(const std::vector<SourceFile>& first, const std::vecto
     }
     json["width"][name] = {{"distance", number(one.distance)},
                            {"interval95", interval(one.distance95)},
-                           {"told_apart", one.told_apart},
+                           {"distinguishable", one.distinguishable},
                            {"surely_positive", one.surely_positive},
                            {"second_to_first", std::move(ratios)}};
   }

@@ -73,7 +73,8 @@ struct Scenario : protocol::TrialPlan {
 [[nodiscard]] std::map<std::string, std::string> scenario_metadata(const Scenario& scenario);
 
 /// Said wherever something is shown that a participant who corrects position or force had a part in.
-inline constexpr const char* kTunedGains = "the gains of the participant's will are tuned, not fitted to anyone";
+inline constexpr const char* kTunedGains =
+    "the gains of the participant's voluntary control are tuned, not fitted to anyone";
 
 struct SimulateOptions {
   std::function<void(double fraction)> progress;   ///< of this recording

@@ -73,19 +73,19 @@ impedance::Model read_linear_limb(const Section& s, const Vector2d& home) {
 participant::ArmOptions read_will(const Section& s, const Vector2d& home) {
   participant::ArmOptions arm = participant::relaxed_arm_options();
   const Section c = s.section("correction");
-  participant::IntermittentController::Options& will = arm.controller;
-  will.position = c.vector2("target_mm", home);
-  will.position_gain = c.number("position_gain", will.position_gain, at_least(0));
-  will.position_threshold = c.number("threshold_mm", will.position_threshold, at_least(0));
-  will.force = c.vector2("target_N", will.force);
-  will.force_gain = c.number("force_gain", will.force_gain, at_least(0));
-  will.force_threshold = c.number("threshold_N", will.force_threshold, at_least(0));
-  will.interval = c.number("interval_ms", will.interval, above(0));
-  will.delay = c.number("delay_ms", will.delay, at_least(0));
-  will.random_error = c.number("random_error_percent", will.random_error, at_least(0));
-  will.largest_increment = c.number("largest_increment_N", will.largest_increment, at_least(0));
-  will.ramp = c.number("ramp_ms", will.ramp, above(0));
-  will.leak = c.number("leak_s", will.leak, above(0));
+  participant::IntermittentController::Options& voluntary = arm.controller;
+  voluntary.position = c.vector2("target_mm", home);
+  voluntary.position_gain = c.number("position_gain", voluntary.position_gain, at_least(0));
+  voluntary.position_threshold = c.number("threshold_mm", voluntary.position_threshold, at_least(0));
+  voluntary.force = c.vector2("target_N", voluntary.force);
+  voluntary.force_gain = c.number("force_gain", voluntary.force_gain, at_least(0));
+  voluntary.force_threshold = c.number("threshold_N", voluntary.force_threshold, at_least(0));
+  voluntary.interval = c.number("interval_ms", voluntary.interval, above(0));
+  voluntary.delay = c.number("delay_ms", voluntary.delay, at_least(0));
+  voluntary.random_error = c.number("random_error_percent", voluntary.random_error, at_least(0));
+  voluntary.largest_increment = c.number("largest_increment_N", voluntary.largest_increment, at_least(0));
+  voluntary.ramp = c.number("ramp_ms", voluntary.ramp, above(0));
+  voluntary.leak = c.number("leak_s", voluntary.leak, above(0));
 
   const Section t = s.section("cocontraction");
   participant::Cocontraction::Options& tension = arm.cocontraction;

@@ -266,19 +266,19 @@ TEST(ScenarioFile, EveryKeyOfAnArmBecomesItsOption) {
   EXPECT_NEAR(limb.joints.elbow_angle, 70.0 * kDegree, kRounding);
   EXPECT_EQ(limb.joints.damping, matrix(1.5, 0.4, 0.4, 0.6));
   EXPECT_EQ(limb.joints.stiffness, matrix(12.0, 3.0, 3.0, 5.0));
-  const participant::IntermittentController::Options& will = arm.controller;
-  EXPECT_NEAR((will.position - Vector2d(0.302, -0.052)).norm(), 0.0, kRounding);
-  EXPECT_EQ(will.position_gain, 1.1);
-  EXPECT_NEAR(will.position_threshold, 0.002, kRounding);
-  EXPECT_EQ(will.force, Vector2d(1.0, -2.0));
-  EXPECT_EQ(will.force_gain, 0.6);
-  EXPECT_EQ(will.force_threshold, 0.3);
-  EXPECT_NEAR(will.interval, 0.3, kRounding);
-  EXPECT_NEAR(will.delay, 0.14, kRounding);
-  EXPECT_EQ(will.random_error, 0.25);
-  EXPECT_EQ(will.largest_increment, 3.0);
-  EXPECT_NEAR(will.ramp, 0.21, kRounding);
-  EXPECT_EQ(will.leak, 7.0);
+  const participant::IntermittentController::Options& voluntary = arm.controller;
+  EXPECT_NEAR((voluntary.position - Vector2d(0.302, -0.052)).norm(), 0.0, kRounding);
+  EXPECT_EQ(voluntary.position_gain, 1.1);
+  EXPECT_NEAR(voluntary.position_threshold, 0.002, kRounding);
+  EXPECT_EQ(voluntary.force, Vector2d(1.0, -2.0));
+  EXPECT_EQ(voluntary.force_gain, 0.6);
+  EXPECT_EQ(voluntary.force_threshold, 0.3);
+  EXPECT_NEAR(voluntary.interval, 0.3, kRounding);
+  EXPECT_NEAR(voluntary.delay, 0.14, kRounding);
+  EXPECT_EQ(voluntary.random_error, 0.25);
+  EXPECT_EQ(voluntary.largest_increment, 3.0);
+  EXPECT_NEAR(voluntary.ramp, 0.21, kRounding);
+  EXPECT_EQ(voluntary.leak, 7.0);
   EXPECT_EQ(arm.cocontraction.rest, 0.2);
   EXPECT_EQ(arm.cocontraction.slope, 0.7);
   EXPECT_NEAR(arm.cocontraction.speed, 0.04, kRounding);
@@ -519,7 +519,7 @@ TEST(ScenarioFile, MistakesNameFileLineKeyValueAndWhatIsAllowed) {
       {with("", "kind = \"position\"", "kind = \"pulses\"\namplitude_deg = 1"), {"amplitude_deg", "amplitude_mm"}},
       {with("[trial]\nname = \"a\"\n"), {"trial"}},
       {"[control\n", {"mine.toml", "line 1"}},
-      {with("peak_deg = \"two\"\n"), {"line 5", "perturbation.peak_deg", "a text where a number is wanted"}},
+      {with("peak_deg = \"two\"\n"), {"line 5", "perturbation.peak_deg", "a text where a number is expected"}},
       {with("[recording]\nseed = 1.5\n"), {"line 6", "recording.seed"}},
       {with("[robot]\nhome_mm = [1, 2, 3]\n"), {"line 6", "robot.home_mm"}},
       {with("[sensors.clock]\njitter_ms = 2\n"), {"line 6", "'jitter_ms'", "'jitter_us'"}},

@@ -35,7 +35,7 @@ void add_geometry(const participant::ArmOptions& arm, std::map<std::string, std:
   metadata["elbow"] = "right";
 }
 
-/// Whether somebody in the scenario acts by will.
+/// Whether somebody in the scenario acts voluntarily.
 bool has_will(const Scenario& scenario) {
   const auto* arm = arm_of(scenario);
   return arm != nullptr && (arm->controller.position_gain > 0.0 || arm->controller.force_gain > 0.0);

@@ -63,7 +63,7 @@ struct MotionVerdict {
 [[nodiscard]] double duration_to_show(const WorstTerminations& worst);
 
 /// The two arms, the worst passive pair, and the worst with the operator.
-inline constexpr int kMostRuns = 3;
+inline constexpr int kMaxRuns = 3;
 
 /// The simulation that a design asks for: its arms, and, where a criterion says that the design is not stable, the
 /// terminations that show it (teleop/worst_terminations.h).

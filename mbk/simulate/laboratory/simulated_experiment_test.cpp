@@ -212,7 +212,7 @@ TEST(Experiment, LineModeKeepsTheHandOnTheLine) {
 TEST(Experiment, MetadataHoldTheTruthOfTheLoad) {
   participant::LinearLimb load = limb();
   const Watched trial = watched(experiment(pulses(2.0), ForceMode{}), load);
-  const std::map<std::string, std::string> wanted = {
+  const std::map<std::string, std::string> expected = {
       {"truth_M", "[[1.326, -0.935], [-0.935, 1.883]]"},
       {"truth_B", "[[5.76, -2.14], [-2.14, 10.56]]"},
       {"truth_K", "[[42.4, -20.9], [-36.3, 125.3]]"},
@@ -221,7 +221,7 @@ TEST(Experiment, MetadataHoldTheTruthOfTheLoad) {
       {"truth_force_delay_s", "0"},
       {"handle_mass_kg", "0.194"},
       {"rate_hz", "1000"}};
-  EXPECT_EQ(trial.performance.recording.metadata, wanted);
+  EXPECT_EQ(trial.performance.recording.metadata, expected);
   EXPECT_NEAR(trial.performance.truth.K(0, 1), -20.9, 1e-12);  // a mean over the trial
 }
 
@@ -337,12 +337,12 @@ TEST(ExperimentOfOneAxis, ServoFollowsPlacesAndMotorExertsTorques) {
   const Performance exerting = performed(e);
   EXPECT_EQ(exerting.recording.find("reference")->unit, "N.m");
   const Vector moved = e.robot.robot.inertia.mass * channel(exerting, "acceleration") - channel(exerting, "reaction");
-  const Vector& wanted = channel(exerting, "reference");
-  const Index inner = wanted.size() - 2;
+  const Vector& expected = channel(exerting, "reference");
+  const Index inner = expected.size() - 2;
   const Vector torque =
       moved.segment(1, inner) + e.robot.robot.friction[0].viscous * rate_of(channel(exerting, "position"));
-  const Vector halfway = 0.5 * (wanted.segment(1, inner) + wanted.head(inner));
-  EXPECT_LT((torque - halfway).norm(), 1e-3 * wanted.norm());
+  const Vector halfway = 0.5 * (expected.segment(1, inner) + expected.head(inner));
+  EXPECT_LT((torque - halfway).norm(), 1e-3 * expected.norm());
 }
 
 TEST(ExperimentOfOneAxis, RecordingHasItsClockItsEventsAndTheTruth) {

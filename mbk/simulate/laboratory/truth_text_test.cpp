@@ -20,10 +20,10 @@ TEST(TruthText, MatricesAreRowsOfJson) {
 TEST(TruthText, MetadataNameTheWholeModel) {
   const impedance::Model model{Matrix::Constant(1, 1, 1.0), Matrix::Constant(1, 1, 2.0), Matrix::Constant(1, 1, 3.0),
                                Vector::Constant(1, 4.0)};
-  const std::map<std::string, std::string> wanted = {{"rate_hz", "500"},   {"truth_M", "[[1]]"},
-                                                     {"truth_B", "[[2]]"}, {"truth_K", "[[3]]"},
-                                                     {"truth_x0", "[4]"},  {"truth_energy_absorbed_J", "-0.25"}};
-  EXPECT_EQ(truth_metadata(model, Hertz(500.0), -0.25), wanted);
+  const std::map<std::string, std::string> expected = {{"rate_hz", "500"},   {"truth_M", "[[1]]"},
+                                                       {"truth_B", "[[2]]"}, {"truth_K", "[[3]]"},
+                                                       {"truth_x0", "[4]"},  {"truth_energy_absorbed_J", "-0.25"}};
+  EXPECT_EQ(truth_metadata(model, Hertz(500.0), -0.25), expected);
 }
 
 }  // namespace

@@ -18,13 +18,14 @@ Result<Cocontraction> Cocontraction::create(const Options& options, double sampl
                               {"slope of co-contraction", options.slope, ""},
                               {"stiffness gain of co-contraction", options.stiffness_gain, ""},
                               {"damping gain of co-contraction", options.damping_gain, ""},
-                              {"weakening of will by co-contraction", options.voluntary_damping, ""}});
+                              {"weakening of voluntary control by co-contraction", options.voluntary_damping, ""}});
       !ok) {
     return tl::unexpected(ok.error());
   }
   if (options.rest > 1.0) return bad_usage(fmt::format("resting co-contraction {:g} is above 1", options.rest));
   if (options.voluntary_damping > 1.0) {
-    return bad_usage(fmt::format("weakening of will by co-contraction {:g} is above 1", options.voluntary_damping));
+    return bad_usage(
+        fmt::format("weakening of voluntary control by co-contraction {:g} is above 1", options.voluntary_damping));
   }
   return Cocontraction(options, std::exp(-sample_time / options.time_constant));
 }

@@ -14,8 +14,9 @@ namespace mbk::participant {
 /// (co-contraction). Each component of ΔF has a random error of standard deviation ε|ΔF|. The voluntary force takes up
 /// ΔF on the minimum-jerk ramp s³(10 − 15s + 6s²), s from 0 to 1 over the ramp's duration (Flash & Hogan 1985), and
 /// leaks away: Ḟ_v = (ΔF ramp)˙ − F_v/τ.
-/// g_x alone holds a place, g_F alone a force; with both gains zero there is no will. The numbers were tuned so that
-/// the arm of `rigid_arm_options` behaves as in Dyck (2013), figs. 4.3–4.5; they were not fitted to anyone.
+/// g_x alone holds a place, g_F alone a force; with both gains zero there is no voluntary control. The numbers were
+/// tuned so that the arm of `rigid_arm_options` behaves as in Dyck (2013), figs. 4.3–4.5; they were not fitted to
+/// anyone.
 class IntermittentController {
  public:
   struct Options {

@@ -27,8 +27,8 @@ struct LoadDynamics {
 };
 
 /// Something that hangs at the handle beyond the force sensor: a limb, a joint such as ankle or elbow, a spring rig,
-/// another robot, or nothing. It decides (reflexes, will, noise) once a control tick and is a pure function of the
-/// hand's state in between. `tick` and `dynamics` do not allocate.
+/// another robot, or nothing. It decides (reflexes, voluntary control, noise) once a control tick and is a pure
+/// function of the hand's state in between. `tick` and `dynamics` do not allocate.
 template <int Axes>
 class Load {
  public:
@@ -42,8 +42,8 @@ class Load {
   /// Λ, h and the moment in a state, with what the last tick decided.
   [[nodiscard]] virtual LoadDynamics<Axes> dynamics(const HandState<Axes>& hand) const = 0;
 
-  /// The intrinsic impedance for small motions about a place, without will, reflexes or noise: the truth that
-  /// measurements are compared with. x₀ is where the load would rest.
+  /// The intrinsic impedance for small motions about a place, without voluntary control, reflexes or noise: the truth
+  /// that measurements are compared with. x₀ is where the load would rest.
   [[nodiscard]] virtual impedance::Model impedance(const AxisVector<Axes>& hand) const = 0;
 
  protected:  // copied only as what they are

@@ -81,7 +81,7 @@ const ModelPassivity* passivity_by(const Run& run, Method method) {
   return nullptr;
 }
 
-/// How often something is so. Judged by the count itself: 19 of 20 are wanted.
+/// How often something is so. Judged by the count itself: 19 of 20 are expected.
 ValidationRow share_row(std::string what, const Runs& runs, const std::function<bool(const Run&)>& holds, bool judged) {
   const auto hits = static_cast<double>(std::ranges::count_if(runs, holds));
   ValidationRow row;
@@ -89,7 +89,7 @@ ValidationRow share_row(std::string what, const Runs& runs, const std::function<
   row.value = 100.0 * hits / static_cast<double>(runs.size());
   row.interval99 = {row.value, row.value};
   row.unit = "%";
-  if (judged) row.wanted = {95.0, 100.0};
+  if (judged) row.expected = {95.0, 100.0};
   return row;
 }
 
@@ -112,7 +112,7 @@ void add_eigenvalues(const Runs& runs, Method method, bool judged, ValidationTab
       ValidationRow row = bias_row(fmt::format("6 N multisine, {}: {} eigenvalue of {}", word_of(method),
                                                smallest ? "smallest" : "largest", kNames[index]),
                                    error, kAllowed[index], "%");
-      if (!judged) row.wanted.reset();
+      if (!judged) row.expected.reset();
       table.rows.push_back(std::move(row));
     }
   }
@@ -134,7 +134,7 @@ void add_coverage(const Runs& runs, ValidationTable& table) {
     row.what = fmt::format("controller off, iv: 95 % interval of {} holds the truth", names[k]);
     row.value = 100.0 * held / count;
     row.interval99 = {100.0 * low, 100.0 * high};
-    if (k < 12) row.wanted = {92.0, 98.0};  // x0 shifts with the posture: it is no part of the linear truth
+    if (k < 12) row.expected = {92.0, 98.0};  // x0 shifts with the posture: it is no part of the linear truth
     row.unit = "%";
     table.rows.push_back(std::move(row));
   }

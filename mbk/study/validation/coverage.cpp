@@ -164,9 +164,9 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
   table.unit = "%";
   table.runs = options.runs;
   table.seed = options.seed;
-  const auto add = [&](std::string what, int hits, int runs, std::optional<std::pair<double, double>> wanted) {
+  const auto add = [&](std::string what, int hits, int runs, std::optional<std::pair<double, double>> expected) {
     const auto [low, high] = numeric::binomial_interval(hits, runs, 0.99);
-    table.rows.push_back({std::move(what), 100.0 * hits / runs, {100.0 * low, 100.0 * high}, wanted});
+    table.rows.push_back({std::move(what), 100.0 * hits / runs, {100.0 * low, 100.0 * high}, expected});
   };
   for (std::size_t k = 0; k < held.front().size(); ++k) {
     int hits = 0;

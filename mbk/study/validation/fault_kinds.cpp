@@ -98,7 +98,7 @@ safety::Limits& only(FaultRun& run) {
   safety::Limits& limits = run.trial.limits;
   run.trial.from_plan = {};
   limits.measured_force = limits.force_jump = 1e3;
-  limits.limited_for = 10.0;
+  limits.max_saturation_time = 10.0;
   limits.speed = 10.0;
   limits.acceleration = 1e3;
   limits.excursion = 0.0;
@@ -145,7 +145,7 @@ std::vector<FaultKind> sensors() {
        {251, 251},
        {Reason::accelerometer_frozen, Reason::accelerometer_disagrees},
        frozen(&State::acceleration, -1)},
-      {"encoder gives no number",
+      {"encoder gives a non-finite value",
        Onset::anywhere,
        {0, 0},
        {Reason::encoder_not_finite},
@@ -155,7 +155,7 @@ std::vector<FaultKind> sensors() {
        {0, 0},
        {Reason::encoder_not_finite},
        one_reads(&State::joint, kInfinite)},
-      {"force gives no number",
+      {"force gives a non-finite value",
        Onset::anywhere,
        {0, 0},
        {Reason::force_not_finite},
@@ -165,7 +165,7 @@ std::vector<FaultKind> sensors() {
        {0, 0},
        {Reason::force_not_finite},
        one_reads(&State::force, -kInfinite)},
-      {"acceleration gives no number",
+      {"acceleration gives a non-finite value",
        Onset::anywhere,
        {0, 0},
        {Reason::accelerometer_not_finite},
@@ -309,9 +309,11 @@ std::vector<FaultKind> reports() {
       {"robot's clock runs backward", Onset::anywhere, {1, 1}, {Reason::robot_clock}, reported([](State& state, int k) {
          state.time -= 2.0 * kTick * k;
        })},
-      {"robot's clock gives no number", Onset::anywhere, {0, 0}, {Reason::robot_clock}, reported([](State& state, int) {
-         state.time = kNotANumber;
-       })},
+      {"robot's clock gives a non-finite value",
+       Onset::anywhere,
+       {0, 0},
+       {Reason::robot_clock},
+       reported([](State& state, int) { state.time = kNotANumber; })},
       {"states get older by 0.1 ms each",
        Onset::anywhere,
        {230, 230},
@@ -508,7 +510,7 @@ std::vector<FaultKind> pushes() {
        {1000, -1},
        {Reason::limited_too_long, Reason::joint_margin},
        [](FaultRun& run, Random& random) {
-         only(run).limited_for = 0.1;
+         only(run).max_saturation_time = 0.1;
          push(run, random.uniform(35.0, 45.0) * direction(random), 0.2);
        }},
   };

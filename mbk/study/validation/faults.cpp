@@ -124,7 +124,7 @@ Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64
     if (begun >= 0 || std::cmp_less(ticks.back().number, onset)) return;
     if (run.outside == Outside::operator_stop) {
       begun = device.tick();
-      session.signals().operator_stop = true;
+      session.flags().operator_stop = true;
     } else if (run.outside == Outside::stalled_recorder) {
       begun = device.tick();
       while (!device.stopped()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -167,12 +167,12 @@ struct Job {
   int run;
 };
 
-ValidationRow row_of(std::string what, double value, std::pair<double, double> wanted, std::string unit) {
+ValidationRow row_of(std::string what, double value, std::pair<double, double> expected, std::string unit) {
   ValidationRow row;
   row.what = std::move(what);
   row.value = value;
   row.interval99 = {value, value};
-  row.wanted = wanted;
+  row.expected = expected;
   row.unit = std::move(unit);
   return row;
 }
@@ -279,7 +279,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   table.rows.push_back(
       row_of(fmt::format("trips in {} trials without a fault", jobs.size() - faulty), trips, {0.0, 0.0}, ""));
   table.notes.push_back(fmt::format(
-      "A tick is 1 ms. Wanted is what docs/theory/session.md documents: time to the trip and {} ticks of ramp.",
+      "A tick is 1 ms. Expected is what docs/theory/session.md documents: time to the trip and {} ticks of ramp.",
       safety::kRampTicks));
   return table;
 }

@@ -70,7 +70,7 @@ Result<Held> perform(protocol::Trial trial, std::uint64_t seed, const std::files
       auto now = held_by(journal, options, truth);
       if (!now) failure = now.error();
       if (now) held[taken] = *now;
-      session.signals().end_trial = ++taken == kTimes.size();
+      session.flags().end_trial = ++taken == kTimes.size();
     }
   };
   const auto performed = session.perform(**robot, *plan, folder / fmt::format("{}.h5", seed), watch);
@@ -125,7 +125,7 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
     const double spread = count > 1 ? std::sqrt(numeric::variance(share)) : 100.0;
     const double reach = numeric::kNormal99 * spread / std::sqrt(static_cast<double>(count));
     mean.interval99 = {std::max(0.0, mean.value - reach), std::min(100.0, mean.value + reach)};
-    mean.wanted = {90.0, 100.0};
+    mean.expected = {90.0, 100.0};
     table.rows.push_back(std::move(mean));
     std::ranges::move(rows, std::back_inserter(table.rows));
   }

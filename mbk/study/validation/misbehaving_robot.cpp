@@ -47,7 +47,7 @@ class MisbehavingRobot::Drives : public device::Device {
       truth.motors_on = truth.ticks;
       all_->say("motors on");
     }
-    if (command.enabled && all_->due() && told.cwiseAbs().maxCoeff() >= all_->fault_.least_torque) all_->begin_fault();
+    if (command.enabled && all_->due() && told.cwiseAbs().maxCoeff() >= all_->fault_.min_torque) all_->begin_fault();
     const int k = all_->since();
     acts_ = k >= 0 && all_->fault_.drive ? all_->fault_.drive(told, k) : told;
     robot_->write({command.tick, acts_, true});

@@ -101,22 +101,22 @@ Vector vaf_of(Outcomes outcomes) {
   return collected(outcomes, [](const Outcome& outcome) { return outcome.impedance.vaf; });
 }
 
-ValidationRow row_of(std::string what, double value, std::optional<std::pair<double, double>> wanted) {
+ValidationRow row_of(std::string what, double value, std::optional<std::pair<double, double>> expected) {
   ValidationRow row;
   row.what = std::move(what);
   row.value = value;
   row.interval99 = {value, value};
-  row.wanted = wanted;
+  row.expected = expected;
   row.unit = "%";
   return row;
 }
 
 ValidationRow share_row(std::string what, Outcomes outcomes, const std::function<bool(const Outcome&)>& is,
-                        std::optional<std::pair<double, double>> wanted) {
+                        std::optional<std::pair<double, double>> expected) {
   const auto count = static_cast<int>(outcomes.size());
   const auto hits = static_cast<int>(std::ranges::count_if(outcomes, is));
   const auto [low, high] = numeric::binomial_interval(hits, count, 0.99);
-  ValidationRow row = row_of(std::move(what), 100.0 * hits / count, wanted);
+  ValidationRow row = row_of(std::move(what), 100.0 * hits / count, expected);
   row.interval99 = {100.0 * low, 100.0 * high};
   row.unit = "% of trials";
   return row;
@@ -172,8 +172,8 @@ void add_rows(std::size_t condition, Outcomes outcomes, ValidationTable& table) 
   }
   const bool linear = condition != kRigid;
   const std::pair<double, double> good = {kHolds, 100.0}, poor = {-kNone, kHolds};
-  const auto add = [&](const char* what, double value, std::optional<std::pair<double, double>> wanted) {
-    table.rows.push_back(row_of(name + ": " + what, value, wanted));
+  const auto add = [&](const char* what, double value, std::optional<std::pair<double, double>> expected) {
+    table.rows.push_back(row_of(name + ": " + what, value, expected));
   };
   add("median VAF", median(vaf), linear ? good : poor);
   add("lower quartile of the VAF", quantile(vaf, 0.25), {});
@@ -182,8 +182,8 @@ void add_rows(std::size_t condition, Outcomes outcomes, ValidationTable& table) 
   add("median VAF, commanded force to place",
       median(collected(outcomes, [](const Outcome& outcome) { return outcome.admittance.vaf; })), {});
   const auto share = [&](const char* what, const std::function<bool(const Outcome&)>& is,
-                         std::optional<std::pair<double, double>> wanted) {
-    table.rows.push_back(share_row(name + ": " + what, outcomes, is, wanted));
+                         std::optional<std::pair<double, double>> expected) {
+    table.rows.push_back(share_row(name + ": " + what, outcomes, is, expected));
   };
   share("a stable model settled", [](const Outcome& outcome) { return outcome.impedance.holds; }, {});
   share("so it did in continuous time", [](const Outcome& outcome) { return outcome.continuous; }, {});

@@ -39,7 +39,7 @@ Result<Attempt> attempted(const SignalPair& whole) {
   options.poles = kPoles;
   options.zeros = kZeros;
   options.threads = 1;
-  options.most_iterations = 100;
+  options.max_iterations = 100;
   auto fit = identify::fit_prediction_error({first_part(whole)}, options);
   if (!fit) return tl::unexpected(fit.error());
   Attempt attempt{std::move(fit->f), std::move(fit->b), fit->converged, 0.0};

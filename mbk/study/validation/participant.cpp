@@ -114,7 +114,7 @@ ValidationRow energy_row(const Condition& condition, int arm, Trials trials) {
                          condition.energy_sign > 0.0 ? "rises" : "falls", energy.first, energy.second);
   row.value = 100.0 * hits / runs;
   row.interval99 = {100.0 * low, 100.0 * high};
-  row.wanted = {100.0, 100.0};
+  row.expected = {100.0, 100.0};
   row.unit = "% of runs";
   return row;
 }
@@ -128,7 +128,7 @@ std::vector<ValidationRow> vaf_rows(const Condition& condition, int arm, Trials 
     row.what = fmt::format("{}, P{}: {} VAF", condition.name, arm, which);
     row.value = value;
     row.interval99 = {value, value};
-    row.wanted = condition.vaf;
+    row.expected = condition.vaf;
     row.unit = "%";
     rows.push_back(row);
   };
@@ -173,7 +173,7 @@ void add_crossover(const StudyOptions& options, Trials trials, ValidationTable& 
       row.value = line.x[a - 1] + (line.x[a] - line.x[a - 1]) * line.y[a - 1] / (line.y[a - 1] - line.y[a]);
     }
     row.interval99 = {row.value, row.value};
-    row.wanted = {2.0, 8.0};
+    row.expected = {2.0, 8.0};
     row.unit = "N";
     table.rows.push_back(row);
     chart.series.push_back(std::move(line));
@@ -195,7 +195,7 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
   table.study = "participant";
   table.question =
       "does the simulated participant behave as people did: passive when relaxed, active against small pulses, "
-      "passive against large or lasting forces?";
+      "passive against large or sustained forces?";
   table.unit = "%";
   table.runs = options.runs;
   table.seed = options.seed;
@@ -213,7 +213,7 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
   table.notes = {
       kTuned,
       "E is the energy that the limb absorbed in one trial, without the handle; VAF is that of the published procedure "
-      "on held-back data, mean of both axes.",
+      "on held-out data, mean of both axes.",
       "2 N and 8 N differ in amplitude_N alone."};
   return table;
 }

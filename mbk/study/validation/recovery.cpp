@@ -80,7 +80,7 @@ Result<ValidationTable> recovery_study(const StudyOptions& options) {
     left = left.subspan(static_cast<std::size_t>(options.runs));
   }
   table.notes = {
-      "The value is the mean error over the runs (bias), with its 99 % interval; wanted is less than 5 % of the "
+      "The value is the mean error over the runs (bias), with its 99 % interval; expected is less than 5 % of the "
       "matrix's "
       "largest element, and 2 mm for x0.",
       "The truth is the arm's linear impedance at the test location. The arm's force noise acts back on its motion "

@@ -92,8 +92,8 @@ void add_fit(const Runs& runs, ValidationTable& table) {
     const Vector vaf = of_runs(runs, [joint](const Run& run) { return run.right.fit[joint].vaf; });
     const Vector rmse = of_runs(runs, [joint](const Run& run) { return 1e3 * run.right.fit[joint].rmse; });
     table.rows.push_back(
-        at_least_row(fmt::format("joint {}: lowest VAF of held-back torque", joint + 1), vaf.minCoeff(), kVaf, "%"));
-    table.rows.push_back(reported_row(fmt::format("joint {}: RMSE of held-back torque", joint + 1), rmse, "mN·m"));
+        at_least_row(fmt::format("joint {}: lowest VAF of held-out torque", joint + 1), vaf.minCoeff(), kVaf, "%"));
+    table.rows.push_back(reported_row(fmt::format("joint {}: RMSE of held-out torque", joint + 1), rmse, "mN·m"));
   }
 }
 
@@ -105,10 +105,9 @@ double loss(const RobotIdentification& model, const RobotIdentification& right) 
 void add_printed_sign(const Runs& runs, const Vector& truth, ValidationTable& table) {
   constexpr double kClearly = 2.0;
   const Vector ratio = of_runs(runs, [](const Run& run) { return loss(run.printed, run.right); });
-  table.rows.push_back(at_least_row("printed Coriolis sign: least RMSE of held-back torque, over the right one's",
+  table.rows.push_back(at_least_row("printed Coriolis sign: least RMSE of held-out torque, over the right one's",
                                     ratio.minCoeff(), kClearly, ""));
-  table.rows.push_back(
-      reported_row("printed Coriolis sign: RMSE of held-back torque, over the right one's", ratio, ""));
+  table.rows.push_back(reported_row("printed Coriolis sign: RMSE of held-out torque, over the right one's", ratio, ""));
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector error = of_runs(
         runs, [&](const Run& run) { return error_of(run.printed.coefficients[k], truth[static_cast<Index>(k)]); });
@@ -132,7 +131,7 @@ void add_without_coulomb(const Runs& runs, const Vector& truth, ValidationTable&
     const Vector vaf = of_runs(runs, [joint](const Run& run) { return run.without_coulomb.fit[joint].vaf; });
     table.rows.push_back(reported_row(fmt::format("{}: VAF of joint {}", what, joint + 1), vaf, "%"));
   }
-  table.rows.push_back(reported_row(fmt::format("{}: RMSE of held-back torque, over that of the full model", what),
+  table.rows.push_back(reported_row(fmt::format("{}: RMSE of held-out torque, over that of the full model", what),
                                     of_runs(runs, [](const Run& run) { return loss(run.without_coulomb, run.right); }),
                                     ""));
 }

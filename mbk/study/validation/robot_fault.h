@@ -26,7 +26,7 @@ struct RobotFault {
     at_stop       ///< with the first command to switch them off after that moment
   };
   Begins begins = Begins::at_moment;
-  double least_torque = 0.0;  ///< begins only where a joint is commanded at least this [N·m]
+  double min_torque = 0.0;  ///< begins only where a joint is commanded at least this [N·m]
 
   std::function<Vector2d(const Vector2d& told, int k)> drive;          ///< torque that acts, of what is commanded
   std::function<void(device::State& state, int k)> sense;              ///< what its sensors give

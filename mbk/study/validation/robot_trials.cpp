@@ -88,19 +88,19 @@ Result<RobotIdentification> identified_robot(const Recording& recording, Frictio
 
 ValidationRow at_least_row(std::string what, double value, std::optional<double> limit, std::string unit) {
   ValidationRow row = limit_row(std::move(what), value, std::move(unit));
-  if (limit) row.wanted = {*limit, std::numeric_limits<double>::infinity()};
+  if (limit) row.expected = {*limit, std::numeric_limits<double>::infinity()};
   return row;
 }
 
 ValidationRow at_most_row(std::string what, double value, std::optional<double> limit, std::string unit) {
   ValidationRow row = limit_row(std::move(what), value, std::move(unit));
-  if (limit) row.wanted = {-std::numeric_limits<double>::infinity(), *limit};
+  if (limit) row.expected = {-std::numeric_limits<double>::infinity(), *limit};
   return row;
 }
 
 ValidationRow reported_row(std::string what, const Vector& values, std::string unit) {
   ValidationRow row = bias_row(std::move(what), values, 0.0, std::move(unit));
-  row.wanted.reset();
+  row.expected.reset();
   return row;
 }
 

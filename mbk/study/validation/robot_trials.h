@@ -45,7 +45,7 @@ void measure_currents(laboratory::Scenario& scenario);
 [[nodiscard]] ValidationRow at_least_row(std::string what, double value, std::optional<double> limit, std::string unit);
 [[nodiscard]] ValidationRow at_most_row(std::string what, double value, std::optional<double> limit, std::string unit);
 
-/// As bias_row, of which nothing is wanted.
+/// As bias_row, of which nothing is expected.
 [[nodiscard]] ValidationRow reported_row(std::string what, const Vector& values, std::string unit);
 
 }  // namespace mbk::validation

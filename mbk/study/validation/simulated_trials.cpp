@@ -71,7 +71,7 @@ ValidationRow bias_row(std::string what, const Vector& errors, double allowed, s
   row.what = std::move(what);
   row.value = errors.mean();
   row.interval99 = {row.value - reach, row.value + reach};
-  row.wanted = {-allowed, allowed};
+  row.expected = {-allowed, allowed};
   row.unit = std::move(unit);
   row.spread = spread;
   return row;

@@ -34,12 +34,12 @@ struct TrialPlan {
 };
 
 /// Every plan once, several at a time; the order is that of the plans, on any number of threads. The handle's mass is
-/// taken off as a user would. Of the options, threads and progress count.
+/// subtracted as a user would. Of the options, threads and progress count.
 /// @fails  as simulate and measure; a model that is not usable is no failure.
 [[nodiscard]] Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans,
                                                              const StudyOptions& options);
 
-/// The mean of errors over runs, with its 99 % interval and their spread; wanted is a mean within ±`allowed`.
+/// The mean of errors over runs, with its 99 % interval and their spread; expected is a mean within ±`allowed`.
 [[nodiscard]] ValidationRow bias_row(std::string what, const Vector& errors, double allowed, std::string unit);
 
 /// "K5" and "M3" of a rig's trial "K5_M3": its stiffness and its mass; the whole name twice where it has no "_M".

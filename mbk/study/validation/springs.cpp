@@ -6,15 +6,16 @@
 namespace mbk::validation {
 namespace {
 
-/// A file of rigs, what its trials are called in the table, and what is wanted of a mean error.
+/// A file of rigs, what its trials are called in the table, and what is expected of a mean error.
 struct RigFile {
   const char* file;
   const char* name;
   double stiffness_error;  ///< [N/m]
 };
 
-/// A linear field has no excuse. That of real springs bends over the motion, and as the disc turns with the last link,
-/// moving the hand also winds the springs around it: there K differs from −∂F/∂x by up to a few percent.
+/// A linear field leaves only the error of the method. That of real springs bends over the motion, and as the disc
+/// turns with the last link, moving the hand also winds the springs around it: there K differs from −∂F/∂x by up to a
+/// few percent.
 constexpr RigFile kFiles[] = {{"rig_table_3_1", "3.1 linear", 2.0},
                               {"rig_table_5_1", "5.1 linear", 2.0},
                               {"rig_springs_table_3_1", "3.1 springs", 8.0},
@@ -25,7 +26,7 @@ constexpr double kMassError = 0.02;  // [kg]
 struct Errors {
   std::vector<double> identified, truth;
   std::string unit = "N/m";
-  double wanted = 0.0;
+  double expected = 0.0;
 
   void add(double value, double true_value) {
     identified.push_back(value);
@@ -37,7 +38,7 @@ ValidationRow row_of(const std::string& what, const Errors& errors) {
   const auto count = static_cast<Index>(errors.identified.size());
   const Vector error =
       Eigen::Map<const Vector>(errors.identified.data(), count) - Eigen::Map<const Vector>(errors.truth.data(), count);
-  return bias_row(what, error, errors.wanted, errors.unit);
+  return bias_row(what, error, errors.expected, errors.unit);
 }
 
 using NamedErrors = std::vector<std::pair<std::string, Errors>>;
@@ -103,12 +104,12 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
           {"k_xx", {0, 0}}, {"k_yy", {1, 1}}, {"k_s", {0, 1}}};
       for (const auto& [name, at] : elements) {
         Errors& element = errors_of(fmt::format("{} {} {}", file.name, stiffness, name));
-        element.wanted = file.stiffness_error;
+        element.expected = file.stiffness_error;
         element.add(model.K(at.first, at.second), truth.K(at.first, at.second));
       }
       Errors& payload = errors_of(fmt::format("{} {} m", file.name, mass));
       payload.unit = "kg";
-      payload.wanted = kMassError;
+      payload.expected = kMassError;
       payload.add(model.M(0, 0), truth.M(0, 0));
     }
     for (const auto& [what, errors] : all) table.rows.push_back(row_of(what, errors));

@@ -35,13 +35,13 @@ struct Study {
 [[nodiscard]] Result<ValidationTable> coverage_study(const StudyOptions& options);
 
 /// Bias, spread and coverage of M, B, K and x₀ of a relaxed arm in the closed loop, with sinusoidal and with
-/// underdamped perturbations: the ready scenarios, measured by the default pipeline. A run is one seed of each. Wanted
-/// is a bias below 5 % of the largest element of the matrix, and below 2 mm for x₀.
+/// underdamped perturbations: the ready scenarios, measured by the default pipeline. A run is one seed of each.
+/// Expected is a bias below 5 % of the largest element of the matrix, and below 2 mm for x₀.
 [[nodiscard]] Result<ValidationTable> recovery_study(const StudyOptions& options);
 
 /// How often do the 95 % intervals of M, B and K hold the truth while the trial still runs, as the console shows them?
 /// The ready scenario of a relaxed arm passes the whole session, whose ticks come in blocks as the recorder hands them
-/// on; the live estimate is taken 10, 15, 20 and 40 s after the perturbation began. A run is one seed. Wanted is 90 %
+/// on; the live estimate is taken 10, 15, 20 and 40 s after the perturbation began. A run is one seed. Expected is 90 %
 /// on average over the twelve numbers at each time; each of them is reported.
 [[nodiscard]] Result<ValidationTable> live_estimate_study(const StudyOptions& options);
 
@@ -63,28 +63,28 @@ struct Study {
 [[nodiscard]] Result<ValidationTable> closed_loop_study(const StudyOptions& options);
 
 /// The dynamics of the robot of Dyck (2013), table A.1, with Coulomb friction, identified from its free motion by
-/// measurement::identify_robot as it is by default: bias and coverage of every coefficient, held-back torque, the
+/// measurement::identify_robot as it is by default: bias and coverage of every coefficient, held-out torque, the
 /// printed Coriolis sign against the right one, and what it does to leave Coulomb friction out. A run is one free
-/// motion with its own phases and noise. Wanted: inertias within 0.5 % and a VAF of 99 % in every run, the truth within
-/// two standard errors in 90 % of all cases, and that the printed sign leaves at least twice as much torque in every
-/// run.
+/// motion with its own phases and noise. Expected: inertias within 0.5 % and a VAF of 99 % in every run, the truth
+/// within two standard errors in 90 % of all cases, and that the printed sign leaves at least twice as much torque in
+/// every run.
 [[nodiscard]] Result<ValidationTable> robot_study(const StudyOptions& options);
 
 /// Force, stiffness and mass of the rigs of Dyck (2013), table 5.1, without a force sensor (tables 5.4 and 5.5 and
 /// fig. 5.4 in form): against the truth and the sensor, with the robot's friction in the model and left out, by the
-/// momentum observer, and with elastic drives. A run is one identified robot and one seed of each rig. Wanted: a force
-/// within 0.05 N (RMSE) for every rig, stiffness and mass within a quarter of the errors in table 5.4.
+/// momentum observer, and with elastic drives. A run is one identified robot and one seed of each rig. Expected: a
+/// force within 0.05 N (RMSE) for every rig, stiffness and mass within a quarter of the errors in table 5.4.
 [[nodiscard]] Result<ValidationTable> virtual_sensor_study(const StudyOptions& options);
 
 /// The system of Rao & Garnier (2002), four poles and a zero on the right, by identify_transfer_function as it is by
 /// default under white noise of a tenth of the output's variance: bias and coverage of every coefficient, and whether
-/// the order is found. A run is one input and one noise. Wanted: a bias below 1 %, the order in 90 % of the runs.
+/// the order is found. A run is one input and one noise. Expected: a bias below 1 %, the order in 90 % of the runs.
 [[nodiscard]] Result<ValidationTable> transfer_function_study(const StudyOptions& options);
 
 /// Does a linear time-invariant model hold for a rigid arm along one axis (Dyck 2013, §4.4.2: table 4.4 and fig. 4.7 in
 /// form)? The ready scenario one_axis_random_binary, ±2 N: output-error models of 4 poles and 3 zeros from place to
 /// force, judged on the last 10 s of each trial and on the other trials; beside it the same arm with its controller
-/// off, and relaxed, for several switching times of the force. A run is five trials of each. Wanted: a
+/// off, and relaxed, for several switching times of the force. A run is five trials of each. Expected: a
 /// median VAF of at least 90 % for the other two, and at every switching time less for the rigid arm, with at least
 /// three times as much unexplained as without its controller.
 [[nodiscard]] Result<ValidationTable> one_dimensional_study(const StudyOptions& options);
@@ -92,15 +92,15 @@ struct Study {
 /// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of
 /// the four architectures, half of them with delay, held by random terminations where it is stable, and by the
 /// terminations that teleop::worst_terminations constructs where it is not; each with a passive operator, with one who
-/// has an excess of passivity and with one who has a shortage. The controllers are sampled at 1 kHz. Wanted: nothing
+/// has an excess of passivity and with one who has a shortage. The controllers are sampled at 1 kHz. Expected: nothing
 /// that is stable, as designed and with sampling, grows; everything that is constructed grows, at its frequency.
 /// Besides, the passivity controller at a virtual wall.
 [[nodiscard]] Result<ValidationTable> teleoperation_study(const StudyOptions& options);
 
 /// Whatever breaks, are the motors off in time? Each kind of fault (fault_kinds.h) comes into a trial of positions and
 /// one of forces at a moment drawn by lot, through the robot, another thread or the clock, and passes the whole
-/// session. Wanted in every run: motors off within the documented ticks, for a right reason, no command beyond the cap
-/// of the handle force by the true angles, a recording that holds every command to the bit; and not one trip in ten
+/// session. Expected in every run: motors off within the documented ticks, for a right reason, no command beyond the
+/// cap of the handle force by the true angles, a recording that holds every command to the bit; and not one trip in ten
 /// times as many trials without a fault, over the ready scenarios. A run is one moment of each kind in both trials.
 [[nodiscard]] Result<ValidationTable> faults_study(const StudyOptions& options);
 

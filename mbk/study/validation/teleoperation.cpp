@@ -251,7 +251,7 @@ Counted count(const Cases& cases, const std::function<bool(const Case&)>& which)
   return counted;
 }
 
-/// Where there is nothing to count nothing is shown, and nothing wanted.
+/// Where there is nothing to count nothing is shown, and nothing expected.
 ValidationRow count_row(std::string what, int value, int of, std::optional<double> at_most) {
   if (of == 0) at_most.reset();
   return at_most_row(std::move(what), value, at_most, fmt::format("of {}", of));
@@ -351,7 +351,7 @@ Result<void> add_wall(ValidationTable& table) {
     ValidationRow row = at_least_row(
         fmt::format("wall of 30 kN/m at 1 kHz, lowest energy {} passivity controller", with ? "with" : "without"),
         *energy, {}, "J");
-    row.wanted = {known - kLastDigit, known + kLastDigit};
+    row.expected = {known - kLastDigit, known + kLastDigit};
     table.rows.push_back(std::move(row));
   }
   return {};

@@ -41,12 +41,12 @@ SignalPair noisy_record(std::uint64_t seed) {
 }
 
 /// A value of the study, right to ±uncertainty.
-ValidationRow row_between(std::string what, double value, double uncertainty, std::pair<double, double> wanted) {
+ValidationRow row_between(std::string what, double value, double uncertainty, std::pair<double, double> expected) {
   ValidationRow row;
   row.what = std::move(what);
   row.value = value;
   row.interval99 = {value - uncertainty, value + uncertainty};
-  row.wanted = wanted;
+  row.expected = expected;
   return row;
 }
 
@@ -107,12 +107,12 @@ Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
     const Vector error = of_runs([&](const Run& run) { return run.theta[k] - kTruth[k]; });
     const double spread = std::sqrt((error.array() - error.mean()).square().sum() / (options.runs - 1)),
                  ratio = spread / kPublishedSpread[k];
-    constexpr double kFarthest = 3.0, kLeast = 0.75, kMost = 1.25, kNormal99 = 2.576;
+    constexpr double kFarthest = 3.0, kMin = 0.75, kMax = 1.25, kNormal99 = 2.576;
     table.rows.push_back(row_between(fmt::format("mean of {}, in its standard errors from the truth", kNames[k]),
                                      error.mean() / (spread / root_runs), 0.0, {-kFarthest, kFarthest}));
     table.rows.push_back(
         row_between(fmt::format("spread of {}, over the published {:g}", kNames[k], kPublishedSpread[k]), ratio,
-                    kNormal99 * ratio / std::sqrt(2.0 * (options.runs - 1)), {kLeast, kMost}));
+                    kNormal99 * ratio / std::sqrt(2.0 * (options.runs - 1)), {kMin, kMax}));
   }
   constexpr double kOrder = 90.0;  // [%]
   table.rows.push_back(at_least_row("order (4, 1) chosen of eight",

@@ -74,7 +74,7 @@ Make at_stop() {
 /// The torque of the first tick, for ever: it begins where there is so much of it.
 Make latched(double least = kLatchedTorque) {
   return [=](RobotFault& fault, Random&) {
-    fault.least_torque = least;
+    fault.min_torque = least;
     fault.drive = [held = Vector2d(0.0, 0.0)](const Vector2d& told, int k) mutable {
       if (k == 0) held = told;
       return held;

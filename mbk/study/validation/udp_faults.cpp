@@ -36,13 +36,13 @@ constexpr int kFaultFreeTrials = 3;  // of a run
 /// Of a trial of forces without a fault [N]. With the 6 N of the others this arm is 80 mm from home within an hour,
 /// where the stop is right.
 constexpr double kFaultFreeForce = 4.0;
-constexpr int kAttempts = 5;           // of a run with a fault, where a recorded stall ends the trial first
-constexpr double kPatience = 30.0;     // for a program beyond its trial [s]
-constexpr double kStall = 0.005;       // between two ticks of the loop, or missed in a row by the robot [s]
-constexpr double kBefore = 1.0;        // a stall explains a trip for so long [s]
-constexpr int kNotConfirmedOff = 7;    // exit code of `mbk run`
-constexpr double kShareWanted = 99.0;  // lower end of the interval of a share [%]
-constexpr double kHandSpeed = 0.4;     // with a flipped sign, trial of positions [m/s]
+constexpr int kAttempts = 5;             // of a run with a fault, where a recorded stall ends the trial first
+constexpr double kPatience = 30.0;       // for a program beyond its trial [s]
+constexpr double kStall = 0.005;         // between two ticks of the loop, or missed in a row by the robot [s]
+constexpr double kBefore = 1.0;          // a stall explains a trip for so long [s]
+constexpr int kNotConfirmedOff = 7;      // exit code of `mbk run`
+constexpr double kShareExpected = 99.0;  // lower end of the interval of a share [%]
+constexpr double kHandSpeed = 0.4;       // with a flipped sign, trial of positions [m/s]
 
 /// What a stall of the loop, the link or the robot's program may look like from the other side.
 constexpr std::array<std::string_view, 12> kOfStalls = {"late",
@@ -317,13 +317,13 @@ Safe safe_state_of(const Outcome& outcome) {
   return off && (outcome.said.confirmed || !began) ? Safe::confirmed : Safe::silently_wrong;
 }
 
-ValidationRow row_of(std::string what, double value, std::optional<std::pair<double, double>> wanted,
+ValidationRow row_of(std::string what, double value, std::optional<std::pair<double, double>> expected,
                      std::string unit) {
   ValidationRow row;
   row.what = std::move(what);
   row.value = value;
   row.interval99 = {value, value};
-  row.wanted = wanted;
+  row.expected = expected;
   row.unit = std::move(unit);
   return row;
 }
@@ -331,7 +331,7 @@ ValidationRow row_of(std::string what, double value, std::optional<std::pair<dou
 /// "at least", by the lower end of the exact 95 % interval: few runs show little.
 ValidationRow share_row(const std::string& what, int good, int of) {
   const double low = of > 0 ? 100.0 * numeric::binomial_interval(good, of, 0.95).first : 0.0;
-  return row_of(fmt::format("{}: {} of {}, a share of at least", what, good, of), low, {{kShareWanted, 100.0}}, "%");
+  return row_of(fmt::format("{}: {} of {}, a share of at least", what, good, of), low, {{kShareExpected, 100.0}}, "%");
 }
 
 /// Upper end of the exact two-sided 95 % interval of a Poisson mean: P(N ≤ n) = 0.025.
@@ -521,7 +521,7 @@ Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
   }
   summary.finish();
   table.notes.push_back(
-      fmt::format("A tick is 1 ms of the robot's clock. Wanted is what docs/guide/safety.md documents, with {} ticks "
+      fmt::format("A tick is 1 ms of the robot's clock. Expected is what docs/guide/safety.md documents, with {} ticks "
                   "of ramp and {} of "
                   "the link. Shares are the lower ends of exact 95 % intervals.",
                   safety::kRampTicks, kLinkTicks));

@@ -289,7 +289,7 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
       "RMSE is against the force that acted, behind the same filters, the worst of all rigs and runs. The momentum "
       "observer comes late, which is its error.");
   table.notes.emplace_back(
-      "Errors are identified − true. Wanted is a quarter of what stands in table 5.4 for method 1, or 3 N/m and 0.02 "
+      "Errors are identified − true. Expected is a quarter of what stands in table 5.4 for method 1, or 3 N/m and 0.02 "
       "kg "
       "where that is less. The larger errors of the source are put down to electrical cables, Coulomb friction, "
       "elastic capstans and springs that are not linear. Of these the simulation has Coulomb friction, and elastic "

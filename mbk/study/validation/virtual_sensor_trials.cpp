@@ -27,9 +27,9 @@ Recording with_force(Recording recording, const Matrix& force) {
 Result<Eigen::Vector2d> force_rmse(const PreparedTrial& trial, const PreparedTrial& truth) {
   Eigen::Vector2d squares(0.0, 0.0);
   Index rows = 0;
-  for (const Stretch& stretch : truth.stretches) {
-    const Index begin = stretch.begin, size = std::min(stretch.size(), trial.force_hand_on_robot.rows() - begin);
-    if (size < stretch.size() || trial.time[begin] != truth.time[begin]) {
+  for (const Segment& segment : truth.segments) {
+    const Index begin = segment.begin, size = std::min(segment.size(), trial.force_hand_on_robot.rows() - begin);
+    if (size < segment.size() || trial.time[begin] != truth.time[begin]) {
       return bad_data("two forces of one recording were prepared differently");
     }
     squares += (trial.force_hand_on_robot - truth.force_hand_on_robot)

@@ -45,7 +45,7 @@ struct Robots {
 /// What one force made of one trial.
 struct Outcome {
   impedance::Model model, standard_error;
-  Vector vaf;            ///< of the model, held back [%]
+  Vector vaf;            ///< of the model, held out [%]
   Eigen::Vector2d rmse;  ///< of the force against what acted, behind the same filters [N]
 };
 

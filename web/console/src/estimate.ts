@@ -76,7 +76,7 @@ export class EstimatePanel {
         "p",
         { class: "tightening" },
         history.length > 1
-          ? `95 % intervals, ${(100 * (history.at(-1) as number)).toFixed(0)} % as wide as in the first estimate. `
+          ? `95 % intervals narrowed by ${(100 * (1 - (history.at(-1) as number))).toFixed(0)} % since the first estimate. `
           : "± is half of the 95 % interval. ",
         `Model explains ${result.fit.VAF.map((value, k) => `${fixed(value, 1)} % in ${"xy"[k]}`).join(", ")}.`,
         result.usable ? "" : h("strong", { class: "care-text" }, estimate.final ? " ▲ Not usable." : " ▲ Not usable yet."),

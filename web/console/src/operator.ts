@@ -285,7 +285,7 @@ class OperatorPage {
           return [waits, h("p", { id: "reset-waits", class: "waits" }, "Reset waits: the robot's stop button is pressed. Release it first."), button("abort", "End the session")];
         }
         return state.reset_code
-          ? [button("reset", "The reason is gone and the person is well: reset", { code: state.reset_code }, "main"), button("abort", "End the session")]
+          ? [button("reset", "Confirm: cause cleared, participant OK; reset", { code: state.reset_code }, "main"), button("abort", "End the session")]
           : [button("reset", "Reset …"), button("abort", "End the session")];
       default:
         return [];

@@ -9,7 +9,7 @@ export interface Line {
   offset: number;
 }
 
-// Okabe and Ito's colours; dashes tell references apart without any
+// Okabe and Ito's colours; dashes distinguish references without any
 const blue = "#0072b2";
 const vermilion = "#d55e00";
 const [ink, grid] = ["#333", "#e4e4e4"];

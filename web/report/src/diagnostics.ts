@@ -44,7 +44,7 @@ function predictionSection(d: Diagnostics, trial: Trial, id: string): Section {
   const { prediction: p } = d;
   const { axes, fit } = trial.result;
   const unit = unitsOf(trial.result).force;
-  const where = p.held_back ? "held-back data" : "the data that made the model";
+  const where = p.held_out ? "held-out data" : "the data that made the model";
   const panels = columns(p.measured).map((measured, axis): Panel => ({
     title: axes === 1 ? "Force" : `Force along ${axisNames(axes)[axis]}`,
     unit,
@@ -105,7 +105,7 @@ function residualSection(d: Diagnostics, trial: Trial, id: string): Section {
       panels: [{ title: "Autocorrelation", unit: "", series, level: { from: -white, to: white, name: "white noise, 95 %" } }],
     });
   }
-  return { title: "What the model leaves over", charts };
+  return { title: "Residual", charts };
 }
 
 function bandOf(trial: Trial): { from: number; to: number; name: string } | undefined {
@@ -161,7 +161,7 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
     charts.push({
       id: `${id}-coherence`,
       title: "Coherence of force and motion",
-      howToRead: "Near 1 in the shaded band, the force follows the motion linearly there; a dip is a frequency at which the limb, or noise, did something else. Within the grey stretch it may be chance.",
+      howToRead: "Near 1 in the shaded band, the force follows the motion linearly there; a dip is a frequency at which the limb, or noise, did something else. Within the grey band it is not significant (95 %).",
       description: `${words} Coherence above ${significant(significantAt, 2)} is not chance.`,
       x: { name: "frequency", unit: "Hz", log: true },
       panels: [{
@@ -169,7 +169,7 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
         unit: "",
         range: [0, 1],
         ...(band ? { band } : {}),
-        level: { from: 0, to: significantAt, name: "may be chance" },
+        level: { from: 0, to: significantAt, name: "not significant (95 %)" },
         series: columns(s.coherence).map((y, axis) => ({
           name: axes === 1 ? "force with motion" : `force along ${axisNames(axes)[axis]}`,
           x,
@@ -250,7 +250,7 @@ function recordingSection(d: Diagnostics, trial: Trial, id: string): Section {
   const panel = (title: string, unit: string, matrix: Columns): Panel => ({
     title,
     unit,
-    ...(how && how.from_s < how.to_s ? { band: { from: how.from_s, to: how.to_s, name: "what counts" } } : {}),
+    ...(how && how.from_s < how.to_s ? { band: { from: how.from_s, to: how.to_s, name: "analysed interval" } } : {}),
     series: columns(matrix).map((y, axis) => ({
       name: axes === 1 ? "recorded" : `along ${axisNames(axes)[axis]}`,
       x: r.time_s,

@@ -16,7 +16,7 @@ const lastOf = (energy: Energy): Value => finite(energy.absorbed_J).at(-1) ?? nu
 
 const basename = (path: string): string => path.split(/[\\/]/).at(-1) ?? path;
 
-/** The recordings of a trial, each with what tells it apart. */
+/** The recordings of a trial, each with what distinguishes it. */
 const recordingsOf = (trial: Trial): Named[] =>
   (trial.energy ?? []).map((energy, k) => ({ name: basename(trial.result.inputs[k]?.file ?? `recording ${k + 1}`), energy }));
 
@@ -29,14 +29,14 @@ function overTime(all: Named[], id: string): Chart {
   return {
     id: `${id}-energy-over-time`,
     title: "Energy that the limb absorbed",
-    howToRead: "Where it rises the limb takes energy from the machine; where it falls the limb gives some. A spring only borrows, so small waves mean nothing: a lasting fall is the mark of an active limb.",
+    howToRead: "Where it rises the limb takes energy from the machine; where it falls the limb gives some. A spring only borrows, so small waves mean nothing: a sustained fall is the mark of an active limb.",
     description: `${words.join("; ")}.`,
     x: { name: "time", unit: "s" },
     panels: [{
       title: "Energy",
       unit: "J",
       zero: true,
-      ...(only ? { band: { from: only.window_s[0], to: only.window_s[1], name: "what counts" } } : {}),
+      ...(only ? { band: { from: only.window_s[0], to: only.window_s[1], name: "analysed interval" } } : {}),
       series: [
         ...all.map(({ name, energy }, k) => ({ name: only ? "absorbed" : name, x: energy.time_s, y: energy.absorbed_J, style: styleOf(k) })),
         ...curl,
@@ -77,6 +77,12 @@ function perPart(all: Named[], unit: string, id: string): Chart | undefined {
   };
 }
 
+/** An excess is a shortage of the other sign. */
+function negated(value: Value, [low, high]: [Value, Value]): [Value, [Value, Value]] {
+  const minus = (one: Value): Value => (one === null ? null : -one);
+  return [minus(value), [minus(high), minus(low)]];
+}
+
 function accountTable(columns: { name: string; key: string; account: EnergyAccount }[], unit: string): HTMLElement {
   const row = (name: string, shown: string, key: string, of: (account: EnergyAccount) => [Value, [Value, Value]]): (Node | string)[] => [
     name,
@@ -89,8 +95,8 @@ function accountTable(columns: { name: string; key: string; account: EnergyAccou
     ["verdict", ...columns.map(({ account }) => verdictBadge(account.verdict))],
     row("absorbed", "J", "absorbed", (a) => [a.absorbed_J, a.interval95]),
     row("mean power", "W", "power", (a) => [a.mean_power_W, a.mean_power_interval95]),
-    row("shortage of passivity at the end", unit, "shortage-end", (a) => [a.shortage.at_end, a.shortage.at_end_interval95]),
-    row("largest shortage on the way", unit, "shortage-largest", (a) => [a.shortage.largest, a.shortage.largest_interval95]),
+    row("excess of passivity at the end", unit, "excess-end", (a) => negated(a.shortage.at_end, a.shortage.at_end_interval95)),
+    row("excess, worst case during the trial", unit, "excess-worst", (a) => negated(a.shortage.largest, a.shortage.largest_interval95)),
     ["intervals rest on", ...columns.map(({ account }) => `${account.blocks} parts`)],
   ], "numbers account");
 }
@@ -108,12 +114,12 @@ export function energySection(trial: Trial, id: string, level: HeadingLevel): HT
     heading(level, "Energy"),
     h("p", {}, "What the limb took from the machine, by force and motion alone: no model is needed. In short: ", h("span", { "data-name": "energy-reason" }, (account ?? recordings[0]?.energy.account)?.reason ?? ""), "."),
     accountTable(rows, units.B),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "The shortage of passivity is the damping that would have to be added for the limb to have given nothing. Below zero it is an excess: so much damping could be taken away."),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "The excess of passivity is the damping that could be removed before the limb would have generated energy. A negative excess is a shortage: the damping that would have to be added."),
     ...(recordings.length ? [figure(overTime(recordings, id))] : []),
     parts ? figure(parts) : "",
     curl && recordings.length === 1
       ? h("p", {}, "The antisymmetric stiffness of ", data(curl.k_a, significant(curl.k_a), "curl-k_a"), ` ${units.K} absorbed `, data(curl.absorbed_J, significant(curl.absorbed_J), "curl-absorbed"), " J of it",
-        curl.share === null ? "" : [" (", `${fixed(100 * curl.share, 0)} %`, ")"].join(""), ". No spring can: it is the work of the model's curl along the path of the hand.")
+        curl.share === null ? "" : [" (", `${fixed(100 * curl.share, 0)} %`, ")"].join(""), ". No spring can: it is the work of the model's antisymmetric (rotational) stiffness along the path of the hand.")
       : "");
 }
 

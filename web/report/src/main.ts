@@ -96,7 +96,7 @@ function foot(): HTMLElement {
 }
 
 const reproduceSection = (command: string, software: string): HTMLElement =>
-  h("section", { id: "reproduce" }, heading(2, "How to make it again"),
+  h("section", { id: "reproduce" }, heading(2, "How to reproduce this"),
     h("p", {}, "The same files, options and version give the same numbers, digit for digit, and this same page."),
     h("pre", { class: "command" }, command),
     h("p", {}, "Made with ", h("strong", {}, software), "."));

@@ -39,7 +39,7 @@ function disagreement(trial: Trial): HTMLElement | undefined {
   const numbers = [`They differ most in ${parameterName(d.parameter)}: by `, withHalfWidth(d.iv_less_ls, d.standard_error, "iv-less-ls"), ` ${unit}`];
   if (!d.significant) return h("p", { "data-significant": "false" }, h("strong", {}, "The two methods agree within chance. "), ...numbers, ".");
   return h("p", { "data-significant": "true" }, h("strong", {}, "The two methods disagree beyond chance. "), ...numbers,
-    `. Least squares takes what the ${axes === 1 ? "limb" : "arm"} does on its own account, by will or by reflex, for mechanics. Instrumental variables look only at what follows the known perturbation, and what the limb does of itself does not follow it. Where the instruments are strong and the two disagree, the latter speak for the limb.`);
+    `. Least squares takes what the ${axes === 1 ? "limb" : "arm"} does on its own account, voluntarily or by reflex, for mechanics. Instrumental variables look only at what follows the known perturbation, and what the limb does of itself does not follow it. Where the instruments are strong and the two disagree, the latter support the limb.`);
 }
 
 function instrumentTable(instrument: Instrument, trial: Trial): HTMLElement {
@@ -51,7 +51,7 @@ function instrumentTable(instrument: Instrument, trial: Trial): HTMLElement {
       "They are made from the commanded ", instrument.reference, "; the weakest first-stage F is ", data(instrument.weakest_F, significant(instrument.weakest_F), "weakest-F"),
       instrument.strong ? ", above the customary 10." : ", not above the customary 10: do not rely on the model of instrumental variables.",
       " Of the force that instrumental variables leave unexplained, this share answers the perturbation all the same, by reflex or because the limb is more than inertia, damping and stiffness: ",
-      perAxis(instrument.answered_share.map((share) => (share === null ? null : 100 * share)), 0, "%", "answered"), "."),
+      perAxis(instrument.coherent_residual_fraction.map((share) => (share === null ? null : 100 * share)), 0, "%", "answered"), "."),
     table("Strength of the instruments: first-stage F of each signal, given the others", ["", "F", ""], rows, "numbers narrow instruments"));
 }
 
@@ -78,7 +78,7 @@ function bootstrapTable(b: Bootstrap): HTMLElement {
   });
   return h("div", {},
     table("95 % intervals by bootstrap beside those by linearisation (delta method)", ["", "value", "bootstrap", "delta method", "unit"], rows, "numbers bootstrap"),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `The measurement was made again ${b.replicates} times from blocks of ${plain(b.block_s)} s drawn from the recording (seed ${b.seed}). Where the two intervals differ much, trust the bootstrap's: the delta method takes everything for straight, which angles and eigenvalues are not.`));
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `The measurement was repeated ${b.replicates} times on blocks of ${plain(b.block_s)} s drawn from the recording (seed ${b.seed}). Where the two intervals differ much, trust the bootstrap's: the delta method takes everything for straight, which angles and eigenvalues are not.`));
 }
 
 /** What a second method and a second kind of interval say. */

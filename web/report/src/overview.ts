@@ -9,7 +9,7 @@ import { energySideBySide } from "./energy";
 import { verdictBadge } from "./passivity";
 import { verdict } from "./summary";
 
-/** "P1, relaxed", or the name of the file where nothing else tells it apart. */
+/** "P1, relaxed", or the name of the file where nothing else distinguishes it. */
 export function nameOf(trial: Trial, all: Trial[]): string {
   const said = (one: Trial) => [participantOf(one), conditionOf(one)].filter(Boolean).join(", ");
   const name = said(trial);

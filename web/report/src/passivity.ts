@@ -58,7 +58,7 @@ export function passivitySection(trial: Trial, id: string, level: HeadingLevel):
       h("div", {},
         h("p", {}, h("strong", {}, `${word}. `), meaning),
         h("p", {}, `${decidedBy(passivity)}: `, h("span", { "data-name": "reason" }, passivity.reason), `. ${holds(passivity)}`))),
-    passivity.explained_percent === null ? "" : h("p", {}, "Inertia, damping and stiffness explain ", data(passivity.explained_percent, `${fixed(passivity.explained_percent, 0)} %`, "explained"), " of the force at best. The more that is, the more their verdict says of the limb."),
+    passivity.explained_percent === null ? "" : h("p", {}, "Inertia, damping and stiffness explain ", data(passivity.explained_percent, `${fixed(passivity.explained_percent, 0)} %`, "explained"), " of the force at best. The higher this is, the more reliable the model-based verdict."),
     ways(passivity, unitsOf(trial.result).B),
     trial.result.disagreement?.significant
       ? h("p", {}, "The two methods disagree beyond chance: the limb did something on its own account, which least squares takes for mechanics. ", h("a", { href: `#${id}-methods` }, "Both beside each other"), ".")

@@ -54,9 +54,9 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
     h("span", {}, name ? `${name} ` : "", withHalfWidth(model.x0[j] ?? null, error.x0[j] ?? null, `x0${j}`, millimetres ? 1000 : 1)));
   rows.push(["equilibrium x₀", ...equilibrium, ...(axes === 1 ? [] : ["", ""]), millimetres ? "mm" : units.x0]);
   const fitRows: (Node | string)[][] = [
-    [`VAF on ${fit.validated_on === "held-back" ? "held-back data" : "the same data"}`, perAxis(fit.VAF, 2, "%", "VAF")],
+    [`VAF on ${fit.validated_on === "held-out" ? "held-out data" : "the same data"}`, perAxis(fit.VAF, 2, "%", "VAF")],
     ["VAF in sample", perAxis(fit.VAF_in_sample, 2, "%", "VAF_in_sample")],
-    [`RMSE on ${fit.validated_on === "held-back" ? "held-back data" : "the same data"}`, perAxis(fit.RMSE, 3, units.force, "RMSE")],
+    [`RMSE on ${fit.validated_on === "held-out" ? "held-out data" : "the same data"}`, perAxis(fit.RMSE, 3, units.force, "RMSE")],
   ];
   return h(
     "section",
@@ -105,7 +105,7 @@ function preparationFacts(trial: Trial): HTMLElement[] {
       facts([
         ["Protocol", `${how.protocol}: ${how.protocol_rule}`],
         ["Window", `${plain(how.from_s, 6)} s to ${plain(how.to_s, 6)} s: ${how.window_rule}`],
-        ["Held back from", how.split_s === undefined ? undefined : `${plain(how.split_s, 6)} s`],
+        ["Held out from", how.split_s === undefined ? undefined : `${plain(how.split_s, 6)} s`],
         ["Perturbations", how.perturbations === undefined ? undefined : String(how.perturbations)],
         ["Smoothing", `Savitzky–Golay, order ${how.savitzky_golay.order}, window ${how.savitzky_golay.window} samples`],
         ["Low-pass", how.cutoff_hz === null ? "none" : `zero-phase Butterworth of order 5, ${plain(how.cutoff_hz, 4)} Hz: ${how.cutoff_rule}`],
@@ -137,14 +137,14 @@ export function provenanceSection(trial: Trial, id: string, level: HeadingLevel)
   return h(
     "section",
     { id: `${id}-provenance` },
-    heading(level, "Where the numbers come from"),
+    heading(level, "Methods and provenance"),
     table("Files", ["file", "format", "SHA-256"], inputs, "files"),
     ...preparationFacts(trial),
     facts([
       ["Estimator", `${methodNames[result.method]}, structure ${result.structure}`],
       ["Data behind the parameters", `${plain(e.duration_s, 4)} s, ${e.samples} samples (${e.parameters_from})`],
       ["Reach of the noise's memory", `${plain(e.hac_lag_s, 3)} s in the standard errors`],
-      ["Handle taken off the inertia", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "nothing"],
+      ["Handle mass subtracted", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "none"],
       ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes === 2 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it across the main direction` : ""}`],
       ["Condition of the regressors", `${significant(x.condition, 2)}, rank ${x.rank}`],
       ["Fitted again at a lower rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(percent(result.decimate_check.largest_relative_change), 2)} %` : undefined],

@@ -25,18 +25,18 @@ export function verdict(trial: Judged): { kind: "good" | "care" | "bad"; sign: s
     return { kind: "bad", sign: "✕", word: "Not usable", reason: `Do not report these numbers: ${titles || "see the warnings"}.` };
   }
   if (warnings.length > 0) return { kind: "care", sign: "!", word: "Usable with care", reason: `There is something to know first: ${titles}.` };
-  return { kind: "good", sign: "✓", word: "Usable", reason: "Nothing about the recording or the fit speaks against it." };
+  return { kind: "good", sign: "✓", word: "Usable", reason: "Nothing about the recording or the fit argues against it." };
 }
 
 function fitSentence(trial: Trial): HTMLElement {
   const { fit, axes } = trial.result;
-  const heldBack = fit.validated_on === "held-back";
+  const heldOut = fit.validated_on === "held-out";
   const parts: (Node | string)[] = ["The model explains "];
   fit.VAF.forEach((value, axis) => {
     if (axis > 0) parts.push(" and ");
     parts.push(data(value, value === null ? "an undefined share" : `${fixed(value, value > 99 ? 1 : 0)} %`), axes === 1 ? " of the force" : ` of the force along ${"xy"[axis]}`);
   });
-  parts.push(heldBack ? ", on data that had no share in making it" : ", on the very data that made it, which flatters it");
+  parts.push(heldOut ? ", on held-out data" : ", on the data to which it was fitted, which is optimistic");
   const worst = fit.VAF.reduce<number>((least, value) => Math.min(least, value ?? -Infinity), Infinity);
   const judgement = worst >= 90 ? "That is a very good fit." : worst >= 80 ? "That is a good fit." : worst >= 70 ? "That is a fair fit." : "That is a poor fit.";
   parts.push(`. ${trial.result.usable ? `${judgement} ` : ""}100 % would be everything.`);
@@ -76,10 +76,10 @@ function card(trial: Trial, symbol: "M" | "B" | "K", name: "inertia" | "damping"
     const angle = ellipse.orientation_deg ?? 0;
     const [low, high] = ellipse.interval95.orientation_deg;
     parts.push(
-      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, h("span", { class: "half" }, " at most")),
+      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, h("span", { class: "half" }, " maximum (major axis)")),
       h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
         h("span", { class: "half" }, low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : ""), ` from x, ${direction(angle)}`),
-      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), ` ${unit} across that`),
+      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), ` ${unit} perpendicular (minor axis)`),
     );
     if (small > 0) parts.push(h("p", {}, everyday(symbol, large, unit)));
   } else {

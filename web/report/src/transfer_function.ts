@@ -38,7 +38,7 @@ export function transferFunctionHead({ result, note }: TransferFunctionReport): 
       ["Output", named(result.output)],
       ["Reference", result.reference],
       ["Method", methods[result.method] ?? result.method],
-      ["Samples", `${result.samples} in ${result.experiments === 1 ? "one stretch" : `${result.experiments} stretches`}, ${result.even_clock ? "every" : "unevenly spaced, about every"} ${significant(result.sample_time_s === null ? null : 1000 * result.sample_time_s, 4)} ms`],
+      ["Samples", `${result.samples} in ${result.experiments === 1 ? "one segment" : `${result.experiments} segments`}, ${result.even_clock ? "every" : "unevenly spaced, about every"} ${significant(result.sample_time_s === null ? null : 1000 * result.sample_time_s, 4)} ms`],
       ["Excited band", bandOf(result) ? `${plain(bandOf(result)?.from, 3)} to ${plain(bandOf(result)?.to, 3)} Hz` : undefined],
     ]));
 }
@@ -82,8 +82,8 @@ function formula(result: TransferFunction): HTMLElement {
 function summary(report: TransferFunctionReport): HTMLElement {
   const { result } = report;
   const said = verdict({ result, plainly: transferFunctionWarnings });
-  const explained = result.fit.R2_held_back ?? result.fit.R2_in_sample;
-  const where = result.fit.R2_held_back === undefined ? "of the very data that made it, which flatters it" : "of data that had no share in making it";
+  const explained = result.fit.R2_held_out ?? result.fit.R2_in_sample;
+  const where = result.fit.R2_held_out === undefined ? "of the data to which it was fitted, which is optimistic" : "of held-out data";
   return h("section", { id: "summary" }, heading(2, "In short"),
     h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
@@ -211,20 +211,20 @@ function responseSection(result: TransferFunction): HTMLElement {
       title: "Bode plot",
       unit,
       band: bandOf(result),
-      howToRead: "How much the output answers to the input at each frequency, and by how much it lags. Within the shaded stretch the data speak; beyond it the form of the model does.",
+      howToRead: "How much the output answers to the input at each frequency, and by how much it lags. Within the shaded band the data speak; beyond it the form of the model does.",
     })),
     nyquist(result.frequency_response, bandOf(result), "nyquist", "Nyquist plot", unit));
 }
 
 function simulationSection({ simulation: s, result }: TransferFunctionReport): HTMLElement | undefined {
   if (s.time_s.length === 0) return undefined;
-  const where = s.held_back ? "held-back data" : "the data that made the model";
+  const where = s.held_out ? "held-out data" : "the data that made the model";
   return h("section", { id: "simulation" }, heading(2, `Measured and simulated output, on ${where}`),
     figure({
       id: "simulated",
       title: `Measured and simulated output on ${where}`,
       howToRead: "The model had the input alone, and the state at the start. The closer the dashed line keeps to the solid one, the better the model.",
-      description: `The model explains ${significant(100 * (result.fit.R2_held_back ?? result.fit.R2_in_sample ?? 0), 4)} per cent of the output.`,
+      description: `The model explains ${significant(100 * (result.fit.R2_held_out ?? result.fit.R2_in_sample ?? 0), 4)} per cent of the output.`,
       x: { name: "time", unit: "s" },
       panels: [{
         title: "Output",
@@ -253,14 +253,14 @@ function residualSection(result: TransferFunction): HTMLElement {
   const { residuals: r, fit } = result;
   const share = (value: Value): string => (value === null ? "undefined" : `${fixed(100 * value, 0)} % of ${r.lags} lags`);
   const rows = [
-    ["Is it noise without memory?", r.white ? "nothing speaks against it" : "no: it is coloured", `p = ${significant(r.whiteness_p, 2)}`, share(r.autocorrelation_outside)],
-    ["Does the input still explain something of it?", r.independent_of_input ? "nothing speaks for it" : "yes: the model misses a part", `p = ${significant(r.cross_p, 2)}`, share(r.cross_correlation_outside)],
+    ["Is it noise without memory?", r.white ? "nothing argues against it" : "no: it is coloured", `p = ${significant(r.whiteness_p, 2)}`, share(r.autocorrelation_outside)],
+    ["Does the input still explain something of it?", r.independent_of_input ? "nothing supports it" : "yes: the model misses a part", `p = ${significant(r.cross_p, 2)}`, share(r.cross_correlation_outside)],
   ];
   const unit = result.output.unit ? ` ${shownUnit(result.output.unit)}` : "";
-  return h("section", { id: "residuals" }, heading(2, "What the model leaves over"),
+  return h("section", { id: "residuals" }, heading(2, "Residual"),
     table("Tests of the residual", ["", "answer", "probability by chance", "beyond the 99 % limit"], rows, "tests"),
     facts([
-      ["Held back", fit.R2_held_back === undefined ? undefined : `R² ${fixed(fit.R2_held_back, 5)}, RMSE ${significant(fit.RMSE_held_back, 4)}${unit}`],
+      ["Held out", fit.R2_held_out === undefined ? undefined : `R² ${fixed(fit.R2_held_out, 5)}, RMSE ${significant(fit.RMSE_held_out, 4)}${unit}`],
       ["In sample", `R² ${fixed(fit.R2_in_sample, 5)}, noise ${significant(fit.noise_standard_deviation, 4)}${unit}`],
       ["YIC, AIC, BIC", `${fixed(fit.YIC, 2)}, ${fixed(fit.AIC, 1)}, ${fixed(fit.BIC, 1)}`],
       ["Starts", `${result.starts.length} tried, ${result.starts.filter((start) => start.converged).length} settled`],
@@ -268,7 +268,7 @@ function residualSection(result: TransferFunction): HTMLElement {
 }
 
 function provenance(result: TransferFunction): HTMLElement {
-  return h("section", { id: "provenance" }, heading(2, "Where the numbers come from"),
+  return h("section", { id: "provenance" }, heading(2, "Methods and provenance"),
     table("Files", ["file", "format", "SHA-256"], result.inputs.map((input) => [h("span", { class: "path" }, input.file), input.format, h("code", { class: "hash" }, input.sha256)]), "files"),
     result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted when the file was read")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
 }

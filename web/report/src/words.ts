@@ -7,8 +7,8 @@ export const methodNames: Record<Method, string> = { ls: "least squares", iv: "i
 /** Those that speak of a limb, said of any system. */
 export const transferFunctionWarnings: PlainWarnings = {
   ...plainWarnings,
-  "held-back-fit-poor": {
-    title: "The model does badly on the part of the recording that was held back",
+  "held-out-fit-poor": {
+    title: "The model does badly on the part of the recording that was held out",
     meaning: "The system probably changed, or the model is too small or too large.",
   },
   "fit-poor": {
@@ -20,7 +20,7 @@ export const transferFunctionWarnings: PlainWarnings = {
 /** Terms of a report on a transfer function. */
 export const transferFunctionGlossary: [string, string][] = [
   ["Transfer function", "How a linear system turns an input into an output, as a fraction of two polynomials of s, the derivative with respect to time. Discrete models have q⁻¹, the last sample, instead."],
-  ["Pole", "A root of the denominator: a way in which the system moves by itself. A pair is an oscillation, with a frequency and a damping; a single one is a decay."],
+  ["Pole", "A root of the denominator: a way in which the system moves freely. A pair is an oscillation, with a frequency and a damping; a single one is a decay."],
   ["Zero", "A root of the numerator: what the system does not let through."],
   ["Damping ζ", "Of an oscillation: 0 goes on for ever, 1 just does not swing any more."],
   ["Gain", "Output over input: at frequency zero, what a constant input ends in."],
@@ -31,7 +31,7 @@ export const transferFunctionGlossary: [string, string][] = [
   ["RMSE", "Root mean square error: the typical size of what the model does not explain, in the unit of the output."],
   ["YIC", "Young's criterion: low where the model fits well with coefficients that are well determined. Too many poles make it rise."],
   ["AIC, BIC", "Criteria that weigh the fit against the number of coefficients; lower is better."],
-  ["Held-back data", "A part of the recording that had no share in making the model, on which it is then tested."],
+  ["Held-out data", "Validation data: a part of the recording that was not used for fitting, on which the model is then tested."],
   ["Excited band", "The frequencies that hold 96 % of the input's power. The model holds within it; beyond, it rests on its form."],
   ["Residual", "Measured minus simulated output."],
   ["Admittance, impedance", "Motion over force, and force over motion: each the inverse of the other."],
@@ -59,7 +59,7 @@ export const glossary: [string, string][] = [
   ["± and brackets", "95 % intervals: of a hundred such intervals, about 95 hold the true value. They know of noise and of its slow changes, but of no error in the model itself."],
   ["VAF", "Variance accounted for: the share of the force's variation that the model explains, in per cent. 100 % is everything; 0 % is no better than a constant."],
   ["RMSE", "Root mean square error: the typical size of what the model does not explain, in the unit of the force."],
-  ["Held-back data", "A part of the recording that had no share in making the model, on which it is then tested."],
+  ["Held-out data", "Validation data: a part of the recording that was not used for fitting, on which the model is then tested."],
   ["Residual", "Measured minus predicted force. If it is noise without memory, nothing is left to explain."],
   ["Autocorrelation", "How much the residual resembles itself some time later. White noise stays within the shaded band."],
   ["Coherence", "At each frequency, how much of the force a linear relation with the motion could explain at best: from 0, nothing, to 1, everything."],
@@ -75,6 +75,6 @@ export const glossary: [string, string][] = [
   ["Least squares", "The M, B, K that leave the least force unexplained. Where the limb acts on its own account, that is taken for mechanics too."],
   ["Instrumental variables", "M, B, K from what follows the known perturbation alone. What the limb does of itself does not follow it, and so drops out."],
   ["First-stage F", "How well the known perturbation predicts a signal that the model needs. Below 10 it predicts too little to rely on."],
-  ["Bootstrap", "The measurement made again many times from parts of itself, drawn by chance: how much it varies shows how sure it is."],
+  ["Bootstrap", "The measurement repeated many times on randomly drawn parts of the recording: its spread shows its uncertainty."],
   ["Reference circle", "The ellipse of something equally stiff (damped, heavy) in all directions, of the value that is written on it."],
 ];

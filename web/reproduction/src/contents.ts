@@ -120,7 +120,7 @@ export function contents(groups: Group[], articles: Map<string, HTMLElement>): C
   const nav = h("nav", { "aria-label": "Contents" }, h("ul", {}, ...lists.map(({ element }) => element)));
   const form = h("form", { role: "search", "aria-label": "Filter" },
     h("label", { for: "filter-text" }, "Filter"), search,
-    h("fieldset", {}, h("legend", {}, "Where our numbers come from"), ...boxes.map(({ label }) => label)),
+    h("fieldset", {}, h("legend", {}, "Provenance of our numbers"), ...boxes.map(({ label }) => label)),
     h("label", { for: "filter-agreement" }, "With"), agreement,
     h("div", { class: "filter-foot" }, shownCount, clear),
     h("label", { class: "all-differences" }, differences, "Show differences in all tables"));

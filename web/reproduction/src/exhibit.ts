@@ -1,4 +1,4 @@
-// One thing of the source, made again.
+// One item of the source, reproduced.
 import type { Exhibit } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
 import { chartsBlock } from "./charts";

@@ -7,9 +7,9 @@ import { agreements, provenances, provenanceSign } from "./words";
 export function head(reproduction: Reproduction): HTMLElement {
   return h("header", { class: "page-head" },
     h("p", { class: "kicker" }, "Reproduction"),
-    h("h1", {}, "The thesis, made again"),
+    h("h1", {}, "Reproduction of the thesis"),
     h("p", { class: "source" }, reproduction.source),
-    h("p", {}, "mbk grew from this thesis. Its tables and figures are made again here, one by one, beside the printed numbers, with the slips found in it, its research questions and its future work."));
+    h("p", {}, "mbk grew from this thesis. Its tables and figures are reproduced here, one by one, beside the printed numbers, with the slips found in it, its research questions and its future work."));
 }
 
 /** @param show  asked with the agreement whose exhibits are to be shown */
@@ -40,7 +40,7 @@ export function tallySection(reproduction: Reproduction, show: (agreement: strin
 export function legendSection(reproduction: Reproduction): HTMLElement {
   const each = (provenance: Provenance) => reproduction.exhibits.filter((exhibit) => provenancesOf(exhibit).has(provenance)).length;
   return h("section", { id: "legend", "aria-labelledby": "legend-heading" },
-    h("h2", { id: "legend-heading" }, "Where our numbers come from"),
+    h("h2", { id: "legend-heading" }, "Provenance of our numbers"),
     h("dl", { class: "provenances" },
       ...(Object.keys(provenances) as Provenance[]).map((provenance) =>
         h("div", { class: provenances[provenance].name },

@@ -31,9 +31,9 @@ export interface Panel {
   range?: [number, number];
   /** Between two lines of the grid. */
   interval?: number;
-  /** Stretch of x that is shaded, with its name. */
+  /** Segment of x that is shaded, with its name. */
   band?: { from: number; to: number; name: string };
-  /** Stretch of y that is shaded, with its name. */
+  /** Segment of y that is shaded, with its name. */
   level?: { from: number; to: number; name: string };
   /** A line at zero. */
   zero?: boolean;

@@ -34,18 +34,18 @@ export const plainWarnings: PlainWarnings = {
     meaning: "The motion is close to the smallest step that the sensor can tell, so the numbers are coarse.",
   },
   "poorly-conditioned": {
-    title: "The motion was too simple to tell inertia, damping and stiffness apart",
+    title: "The motion was too simple to identify inertia, damping and stiffness separately",
     meaning: "Each of the three could stand in for another.",
   },
-  "held-back-fit-poor": {
-    title: "The model does worse on the part of the recording that was held back",
+  "held-out-fit-poor": {
+    title: "The model does worse on the part of the recording that was held out",
     meaning: "The limb probably changed during the trial, or there is too little data.",
   },
   "fit-poor": {
     title: "Much of the force is not explained",
     meaning: "The limb may have acted by will or by reflex. Do not read the numbers as those of a relaxed limb.",
   },
-  "no-held-back-data": {
+  "no-held-out-data": {
     title: "The fit was judged on the data that made it",
     meaning: "It looks better than it would on new data.",
   },
@@ -74,7 +74,7 @@ export const plainWarnings: PlainWarnings = {
     meaning: "As they are read, the robot would be a thousand times too heavy or too light.",
   },
   "residual-not-white": {
-    title: "What the model leaves over is not noise without memory",
+    title: "The residual is not white noise",
     meaning: "The ± intervals take it as that, and are narrower than they should be.",
   },
   "input-explains-residual": {
@@ -87,6 +87,6 @@ export const plainWarnings: PlainWarnings = {
   },
   "uneven-clock": {
     title: "The samples are unevenly spaced",
-    meaning: "The model allows for it; the tests of what is left over do not.",
+    meaning: "The model allows for it; the tests of the residual do not.",
   },
 };

@@ -7,25 +7,25 @@
 #include "mbk/base/dsp/derivative_filter.h"
 
 /// @file
-/// A recursive filter over a long record waits for its own last result. Cut into stretches of equal length that run
+/// A recursive filter over a long record waits for its own last result. Cut into segments of equal length that run
 /// side by side it does not, once the state at the beginning of each is known; and that is linear algebra:
 ///   x(begin of the next) = Φᵐ x(begin) + what the input of m samples adds from rest.
 /// The inner loops are compiled for several processors; which runs is decided where the program runs.
 namespace mbk::dsp {
 
-inline constexpr Index kStretches = 16;
+inline constexpr Index kSegments = 16;
 
-/// One sample of each stretch.
+/// One sample of each segment.
 struct alignas(64) Abreast {
-  std::array<double, kStretches> values;
+  std::array<double, kSegments> values;
 };
 
-/// Signals of N samples as stretches: value l of row i is sample l·m + i, m = ⌈N/16⌉, and 0 after the last.
-class Stretches {
+/// Signals of N samples as segments: value l of row i is sample l·m + i, m = ⌈N/16⌉, and 0 after the last.
+class Segments {
  public:
-  Stretches() = default;
-  /// @param signals  of equal length    @param overlap  rows beyond the m + 1 that lead to the next stretch
-  explicit Stretches(const std::vector<const Vector*>& signals, Index overlap = 0);
+  Segments() = default;
+  /// @param signals  of equal length    @param overlap  rows beyond the m + 1 that lead to the next segment
+  explicit Segments(const std::vector<const Vector*>& signals, Index overlap = 0);
   [[nodiscard]] Index length() const { return length_; }  ///< m
   /// Row i of one of the signals; the following ones come after it.
   [[nodiscard]] const double* row(Index signal, Index i) const {
@@ -37,11 +37,11 @@ class Stretches {
   std::unique_ptr<Abreast[]> rows_;
 };
 
-/// States at the beginning of each stretch, at rest before the first sample: as many rows as there are states.
+/// States at the beginning of each segment, at rest before the first sample: as many rows as there are states.
 /// @param input  which of the signals
-[[nodiscard]] Matrix states_at_starts(const HeldStep& system, const Stretches& signals, Index input);
+[[nodiscard]] Matrix states_at_starts(const HeldStep& system, const Segments& signals, Index input);
 
-/// The same of the free motion from `state` at the first sample, for stretches of `length` samples.
+/// The same of the free motion from `state` at the first sample, for segments of `length` samples.
 [[nodiscard]] Matrix free_at_starts(const Matrix& transition, const Vector& state, Index length);
 
 /// Two of the same filter one behind the other: the second one's input is weightsᵀx + through·u of the first.
@@ -56,13 +56,13 @@ struct Rows {
   [[nodiscard]] double* row(Index r) const { return data + r * stride; }
 };
 
-/// The filter over all stretches at once.
-class StretchFilter {
+/// The filter over all segments at once.
+class SegmentFilter {
  public:
-  /// @param starts  states at the first sample of each stretch, n×16
-  StretchFilter(const HeldStep& filter, const Matrix& starts);
+  /// @param starts  states at the first sample of each segment, n×16
+  SegmentFilter(const HeldStep& filter, const Matrix& starts);
 
-  /// The next samples of every stretch; the first are those of the start itself.
+  /// The next samples of every segment; the first are those of the start itself.
   /// @param input  rows of 16, the next `count` of them    @param states  n rows, 16·count columns
   void run(const double* input, Index count, Rows states);
 

@@ -1,4 +1,4 @@
-#include "mbk/measure/analyse/thinning.h"
+#include "mbk/measure/analyse/decimation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <tuple>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
+
 namespace mbk::analyse {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Index total_of(const std::vector<Rows>& pieces) {
   Index total = 0;
@@ -17,10 +17,10 @@ Index total_of(const std::vector<Rows>& pieces) {
   return total;
 }
 
-/// Of so many rows one is kept, or two with their extremes.
-Index bucket_of(Index total, Thinning how) {
+/// Of N rows one is kept, or two with their extremes.
+Index bucket_of(Index total, Decimation how) {
   if (total <= kDrawnRows) return 1;
-  const Index kept = how == Thinning::extremes ? 2 : 1;
+  const Index kept = how == Decimation::extremes ? 2 : 1;
   return (kept * total + kDrawnRows - 1) / kDrawnRows;
 }
 
@@ -40,14 +40,14 @@ std::pair<double, double> extremes_of(const Eigen::Ref<const Vector>& part) {
 
 std::vector<Rows> rows_of(const PreparedTrial& trial, std::optional<Purpose> purpose) {
   std::vector<Rows> rows;
-  for (const Stretch& stretch : trial.stretches) {
-    if (purpose && stretch.purpose != *purpose) continue;
-    const bool follows = !rows.empty() && rows.back().end == stretch.begin &&
-                         trial.time[stretch.begin] - trial.time[stretch.begin - 1] < 1.5 * trial.sample_time;
+  for (const Segment& segment : trial.segments) {
+    if (purpose && segment.purpose != *purpose) continue;
+    const bool follows = !rows.empty() && rows.back().end == segment.begin &&
+                         trial.time[segment.begin] - trial.time[segment.begin - 1] < 1.5 * trial.sample_time;
     if (follows) {
-      rows.back().end = stretch.end;
+      rows.back().end = segment.end;
     } else {
-      rows.push_back({stretch.begin, stretch.end, stretch.first_sample});
+      rows.push_back({segment.begin, segment.end, segment.first_sample});
     }
   }
   return rows;
@@ -69,15 +69,15 @@ std::vector<Rows> pieces_between_gaps(const Vector& time) {
   return pieces;
 }
 
-Thinning thinning_of(const PreparedTrial& trial, const std::vector<Rows>& pieces) {
-  const double step = static_cast<double>(bucket_of(total_of(pieces), Thinning::every)) * trial.sample_time;
+Decimation decimation_of(const PreparedTrial& trial, const std::vector<Rows>& pieces) {
+  const double step = static_cast<double>(bucket_of(total_of(pieces), Decimation::every)) * trial.sample_time;
   const auto& cutoff = trial.preparation.cutoff;
-  return cutoff && 4.0 * step * cutoff->value <= 1.0 ? Thinning::every : Thinning::extremes;
+  return cutoff && 4.0 * step * cutoff->value <= 1.0 ? Decimation::every : Decimation::extremes;
 }
 
-Series thinned(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces, Thinning how) {
+Series decimated(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces, Decimation how) {
   const Index bucket = bucket_of(total_of(pieces), how), columns = values.cols();
-  const bool all = bucket == 1 || how == Thinning::every;
+  const bool all = bucket == 1 || how == Decimation::every;
   const Index most = 2 * total_of(pieces) / bucket + 3 * static_cast<Index>(pieces.size());
   Series series{Vector(most), Matrix(most, columns)};
   Index row = 0;

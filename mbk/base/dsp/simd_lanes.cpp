@@ -1,4 +1,4 @@
-#include "mbk/base/dsp/lanes.h"
+#include "mbk/base/dsp/simd_lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -164,8 +164,8 @@ template <std::size_t Sums>
 /// Two lanes of one derivative beside two of another: the halves of a row that most outputs are made of.
 struct Pairs {
   double* to;
-  int halves;                                    ///< 2·(half of the sums for the first pair) + that for the second
-  std::array<double, kLanes * kMostSums> share;  ///< of each sum, four values: what it contributes to each lane
+  int halves;                                   ///< 2·(half of the sums for the first pair) + that for the second
+  std::array<double, kLanes * kMaxSums> share;  ///< of each sum, four values: what it contributes to each lane
 };
 
 template <std::size_t Sums>
@@ -389,12 +389,12 @@ void smooth(const RunningSums& f, const double* rows, Index count, std::span<con
     return kPairs[has_x86_64_v3() ? 1 : 0][order](f, rows, count, pairs->data(), pairs->size());
   }
   using Smooth = void (*)(const RunningSums&, const double*, Index, const Destination*, std::size_t);
-  static constexpr Smooth kSmooth[2][3][kMostDerivatives] = {{{smooth_any<3, 1>, smooth_any<3, 2>, smooth_any<3, 3>},
-                                                              {smooth_any<5, 1>, smooth_any<5, 2>, smooth_any<5, 3>},
-                                                              {smooth_any<7, 1>, smooth_any<7, 2>, smooth_any<7, 3>}},
-                                                             {{smooth_v3<3, 1>, smooth_v3<3, 2>, smooth_v3<3, 3>},
-                                                              {smooth_v3<5, 1>, smooth_v3<5, 2>, smooth_v3<5, 3>},
-                                                              {smooth_v3<7, 1>, smooth_v3<7, 2>, smooth_v3<7, 3>}}};
+  static constexpr Smooth kSmooth[2][3][kMaxDerivatives] = {{{smooth_any<3, 1>, smooth_any<3, 2>, smooth_any<3, 3>},
+                                                             {smooth_any<5, 1>, smooth_any<5, 2>, smooth_any<5, 3>},
+                                                             {smooth_any<7, 1>, smooth_any<7, 2>, smooth_any<7, 3>}},
+                                                            {{smooth_v3<3, 1>, smooth_v3<3, 2>, smooth_v3<3, 3>},
+                                                             {smooth_v3<5, 1>, smooth_v3<5, 2>, smooth_v3<5, 3>},
+                                                             {smooth_v3<7, 1>, smooth_v3<7, 2>, smooth_v3<7, 3>}}};
   const std::size_t derivatives = f.shares.size() / f.sums;
   kSmooth[has_x86_64_v3() ? 1 : 0][order][derivatives - 1](f, rows, count, destinations.data(), destinations.size());
 }
@@ -402,8 +402,8 @@ void smooth(const RunningSums& f, const double* rows, Index count, std::span<con
 void correlate_every(std::span<const double> weights, std::size_t derivatives, const double* rows, Index step,
                      Index count, double* to) {
   using Correlate = void (*)(const double*, Index, const double*, Index, Index, double*);
-  static constexpr Correlate kCorrelate[2][kMostDerivatives] = {{correlate_any<1>, correlate_any<2>, correlate_any<3>},
-                                                                {correlate_v3<1>, correlate_v3<2>, correlate_v3<3>}};
+  static constexpr Correlate kCorrelate[2][kMaxDerivatives] = {{correlate_any<1>, correlate_any<2>, correlate_any<3>},
+                                                               {correlate_v3<1>, correlate_v3<2>, correlate_v3<3>}};
   const auto window = static_cast<Index>(weights.size() / derivatives);
   kCorrelate[has_x86_64_v3() ? 1 : 0][derivatives - 1](weights.data(), window, rows, step, count, to);
 }

@@ -1,4 +1,4 @@
-#include "mbk/base/dsp/stretches.h"
+#include "mbk/base/dsp/segments.h"
 
 #include <gtest/gtest.h>
 
@@ -42,22 +42,22 @@ Matrix one_after_the_other(const Vector& a, double step, const Vector& u, const 
   return states;
 }
 
-/// Largest difference of all stretches to `expected`, in blocks of 7 steps.
-double difference(StretchFilter filter, const Stretches& signals, const Matrix& expected) {
+/// Largest difference of all segments to `expected`, in blocks of 7 steps.
+double difference(SegmentFilter filter, const Segments& signals, const Matrix& expected) {
   constexpr Index kSteps = 7;
   const Index n = expected.rows();
   std::vector<Abreast> table(static_cast<std::size_t>(n * kSteps));
-  const Rows rows{table.data()->values.data(), kSteps * kStretches};
+  const Rows rows{table.data()->values.data(), kSteps * kSegments};
   double most = 0.0;
   for (Index begin = 0; begin < signals.length(); begin += kSteps) {
     const Index steps = std::min(kSteps, signals.length() - begin);
     filter.run(signals.row(0, begin), steps, rows);
     for (Index i = 0; i < steps; ++i) {
-      for (Index l = 0; l < kStretches; ++l) {
+      for (Index l = 0; l < kSegments; ++l) {
         const Index sample = l * signals.length() + begin + i;
         if (sample >= expected.cols()) continue;
         for (Index r = 0; r < n; ++r) {
-          most = std::max(most, std::abs(rows.row(r)[kStretches * i + l] - expected(r, sample)));
+          most = std::max(most, std::abs(rows.row(r)[kSegments * i + l] - expected(r, sample)));
         }
       }
     }
@@ -67,37 +67,37 @@ double difference(StretchFilter filter, const Stretches& signals, const Matrix& 
 
 constexpr double kStep = 0.11;
 
-TEST(Stretches, FilterAsOneSampleAfterTheOther) {
+TEST(Segments, FilterAsOneSampleAfterTheOther) {
   for (const Index samples : {5, 16, 40, 999, 1600}) {
     for (const Index n : {1, 2, 3, 4, 5, 6, 7, 8, 11}) {
       const Vector a = denominator(n), u = wave(samples, 0.3);
       const Matrix expected = one_after_the_other(a, kStep, u, Vector::Zero(n));
       const HeldStep filter = held_step(a, kStep);
-      const Stretches signals({&u});
-      const double most = difference(StretchFilter(filter, states_at_starts(filter, signals, 0)), signals, expected);
+      const Segments signals({&u});
+      const double most = difference(SegmentFilter(filter, states_at_starts(filter, signals, 0)), signals, expected);
       EXPECT_LT(most, 1e-12 * std::max(1.0, expected.cwiseAbs().maxCoeff())) << samples << " samples, n = " << n;
     }
   }
 }
 
-TEST(Stretches, CarryAFreeMotionOn) {
+TEST(Segments, CarryAFreeMotionOn) {
   const Vector a = denominator(4), none = Vector::Zero(700), start{{0.3, -1.0, 2.0, 0.7}};
   const HeldStep filter = held_step(a, kStep);
-  const Stretches signals({&none});
+  const Segments signals({&none});
   const Matrix starts = free_at_starts(filter.transition, start, signals.length());
-  EXPECT_LT(difference(StretchFilter(filter, starts), signals, one_after_the_other(a, kStep, none, start)), 1e-12);
+  EXPECT_LT(difference(SegmentFilter(filter, starts), signals, one_after_the_other(a, kStep, none, start)), 1e-12);
 }
 
-TEST(Stretches, FindTheStatesOfAFilterBehindAFilter) {
+TEST(Segments, FindTheStatesOfAFilterBehindAFilter) {
   const Index n = 3;
   const Vector a = denominator(n), u = wave(803, 0.7), weights{{0.4, -1.1, 0.2}};
   const double through = 0.6;
   const Matrix first = one_after_the_other(a, kStep, u, Vector::Zero(n));
   const Vector between = first.transpose() * weights + through * u;
   const Matrix second = one_after_the_other(a, kStep, between, Vector::Zero(n));
-  const Stretches signals({&u});
+  const Segments signals({&u});
   const Matrix starts = states_at_starts(cascaded(held_step(a, kStep), weights, through), signals, 0);
-  for (Index l = 0; l < kStretches; ++l) {
+  for (Index l = 0; l < kSegments; ++l) {
     const Index begin = l * signals.length();
     ASSERT_LT(begin, u.size());
     EXPECT_LT((starts.col(l).head(n) - first.col(begin)).lpNorm<Eigen::Infinity>(), 1e-12) << l;
@@ -105,9 +105,9 @@ TEST(Stretches, FindTheStatesOfAFilterBehindAFilter) {
   }
 }
 
-TEST(Stretches, HoldEachSampleAndZeroAfterTheLast) {
+TEST(Segments, HoldEachSampleAndZeroAfterTheLast) {
   const Vector u = Vector::LinSpaced(35, 1.0, 35.0), y = -u;
-  const Stretches signals({&u, &y}, 2);
+  const Segments signals({&u, &y}, 2);
   ASSERT_EQ(signals.length(), 3);
   EXPECT_EQ(signals.row(0, 0)[1], 4.0);
   EXPECT_EQ(signals.row(1, 5)[0], -6.0);  // overlap: what the second begins with
@@ -115,7 +115,7 @@ TEST(Stretches, HoldEachSampleAndZeroAfterTheLast) {
   EXPECT_EQ(signals.row(0, 2)[11], 0.0);
 }
 
-TEST(Stretches, ProductsAndCombinationsAreThoseOfMatrices) {
+TEST(Segments, ProductsAndCombinationsAreThoseOfMatrices) {
   constexpr Index kColumns = 48;
   for (const Index left : {1, 2, 3, 4, 5, 6, 7, 9}) {
     for (const Index right : {1, 2, 3, 4, 5, 7, 8, 10}) {

@@ -40,7 +40,7 @@ void separate(const double* from, Index count, const FourValues& plus, const std
 /// input: `settled` forward, and the last output backward.
 void filter_both_ways(const SectionCascade& filter, double* rows, Index count, const FourValues& settled);
 
-inline constexpr std::size_t kMostSums = 7;
+inline constexpr std::size_t kMaxSums = 7;
 
 /// Savitzky–Golay filters of one window by running sums M_k[i] = Σ_j C(j, k) x[i + j], j = −h … h.
 struct RunningSums {
@@ -53,10 +53,10 @@ struct RunningSums {
 /// Whether running sums exist for that order, and pay for that window.
 [[nodiscard]] bool has_running_sums(const SavitzkyGolay& filter);
 
-/// @param derivatives 1 … kMostDerivatives of them    @param rate samples per second
+/// @param derivatives 1 … kMaxDerivatives of them    @param rate samples per second
 [[nodiscard]] Result<RunningSums> running_sums(const SavitzkyGolay& filter, std::span<const int> derivatives,
                                                double rate);
-inline constexpr std::size_t kMostDerivatives = 3;
+inline constexpr std::size_t kMaxDerivatives = 3;
 
 /// Where the results of `smooth` go: row i of `to` takes four of its derivative×lane values.
 struct Destination {

@@ -1,4 +1,4 @@
-#include "mbk/measure/analyse/thinning.h"
+#include "mbk/measure/analyse/decimation.h"
 
 #include <gtest/gtest.h>
 
@@ -24,24 +24,24 @@ Matrix noise(Index samples, Index columns, unsigned seed) {
   return values;
 }
 
-TEST(Thinning, KeepsAllOfWhatIsShort) {
+TEST(Decimation, KeepsAllOfWhatIsShort) {
   const Vector time = counting(kDrawnRows);
   const Matrix values = noise(kDrawnRows, 2, 1);
-  for (const Thinning how : {Thinning::every, Thinning::extremes}) {
-    const Series shown = thinned(time, values, {{0, kDrawnRows}}, how);
+  for (const Decimation how : {Decimation::every, Decimation::extremes}) {
+    const Series shown = decimated(time, values, {{0, kDrawnRows}}, how);
     EXPECT_EQ(shown.time, time);
     EXPECT_EQ(shown.values, values);
   }
-  EXPECT_EQ(thinned(Vector(), Matrix(0, 2), {}, Thinning::extremes).values.cols(), 2);
+  EXPECT_EQ(decimated(Vector(), Matrix(0, 2), {}, Decimation::extremes).values.cols(), 2);
 }
 
-TEST(Thinning, LosesNoExtremeOfAnyColumnWhereverItStands) {
+TEST(Decimation, LosesNoExtremeOfAnyColumnWhereverItStands) {
   for (const Index samples : {2001, 2003, 9999, 54321}) {
     for (const Index spike : {Index{0}, Index{1}, samples / 2, samples - 2, samples - 1}) {
       Matrix values = noise(samples, 2, 2);
       values(spike, 0) = 50.0;
       values(samples - 1 - spike, 1) = -60.0;
-      const Series shown = thinned(counting(samples), values, {{0, samples}}, Thinning::extremes);
+      const Series shown = decimated(counting(samples), values, {{0, samples}}, Decimation::extremes);
       EXPECT_EQ(shown.values.col(0).maxCoeff(), 50.0);
       EXPECT_EQ(shown.values.col(1).minCoeff(), -60.0);
       EXPECT_EQ(shown.values.col(0).minCoeff(), values.col(0).minCoeff());
@@ -52,15 +52,15 @@ TEST(Thinning, LosesNoExtremeOfAnyColumnWhereverItStands) {
   }
 }
 
-TEST(Thinning, KeepsARampInOrder) {
+TEST(Decimation, KeepsARampInOrder) {
   const Index samples = 10000;
-  const Series up = thinned(counting(samples), counting(samples), {{0, samples}}, Thinning::extremes);
+  const Series up = decimated(counting(samples), counting(samples), {{0, samples}}, Decimation::extremes);
   for (Index i = 1; i < up.time.size(); ++i) ASSERT_GT(up.values(i, 0), up.values(i - 1, 0));
 }
 
-TEST(Thinning, TakesEverySoManyRowsJustAsTheyAre) {
+TEST(Decimation, TakesEverySoManyRowsJustAsTheyAre) {
   const Matrix values = noise(5000, 1, 3);
-  const Series shown = thinned(counting(5000), values, {{0, 5000}}, Thinning::every);
+  const Series shown = decimated(counting(5000), values, {{0, 5000}}, Decimation::every);
   ASSERT_EQ(shown.time.size(), 1667);
   for (Index i = 0; i < shown.time.size(); ++i) {
     EXPECT_EQ(shown.time[i], static_cast<double>(3 * i));
@@ -68,12 +68,12 @@ TEST(Thinning, TakesEverySoManyRowsJustAsTheyAre) {
   }
 }
 
-TEST(Thinning, PutsARowOfNaNBetweenPiecesAndMixesNothingAcross) {
+TEST(Decimation, PutsARowOfNaNBetweenPiecesAndMixesNothingAcross) {
   Matrix values(9000, 1);
   values << Matrix::Constant(4500, 1, 1.0), Matrix::Constant(4500, 1, 2.0);
   const std::vector<Rows> pieces = {{0, 4000}, {4100, 4500}, {5000, 9000}};
-  for (const Thinning how : {Thinning::every, Thinning::extremes}) {
-    const Series shown = thinned(counting(9000), values, pieces, how);
+  for (const Decimation how : {Decimation::every, Decimation::extremes}) {
+    const Series shown = decimated(counting(9000), values, pieces, how);
     EXPECT_EQ(shown.values.array().isNaN().count(), 2);
     EXPECT_EQ(shown.time.array().isNaN().count(), 2);
     EXPECT_FALSE(std::isnan(shown.time[0]));
@@ -86,11 +86,11 @@ TEST(Thinning, PutsARowOfNaNBetweenPiecesAndMixesNothingAcross) {
   }
 }
 
-TEST(Thinning, PassesOverWhatIsNoNumber) {
+TEST(Decimation, PassesOverWhatIsNoNumber) {
   Matrix values = noise(10000, 1, 4);
   for (Index i = 0; i < 10000; i += 2) values(i, 0) = kNaN;
   values.middleRows(4000, 2000).setConstant(kNaN);
-  const Series shown = thinned(counting(10000), values, {{0, 10000}}, Thinning::extremes);
+  const Series shown = decimated(counting(10000), values, {{0, 10000}}, Decimation::extremes);
   for (Index i = 0; i < shown.time.size(); ++i) {
     const double from_hole = std::min(shown.time[i] - 4000.0, 6000.0 - shown.time[i]);  // > 0 inside
     if (std::abs(from_hole) < 20.0) continue;
@@ -123,15 +123,15 @@ TEST(PiecesBetweenGaps, AreOneWhereTheClockOnlyJitters) {
   EXPECT_TRUE(pieces_between_gaps(Vector()).empty());
 }
 
-PreparedTrial trial_of(std::vector<Stretch> stretches, Index rows) {
+PreparedTrial trial_of(std::vector<Segment> segments, Index rows) {
   PreparedTrial trial;
   trial.sample_time = 0.01;
   trial.time = counting(rows) * trial.sample_time;
-  trial.stretches = std::move(stretches);
+  trial.segments = std::move(segments);
   return trial;
 }
 
-TEST(RowsOf, JoinStretchesThatFollowEachOtherAndNoOthers) {
+TEST(RowsOf, JoinSegmentsThatFollowEachOtherAndNoOthers) {
   PreparedTrial trial = trial_of({{0, 10, Purpose::identification, 7},
                                   {10, 20, Purpose::validation, 107},
                                   {20, 30, Purpose::identification, 500},
@@ -143,21 +143,21 @@ TEST(RowsOf, JoinStretchesThatFollowEachOtherAndNoOthers) {
   EXPECT_EQ(all[0].end, 20);
   EXPECT_EQ(all[0].first_sample, 7);
   EXPECT_EQ(all[1].first_sample, 500);
-  const std::vector<Rows> held_back = rows_of(trial, Purpose::validation);
-  ASSERT_EQ(held_back.size(), 2U);
-  EXPECT_EQ(held_back[0].begin, 10);
-  EXPECT_EQ(held_back[0].first_sample, 107);
+  const std::vector<Rows> held_out = rows_of(trial, Purpose::validation);
+  ASSERT_EQ(held_out.size(), 2U);
+  EXPECT_EQ(held_out[0].begin, 10);
+  EXPECT_EQ(held_out[0].first_sample, 107);
 }
 
-TEST(ThinningOf, KeepsExtremesWhereEverySoManyRowsWouldMissThem) {
+TEST(DecimationOf, KeepsExtremesWhereEverySoManyRowsWouldMissThem) {
   PreparedTrial trial = trial_of({}, 8000);  // one row in four is drawn: every 0.04 s
   const std::vector<Rows> rows = {{0, 8000}};
   trial.preparation.cutoff = Hertz(6.0);
-  EXPECT_EQ(thinning_of(trial, rows), Thinning::every);
+  EXPECT_EQ(decimation_of(trial, rows), Decimation::every);
   trial.preparation.cutoff = Hertz(6.5);
-  EXPECT_EQ(thinning_of(trial, rows), Thinning::extremes);
+  EXPECT_EQ(decimation_of(trial, rows), Decimation::extremes);
   trial.preparation.cutoff.reset();
-  EXPECT_EQ(thinning_of(trial, rows), Thinning::extremes);
+  EXPECT_EQ(decimation_of(trial, rows), Decimation::extremes);
 }
 
 }  // namespace

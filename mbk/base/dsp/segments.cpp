@@ -1,4 +1,4 @@
-#include "mbk/base/dsp/stretches.h"
+#include "mbk/base/dsp/segments.h"
 
 #include <algorithm>
 #include <numeric>
@@ -28,32 +28,32 @@ struct Eight {
   [[gnu::always_inline]] static const Unaligned8& at(const double* p) { return eight(p); }
 };
 
-/// @param state  n rows of 16, then the last input    N is n, or 0: any up to kMostStates
-constexpr Index kMostStates = 32;
+/// @param state  n rows of 16, then the last input    N is n, or 0: any up to kMaxStates
+constexpr Index kMaxStates = 32;
 template <class Lanes, int N>
 [[gnu::always_inline]] inline void filter_body(const double* coefficients, Index states, double* state,
                                                const double* input, Index count, double* to, Index stride) {
   using V = typename Lanes::V;
   constexpr Index kAtOnce = 2;
-  constexpr Index kCapacity = N > 0 ? N : kMostStates;
+  constexpr Index kCapacity = N > 0 ? N : kMaxStates;
   const Index n = N > 0 ? N : states;
-  for (Index first = 0; first < kStretches; first += kAtOnce * Lanes::kWidth) {
+  for (Index first = 0; first < kSegments; first += kAtOnce * Lanes::kWidth) {
     V x[kCapacity][kAtOnce], next[kCapacity][kAtOnce], last[kAtOnce];
     for (Index w = 0; w < kAtOnce; ++w) {
       const Index lane = first + w * Lanes::kWidth;
-      for (Index r = 0; r < n; ++r) x[r][w] = Lanes::at(state + kStretches * r + lane);
-      last[w] = Lanes::at(state + kStretches * n + lane);
+      for (Index r = 0; r < n; ++r) x[r][w] = Lanes::at(state + kSegments * r + lane);
+      last[w] = Lanes::at(state + kSegments * n + lane);
     }
     for (Index i = 0; i < count; ++i) {
       V now[kAtOnce];
-      for (Index w = 0; w < kAtOnce; ++w) now[w] = Lanes::at(input + kStretches * i + first + w * Lanes::kWidth);
+      for (Index w = 0; w < kAtOnce; ++w) now[w] = Lanes::at(input + kSegments * i + first + w * Lanes::kWidth);
       const double* c = coefficients;
       for (Index r = 0; r < n; ++r, c += n + 2) {
         for (Index w = 0; w < kAtOnce; ++w) {
           next[r][w] = c[n] * last[w];
           next[r][w] += c[n + 1] * now[w];
           for (Index k = 0; k < n; ++k) next[r][w] += c[k] * x[k][w];
-          Lanes::at(to + r * stride + kStretches * i + first + w * Lanes::kWidth) = next[r][w];
+          Lanes::at(to + r * stride + kSegments * i + first + w * Lanes::kWidth) = next[r][w];
         }
       }
       for (Index w = 0; w < kAtOnce; ++w) {
@@ -63,8 +63,8 @@ template <class Lanes, int N>
     }
     for (Index w = 0; w < kAtOnce; ++w) {
       const Index lane = first + w * Lanes::kWidth;
-      for (Index r = 0; r < n; ++r) Lanes::at(state + kStretches * r + lane) = x[r][w];
-      Lanes::at(state + kStretches * n + lane) = last[w];
+      for (Index r = 0; r < n; ++r) Lanes::at(state + kSegments * r + lane) = x[r][w];
+      Lanes::at(state + kSegments * n + lane) = last[w];
     }
   }
 }
@@ -74,18 +74,18 @@ template <class Lanes, int Count>
 [[gnu::always_inline]] inline void advance_rows(const double* A, Index states, Index inputs, const double* x,
                                                 const double* u, double* to) {
   using V = typename Lanes::V;
-  constexpr Index kParts = kStretches / Lanes::kWidth;
+  constexpr Index kParts = kSegments / Lanes::kWidth;
   const Index across = states + inputs;
   V sum[Count][kParts] = {};
   for (Index k = 0; k < across; ++k) {
-    const double* const from = k < states ? x + kStretches * k : u + kStretches * (k - states);
+    const double* const from = k < states ? x + kSegments * k : u + kSegments * (k - states);
     for (Index w = 0; w < kParts; ++w) {
       const V value = Lanes::at(from + w * Lanes::kWidth);
       for (int r = 0; r < Count; ++r) sum[r][w] += A[r * across + k] * value;
     }
   }
   for (int r = 0; r < Count; ++r) {
-    for (Index w = 0; w < kParts; ++w) Lanes::at(to + kStretches * r + w * Lanes::kWidth) = sum[r][w];
+    for (Index w = 0; w < kParts; ++w) Lanes::at(to + kSegments * r + w * Lanes::kWidth) = sum[r][w];
   }
 }
 template <class Lanes>
@@ -95,17 +95,17 @@ template <class Lanes>
   const Index across = states + inputs;
   Index r = 0;
   for (; r + kRows <= states; r += kRows) {
-    advance_rows<Lanes, kRows>(A + r * across, states, inputs, x, u, to + kStretches * r);
+    advance_rows<Lanes, kRows>(A + r * across, states, inputs, x, u, to + kSegments * r);
   }
-  for (; r < states; ++r) advance_rows<Lanes, 1>(A + r * across, states, inputs, x, u, to + kStretches * r);
+  for (; r < states; ++r) advance_rows<Lanes, 1>(A + r * across, states, inputs, x, u, to + kSegments * r);
 }
 
 template <class Lanes>
 [[gnu::always_inline]] inline void combine_body(const double* weights, Index count, const double* from, Index stride,
                                                 const double* plus, Index columns, double* to) {
   using V = typename Lanes::V;
-  constexpr Index kParts = kStretches / Lanes::kWidth;
-  for (Index c = 0; c < columns; c += kStretches) {
+  constexpr Index kParts = kSegments / Lanes::kWidth;
+  for (Index c = 0; c < columns; c += kSegments) {
     V sum[kParts];
     for (Index w = 0; w < kParts; ++w) sum[w] = Lanes::at(plus + c + w * Lanes::kWidth);
     for (Index k = 0; k < count; ++k) {
@@ -179,10 +179,10 @@ template <class Lanes>
 // ---- for each kind of processor ----
 
 using Filter = void (*)(const double*, Index, double*, const double*, Index, double*, Index);
-constexpr int kMostFixed = 8;
+constexpr int kMaxFixed = 8;
 
 struct Loops {
-  std::array<Filter, kMostFixed + 1> filter;  ///< by the number of states; the first: of any number
+  std::array<Filter, kMaxFixed + 1> filter;  ///< by the number of states; the first: of any number
   void (*advance)(const double*, Index, Index, const double*, const double*, double*);
   void (*combine)(const double*, Index, const double*, Index, const double*, Index, double*);
   void (*products)(Rows, Index, Rows, Index, Index, double*);
@@ -218,7 +218,7 @@ constexpr Loops loops_of(std::integer_sequence<int, N...>) {
 }
 
 const Loops& loops() {
-  constexpr auto kNumbers = std::make_integer_sequence<int, kMostFixed + 1>();
+  constexpr auto kNumbers = std::make_integer_sequence<int, kMaxFixed + 1>();
   static const Loops kChosen = has_x86_64_v4()   ? loops_of<V4>(kNumbers)
                                : has_x86_64_v3() ? loops_of<V3>(kNumbers)
                                                  : loops_of<Any>(kNumbers);
@@ -256,15 +256,15 @@ double* values(std::vector<Abreast>& rows) {
 
 }  // namespace
 
-Stretches::Stretches(const std::vector<const Vector*>& signals, Index overlap) {
+Segments::Segments(const std::vector<const Vector*>& signals, Index overlap) {
   const Index samples = signals.front()->size();
-  length_ = (samples + kStretches - 1) / kStretches;
+  length_ = (samples + kSegments - 1) / kSegments;
   count_ = length_ + 1 + overlap;
   rows_ = std::make_unique_for_overwrite<Abreast[]>(signals.size() * static_cast<std::size_t>(count_));
   Abreast* row = rows_.get();
   for (const Vector* const signal : signals) {
     for (Index i = 0; i < count_; ++i, ++row) {
-      for (Index l = 0; l < kStretches; ++l) {
+      for (Index l = 0; l < kSegments; ++l) {
         const Index at = l * length_ + i;
         row->values[static_cast<std::size_t>(l)] = at < samples ? (*signal)[at] : 0.0;
       }
@@ -272,7 +272,7 @@ Stretches::Stretches(const std::vector<const Vector*>& signals, Index overlap) {
   }
 }
 
-Matrix states_at_starts(const HeldStep& system, const Stretches& signals, Index input) {
+Matrix states_at_starts(const HeldStep& system, const Segments& signals, Index input) {
   constexpr Index kAtOnce = 16;
   const Index n = system.transition.rows(), length = signals.length(), chunks = length / kAtOnce;
   const auto advance = loops().advance;
@@ -286,20 +286,20 @@ Matrix states_at_starts(const HeldStep& system, const Stretches& signals, Index 
     advance((whole ? chunk : one).data(), n, count + 1, values(x), signals.row(input, i), values(next));
     i += count;
   }
-  const Matrix over_stretch = power_of(over_chunk, chunks) * power_of(system.transition, length % kAtOnce);
-  const Eigen::Map<const Matrix> added(values(x), kStretches, n);
-  Matrix starts = Matrix::Zero(n, kStretches);
-  for (Index l = 1; l < kStretches; ++l) {
-    starts.col(l) = over_stretch * starts.col(l - 1) + added.row(l - 1).transpose();
+  const Matrix over_segment = power_of(over_chunk, chunks) * power_of(system.transition, length % kAtOnce);
+  const Eigen::Map<const Matrix> added(values(x), kSegments, n);
+  Matrix starts = Matrix::Zero(n, kSegments);
+  for (Index l = 1; l < kSegments; ++l) {
+    starts.col(l) = over_segment * starts.col(l - 1) + added.row(l - 1).transpose();
   }
   return starts;
 }
 
 Matrix free_at_starts(const Matrix& transition, const Vector& state, Index length) {
   const Matrix over_one = power_of(transition, length);
-  Matrix starts(state.size(), kStretches);
+  Matrix starts(state.size(), kSegments);
   starts.col(0) = state;
-  for (Index l = 1; l < kStretches; ++l) starts.col(l) = over_one * starts.col(l - 1);
+  for (Index l = 1; l < kSegments; ++l) starts.col(l) = over_one * starts.col(l - 1);
   return starts;
 }
 
@@ -315,27 +315,27 @@ HeldStep cascaded(const HeldStep& filter, const Vector& weights, double through)
   return both;
 }
 
-StretchFilter::StretchFilter(const HeldStep& filter, const Matrix& starts)
+SegmentFilter::SegmentFilter(const HeldStep& filter, const Matrix& starts)
     : state_(static_cast<std::size_t>(starts.rows() + 1)), n_(starts.rows()) {
   for (Index r = 0; r < n_; ++r) {
     for (Index k = 0; k < n_; ++k) coefficients_.push_back(filter.transition(r, k));
     coefficients_.push_back(filter.from_last[r]);
     coefficients_.push_back(filter.from_next[r]);
-    for (Index l = 0; l < kStretches; ++l)
+    for (Index l = 0; l < kSegments; ++l)
       state_[static_cast<std::size_t>(r)].values[static_cast<std::size_t>(l)] = starts(r, l);
   }
 }
 
-void StretchFilter::run(const double* input, Index count, Rows states) {
+void SegmentFilter::run(const double* input, Index count, Rows states) {
   Index i = 0;
   if (!begun_ && count > 0) {
     begun_ = true;
     for (Index r = 0; r < n_; ++r) std::ranges::copy(state_[static_cast<std::size_t>(r)].values, states.row(r));
-    std::copy_n(input, kStretches, state_.back().values.data());
+    std::copy_n(input, kSegments, state_.back().values.data());
     i = 1;
   }
-  const Filter filter = loops().filter[n_ <= kMostFixed ? static_cast<std::size_t>(n_) : 0];
-  filter(coefficients_.data(), n_, values(state_), input + kStretches * i, count - i, states.data + kStretches * i,
+  const Filter filter = loops().filter[n_ <= kMaxFixed ? static_cast<std::size_t>(n_) : 0];
+  filter(coefficients_.data(), n_, values(state_), input + kSegments * i, count - i, states.data + kSegments * i,
          states.stride);
 }
 

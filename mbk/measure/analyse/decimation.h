@@ -15,7 +15,7 @@ struct Rows {
   [[nodiscard]] Index size() const { return end - begin; }
 };
 
-/// The stretches of one purpose, or all; those that follow each other without a break are one.
+/// The segments of one purpose, or all; those that follow each other without a break are one.
 [[nodiscard]] std::vector<Rows> rows_of(const PreparedTrial& trial, std::optional<Purpose> purpose = std::nullopt);
 
 /// The pieces of a recording between the gaps of its clock that can be seen in a plot: at most five hundred.
@@ -27,21 +27,22 @@ struct Series {
   Matrix values;
 };
 
-/// How a series is thinned.
-enum class Thinning {
-  every,     ///< every so many rows: true to a signal that was low-passed far enough
+/// How a series is decimated.
+enum class Decimation {
+  every,     ///< every Nth row: true to a signal that was low-passed far enough
   extremes,  ///< two rows for each so many, with the extremes of each column in the order in which they came; their
              ///< times are those of the first and the middle row. No spike is lost.
 };
 
-/// About kDrawnRows rows of a series, or all where it has no more. Values that are no numbers are passed over where
+/// About kDrawnRows rows of a series, or all where it has no more. Non-finite values are passed over where
 /// there are others.
 /// @param values as many rows as `time`; each column by itself
-[[nodiscard]] Series thinned(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces, Thinning how);
+[[nodiscard]] Series decimated(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces,
+                               Decimation how);
 inline constexpr Index kDrawnRows = 2000;
 
-/// Which thinning is true to the signals of a trial: every so many rows where at least four are left in each period of
+/// Which decimation is true to the signals of a trial: every Nth row where at least four are left in each period of
 /// the low-pass's cutoff (at twice the cutoff it passes 1/1000), otherwise the extremes.
-[[nodiscard]] Thinning thinning_of(const PreparedTrial& trial, const std::vector<Rows>& pieces);
+[[nodiscard]] Decimation decimation_of(const PreparedTrial& trial, const std::vector<Rows>& pieces);
 
 }  // namespace mbk::analyse
