@@ -268,7 +268,7 @@ PreparedTrial noisy_trial(double noise_low, double noise_high) {
   trial.position = trial.reference_motion.rightCols(2);
   trial.preparation.band_low = Hertz(0.2);
   trial.preparation.band_high = Hertz(5.0);
-  trial.stretches = {{0, kRows, Purpose::identification, 0}};
+  trial.segments = {{0, kRows, Purpose::identification, 0}};
   return trial;
 }
 
@@ -304,7 +304,7 @@ TEST(PassivityBand, HoldsForEveryTrialAndNotBelowOnePeriod) {
   EXPECT_EQ(both.low.value, 0.4);
   EXPECT_EQ(both.high.value, 2.0);
   one.reference_motion.resize(0, 0);
-  one.stretches = {{0, 100, Purpose::identification, 0}, {200, 300, Purpose::validation, 200}};
+  one.segments = {{0, 100, Purpose::identification, 0}, {200, 300, Purpose::validation, 200}};
   EXPECT_EQ(passivity_band({one}).low.value, 0.5);  // 100 rows of 20 ms
 }
 
