@@ -113,7 +113,6 @@ void accept_former_name(CLI::App& command, CLI::Option& option, const std::strin
                                                        option.run_callback();
                                                      })
       ->expected(option.get_expected_min(), option.get_expected_max())
-      ->excludes(&option)
       ->group("");
 }
 

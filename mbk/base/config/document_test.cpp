@@ -203,6 +203,20 @@ TEST(Section, ShowsTextsOfTheFileOnOneLineAndCutShort) {
 
 // ---- finish ----
 
+TEST(Section, ReadsAFormerNameWhereTheNewOneIsMissing) {
+  const Document old = parsed("frozen_ms = 300\n");
+  Section s = old.root();
+  s.rename("frozen_ms", "frozen_sensor_ms");
+  EXPECT_EQ(s.number("frozen_sensor_ms", 0.0), 0.3);
+  EXPECT_EQ(problem(old), "");
+  // Beside the new name the old one is no key.
+  const Document both = parsed("frozen_ms = 300\nfrozen_sensor_ms = 200\n");
+  Section t = both.root();
+  t.rename("frozen_ms", "frozen_sensor_ms");
+  EXPECT_EQ(t.number("frozen_sensor_ms", 0.0), 0.2);
+  EXPECT_THAT(problem(both), HasSubstr("'frozen_ms' is no key"));
+}
+
 TEST(Document, NamesTheFirstUnknownKeyAndTheNearestOne) {
   const Document document = parsed("[perturbation]\namplitude_mm = 5\n\nzeta = 1\namplitud_mm = 3\n");
   const Section s = document.root().section("perturbation");

@@ -12,6 +12,10 @@ constexpr auto word_table(Colour) {
   return std::to_array<Word<Colour>>({{green, "green"}, {red, "dark red"}, {blue, "blue"}});
 }
 
+constexpr auto former_word_table(Colour) {
+  return std::to_array<Word<Colour>>({{Colour::blue, "azure"}});
+}
+
 struct Machine {
   enum class State { off, on };
 };
@@ -49,6 +53,13 @@ TEST(Words, ThatAreNoneHaveNoValue) {
   EXPECT_FALSE(value_of<Colour>("red"));
   EXPECT_FALSE(value_of<Colour>(""));
   EXPECT_FALSE(value_of<Colour>("unknown"));
+}
+
+TEST(Words, FormerOnesAreReadAndNeverWritten) {
+  EXPECT_EQ(value_of<Colour>("azure"), Colour::blue);
+  EXPECT_EQ(word_of(Colour::blue), "blue");
+  EXPECT_EQ(former_word_of(Colour::blue), "azure");
+  EXPECT_EQ(former_word_of(Colour::red), "");
 }
 
 TEST(Words, AreOfferedInTheOrderOfTheTable) {

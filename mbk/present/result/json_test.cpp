@@ -234,6 +234,19 @@ TEST(FromJson, AModelAloneIsEnough) {
   EXPECT_TRUE(std::isnan(back.model.x0[0]));
 }
 
+TEST(FromJson, ReadsTheWordsOfTheVersionBefore) {
+  const Identification back = read_back(R"({"schema": "mbk.result/1", "model": {"M": [[1]], "B": [[2]], "K": [[3]]},
+      "fit": {"VAF": [90], "RMSE": [1], "validated_on": "held-back"},
+      "warnings": [{"code": "held-back-fit-poor", "message": "so", "try": "again"}]})");
+  EXPECT_TRUE(back.fit.held_out);
+  ASSERT_EQ(back.warnings.size(), 1u);
+  EXPECT_EQ(back.warnings[0].code, WarningCode::held_out_fit_poor);
+  const Json json = Json::parse(to_json(Measurement{back, std::nullopt}));
+  EXPECT_EQ(json.at("warnings").at(0).at("code"), "held-out-fit-poor");
+  EXPECT_EQ(json.at("warnings").at(0).at("was"), "held-back-fit-poor");
+  EXPECT_EQ(json.at("fit").at("validated_on"), "held-out");
+}
+
 void expect_one_line(const std::string& text) {
   const auto result = identifications_from_json(text);
   ASSERT_FALSE(result) << text.substr(0, 200);
