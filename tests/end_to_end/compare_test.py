@@ -51,7 +51,7 @@ class Width(Case):
 
     def test_the_text_has_each_matrix_and_both_files(self):
         text = self.fine("compare", self.stored(), self.stored("other.json")).out
-        for word in (*MATRICES, f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not distinguishable"):
+        for word in (*MATRICES, f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not distinct"):
             self.assertIn(word, text)
         self.assert_lines_fit(text)
 

@@ -98,7 +98,7 @@ TEST(ChartText, HasTitleUnitsLegendReferencesAndNotes) {
   c.notes.emplace_back("Twenty seeds.");
   const std::string text = chart_text(c);
   for (const char* words : {"Stiffness", "found [N/m]", "made [N/m]", "o  k_xx", "⠒⠒⠒⠒  theory", "expected (200 N/m)",
-                            "made = 150 N/m", "where both axes agree", "Twenty seeds."}) {
+                            "made = 150 N/m", "diagonal: identity line", "Twenty seeds."}) {
     EXPECT_THAT(text, HasSubstr(words));
   }
 }

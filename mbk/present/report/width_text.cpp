@@ -37,7 +37,7 @@ std::string width_text(const WidthFindings& widths) {
     directed = one.ratios.size() > 1;
     rows.push_back({name, between(one.distance, one.distance95), times(one.ratios.front(), directed)});
     if (directed) rows.back().push_back(times(one.ratios.back(), directed));
-    rows.back().emplace_back(one.distinguishable ? "" : "not distinguishable");
+    rows.back().emplace_back(one.distinguishable ? "" : "not distinct");
     if (!one.surely_positive) {
       notes.push_back(
           fmt::format("{}: a smallest eigenvalue is not surely above zero, and without it the distance has "
