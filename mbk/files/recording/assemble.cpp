@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "mbk/base/core/ordinal.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/inspect.h"
@@ -58,15 +59,6 @@ Index whole_ratio(double fast_hz, double slow_hz) {
   return ratio >= 0.5 && ratio < 1e6 && same_rate(std::round(ratio) * slow_hz, fast_hz)
              ? static_cast<Index>(std::round(ratio))
              : 0;
-}
-
-std::string ordinal(Index n) {
-  const bool teen = n % 100 / 10 == 1;
-  return fmt::format("{}{}", n,
-                     teen || n % 10 > 3 || n % 10 == 0 ? "th"
-                     : n % 10 == 1                     ? "st"
-                     : n % 10 == 2                     ? "nd"
-                                                       : "rd");
 }
 
 bool is_vector(const Array& array) {

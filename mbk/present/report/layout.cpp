@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/base/core/ordinal.h"
 #include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 
@@ -67,7 +68,7 @@ std::string filters_text(const Preparation& how) {
   std::string filters = fmt::format("Savitzky–Golay N {} W {}", how.smoothing_order, how.smoothing_window);
   filters += how.cutoff ? fmt::format(", then zero-phase Butterworth {:.3g} Hz: {}", how.cutoff->value, how.cutoff_rule)
                         : ", no low-pass";
-  if (how.every > 1) filters += fmt::format("; every {}th sample", how.every);
+  if (how.every > 1) filters += fmt::format("; every {} sample", ordinal(how.every));
   return filters;
 }
 
