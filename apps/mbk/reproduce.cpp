@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/mbk/commands.h"
@@ -39,6 +40,12 @@ std::string list_text() {
   std::string text;
   for (const auto& [id, title] : thesis::exhibit_names()) text += fmt::format("{:<16} {}\n", id, title);
   return text;
+}
+
+/// The id of an erratum by its name of before, "slip-4", which is taken for one version; any other as it is.
+std::string current_id(const std::string& id) {
+  constexpr std::string_view kBefore = "slip-";
+  return id.starts_with(kBefore) ? "erratum-" + id.substr(kBefore.size()) : id;
 }
 
 /// The exhibit's id, with a number where it has several tables: "table-3.6", "table-5.4-2".
@@ -92,8 +99,8 @@ std::string summary_text(const Reproduction& made, const fs::path& folder) {
   std::string text = fmt::format("{}: {} exhibits\n", (folder / "index.html").string(), made.exhibits.size());
   text += fmt::format(
       "  of the printed numbers that follow from other printed numbers {} agree within their rounding, "
-      "{} are slips of the source, {} differ\n",
-      made.count(Agreement::within_rounding), made.count(Agreement::slip), made.count(Agreement::differs));
+      "{} are errata of the source, {} differ\n",
+      made.count(Agreement::within_rounding), made.count(Agreement::erratum), made.count(Agreement::differs));
   return text;
 }
 
@@ -109,7 +116,7 @@ int run(const Arguments& arguments) {
   if (arguments.without_printed) source->printed.clear();
   Progress progress(arguments.quiet, "reproduce: ");
   thesis::ReproduceOptions options;
-  options.only = arguments.only;
+  for (const std::string& id : arguments.only) options.only.push_back(current_id(id));
   options.seed = arguments.seed;
   options.threads = arguments.threads;
   options.progress = [&](int done, int of, std::string_view id) { progress.count(done, of, id); };
@@ -130,13 +137,13 @@ Action add_reproduce(CLI::App& app) {
   command->footer(
       "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
       "University of Alberta, 2013) that can be reproduced, beside the printed numbers: recomputed from\n"
-      "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the slips\n"
+      "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the errata\n"
       "in the source, its research questions and its future work.\n\n"
       "Examples:\n"
       "  mbk reproduce --out thesis              thesis/index.html, and tables and figures as files\n"
       "  mbk reproduce --list                    what there is\n"
-      "  mbk reproduce --only table-3.6 --only slip-1 --out excess\n\n"
-      "Exit codes: 0 every printed number that follows from others agrees or is a known slip, 1 one\n"
+      "  mbk reproduce --only table-3.6 --only erratum-1 --out excess\n\n"
+      "Exit codes: 0 every printed number that follows from others agrees or is a known erratum, 1 one\n"
       "differs, 2 wrong usage, 3 bad data.");
   CLI::Option* const out =
       command->add_option("--out", arguments->folder, "the folder that everything goes to (thesis)")
@@ -153,7 +160,7 @@ Action add_reproduce(CLI::App& app) {
       ->check(whole_number(1, 1024));
   command->add_flag("--without-printed", arguments->without_printed,
                     "leave the printed numbers out; ours stay the same");
-  command->add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/1");
+  command->add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/2");
   command->add_flag("--overwrite", arguments->overwrite, "replace files that are there");
   command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
   return [arguments] { return run(*arguments); };

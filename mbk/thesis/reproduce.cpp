@@ -14,7 +14,7 @@ std::vector<Maker> all_makers() {
   std::vector<Maker> all;
   for (const auto part : {relaxed_tables(), signal_figures(), relaxed_figures(), rigid_tables(), rigid_figures(),
                           reconstructed_tables(), rig_exhibits(), virtual_sensor_exhibits(), apparatus_exhibits(),
-                          statements(), slips(), questions(), future_work()}) {
+                          statements(), errata(), questions(), future_work()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -92,7 +92,7 @@ TEST(Reproduce, FindsThePublishedExcessInEveryCellAndTheCorrectedInNone) {
   ASSERT_EQ(table.rows.size(), 8U);
   for (const ReproducedRow& row : table.rows) {
     EXPECT_EQ(row.cells[0].agreement, Agreement::within_rounding) << row.name;
-    EXPECT_EQ(row.cells[1].agreement, Agreement::slip) << row.name;
+    EXPECT_EQ(row.cells[1].agreement, Agreement::erratum) << row.name;
   }
 }
 

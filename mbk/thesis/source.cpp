@@ -70,7 +70,7 @@ Agreement agreement_of(const ReproducedCell& cell, const ReproducedTable& table)
   const bool reached =
       low <= *cell.printed_value + cell.rounding + tiny && high >= *cell.printed_value - cell.rounding - tiny;
   if (reached) return Agreement::within_rounding;
-  return table.slip.empty() ? Agreement::differs : Agreement::slip;
+  return table.erratum.empty() ? Agreement::differs : Agreement::erratum;
 }
 
 }  // namespace

@@ -51,11 +51,11 @@ TEST(Source, SaysWhatIsMissing) {
   EXPECT_THAT(without.error().line(), HasSubstr("row 'P1' is too short"));
 }
 
-ReproducedTable one_cell(ReproducedCell cell, Provenance provenance, std::string slip = "") {
+ReproducedTable one_cell(ReproducedCell cell, Provenance provenance, std::string erratum = "") {
   ReproducedTable table;
   table.id = "3.6";
   table.provenance = provenance;
-  table.slip = std::move(slip);
+  table.erratum = std::move(erratum);
   table.columns = {{"λ_min, corrected", "N·s/m", 2}};
   table.rows = {{"P1, sinusoidal", {std::move(cell)}}};
   return table;
@@ -76,9 +76,9 @@ TEST(Compare, AgreesWhereBothRangesOverlap) {
   EXPECT_EQ(compared(one_cell(cell(5.9, {5.8, 6.0}), Provenance::recomputed)), Agreement::differs);
 }
 
-TEST(Compare, NamesASlipOnlyWhereItDiffers) {
-  EXPECT_EQ(compared(one_cell(cell(5.7), Provenance::recomputed, "slip-1")), Agreement::within_rounding);
-  EXPECT_EQ(compared(one_cell(cell(4.9), Provenance::recomputed, "slip-1")), Agreement::slip);
+TEST(Compare, NamesAnErratumOnlyWhereItDiffers) {
+  EXPECT_EQ(compared(one_cell(cell(5.7), Provenance::recomputed, "erratum-1")), Agreement::within_rounding);
+  EXPECT_EQ(compared(one_cell(cell(4.9), Provenance::recomputed, "erratum-1")), Agreement::erratum);
 }
 
 TEST(Compare, DoesNotJudgeWhatIsSimulated) {

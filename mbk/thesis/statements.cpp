@@ -18,7 +18,7 @@
 #include "mbk/model/robot/dynamics.h"
 #include "mbk/model/robot/workspace.h"
 #include "mbk/simulate/laboratory/scenario.h"
-#include "mbk/thesis/slips.h"
+#include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
 namespace {
@@ -197,7 +197,7 @@ Result<ReproducedTable> chapter_3(const Given& given, TextValues& values) {
 
 /// The range of the excess, which the source takes from table 3.6.
 ReproducedTable excess_range(const Given& given, TextValues& values) {
-  Statements table("statements slip-1", values);
+  Statements table("statements erratum-1", values);
   double least = 1e300, most = 0.0;
   std::pair<double, double> of_least, of_most;
   for (const auto* arms : {&given.sinusoidal, &given.underdamped}) {
@@ -215,7 +215,7 @@ ReproducedTable excess_range(const Given& given, TextValues& values) {
   table.number("excess of the relaxed arm, from [N·s/m]", least, of_least);
   table.number("excess of the relaxed arm, to [N·s/m]", most, of_most);
   ReproducedTable done = table.take();
-  done.slip = "slip-1";
+  done.erratum = "erratum-1";
   return done;
 }
 
@@ -425,7 +425,7 @@ Result<ReproducedTable> appendices(const Given& given, TextValues& values) {
 }
 
 Result<void> all_statements(Workbench& bench, Draft& exhibit) {
-  exhibit.related = {"slip-1", "slip-7", "slip-12", "slip-13", "slip-15", "slip-19", "slip-20"};
+  exhibit.related = {"erratum-1", "erratum-7", "erratum-12", "erratum-13", "erratum-15", "erratum-19", "erratum-20"};
   const Given& given = bench.given();
   TextValues& values = exhibit.values;
   for (auto&& table :

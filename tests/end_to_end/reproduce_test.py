@@ -66,7 +66,7 @@ class Whole(Case):
         for kind, names in (("table", TABLES), ("figure", FIGURES)):
             for name in names:
                 self.assertIn(f"{kind}-{name}", self.exhibits)
-        for kind, count in (("slip", 16), ("question", 4), ("future-work", 7)):
+        for kind, count in (("erratum", 16), ("question", 4), ("future-work", 7)):
             for number in range(1, count + 1):
                 self.assertIn(f"{kind}-{number}", self.exhibits)
 
@@ -81,13 +81,13 @@ class Whole(Case):
                 if exhibit["kind"] == "figure":
                     self.assertTrue(exhibit["charts"])
 
-    def test_slips_that_tables_name_are_there(self):
+    def test_errata_that_tables_name_are_there(self):
         for exhibit in self.exhibits.values():
             for table in exhibit["tables"]:
                 for row in table["rows"]:
                     for cell in row["cells"]:
-                        if cell["agreement"] == "slip":
-                            self.assertIn(table["slip"], self.exhibits)
+                        if cell["agreement"] == "erratum":
+                            self.assertIn(table["erratum"], self.exhibits)
 
     def test_files_hold_what_the_document_holds(self):
         count = 0

@@ -27,14 +27,16 @@ enum class Provenance {
 enum class Agreement {
   not_compared,     ///< one of the two is missing, or ours is simulated and need not be the same
   within_rounding,  ///< what the rounding of the numbers that ours rests on leaves open reaches the printed one's
-  slip,             ///< it does not, and the source is at fault: the table names the slip
+  erratum,          ///< it does not, and the source is at fault: the table names the erratum
   differs,          ///< it does not, and nothing explains it
 };
 
 [[nodiscard]] constexpr auto word_table(Agreement) {
   using enum Agreement;
-  return std::to_array<Word<Agreement>>(
-      {{not_compared, "not compared"}, {within_rounding, "within rounding"}, {slip, "slip"}, {differs, "differs"}});
+  return std::to_array<Word<Agreement>>({{not_compared, "not compared"},
+                                         {within_rounding, "within rounding"},
+                                         {erratum, "erratum"},
+                                         {differs, "differs"}});
 }
 
 /// One cell of a table: numbers, or words where there is no number.
@@ -75,13 +77,13 @@ struct ReproducedTable {
   std::string spread_is;      ///< "standard error over four trials"; empty: no cell has one
   std::vector<ReproducedColumn> columns;
   std::vector<ReproducedRow> rows;
-  std::string slip;  ///< id of the slip that explains cells that differ; empty: none does
+  std::string erratum;  ///< id of the erratum that explains cells that differ; empty: none does
 };
 
-/// One item of the source, reproduced: a table, a figure, a slip, a question or a piece of future work.
+/// One item of the source, reproduced: a table, a figure, an erratum, a question or a piece of future work.
 struct Exhibit {
-  enum class Kind { table, figure, slip, question, future_work };
-  std::string id;     ///< "table-3.6", "figure-4.3", "slip-1", "question-2", "future-work-4"
+  enum class Kind { table, figure, erratum, question, future_work };
+  std::string id;     ///< "table-3.6", "figure-4.3", "erratum-1", "question-2", "future-work-4"
   std::string title;  ///< in words of our own
   Kind kind = Kind::table;
   int chapter = 0;  ///< 3 to 6; 0: an appendix
@@ -95,8 +97,11 @@ struct Exhibit {
 
 [[nodiscard]] constexpr auto word_table(Exhibit::Kind) {
   using enum Exhibit::Kind;
-  return std::to_array<Word<Exhibit::Kind>>(
-      {{table, "table"}, {figure, "figure"}, {slip, "slip"}, {question, "question"}, {future_work, "future work"}});
+  return std::to_array<Word<Exhibit::Kind>>({{table, "table"},
+                                             {figure, "figure"},
+                                             {erratum, "erratum"},
+                                             {question, "question"},
+                                             {future_work, "future work"}});
 }
 
 /// What of a source was reproduced.

@@ -14,7 +14,7 @@ function tally(exhibit: Exhibit): HTMLElement | undefined {
   if (parts.length === 0) return undefined;
   return h("span", { class: "tally-line" },
     ...parts.map(({ agreement, sign, name, cells }) =>
-      h("span", {}, h("span", { class: `mark ${name}`, "aria-hidden": "true" }, sign), ` ${cells} ${agreement === "slip" && cells !== 1 ? "slips" : agreement}`)));
+      h("span", {}, h("span", { class: `mark ${name}`, "aria-hidden": "true" }, sign), ` ${cells} ${agreement === "erratum" && cells !== 1 ? "errata" : agreement}`)));
 }
 
 function commandBlock(command: string): HTMLElement {
@@ -39,7 +39,7 @@ function relatedLinks(ids: string[], known: Set<string>): HTMLElement {
     ...ids.map((id) => h("li", {}, known.has(id) ? h("a", { href: `#${id}` }, shortName(id)) : h("span", { title: "not on this page" }, shortName(id)))));
 }
 
-/** @param known  ids that a link can lead to    @param explains  exhibits whose tables name this slip */
+/** @param known  ids that a link can lead to    @param explains  exhibits whose tables name this erratum */
 export function exhibitArticle(exhibit: Exhibit, drawings: string[], known: Set<string>, explains: string[]): HTMLElement {
   const empty = exhibit.text.length === 0 && exhibit.tables.length === 0 && exhibit.charts.length === 0;
   const related = [...new Set([...explains, ...exhibit.related])];

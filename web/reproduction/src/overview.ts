@@ -9,7 +9,7 @@ export function head(reproduction: Reproduction): HTMLElement {
     h("p", { class: "kicker" }, "Reproduction"),
     h("h1", {}, "Reproduction of the thesis"),
     h("p", { class: "source" }, reproduction.source),
-    h("p", {}, "mbk grew from this thesis. Its tables and figures are reproduced here, one by one, beside the printed numbers, with the slips found in it, its research questions and its future work."));
+    h("p", {}, "mbk grew from this thesis. Its tables and figures are reproduced here, one by one, beside the printed numbers, with the errata found in it, its research questions and its future work."));
 }
 
 /** @param show  asked with the agreement whose exhibits are to be shown */

@@ -30,11 +30,11 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     word: "agree within rounding",
     meaning: "What the rounding of the printed inputs leaves open reaches the printed number.",
   },
-  slip: {
+  erratum: {
     sign: "!",
-    name: "slip",
-    word: "are slips of the source",
-    meaning: "Rounding does not account for the difference, and the source is at fault: the mark leads to the slip.",
+    name: "erratum",
+    word: "are errata of the source",
+    meaning: "Rounding does not account for the difference, and the source is at fault: the mark leads to the erratum.",
   },
   differs: {
     sign: "≠",

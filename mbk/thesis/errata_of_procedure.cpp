@@ -1,4 +1,4 @@
-// Slips about filters, samples, errors and models: chapters 3 to 5 and appendix C.
+// Errata about filters, samples, errors and models: chapters 3 to 5 and appendix C.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 #include "mbk/model/perturbation/multisine.h"
 #include "mbk/model/perturbation/random_binary.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
-#include "mbk/thesis/slips.h"
+#include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
 namespace {
@@ -48,7 +48,7 @@ Result<void> orientation_of_an_ellipse(Workbench& bench, Draft& exhibit) {
       "ellipse relaxed.json"};
   exhibit.related = {"table-3.3", "table-3.5"};
   ReproducedTable table =
-      computed_table("slip-6", "z_xx, z_yy, z_s", {{"(3.17), as printed", "°", 2}, {"½ atan2", "°", 2}});
+      computed_table("erratum-6", "z_xx, z_yy, z_s", {{"(3.17), as printed", "°", 2}, {"½ atan2", "°", 2}});
   const auto add = [&](const std::string& name, const Matrix& Z) {
     table.rows.push_back(
         {name, {number_or_none(printed_orientation(Z)), cell(kDegrees * impedance::ellipse(Z).orientation)}});
@@ -70,8 +70,8 @@ Result<void> orientation_of_an_ellipse(Workbench& bench, Draft& exhibit) {
       }
     }
   }
-  ReproducedTable all =
-      computed_table("slip-6 all", "", {{"ellipses", "", 0}, {"(3.17) below 0°", "", 0}, {"apart, mod 180°", "°", 9}});
+  ReproducedTable all = computed_table("erratum-6 all", "",
+                                       {{"ellipses", "", 0}, {"(3.17) below 0°", "", 0}, {"apart, mod 180°", "°", 9}});
   all.rows.push_back(
       {"both tables", {cell(static_cast<double>(ellipses)), cell(static_cast<double>(negative)), cell(apart)}});
   exhibit.tables = {std::move(table), std::move(all)};
@@ -120,7 +120,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Draft& exhibit) {
       "--sg-window 101 --cutoff 5      # the filters are named in the output"};
   exhibit.related = {"figure-3.5", "statements"};
   ReproducedTable table = computed_table(
-      "slip-7", "N, W", {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
+      "erratum-7", "N, W", {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
   for (const dsp::SavitzkyGolay& filter : {kSmoothing, dsp::SavitzkyGolay{6, 151}, dsp::SavitzkyGolay{4, 51}}) {
     const auto cutoff = dsp::savitzky_golay_cutoff(filter, kRate);
     if (!cutoff) return tl::unexpected(cutoff.error());
@@ -130,7 +130,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Draft& exhibit) {
          {cell(nyquist * (filter.order + 1) / (1.6 * filter.window - 4.6)),
           cell(nyquist * (filter.order + 1) / (3.2 * filter.half_window() - 4.6)), cell(cutoff->value)}});
   }
-  ReproducedTable derivatives = computed_table("slip-7 derivatives", "derivative", {{"cutoff", "Hz", 1}});
+  ReproducedTable derivatives = computed_table("erratum-7 derivatives", "derivative", {{"cutoff", "Hz", 1}});
   for (const int derivative : {1, 2}) {
     const auto cutoff = minus_3_db(kSmoothing, derivative);
     if (!cutoff) return tl::unexpected(cutoff.error());
@@ -140,7 +140,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Draft& exhibit) {
   const auto lowpass = dsp::butterworth_lowpass(5, Hertz(cutoff), kRate);
   if (!lowpass) return tl::unexpected(lowpass.error());
   ReproducedTable twice =
-      computed_table("slip-7 low-pass", "frequency", {{"gain, once", "", 3}, {"gain, forward and backward", "", 3}});
+      computed_table("erratum-7 low-pass", "frequency", {{"gain, once", "", 3}, {"gain, forward and backward", "", 3}});
   for (const double frequency : {2.0, 3.0, 4.0, 5.0}) {
     const double gain = dsp::gain(*lowpass, Hertz(frequency), kRate);
     twice.rows.push_back({fmt::format("{:g} Hz", frequency), {cell(gain), cell(gain * gain)}});
@@ -156,9 +156,9 @@ Result<void> sign_of_the_errors(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk simulate rig_table_5_1 --trial K1_M1 --out rig.h5 && mbk measure rig_K1_M1.h5 --structure "
       "mass-spring --mode reference --procedure chapter5"};
-  exhibit.related = {"table-5.3", "table-5.4", "slip-19"};
+  exhibit.related = {"table-5.3", "table-5.4", "erratum-19"};
   ReproducedTable table = computed_table(
-      "slip-12", "statement", {{"theoretical + entry, as captioned", "", 0}, {"theoretical − entry", "", 0}});
+      "erratum-12", "statement", {{"theoretical + entry, as captioned", "", 0}, {"theoretical − entry", "", 0}});
   const auto count = [&](const std::vector<PrintedRig>& rigs, std::size_t elements, const auto& holds) {
     std::array<int, 3> counts{};
     for (const PrintedRig& rig : rigs) {
@@ -259,7 +259,7 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
     first = std::min(first, segment.first_sample);
   }
   ReproducedTable centres =
-      computed_table("slip-13", "", {{"possible", "", 0}, {"used by the program", "", 0}, {"seconds", "s", 3}});
+      computed_table("erratum-13", "", {{"possible", "", 0}, {"used by the program", "", 0}, {"seconds", "s", 3}});
   centres.rows = {{"all",
                    {cell(static_cast<double>(possible)), cell(static_cast<double>(used)),
                     cell(static_cast<double>(used) / kRate.value)}},
@@ -272,7 +272,7 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
   const auto pulses = pulse_recording(model);
   if (!pulses) return tl::unexpected(pulses.error());
   ReproducedTable smear = computed_table(
-      "slip-13 pulses", "procedure",
+      "erratum-13 pulses", "procedure",
       {{"m_yy", "kg", 5}, {"b_yy", "N·s/m", 4}, {"k_yy", "N/m", 4}, {"largest error of M, B, K", "", 6}});
   smear.rows.push_back({"the arm", {cell(model.M(1, 1)), cell(model.B(1, 1)), cell(model.K(1, 1)), cell(0.0)}});
   for (const auto& [name, mode] : {std::pair{"filtered, then cut (reference mode)", Mode::reference},
@@ -305,7 +305,7 @@ Result<void> offset_of_the_fit(Workbench& /*bench*/, Draft& exhibit) {
     force[i] = 2.0 * std::sin(phase);
     shifted[i] = 2.0 * std::sin(phase - 1.1);
   }
-  ReproducedTable table = computed_table("slip-14", "model", {{"VAF", "%", 1}, {"RMSE", "N", 3}});
+  ReproducedTable table = computed_table("erratum-14", "model", {{"VAF", "%", 1}, {"RMSE", "N", 3}});
   const auto add = [&](const char* name, const Vector& residual) {
     table.rows.push_back(
         {name, {cell(numeric::variance_accounted_for(force, residual)), cell(numeric::root_mean_square(residual))}});
@@ -395,13 +395,14 @@ Result<void> improper_impedance(Workbench& bench, Draft& exhibit) {
   const auto admittance = fitted(trial->admittance, 2, 0);
   if (!direct) return tl::unexpected(direct.error());
   if (!admittance) return tl::unexpected(admittance.error());
-  ReproducedTable numbers = computed_table("slip-16", "", {{"m", "kg", 3}, {"b", "N·s/m", 2}, {"k", "N/m", 1}});
+  ReproducedTable numbers = computed_table("erratum-16", "", {{"m", "kg", 3}, {"b", "N·s/m", 2}, {"k", "N/m", 1}});
   numbers.provenance = Provenance::simulated;
   const double m = 1.0 / admittance->b[0];
   numbers.rows = {{"the arm", {cell(arm.m), cell(arm.b), cell(arm.k)}},
                   {"1/admittance, 2 poles", {cell(m), cell(m * admittance->a[1]), cell(m * admittance->a[0])}}};
-  ReproducedTable table = computed_table(
-      "slip-16 size", "frequency", {{"the arm", "N/m", 1}, {"1/admittance", "N/m", 1}, {"4 poles, 3 zeros", "N/m", 1}});
+  ReproducedTable table =
+      computed_table("erratum-16 size", "frequency",
+                     {{"the arm", "N/m", 1}, {"1/admittance", "N/m", 1}, {"4 poles, 3 zeros", "N/m", 1}});
   table.provenance = Provenance::simulated;
   Chart chart;
   chart.x = {"frequency", "Hz", true};
@@ -425,7 +426,7 @@ Result<void> improper_impedance(Workbench& bench, Draft& exhibit) {
     }
   }
   ReproducedTable fit =
-      computed_table("slip-16 fit", "form", {{"R² in sample", "", 5}, {"settled on a stable model", "", 0}});
+      computed_table("erratum-16 fit", "form", {{"R² in sample", "", 5}, {"settled on a stable model", "", 0}});
   fit.provenance = Provenance::simulated;
   fit.rows = {{"admittance, 2 poles", {cell(admittance->fit), words(yes(admittance->converged))}},
               {"impedance, 4 poles, 3 zeros", {cell(direct->fit), words(yes(direct->converged))}}};
@@ -437,7 +438,7 @@ Result<void> improper_impedance(Workbench& bench, Draft& exhibit) {
 Result<void> largest_discrepancy(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk reproduce --only table-5.3 --out folder      # both methods' stiffness, from which it follows"};
-  exhibit.related = {"table-5.4", "slip-12", "statements"};
+  exhibit.related = {"table-5.4", "erratum-12", "statements"};
   struct Mean {
     double absolute = 0, to_theory = 0, to_method_2 = 0, largest = 0;
   };
@@ -455,7 +456,7 @@ Result<void> largest_discrepancy(Workbench& bench, Draft& exhibit) {
     }
     return mean;
   };
-  ReproducedTable table = computed_table("slip-19", "parameter",
+  ReproducedTable table = computed_table("erratum-19", "parameter",
                                          {{"discrepancy", "N/m or kg", 3},
                                           {"of the theoretical value", "%", 1},
                                           {"of method 2", "%", 1},

@@ -6,7 +6,7 @@
 #include "mbk/model/impedance/model.h"
 #include "mbk/thesis/exhibits.h"
 
-/// The slips of the source, each with the computation that shows it. For the sources of this module only.
+/// The errata of the source, each with the computation that shows it. For the sources of this module only.
 namespace mbk::thesis {
 
 /// An empty table of what mbk computes.

@@ -1,4 +1,4 @@
-// Each slip's table shows what its text claims: the printed form violates the property, the right one meets it.
+// Each erratum's table shows what its text claims: the printed form violates the property, the right one meets it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,14 +37,14 @@ const std::string& said(const ReproducedTable& table, std::size_t row, std::size
   return table.rows.at(row).cells.at(column).words;
 }
 
-TEST(Slips, SayWhereWhatAndWhatMoves) {
+TEST(Errata, SayWhereWhatAndWhatMoves) {
   std::set<std::string> ids;
   for (const ExhibitName& name : exhibit_names()) ids.insert(std::string(name.id));
   for (int k = 1; k <= 20; ++k) {
-    const std::string id = "slip-" + std::to_string(k);
+    const std::string id = "erratum-" + std::to_string(k);
     ASSERT_TRUE(ids.contains(id));
     const Exhibit exhibit = made(id);
-    EXPECT_EQ(exhibit.kind, Exhibit::Kind::slip);
+    EXPECT_EQ(exhibit.kind, Exhibit::Kind::erratum);
     ASSERT_EQ(exhibit.text.size(), 5u) << id;
     for (std::size_t i = 0; const char* begin : {"Where: ", "Right: ", "What shows it: ", "What moves: ", "Tests: "}) {
       EXPECT_TRUE(exhibit.text[i++].starts_with(begin)) << id;
@@ -57,9 +57,9 @@ TEST(Slips, SayWhereWhatAndWhatMoves) {
   }
 }
 
-TEST(Slips, ExcessIsTheIndexOfTheRationalMatrix) {
-  const Exhibit exhibit = made("slip-1");
-  const ReproducedTable& rows = table(exhibit, "slip-1");
+TEST(Errata, ExcessIsTheIndexOfTheRationalMatrix) {
+  const Exhibit exhibit = made("erratum-1");
+  const ReproducedTable& rows = table(exhibit, "erratum-1");
   ASSERT_EQ(rows.rows.size(), 8u);
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     const double published = number(rows, i, 0), smallest = number(rows, i, 1);
@@ -69,9 +69,9 @@ TEST(Slips, ExcessIsTheIndexOfTheRationalMatrix) {
   }
 }
 
-TEST(Slips, BoundaryOfTheTheoremIsNotPassive) {
-  const Exhibit exhibit = made("slip-2");
-  const ReproducedTable& rows = table(exhibit, "slip-2");
+TEST(Errata, BoundaryOfTheTheoremIsNotPassive) {
+  const Exhibit exhibit = made("erratum-2");
+  const ReproducedTable& rows = table(exhibit, "erratum-2");
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(said(rows, i, 2), "passive");
     EXPECT_EQ(said(rows, i, 4), i < 3 ? "no" : "yes");
@@ -79,18 +79,18 @@ TEST(Slips, BoundaryOfTheTheoremIsNotPassive) {
   }
 }
 
-TEST(Slips, PolesOfTheImpedanceAreNotWhatTheTheoremAsks) {
-  const Exhibit exhibit = made("slip-3");
-  const ReproducedTable& rows = table(exhibit, "slip-3");
+TEST(Errata, PolesOfTheImpedanceAreNotWhatTheTheoremAsks) {
+  const Exhibit exhibit = made("erratum-3");
+  const ReproducedTable& rows = table(exhibit, "erratum-3");
   EXPECT_EQ(rows.title, "Z of P1: finite poles at 0; one at infinity");
   EXPECT_EQ(said(rows, 0, 3), "yes");
   for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(said(rows, i, 3), "no");
   EXPECT_GT(number(rows, 3, 1), 0.0) << "H alone calls −K passive";
 }
 
-TEST(Slips, AntisymmetryMakesTheArmActiveAtLowFrequencies) {
-  const Exhibit exhibit = made("slip-4");
-  const ReproducedTable& rows = table(exhibit, "slip-4");
+TEST(Errata, AntisymmetryMakesTheArmActiveAtLowFrequencies) {
+  const Exhibit exhibit = made("erratum-4");
+  const ReproducedTable& rows = table(exhibit, "erratum-4");
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     EXPECT_NEAR(number(rows, i, 0), number(rows, i, 1), kExact);
     EXPECT_EQ(number(rows, i, 0) < 0.0, i < 2);
@@ -100,45 +100,45 @@ TEST(Slips, AntisymmetryMakesTheArmActiveAtLowFrequencies) {
   EXPECT_EQ(exhibit.charts.at(0).series.size(), 2u);
 }
 
-TEST(Slips, PrintedHermitianPartIsNotHermitian) {
-  const Exhibit exhibit = made("slip-5");
-  EXPECT_GT(number(table(exhibit, "slip-5"), 0, 0), 1.0);
-  EXPECT_NEAR(number(table(exhibit, "slip-5"), 1, 0), 0.0, kExact);
-  EXPECT_LT(number(table(exhibit, "slip-5 lemma"), 0, 0), 0.0);
+TEST(Errata, PrintedHermitianPartIsNotHermitian) {
+  const Exhibit exhibit = made("erratum-5");
+  EXPECT_GT(number(table(exhibit, "erratum-5"), 0, 0), 1.0);
+  EXPECT_NEAR(number(table(exhibit, "erratum-5"), 1, 0), 0.0, kExact);
+  EXPECT_LT(number(table(exhibit, "erratum-5 lemma"), 0, 0), 0.0);
 }
 
-TEST(Slips, EveryLargerShortageHoldsToo) {
-  const Exhibit exhibit = made("slip-5");
-  const ReproducedTable& rows = table(exhibit, "slip-5 shortage");
+TEST(Errata, EveryLargerShortageHoldsToo) {
+  const Exhibit exhibit = made("erratum-5");
+  const ReproducedTable& rows = table(exhibit, "erratum-5 shortage");
   EXPECT_EQ(said(rows, 0, 1), "no");
   for (std::size_t i = 1; i < rows.rows.size(); ++i) EXPECT_EQ(said(rows, i, 1), "yes");
   EXPECT_NEAR(number(rows, 1, 0), 0.0, kExact);
 }
 
-TEST(Slips, OrientationIsThatOfTheAxis) {
-  const Exhibit exhibit = made("slip-6");
-  const ReproducedTable& rows = table(exhibit, "slip-6");
+TEST(Errata, OrientationIsThatOfTheAxis) {
+  const Exhibit exhibit = made("erratum-6");
+  const ReproducedTable& rows = table(exhibit, "erratum-6");
   EXPECT_NEAR(number(rows, 0, 1), 107.3, 0.05);
   EXPECT_NEAR(number(rows, 0, 0), 107.3 - 180.0, 0.05);
   EXPECT_EQ(said(rows, 1, 0), "0/0");
   EXPECT_NEAR(number(rows, 1, 1), 0.0, kExact);
-  EXPECT_NEAR(number(table(exhibit, "slip-6 all"), 0, 2), 0.0, kExact);
+  EXPECT_NEAR(number(table(exhibit, "erratum-6 all"), 0, 2), 0.0, kExact);
 }
 
-TEST(Slips, SchaferIsNearerToTheWeights) {
-  const Exhibit exhibit = made("slip-7");
-  const ReproducedTable& rows = table(exhibit, "slip-7");
+TEST(Errata, SchaferIsNearerToTheWeights) {
+  const Exhibit exhibit = made("erratum-7");
+  const ReproducedTable& rows = table(exhibit, "erratum-7");
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     EXPECT_LT(std::abs(number(rows, i, 1) - number(rows, i, 2)), std::abs(number(rows, i, 0) - number(rows, i, 2)));
   }
-  const ReproducedTable& twice = table(exhibit, "slip-7 low-pass");
+  const ReproducedTable& twice = table(exhibit, "erratum-7 low-pass");
   EXPECT_NEAR(number(twice, 3, 1), 0.5, kExact);
   EXPECT_NEAR(number(twice, 3, 0), std::sqrt(0.5), kExact);
 }
 
-TEST(Slips, JacobianIsThatOfTheKinematics) {
-  const Exhibit exhibit = made("slip-8");
-  const ReproducedTable& rows = table(exhibit, "slip-8");
+TEST(Errata, JacobianIsThatOfTheKinematics) {
+  const Exhibit exhibit = made("erratum-8");
+  const ReproducedTable& rows = table(exhibit, "erratum-8");
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(number(rows, i, 0), number(rows, i, 1), kExact);
     EXPECT_GT(std::abs(number(rows, i, 2) - number(rows, i, 1)), 0.01);
@@ -147,42 +147,43 @@ TEST(Slips, JacobianIsThatOfTheKinematics) {
   EXPECT_NEAR(number(rows, 4, 0), number(rows, 4, 1), kExact);
 }
 
-TEST(Slips, CoriolisMatrixMakesInertiaRateSkew) {
-  const Exhibit exhibit = made("slip-9");
-  const ReproducedTable& rows = table(exhibit, "slip-9");
+TEST(Errata, CoriolisMatrixMakesInertiaRateSkew) {
+  const Exhibit exhibit = made("erratum-9");
+  const ReproducedTable& rows = table(exhibit, "erratum-9");
   EXPECT_GT(std::abs(number(rows, 0, 1)), 0.01);
   EXPECT_GT(std::abs(number(rows, 0, 3)), 0.01);
   for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(number(rows, 1, k), 0.0, kExact);
-  const ReproducedTable& payload = table(exhibit, "slip-9 payload");
+  const ReproducedTable& payload = table(exhibit, "erratum-9 payload");
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(number(payload, i, 0), number(payload, i, 1), kExact);
 }
 
-TEST(Slips, StiffnessIsMinusTheGradient) {
-  const Exhibit exhibit = made("slip-10");
+TEST(Errata, StiffnessIsMinusTheGradient) {
+  const Exhibit exhibit = made("erratum-10");
   constexpr double kDifferences = 1e-6;  // relative, of central differences by a micrometre
-  for (const char* id : {"slip-10", "slip-10 arm"}) {
+  for (const char* id : {"erratum-10", "erratum-10 arm"}) {
     const ReproducedTable& rows = table(exhibit, id);
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_NEAR(number(rows, i, 1) / number(rows, i, 0), 1.0, kDifferences);
       EXPECT_GT(std::abs(number(rows, i, 2) - number(rows, i, 0)), 10.0);
     }
   }
-  const ReproducedTable& arm = table(exhibit, "slip-10 arm");
+  const ReproducedTable& arm = table(exhibit, "erratum-10 arm");
   EXPECT_EQ(number(arm, 1, 2), number(arm, 2, 2)) << "the printed entries hide the antisymmetry";
   EXPECT_NEAR(number(arm, 1, 0) - number(arm, 2, 0), 2.0 * 7.72, 0.02);
 }
 
-TEST(Slips, ImmittanceFormHidesAShortage) {
-  const Exhibit exhibit = made("slip-11");
-  EXPECT_EQ(said(table(exhibit, "slip-11"), 0, 3), "stable");
-  EXPECT_EQ(said(table(exhibit, "slip-11"), 1, 3), "not stable");
-  EXPECT_EQ(said(table(exhibit, "slip-11 bound"), 0, 2), "no");
-  EXPECT_NEAR(number(table(exhibit, "slip-11 allowed"), 0, 0), number(table(exhibit, "slip-11 allowed"), 0, 1), kExact);
+TEST(Errata, ImmittanceFormHidesAShortage) {
+  const Exhibit exhibit = made("erratum-11");
+  EXPECT_EQ(said(table(exhibit, "erratum-11"), 0, 3), "stable");
+  EXPECT_EQ(said(table(exhibit, "erratum-11"), 1, 3), "not stable");
+  EXPECT_EQ(said(table(exhibit, "erratum-11 bound"), 0, 2), "no");
+  EXPECT_NEAR(number(table(exhibit, "erratum-11 allowed"), 0, 0), number(table(exhibit, "erratum-11 allowed"), 0, 1),
+              kExact);
 }
 
-TEST(Slips, ErrorsAreTheoreticalLessIdentified) {
-  const Exhibit exhibit = made("slip-12");
-  const ReproducedTable& rows = table(exhibit, "slip-12");
+TEST(Errata, ErrorsAreTheoreticalLessIdentified) {
+  const Exhibit exhibit = made("erratum-12");
+  const ReproducedTable& rows = table(exhibit, "erratum-12");
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     const std::string all = i < 2 ? "10" : "5";
     EXPECT_EQ(said(rows, i, 0), "0 of " + all);
@@ -190,33 +191,33 @@ TEST(Slips, ErrorsAreTheoreticalLessIdentified) {
   }
 }
 
-TEST(Slips, ProgramLosesACentreAtEachEnd) {
-  const Exhibit exhibit = made("slip-13");
-  const ReproducedTable& rows = table(exhibit, "slip-13");
+TEST(Errata, ProgramLosesACentreAtEachEnd) {
+  const Exhibit exhibit = made("erratum-13");
+  const ReproducedTable& rows = table(exhibit, "erratum-13");
   EXPECT_EQ(number(rows, 0, 0) - number(rows, 0, 1), 2.0);
   EXPECT_EQ(number(rows, 1, 1) - number(rows, 1, 0), 1.0);
 }
 
-TEST(Slips, FilteringBeforeTheCutSmears) {
-  const Exhibit exhibit = made("slip-13");
-  const ReproducedTable& rows = table(exhibit, "slip-13 pulses");
+TEST(Errata, FilteringBeforeTheCutSmears) {
+  const Exhibit exhibit = made("erratum-13");
+  const ReproducedTable& rows = table(exhibit, "erratum-13 pulses");
   EXPECT_GT(number(rows, 1, 3), 1e-5);
   EXPECT_LT(number(rows, 2, 3), 0.1 * number(rows, 1, 3));
 }
 
-TEST(Slips, VafDoesNotSeeAnOffset) {
-  const Exhibit exhibit = made("slip-14");
-  const ReproducedTable& rows = table(exhibit, "slip-14");
+TEST(Errata, VafDoesNotSeeAnOffset) {
+  const Exhibit exhibit = made("erratum-14");
+  const ReproducedTable& rows = table(exhibit, "erratum-14");
   EXPECT_NEAR(number(rows, 1, 0), 100.0, kExact);
   EXPECT_NEAR(number(rows, 1, 1), 10.0, kExact);
   EXPECT_NEAR(number(rows, 2, 0), 99.0, kExact);
   EXPECT_LT(number(rows, 3, 0), 0.0);
 }
 
-TEST(Slips, LeverArmScalesTheSlopeAlone) {
-  const Exhibit exhibit = made("slip-15");
-  const ReproducedTable& rows = table(exhibit, "slip-15");
-  const ReproducedTable& gauge = table(exhibit, "slip-15 gauge");
+TEST(Errata, LeverArmScalesTheSlopeAlone) {
+  const Exhibit exhibit = made("erratum-15");
+  const ReproducedTable& rows = table(exhibit, "erratum-15");
+  const ReproducedTable& gauge = table(exhibit, "erratum-15 gauge");
   for (std::size_t i = 0; const double force : {0.0, 5.0, -5.0}) {
     EXPECT_NEAR(number(rows, i, 1), force, kExact);
     EXPECT_NEAR(number(rows, i, 2), force, kExact);
@@ -226,19 +227,19 @@ TEST(Slips, LeverArmScalesTheSlopeAlone) {
   }
 }
 
-TEST(Slips, ConverterIsCoarserThanTheNoise) {
-  const Exhibit exhibit = made("slip-15");
-  const ReproducedTable& rows = table(exhibit, "slip-15 converter");
+TEST(Errata, ConverterIsCoarserThanTheNoise) {
+  const Exhibit exhibit = made("erratum-15");
+  const ReproducedTable& rows = table(exhibit, "erratum-15 converter");
   EXPECT_GT(number(rows, 1, 0), 4.0 * 0.01);
   EXPECT_NEAR(number(rows, 3, 0) / number(rows, 2, 0), 1.0, 0.01);
 }
 
-TEST(Slips, InvertedAdmittanceIsTheImpedanceAndTheProperOneIsNot) {
-  const Exhibit exhibit = made("slip-16");
-  const ReproducedTable& numbers = table(exhibit, "slip-16");
+TEST(Errata, InvertedAdmittanceIsTheImpedanceAndTheProperOneIsNot) {
+  const Exhibit exhibit = made("erratum-16");
+  const ReproducedTable& numbers = table(exhibit, "erratum-16");
   constexpr double kNoise = 0.01;  // relative: 0.02 N of noise on some newtons
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(number(numbers, 1, k) / number(numbers, 0, k), 1.0, kNoise);
-  const ReproducedTable& size = table(exhibit, "slip-16 size");
+  const ReproducedTable& size = table(exhibit, "erratum-16 size");
   for (std::size_t i = 0; i < size.rows.size(); ++i) {
     EXPECT_NEAR(number(size, i, 1) / number(size, i, 0), 1.0, kNoise);
   }
@@ -246,9 +247,9 @@ TEST(Slips, InvertedAdmittanceIsTheImpedanceAndTheProperOneIsNot) {
   EXPECT_LT(number(size, last, 2), 0.01 * number(size, last, 0));
 }
 
-TEST(Slips, NetworksMeetTheTheoremAndAreNotStable) {
-  const Exhibit exhibit = made("slip-17");
-  const ReproducedTable& rows = table(exhibit, "slip-17");
+TEST(Errata, NetworksMeetTheTheoremAndAreNotStable) {
+  const Exhibit exhibit = made("erratum-17");
+  const ReproducedTable& rows = table(exhibit, "erratum-17");
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_GE(number(rows, i, k), 0.0) << rows.rows[i].name;
     EXPECT_EQ(said(rows, i, 3), "no");
@@ -256,21 +257,21 @@ TEST(Slips, NetworksMeetTheTheoremAndAreNotStable) {
   }
 }
 
-TEST(Slips, PrintedSignsTurnEnergyAndForce) {
-  const Exhibit exhibit = made("slip-18");
-  const ReproducedTable& energy = table(exhibit, "slip-18");
+TEST(Errata, PrintedSignsTurnEnergyAndForce) {
+  const Exhibit exhibit = made("erratum-18");
+  const ReproducedTable& energy = table(exhibit, "erratum-18");
   EXPECT_LT(number(energy, 0, 0), 0.0);
   EXPECT_NEAR(number(energy, 0, 1), number(energy, 0, 2), kExact);
-  const ReproducedTable& force = table(exhibit, "slip-18 robot");
+  const ReproducedTable& force = table(exhibit, "erratum-18 robot");
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(number(force, i, 1), number(force, i, 0), kExact);
     EXPECT_NEAR(number(force, i, 2), -number(force, i, 0), kExact);
   }
 }
 
-TEST(Slips, RelativeDiscrepancyIsLargestForTheOffDiagonal) {
-  const Exhibit exhibit = made("slip-19");
-  const ReproducedTable& rows = table(exhibit, "slip-19");
+TEST(Errata, RelativeDiscrepancyIsLargestForTheOffDiagonal) {
+  const Exhibit exhibit = made("erratum-19");
+  const ReproducedTable& rows = table(exhibit, "erratum-19");
   for (const std::size_t other : {1u, 2u, 3u}) EXPECT_GT(number(rows, 0, 0), number(rows, other, 0));
   for (const std::size_t other : {0u, 1u, 3u}) {
     EXPECT_GT(number(rows, 2, 1), number(rows, other, 1));
@@ -278,9 +279,9 @@ TEST(Slips, RelativeDiscrepancyIsLargestForTheOffDiagonal) {
   }
 }
 
-TEST(Slips, FortyDegreesAreAPartOfTheWorkspace) {
-  const Exhibit exhibit = made("slip-20");
-  const ReproducedTable& rows = table(exhibit, "slip-20");
+TEST(Errata, FortyDegreesAreAPartOfTheWorkspace) {
+  const Exhibit exhibit = made("erratum-20");
+  const ReproducedTable& rows = table(exhibit, "erratum-20");
   EXPECT_LT(number(rows, 1, 1), 25.0);
   EXPECT_NEAR(number(rows, 2, 1), 50.0, kExact);
 }
