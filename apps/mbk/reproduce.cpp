@@ -96,11 +96,18 @@ Result<void> write_all(const Reproduction& made, const Arguments& arguments, con
 }
 
 std::string summary_text(const Reproduction& made, const fs::path& folder) {
-  std::string text = fmt::format("{}: {} exhibits\n", (folder / "index.html").string(), made.exhibits.size());
+  const int agree = made.count(Agreement::within_rounding), errata = made.count(Agreement::erratum),
+            differ = made.count(Agreement::differs), not_compared = made.count(Agreement::not_compared);
+  std::string text = fmt::format("{}: {} exhibits, {} printed numbers\n", (folder / "index.html").string(),
+                                 made.exhibits.size(), made.printed());
   text += fmt::format(
-      "  of the printed numbers that follow from other printed numbers {} agree within their rounding, "
-      "{} are errata of the source, {} differ\n",
-      made.count(Agreement::within_rounding), made.count(Agreement::erratum), made.count(Agreement::differs));
+      "  {} follow from other printed numbers: {} agree within their rounding, {} are errata of the source, {} "
+      "differ\n",
+      agree + errata + differ, agree, errata, differ);
+  text += fmt::format("  {} make a round trip: ours was computed from the printed number itself\n",
+                      made.count(Agreement::round_trip));
+  text += fmt::format("  {} are not compared: {} stand beside simulated numbers, {} are or stand beside words\n",
+                      not_compared, made.beside_simulated(), not_compared - made.beside_simulated());
   return text;
 }
 

@@ -398,7 +398,7 @@ Result<void> table_E_2(Workbench& bench, Draft& exhibit) {
   auto resolution = resolution_table(bench.seed(0, 2));
   if (!resolution) return tl::unexpected(resolution.error());
   exhibit.commands = {kLoadsCommand, kCalibrateCommand};
-  exhibit.related = {"figure-E.5", "erratum-15"};
+  exhibit.related = {"figure-E.5", "withdrawn-errata"};
   exhibit.tables = {published_lines("E.2", (*gauge)->of_exact, 4),
                     inverted_lines("E.2 inverted", (*gauge)->of_exact, 4),
                     published_lines("E.2 scattered", (*gauge)->of_scattered, 3),

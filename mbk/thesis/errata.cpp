@@ -41,11 +41,11 @@ std::string yes(bool is) {
 
 namespace {
 
-constexpr Maker erratum(int chapter, const char* id, Result<void> (*make)(Workbench& bench, Draft& exhibit),
-                        Provenance provenance = Provenance::recomputed) {
-  return {Exhibit::Kind::erratum, chapter, id, provenance, make};
+constexpr Maker erratum(int chapter, const char* id, Result<void> (*make)(Workbench& bench, Draft& exhibit)) {
+  return {Exhibit::Kind::erratum, chapter, id, Provenance::recomputed, make};
 }
 
+// 15, 16 and 19 were withdrawn; a number is not given again.
 constexpr std::array kMakers = {
     erratum(3, "erratum-1", excess_of_the_largest),
     erratum(3, "erratum-2", theorem_at_its_boundary),
@@ -61,12 +61,10 @@ constexpr std::array kMakers = {
     erratum(5, "erratum-12", sign_of_the_errors),
     erratum(0, "erratum-13", samples_of_the_program),
     erratum(3, "erratum-14", offset_of_the_fit),
-    erratum(0, "erratum-15", gauge_and_converter),
-    erratum(4, "erratum-16", improper_impedance, Provenance::simulated),
     erratum(4, "erratum-17", unnamed_poles),
     erratum(3, "erratum-18", sign_of_the_force),
-    erratum(5, "erratum-19", largest_discrepancy),
     erratum(0, "erratum-20", majority_of_the_workspace),
+    erratum(0, "withdrawn-errata", withdrawn_errata),
 };
 
 }  // namespace

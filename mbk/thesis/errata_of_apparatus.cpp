@@ -8,12 +8,9 @@
 #include <tuple>
 #include <vector>
 
-#include "mbk/base/numeric/statistics.h"
-#include "mbk/measure/calibration/force_sensor.h"
 #include "mbk/measure/calibration/spring_array.h"
 #include "mbk/model/robot/dynamics.h"
 #include "mbk/model/robot/workspace.h"
-#include "mbk/simulate/laboratory/strain_gauge.h"
 #include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
@@ -181,73 +178,11 @@ Result<void> majority_of_the_workspace(Workbench& bench, Draft& exhibit) {
   const auto add = [&](std::string name, double area) {
     table.rows.push_back({std::move(name), {cell(area), cell(100.0 * area / workspace->area)}});
   };
+  exhibit.values = {{"swept", 100.0 * swept(range) / workspace->area}};
   add("the workspace", workspace->area);
   add("40° of each joint", swept(range));
   add(fmt::format("{:.0f}° of each joint", half * 180.0 / std::numbers::pi), swept(half));
   exhibit.tables = {std::move(table)};
-  return {};
-}
-
-namespace {
-
-/// What the whole chain makes of a slow ramp, without noise and without filter: readings less the force.
-Result<Vector> errors_of_converter(double from, double to) {
-  laboratory::StrainGaugeOptions options;
-  options.bridge_noise = 0.0;
-  options.cutoff = Hertz(0.0);
-  auto gauge = laboratory::StrainGauge::create(options, 1e-3, 1);
-  if (!gauge) return tl::unexpected(gauge.error());
-  constexpr Index kSamples = 20000;
-  Vector errors(kSamples);
-  for (Index i = 0; i < kSamples; ++i) {
-    const double force = from + (to - from) * static_cast<double>(i) / kSamples;
-    errors[i] = gauge->added({force, 0.0})[0];
-  }
-  return errors;
-}
-
-}  // namespace
-
-Result<void> gauge_and_converter(Workbench& bench, Draft& exhibit) {
-  exhibit.commands = {"mbk sensor calibrate --help      # --lever-arm-mm, --bits, --range"};
-  exhibit.related = {"figure-E.5", "statements"};
-  const Given& given = bench.given();
-  const double slope = given.number("setup", "slope of Fx, N/V"), offset = given.number("setup", "offset of Fx, N");
-  const double L0 = given.number("setup", "lever arm L0, m"), L = 0.1;
-  ReproducedTable table = computed_table("erratum-15", "force on x",
-                                         {{"voltage", "V", 3},
-                                          {"(L₀/L) slope (V − V₀)", "N", 3},
-                                          {"(E.3), intercept of (E.2)", "N", 3},
-                                          {"(E.3), intercept tuned at 100 mm", "N", 3},
-                                          {"slope scaled, intercept of (E.2)", "N", 3}});
-  const double zero = -offset / slope, scale = L0 / L, tuned = -scale * slope * zero;
-  for (const double force : {0.0, 5.0, -5.0}) {
-    const double voltage = force * L / L0 / slope + zero;
-    table.rows.push_back(
-        {fmt::format("{:g} N", force),
-         {cell(voltage), cell(scale * slope * (voltage - zero) + 0.0), cell(scale * (slope * voltage + offset) + 0.0),
-          cell(scale * (slope * voltage + tuned)), cell(scale * slope * voltage + offset)}});
-  }
-  laboratory::StrainGaugeOptions options;
-  options.arm = options.assumed_arm = L;
-  options.bridge_noise = 0.0;
-  options.cutoff = Hertz(0.0);
-  options.converter_bits = 0;
-  auto gauge = laboratory::StrainGauge::create(options, 1e-3, 1);
-  if (!gauge) return tl::unexpected(gauge.error());
-  ReproducedTable chain = computed_table("erratum-15 gauge", "force on x", {{"reading", "N", 3}});
-  for (const double force : {0.0, 5.0, -5.0}) {
-    chain.rows.push_back({fmt::format("{:g} N", force), {cell(gauge->read({force, 0.0})[0] + 0.0)}});
-  }
-  const calibration::Converter converter;
-  const auto errors = errors_of_converter(-20.0, 20.0);
-  if (!errors) return tl::unexpected(errors.error());
-  ReproducedTable steps = computed_table("erratum-15 converter", "", {{"value", "", 4}});
-  steps.rows = {{"step [V]", {cell(converter.step())}},
-                {"step [N]", {cell(std::abs(slope) * converter.step())}},
-                {"step/√12 [N]", {cell(std::abs(slope) * converter.step() / std::sqrt(12.0))}},
-                {"noise of one axis [N]", {cell(std::sqrt(numeric::variance(*errors)))}}};
-  exhibit.tables = {std::move(table), std::move(chain), std::move(steps)};
   return {};
 }
 

@@ -1,4 +1,4 @@
-// Tables that follow from other printed numbers, 3.6 and 5.3, and what no number leads to.
+// Tables that follow from other printed numbers, 3.6 and 5.3, and data that cannot be recovered.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -88,8 +88,8 @@ Result<void> lost(Workbench& /*bench*/, Draft& exhibit) {
   ReproducedTable table;
   table.id = "lost";
   table.provenance = Provenance::not_recoverable;
-  table.what_rows_are = "what";
-  table.columns = {{"why it cannot be had", "", 0}, {"in its place", "", 0}};
+  table.what_rows_are = "data";
+  table.columns = {{"reason", "", 0}, {"substitute", "", 0}};
   exhibit.tables = {std::move(table)};
   return {};
 }

@@ -151,7 +151,7 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
 Result<void> table_4_4(Workbench& bench, Draft& exhibit) {
   const auto trials = bench.one_axis_grasps();
   if (!trials) return tl::unexpected(trials.error());
-  exhibit.related = {"figure-4.6", "figure-4.7", "erratum-16"};
+  exhibit.related = {"figure-4.6", "figure-4.7", "withdrawn-errata"};
   exhibit.commands = {"mbk validate one-dimensional"};
   ReproducedTable table;
   table.id = "4.4";

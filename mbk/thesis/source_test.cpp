@@ -81,6 +81,29 @@ TEST(Compare, NamesAnErratumOnlyWhereItDiffers) {
   EXPECT_EQ(compared(one_cell(cell(4.9), Provenance::recomputed, "erratum-1")), Agreement::erratum);
 }
 
+// P1's damping ellipse is printed in table 3.3 as A = 176.8, and given too.
+TEST(Compare, TellsARoundTripFromAgreement) {
+  ReproducedTable table = one_cell(cell(176.84), Provenance::recomputed);
+  table.id = "3.3";
+  table.columns = {{"damping A", "", 1}};
+  table.rows[0].name = "P1";
+  EXPECT_EQ(compared(table), Agreement::round_trip);
+  table.rows[0].cells[0].ours = 176.86;
+  EXPECT_EQ(compared(table), Agreement::differs) << "it has to come back";
+  table.provenance = Provenance::simulated;
+  table.rows[0].cells[0].ours = 176.84;
+  EXPECT_EQ(compared(table), Agreement::not_compared);
+
+  // Where the given number is another one, ours does not come from the printed one.
+  Source changed = printed();
+  changed.given.tables.at("3.3").rows.at("P1").at(3).text = "176.9";
+  Exhibit exhibit;
+  table.provenance = Provenance::recomputed;
+  exhibit.tables = {table};
+  compare(changed, exhibit);
+  EXPECT_EQ(exhibit.tables[0].rows[0].cells[0].agreement, Agreement::within_rounding);
+}
+
 TEST(Compare, DoesNotJudgeWhatIsSimulated) {
   EXPECT_EQ(compared(one_cell(cell(4.9), Provenance::simulated)), Agreement::not_compared);
   EXPECT_EQ(compared(one_cell(words("passive"), Provenance::recomputed)), Agreement::not_compared);

@@ -69,6 +69,7 @@ const every = changed(real.file, "every", (page) => {
   agreement.differs += 1;
   agreement.erratum += 1;
   agreement["within rounding"] += 2;
+  agreement["not compared"] += widest.rows.flatMap(({ cells }) => cells).filter(({ printed }) => printed !== null).length + 1;
   page.drawings["figure-4.3"] = ["#0072b2", "#d55e00", "#009e73"].map((colour, k) => drawing(`${["First", "Second", "Third"][k]} pulse`, colour));
   page.drawings["figure-3.1"] = [drawing("Only one", "#0072b2")];
 });
@@ -126,13 +127,18 @@ for (const [name, file] of Object.entries({ "what mbk made": real.file, "every k
     const { exhibits, agreement } = documentOf(file).reproduction;
     const cells = exhibits.flatMap(({ tables }) => tables.flatMap(({ rows }) => rows.flatMap((row) => row.cells)));
     const read = await numbers(page, "#tally");
-    for (const [word, sign] of [["within rounding", "✓"], ["erratum", "!"], ["differs", "≠"]]) {
+    for (const [word, sign] of [["within rounding", "✓"], ["round trip", "↺"], ["erratum", "!"], ["differs", "≠"]]) {
       const count = cells.filter((cell) => cell.agreement === word).length;
       assert.equal(agreement[word], count, word);
       assert.equal(read[`tally-${word.replace(" ", "-")}`].value, count, word);
       const marks = await page.$$eval(`article td .mark.${word.replace(" ", "-")} [aria-hidden]`, (all) => all.map((one) => one.textContent));
       assert.deepEqual(marks, Array(count).fill(sign));
     }
+    // Every printed cell is counted once: what is compared with nothing has its own count.
+    const printed = cells.filter((cell) => cell.printed !== null);
+    assert.equal(read["tally-not-compared"].value, printed.filter((cell) => cell.agreement === "not compared").length);
+    assert.equal(Object.values(read).reduce((sum, { value }) => sum + value, 0), printed.length);
+    assert.match(await page.textContent("#tally"), new RegExp(`Of ${printed.length} printed numbers`));
     assert.equal(await page.textContent(".source"), documentOf(file).reproduction.source);
   }));
 
@@ -207,7 +213,7 @@ test("an address leads to an exhibit, and past a filter", async () => {
   assert.ok(Math.abs(await at("table-5.3")) < 60, `${await at("table-5.3")}`);
   await page.waitForSelector('nav a[href="#table-5.3"][aria-current]');
   await page.fill("#filter-text", "pulse");
-  await page.evaluate(() => (location.hash = "erratum-1"));
+  await page.evaluate(() => (location.hash = "slip-1")); // the name that errata had before
   await page.waitForFunction(() => document.activeElement?.id === "erratum-1");
   assert.equal(await page.inputValue("#filter-text"), "");
   await page.locator('nav a[href="#figure-4.3"]').focus();
@@ -356,7 +362,7 @@ test("on a narrow screen nothing is wider than it, and the contents open and clo
 
 test("nothing to show, and nothing known, is no error", async () => {
   const none = (value) => (Array.isArray(value) ? value.map(none) : value && typeof value === "object" ? Object.fromEntries(Object.entries(value).map(([k, v]) => [k, none(v)])) : typeof value === "number" ? null : value);
-  const empty = changed(real.file, "empty", (page) => Object.assign(page.reproduction, { exhibits: [], agreement: { "within rounding": 0, erratum: 0, differs: 0 } }));
+  const empty = changed(real.file, "empty", (page) => Object.assign(page.reproduction, { exhibits: [], agreement: { "not compared": 0, "within rounding": 0, "round trip": 0, erratum: 0, slip: 0, differs: 0 } }));
   const bare = changed(every, "bare", (page) => {
     for (const one of page.reproduction.exhibits) Object.assign(one, { text: [], commands: [], related: [], tables: [], charts: [] });
   });

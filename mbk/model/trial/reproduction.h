@@ -25,8 +25,10 @@ enum class Provenance {
 
 /// How a number of ours stands to the printed one.
 enum class Agreement {
-  not_compared,     ///< one of the two is missing, or ours is simulated and need not be the same
+  not_compared,     ///< one of the two is missing or is words, or ours is simulated and need not be the same
   within_rounding,  ///< what the rounding of the numbers that ours rests on leaves open reaches the printed one's
+  round_trip,       ///< as within_rounding, but ours was computed from that printed number itself: the formulas undo
+                    ///< each other, and nothing is known of the source
   erratum,          ///< it does not, and the source is at fault: the table names the erratum
   differs,          ///< it does not, and nothing explains it
 };
@@ -35,6 +37,7 @@ enum class Agreement {
   using enum Agreement;
   return std::to_array<Word<Agreement>>({{not_compared, "not compared"},
                                          {within_rounding, "within rounding"},
+                                         {round_trip, "round trip"},
                                          {erratum, "erratum"},
                                          {differs, "differs"}});
 }
@@ -109,13 +112,30 @@ struct Reproduction {
   std::string source;  ///< what it is a reproduction of
   std::vector<Exhibit> exhibits;
 
-  /// How many cells of recomputed tables stand so to the printed ones.
+  /// How many printed numbers and words stand so to ours. Each has one agreement, so that these add up to printed().
   [[nodiscard]] int count(Agreement agreement) const {
+    return count_printed(
+        [&](const ReproducedTable&, const ReproducedCell& cell) { return cell.agreement == agreement; });
+  }
+
+  [[nodiscard]] int printed() const {
+    return count_printed([](const ReproducedTable&, const ReproducedCell&) { return true; });
+  }
+
+  /// How many of the printed ones stand beside simulated numbers, with which none is compared.
+  [[nodiscard]] int beside_simulated() const {
+    return count_printed(
+        [](const ReproducedTable& table, const ReproducedCell&) { return table.provenance == Provenance::simulated; });
+  }
+
+ private:
+  template <typename Condition>
+  [[nodiscard]] int count_printed(const Condition& condition) const {
     int cells = 0;
     for (const Exhibit& exhibit : exhibits) {
       for (const ReproducedTable& table : exhibit.tables) {
         for (const ReproducedRow& row : table.rows) {
-          for (const ReproducedCell& cell : row.cells) cells += cell.agreement == agreement ? 1 : 0;
+          for (const ReproducedCell& cell : row.cells) cells += !cell.printed.empty() && condition(table, cell) ? 1 : 0;
         }
       }
     }

@@ -9,6 +9,12 @@ Json optional(const std::optional<double>& value) {
   return value ? number(*value) : Json(nullptr);
 }
 
+/// nullptr where it has kept its name.
+const char* agreement_in_schema_1(Agreement agreement) {
+  if (agreement == Agreement::erratum) return "slip";
+  return agreement == Agreement::round_trip ? "within rounding" : nullptr;
+}
+
 Json cell_json(const ReproducedCell& cell) {
   Json json = {{"printed", cell.printed.empty() ? Json(nullptr) : Json(cell.printed)},
                {"printed_value", optional(cell.printed_value)},
@@ -18,7 +24,7 @@ Json cell_json(const ReproducedCell& cell) {
                {"spread", optional(cell.spread)},
                {"range", cell.range ? interval(*cell.range) : Json(nullptr)},
                {"agreement", word_of(cell.agreement)}};
-  if (cell.agreement == Agreement::erratum) json["was"] = "slip";
+  if (const char* was = agreement_in_schema_1(cell.agreement)) json["was"] = was;
   return json;
 }
 
@@ -104,8 +110,8 @@ std::string to_json(const Reproduction& reproduction) {
   Json json = header("mbk.reproduction/2");
   json["source"] = reproduction.source;
   json["agreement"] = Json::object();
-  for (const Agreement agreement : {Agreement::within_rounding, Agreement::erratum, Agreement::differs}) {
-    json["agreement"][std::string(word_of(agreement))] = reproduction.count(agreement);
+  for (const auto& [agreement, word] : word_table(Agreement())) {
+    json["agreement"][std::string(word)] = reproduction.count(agreement);
   }
   json["agreement"]["slip"] = reproduction.count(Agreement::erratum);
   json["exhibits"] = Json::array();

@@ -69,7 +69,7 @@ export function contents(groups: Group[], articles: Map<string, HTMLElement>): C
     return { provenance, box, label: h("label", {}, box, provenanceSign(provenance), provenance) };
   });
   const agreement = h("select", { id: "filter-agreement" }, h("option", { value: "" }, "any numbers"),
-    ...Object.keys(agreements).map((value) => h("option", { value }, `numbers ${value === "erratum" ? "that are errata" : value === "differs" ? "that differ" : value}`)));
+    ...Object.entries(agreements).map(([value, { which }]) => h("option", { value }, `numbers ${which}`)));
   const shownCount = h("p", { class: "shown-count", role: "status" });
   const clear = h("button", { type: "button" }, "Show all");
   const nothing = document.getElementById("nothing");

@@ -52,7 +52,7 @@ export function factsOf(table: Table, row: string, column: Column, cell: Cell): 
   const every = (value: Value): string => minus(String(value));
   const parts = [typeof cell.ours === "string" ? `ours: ${cell.ours}` : cell.ours === null ? "no number of ours" : `ours ${every(cell.ours)}${unit}`];
   if (cell.spread !== null) parts.push(`± ${every(cell.spread)}${table.spread_is ? ` (${table.spread_is})` : ""}`);
-  if (cell.range) parts.push(`rounding leaves ${every(cell.range[0])} to ${every(cell.range[1])}`);
+  if (cell.range) parts.push(`range from rounding ${every(cell.range[0])} to ${every(cell.range[1])}`);
   parts.push(cell.printed === null ? "nothing printed" : `printed ${minus(cell.printed)}`);
   if (cell.difference !== null) parts.push(`difference ${cell.difference > 0 ? "+" : ""}${every(cell.difference)}`);
   if (cell.agreement !== "not compared") parts.push(cell.agreement === "erratum" && table.erratum ? shortName(table.erratum).toLowerCase() : cell.agreement);
@@ -64,7 +64,7 @@ function cellElement(table: Table, row: string, column: Column, cell: Cell, name
   const children: (Node | string | undefined)[] = [h("span", { class: "ours" }, ...oursOf(cell, column, name), mark(cell, erratum))];
   if (cell.range && cell.range[0] !== null && cell.range[1] !== null) {
     const [low, high] = cell.range;
-    children.push(h("span", { class: "range" }, hidden("rounding leaves "), "[", data(low, fixed(low, decimals + 1), `${name}-low`), ", ", data(high, fixed(high, decimals + 1), `${name}-high`), "]"));
+    children.push(h("span", { class: "range" }, hidden("range from rounding "), "[", data(low, fixed(low, decimals + 1), `${name}-low`), ", ", data(high, fixed(high, decimals + 1), `${name}-high`), "]"));
   }
   if (cell.printed !== null) {
     const shown = minus(cell.printed);
@@ -157,7 +157,7 @@ export function tableBlock(exhibit: Exhibit, k: number, known: Set<string>): HTM
     h("p", { class: "table-notes" }, table.provenance === exhibit.provenance && exhibit.tables.length === 1 ? "" : chip(table.provenance),
       cells.some((cell) => cell.printed !== null) ? h("span", {}, "ours above, ", h("span", { class: "printed" }, "printed"), " below") : "",
       table.spread_is ? h("span", {}, `± ${table.spread_is}`) : "",
-      table.erratum === null ? "" : h("span", {}, "What differs is ", erratum ? h("a", { href: `#${erratum}` }, shortName(erratum).toLowerCase()) : shortName(table.erratum).toLowerCase())),
+      table.erratum === null ? "" : h("span", {}, "Differences: ", erratum ? h("a", { href: `#${erratum}` }, shortName(erratum).toLowerCase()) : shortName(table.erratum).toLowerCase())),
     table.rows.length > 0 && table.columns.length > 0 ? scrolling(table.title, grid) : h("p", { class: "none" }, "This table has no numbers."),
     facts,
     h("div", { class: "tools", role: "group", "aria-label": `Tools: ${table.title}` },
