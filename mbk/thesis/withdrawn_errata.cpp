@@ -1,11 +1,9 @@
 // Errata that an earlier version charged and that the computation does not bear out.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "mbk/measure/calibration/force_sensor.h"
@@ -25,10 +23,9 @@ ReproducedTable scaled_forces(const Given& given) {
   const double L0 = given.number("setup", "lever arm L0, m"), L = 0.1;
   ReproducedTable table = computed_table("withdrawn-errata 15", "force on x", {{"voltage", "V", 3}, {"(E.3)", "N", 3}});
   const double zero = -offset / slope, intercept = -slope * zero;
-  for (const double force : {0.0, 5.0, -5.0}) {
+  for (const auto& [name, force] : {std::pair{"0 N", 0.0}, {"5 N", 5.0}, {"−5 N", -5.0}}) {
     const double voltage = zero + force * L / L0 / slope;
-    table.rows.push_back(
-        {fmt::format("{:g} N", force), {cell(voltage), cell(L0 / L * (slope * voltage + intercept) + 0.0)}});
+    table.rows.push_back({name, {cell(voltage), cell(L0 / L * (slope * voltage + intercept) + 0.0)}});
   }
   return table;
 }

@@ -54,5 +54,5 @@ export function legendSection(reproduction: Reproduction): HTMLElement {
         h("span", { class: "range" }, "[5.62, 5.75]"),
         h("span", { class: "printed" }, "5.7"))))),
       h("p", {}, "In a table our number comes first, with ± its spread, if any, and the mark of its agreement. The brackets give its range from the rounding of the printed inputs. ",
-        h("span", { class: "printed inline" }, "The printed number"), " stands below it, digit by digit as in print. Select a cell, or use the arrow keys in a table, for all digits and the difference.")));
+        h("span", { class: "printed inline" }, "The printed number"), " stands below it, as printed. Select a cell, or use the arrow keys in a table, for all digits and the difference.")));
 }

@@ -38,7 +38,7 @@ function mark(cell: Cell, erratum: string | undefined): HTMLElement | undefined 
 }
 
 function oursOf(cell: Cell, column: Column, name: string): (Node | string)[] {
-  if (typeof cell.ours === "string") return [h("span", { class: "words" }, cell.ours)];
+  if (typeof cell.ours === "string") return [h("span", { class: cell.ours.length > 30 ? "words sentence" : "words" }, ...scripted(cell.ours))];
   if (cell.ours === null) return [h("span", { class: "none" }, h("span", { "aria-hidden": "true" }, "–"), hidden("no number of ours"))];
   const decimals = decimalsOf(cell, column);
   const number = [data(cell.ours, fixed(cell.ours, decimals), name)];

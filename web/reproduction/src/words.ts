@@ -33,14 +33,6 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     word: "agree within rounding",
     meaning: "They follow from other printed numbers, and the rounding of those covers any difference.",
   },
-  "round trip": {
-    sign: "↺",
-    name: "round-trip",
-    several: "round trips",
-    which: "that make a round trip",
-    word: "make a round trip",
-    meaning: "Ours was computed from the printed number itself and returns to it. This checks the formulas, not the source.",
-  },
   erratum: {
     sign: "!",
     name: "erratum",
@@ -56,6 +48,14 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     which: "that differ",
     word: "differ",
     meaning: "They follow from other printed numbers, and nothing explains the difference.",
+  },
+  "round trip": {
+    sign: "↺",
+    name: "round-trip",
+    several: "round trips",
+    which: "that make a round trip",
+    word: "make a round trip",
+    meaning: "Ours was computed from the printed number itself and returns to it. This checks the formulas, not the source.",
   },
 };
 
