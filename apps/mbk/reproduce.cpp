@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/mbk/commands.h"
@@ -39,6 +40,12 @@ std::string list_text() {
   std::string text;
   for (const auto& [id, title] : thesis::exhibit_names()) text += fmt::format("{:<16} {}\n", id, title);
   return text;
+}
+
+/// The id of an erratum by its name of before, "slip-4", which is taken for one version; any other as it is.
+std::string current_id(const std::string& id) {
+  constexpr std::string_view kBefore = "slip-";
+  return id.starts_with(kBefore) ? "erratum-" + id.substr(kBefore.size()) : id;
 }
 
 /// The exhibit's id, with a number where it has several tables: "table-3.6", "table-5.4-2".
@@ -89,11 +96,18 @@ Result<void> write_all(const Reproduction& made, const Arguments& arguments, con
 }
 
 std::string summary_text(const Reproduction& made, const fs::path& folder) {
-  std::string text = fmt::format("{}: {} exhibits\n", (folder / "index.html").string(), made.exhibits.size());
+  const int agree = made.count(Agreement::within_rounding), errata = made.count(Agreement::erratum),
+            differ = made.count(Agreement::differs), not_compared = made.count(Agreement::not_compared);
+  std::string text = fmt::format("{}: {} exhibits, {} printed numbers\n", (folder / "index.html").string(),
+                                 made.exhibits.size(), made.printed());
   text += fmt::format(
-      "  of the printed numbers that follow from other printed numbers {} agree within their rounding, "
-      "{} are slips of the source, {} differ\n",
-      made.count(Agreement::within_rounding), made.count(Agreement::slip), made.count(Agreement::differs));
+      "  {} follow from other printed numbers: {} agree within their rounding, {} are errata of the source, {} "
+      "differ\n",
+      agree + errata + differ, agree, errata, differ);
+  text += fmt::format("  {} make a round trip: ours was computed from the printed number itself\n",
+                      made.count(Agreement::round_trip));
+  text += fmt::format("  {} are not compared: {} stand beside simulated numbers, {} are or stand beside words\n",
+                      not_compared, made.beside_simulated(), not_compared - made.beside_simulated());
   return text;
 }
 
@@ -109,7 +123,7 @@ int run(const Arguments& arguments) {
   if (arguments.without_printed) source->printed.clear();
   Progress progress(arguments.quiet, "reproduce: ");
   thesis::ReproduceOptions options;
-  options.only = arguments.only;
+  for (const std::string& id : arguments.only) options.only.push_back(current_id(id));
   options.seed = arguments.seed;
   options.threads = arguments.threads;
   options.progress = [&](int done, int of, std::string_view id) { progress.count(done, of, id); };
@@ -130,13 +144,13 @@ Action add_reproduce(CLI::App& app) {
   command->footer(
       "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
       "University of Alberta, 2013) that can be reproduced, beside the printed numbers: recomputed from\n"
-      "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the slips\n"
+      "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the errata\n"
       "in the source, its research questions and its future work.\n\n"
       "Examples:\n"
       "  mbk reproduce --out thesis              thesis/index.html, and tables and figures as files\n"
       "  mbk reproduce --list                    what there is\n"
-      "  mbk reproduce --only table-3.6 --only slip-1 --out excess\n\n"
-      "Exit codes: 0 every printed number that follows from others agrees or is a known slip, 1 one\n"
+      "  mbk reproduce --only table-3.6 --only erratum-1 --out excess\n\n"
+      "Exit codes: 0 every printed number that follows from others agrees or is a known erratum, 1 one\n"
       "differs, 2 wrong usage, 3 bad data.");
   CLI::Option* const out =
       command->add_option("--out", arguments->folder, "the folder that everything goes to (thesis)")
@@ -153,7 +167,7 @@ Action add_reproduce(CLI::App& app) {
       ->check(whole_number(1, 1024));
   command->add_flag("--without-printed", arguments->without_printed,
                     "leave the printed numbers out; ours stay the same");
-  command->add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/1");
+  command->add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/2");
   command->add_flag("--overwrite", arguments->overwrite, "replace files that are there");
   command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
   return [arguments] { return run(*arguments); };

@@ -128,7 +128,7 @@ Result<void> table_A_1(Workbench& bench, Draft& exhibit) {
   if (!commands) return tl::unexpected(commands.error());
   exhibit.commands = std::move(*commands);
   exhibit.commands.emplace_back("mbk validate robot --runs 6");
-  exhibit.related = {"figure-A.4", "slip-9", "table-5.4"};
+  exhibit.related = {"figure-A.4", "erratum-9", "table-5.4"};
   for (const auto& [id, model, coulomb] :
        {std::tuple{"A.1", &FreeMotion::viscous, false}, std::tuple{"A.1 with Coulomb", &FreeMotion::full, true},
         std::tuple{"A.1 by default", &FreeMotion::by_default, true}}) {
@@ -163,7 +163,7 @@ Result<void> figure_A_2(Workbench& /*bench*/, Draft& exhibit) {
   if (!posture) return tl::unexpected(posture.error());
   exhibit.commands = {
       fmt::format("mbk robot workspace --at {:g},{:g} --out workspace.svg", 1e3 * trial.home[0], 1e3 * trial.home[1])};
-  exhibit.related = {"table-A.1", "slip-8"};
+  exhibit.related = {"table-A.1", "erratum-8"};
   Chart chart{.x = {"x", "mm"}, .y = {"y", "mm"}};
   chart.equal_scale = true;
   ChartSeries outline{.name = "limit of the workspace", .drawn = ChartSeries::Drawn::line};
@@ -398,7 +398,7 @@ Result<void> table_E_2(Workbench& bench, Draft& exhibit) {
   auto resolution = resolution_table(bench.seed(0, 2));
   if (!resolution) return tl::unexpected(resolution.error());
   exhibit.commands = {kLoadsCommand, kCalibrateCommand};
-  exhibit.related = {"figure-E.5", "slip-15"};
+  exhibit.related = {"figure-E.5", "withdrawn-errata"};
   exhibit.tables = {published_lines("E.2", (*gauge)->of_exact, 4),
                     inverted_lines("E.2 inverted", (*gauge)->of_exact, 4),
                     published_lines("E.2 scattered", (*gauge)->of_scattered, 3),

@@ -54,7 +54,7 @@ std::vector<Chart> signal_charts(const std::string& what, const Recording& recor
     force.series.push_back(line("of the hand on the robot", time, values("force", axis)));
     if (force_mode) force.series.push_back(line("commanded", time, values("reference", axis)));
     Chart place = over_time({axis, "mm"});
-    place.title = fmt::format("{}: place of the hand, {}", what, axis);
+    place.title = fmt::format("{}: hand position, {}", what, axis);
     const Vector hand = values("hand", axis);
     place.series.push_back(line("hand", time, 1e3 * (hand.array() - hand.mean()).matrix()));
     if (!force_mode) {

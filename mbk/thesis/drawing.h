@@ -24,7 +24,7 @@ struct Part {
 };
 [[nodiscard]] Part part_of(const Recording& recording, double from_s, double to_s);
 
-/// Force and place of the hand as recorded, with the reference that the robot followed beside the one it is of: typical
+/// Force and hand position as recorded, with the reference that the robot followed beside the one it is of: typical
 /// data, as figures 3.4, 4.1 and 4.6 show. Places are from the mean.
 /// @param axes  1: only y
 [[nodiscard]] std::vector<Chart> signal_charts(const std::string& what, const Recording& recording, double from_s,

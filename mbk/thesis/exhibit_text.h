@@ -16,8 +16,9 @@
 ///
 /// The words stand in text/*.md, a paragraph on each line:
 ///
-///     ## slip-4: (3.18), (3.21): antisymmetry may not be dropped         the exhibit's id and title
-///     ### slip-4: P1 with k_a = {k_a:.2f} N/m                            its tables' ids and captions, in their order
+///     ## erratum-4: (3.18), (3.21): antisymmetry may not be dropped         the exhibit's id and title
+///     ### erratum-4: P1 with k_a = {k_a:.2f} N/m                            its tables' ids and captions, in their
+///     order
 ///     #### Passivity index of P1's relaxed arm                           captions of its charts, notes below
 ///     ## how-rigs-are-made                                               a note that several exhibits have
 ///     [how-rigs-are-made]                                                its paragraphs stand here

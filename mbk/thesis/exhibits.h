@@ -37,7 +37,7 @@ struct Maker {
 [[nodiscard]] std::span<const Maker> virtual_sensor_exhibits();  ///< chapter 5
 [[nodiscard]] std::span<const Maker> apparatus_exhibits();       ///< appendices A and E
 [[nodiscard]] std::span<const Maker> statements();
-[[nodiscard]] std::span<const Maker> slips();
+[[nodiscard]] std::span<const Maker> errata();
 [[nodiscard]] std::span<const Maker> questions();
 [[nodiscard]] std::span<const Maker> future_work();
 

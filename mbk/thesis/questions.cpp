@@ -11,7 +11,7 @@
 #include "mbk/model/impedance/passivity_index.h"
 #include "mbk/teleop/admissible.h"
 #include "mbk/teleop/architectures.h"
-#include "mbk/thesis/slips.h"
+#include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
 namespace {
@@ -106,7 +106,7 @@ Result<void> with_dynamics(Workbench& bench, Draft& exhibit) {
                     {"trials", trials},
                     {"passive_above", impedance::nonpassive_below(p1).value_or(0.0)}};
   exhibit.commands = {simulate_command(bench, Task::relaxed_sinusoidal)};
-  exhibit.related = {"table-3.2", "table-3.4", "slip-2", "slip-4", "question-3"};
+  exhibit.related = {"table-3.2", "table-3.4", "erratum-2", "erratum-4", "question-3"};
   exhibit.tables = {std::move(table)};
   return {};
 }
@@ -289,7 +289,7 @@ Result<void> how_much(Workbench& bench, Draft& exhibit) {
                     {"slave_with_shortage", shown(4)}};
   exhibit.commands = {"mbk teleop examples/teleop/position_position.toml --parameter slave.k=0:2000 --excess 0:10:6",
                       simulate_command(bench, Task::relaxed_sinusoidal)};
-  exhibit.related = {"table-3.6", "table-4.5", "slip-1", "slip-5", "slip-11"};
+  exhibit.related = {"table-3.6", "table-4.5", "erratum-1", "erratum-5", "erratum-11"};
   exhibit.tables = {std::move(*simulated), std::move(*teleoperation)};
   return {};
 }

@@ -1,4 +1,4 @@
-// Tables that follow from other printed numbers, 3.6 and 5.3, and what no number leads to.
+// Tables that follow from other printed numbers, 3.6 and 5.3, and data that cannot be recovered.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,14 +27,14 @@ Eigenvalues eigenvalues(const PrintedEllipse& ellipse, double scale_of_largest) 
 }
 
 Result<void> table_3_6(Workbench& bench, Draft& exhibit) {
-  exhibit.related = {"slip-1", "table-3.3", "table-3.5"};
+  exhibit.related = {"erratum-1", "table-3.3", "table-3.5"};
   exhibit.commands = {"mbk passivity relaxed.h5      # both of a measurement of one's own: \"excess\" in --json"};
   ReproducedTable table;
   table.id = "3.6";
   table.provenance = Provenance::recomputed;
   table.what_rows_are = "participant, perturbation";
   table.columns = {{"λ_max/2, as published", "N·s/m", 2}, {"λ_min, corrected", "N·s/m", 2}};
-  table.slip = "slip-1";
+  table.erratum = "erratum-1";
   const auto add = [&](const std::vector<PrintedArm>& arms, const char* perturbation) {
     for (const PrintedArm& arm : arms) {
       const Eigenvalues both = eigenvalues(arm.ellipses[1], 0.5);
@@ -54,7 +54,7 @@ ReproducedCell identified(const PrintedNumber& theoretical, const PrintedNumber&
 }
 
 Result<void> table_5_3(Workbench& bench, Draft& exhibit) {
-  exhibit.related = {"slip-12", "table-5.1", "table-5.4"};
+  exhibit.related = {"erratum-12", "table-5.1", "table-5.4"};
   ReproducedTable stiffness, mass;
   stiffness.id = "5.3 stiffness";
   stiffness.what_rows_are = "stiffness";
@@ -88,8 +88,8 @@ Result<void> lost(Workbench& /*bench*/, Draft& exhibit) {
   ReproducedTable table;
   table.id = "lost";
   table.provenance = Provenance::not_recoverable;
-  table.what_rows_are = "what";
-  table.columns = {{"why it cannot be had", "", 0}, {"in its place", "", 0}};
+  table.what_rows_are = "data";
+  table.columns = {{"reason", "", 0}, {"substitute", "", 0}};
   exhibit.tables = {std::move(table)};
   return {};
 }

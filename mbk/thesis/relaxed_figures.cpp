@@ -145,7 +145,7 @@ Result<void> figure_3_12(Workbench& bench, Draft& exhibit) {
   const double k_a = kAntisymmetryOfP1 / 100.0 * std::sqrt(ellipse.lambda_max * ellipse.lambda_min);
   exhibit.values = {{"share", kAntisymmetryOfP1}, {"k_a", k_a}};
   const Matrix curl = (Eigen::Matrix2d() << 0.0, k_a, -k_a, 0.0).finished();
-  exhibit.related = {"slip-4", "figure-3.13"};
+  exhibit.related = {"erratum-4", "figure-3.13"};
   const auto around = directions(16);
   for (const Matrix& Z : {K, curl}) {
     Chart chart = plane({"x and force x", "m, 60 N"}, {"y and force y", "m, 60 N"});
@@ -194,7 +194,7 @@ Result<void> antisymmetry_figure(Workbench& bench, std::size_t which, Draft& exh
 }
 
 Result<void> figure_3_13(Workbench& bench, Draft& exhibit) {
-  exhibit.related = {"slip-4", "figure-3.12"};
+  exhibit.related = {"erratum-4", "figure-3.12"};
   return antisymmetry_figure(bench, 1, exhibit);
 }
 

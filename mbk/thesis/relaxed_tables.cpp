@@ -151,7 +151,7 @@ Result<void> ellipse_exhibit(Workbench& bench, Task task, const std::vector<Prin
 }
 
 Result<void> table_3_3(Workbench& bench, Draft& exhibit) {
-  exhibit.related = {"table-3.2", "figure-3.10", "figure-3.11", "slip-6"};
+  exhibit.related = {"table-3.2", "figure-3.10", "figure-3.11", "erratum-6"};
   return ellipse_exhibit(bench, Task::relaxed_sinusoidal, bench.given().sinusoidal, "3.3", exhibit);
 }
 

@@ -14,7 +14,7 @@ std::vector<Maker> all_makers() {
   std::vector<Maker> all;
   for (const auto part : {relaxed_tables(), signal_figures(), relaxed_figures(), rigid_tables(), rigid_figures(),
                           reconstructed_tables(), rig_exhibits(), virtual_sensor_exhibits(), apparatus_exhibits(),
-                          statements(), slips(), questions(), future_work()}) {
+                          statements(), errata(), questions(), future_work()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -24,8 +24,7 @@ Result<std::vector<Maker>> chosen(const std::vector<std::string>& only) {
   std::vector<Maker> makers = all_makers();
   for (const std::string& id : only) {
     if (std::ranges::find(makers, id, &Maker::id) == makers.end()) {
-      return bad_usage(fmt::format("'{}' is not among what is reproduced", id),
-                       "'mbk reproduce --list' names everything");
+      return bad_usage(fmt::format("there is no exhibit '{}'", id), "'mbk reproduce --list' names everything");
     }
   }
   if (!only.empty()) {

@@ -104,7 +104,7 @@ ReproducedTable grid_table(const char* id, const std::vector<Rig>& rigs) {
 }
 
 /// What a linear model leaves out.
-ReproducedTable straightness_table(const char* id, const std::vector<Rig>& rigs) {
+ReproducedTable linearity_table(const char* id, const std::vector<Rig>& rigs) {
   ReproducedTable table = rig_table(id, false);
   table.columns = {{"springs", "", 0},
                    {"largest force", "N", 2},
@@ -134,7 +134,7 @@ Result<void> table_3_1(Workbench& /*bench*/, Draft& exhibit) {
     row.cells.push_back(cell(rig.mass));
     table.rows.push_back(std::move(row));
   }
-  exhibit.tables = {std::move(table), grid_table("3.1 by grid", *rigs), straightness_table("3.1 straightness", *rigs)};
+  exhibit.tables = {std::move(table), grid_table("3.1 by grid", *rigs), linearity_table("3.1 linearity", *rigs)};
   return {};
 }
 
@@ -153,7 +153,7 @@ Result<void> table_5_1(Workbench& /*bench*/, Draft& exhibit) {
   mass.columns = {{"m", "kg", 3}};
   for (const Rig& rig : *masses) mass.rows.push_back({rig.name, {cell(rig.mass)}});
   exhibit.tables = {std::move(stiffness), std::move(mass), grid_table("5.1 by grid", *stiffnesses),
-                    straightness_table("5.1 straightness", *stiffnesses)};
+                    linearity_table("5.1 linearity", *stiffnesses)};
   return {};
 }
 

@@ -151,7 +151,7 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
 Result<void> table_4_4(Workbench& bench, Draft& exhibit) {
   const auto trials = bench.one_axis_grasps();
   if (!trials) return tl::unexpected(trials.error());
-  exhibit.related = {"figure-4.6", "figure-4.7", "slip-16"};
+  exhibit.related = {"figure-4.6", "figure-4.7", "withdrawn-errata"};
   exhibit.commands = {"mbk validate one-dimensional"};
   ReproducedTable table;
   table.id = "4.4";
@@ -168,7 +168,7 @@ Result<void> table_4_4(Workbench& bench, Draft& exhibit) {
 Result<void> table_4_5(Workbench& bench, Draft& exhibit) {
   const auto results = bench.results(Task::rigid_underdamped);
   if (!results) return tl::unexpected(results.error());
-  exhibit.related = {"figure-4.3", "slip-5"};
+  exhibit.related = {"figure-4.3", "erratum-5"};
   exhibit.commands = {
       fmt::format("mbk simulate rigid_underdamped_2N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}",
                   bench.seed(1, 1), kHandleMass)};

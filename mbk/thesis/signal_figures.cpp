@@ -34,7 +34,7 @@ Result<PreparedTrial> prepared(const Recording& recording, AccelerationSource ac
 }
 
 Result<void> figure_3_5(Workbench& bench, Draft& exhibit) {
-  exhibit.related = {"slip-7", "figure-3.6"};
+  exhibit.related = {"erratum-7", "figure-3.6"};
   exhibit.commands = {report_command(bench, Task::relaxed_sinusoidal) + "      # the report draws its filters"};
   const auto result = first_of(bench, Task::relaxed_sinusoidal);
   if (!result) return tl::unexpected(result.error());

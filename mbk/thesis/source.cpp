@@ -62,15 +62,23 @@ std::vector<PrintedRig> rigs_of(const Json& theoretical, const Json& errors, std
   return rigs;
 }
 
-Agreement agreement_of(const ReproducedCell& cell, const ReproducedTable& table) {
+/// Whether a printed number is among those that ours is computed from: it is given by the same name.
+bool is_given(const Given& given, const std::string& id, const std::string& row, const std::string& column,
+              const PrintedNumber& printed) {
+  const auto table = given.tables.find(id);
+  const PrintedNumber* const number = table == given.tables.end() ? nullptr : table->second.find(row, column);
+  return number != nullptr && number->text == printed.text;
+}
+
+Agreement agreement_of(const ReproducedCell& cell, const ReproducedTable& table, bool given) {
   if (table.provenance != Provenance::recomputed || !cell.ours || !cell.printed_value) return Agreement::not_compared;
   // What is exactly on the border of the rounding was rounded one way or the other.
   const double tiny = 1e-9 * (1.0 + std::abs(*cell.printed_value));
   const auto [low, high] = cell.range.value_or(std::pair{*cell.ours, *cell.ours});
   const bool reached =
       low <= *cell.printed_value + cell.rounding + tiny && high >= *cell.printed_value - cell.rounding - tiny;
-  if (reached) return Agreement::within_rounding;
-  return table.slip.empty() ? Agreement::differs : Agreement::slip;
+  if (reached) return given ? Agreement::round_trip : Agreement::within_rounding;
+  return table.erratum.empty() ? Agreement::differs : Agreement::erratum;
 }
 
 }  // namespace
@@ -121,7 +129,8 @@ void compare(const Source& source, Exhibit& exhibit) {
         cell.printed = printed->text;
         if (std::isfinite(printed->value)) cell.printed_value = printed->value;
         cell.rounding = printed->rounding;
-        cell.agreement = agreement_of(cell, table);
+        cell.agreement =
+            agreement_of(cell, table, is_given(source.given, table.id, row.name, table.columns[k].name, *printed));
       }
     }
   }

@@ -51,11 +51,11 @@ TEST(Source, SaysWhatIsMissing) {
   EXPECT_THAT(without.error().line(), HasSubstr("row 'P1' is too short"));
 }
 
-ReproducedTable one_cell(ReproducedCell cell, Provenance provenance, std::string slip = "") {
+ReproducedTable one_cell(ReproducedCell cell, Provenance provenance, std::string erratum = "") {
   ReproducedTable table;
   table.id = "3.6";
   table.provenance = provenance;
-  table.slip = std::move(slip);
+  table.erratum = std::move(erratum);
   table.columns = {{"λ_min, corrected", "N·s/m", 2}};
   table.rows = {{"P1, sinusoidal", {std::move(cell)}}};
   return table;
@@ -76,9 +76,32 @@ TEST(Compare, AgreesWhereBothRangesOverlap) {
   EXPECT_EQ(compared(one_cell(cell(5.9, {5.8, 6.0}), Provenance::recomputed)), Agreement::differs);
 }
 
-TEST(Compare, NamesASlipOnlyWhereItDiffers) {
-  EXPECT_EQ(compared(one_cell(cell(5.7), Provenance::recomputed, "slip-1")), Agreement::within_rounding);
-  EXPECT_EQ(compared(one_cell(cell(4.9), Provenance::recomputed, "slip-1")), Agreement::slip);
+TEST(Compare, NamesAnErratumOnlyWhereItDiffers) {
+  EXPECT_EQ(compared(one_cell(cell(5.7), Provenance::recomputed, "erratum-1")), Agreement::within_rounding);
+  EXPECT_EQ(compared(one_cell(cell(4.9), Provenance::recomputed, "erratum-1")), Agreement::erratum);
+}
+
+// P1's damping ellipse is printed in table 3.3 as A = 176.8, and given too.
+TEST(Compare, TellsARoundTripFromAgreement) {
+  ReproducedTable table = one_cell(cell(176.84), Provenance::recomputed);
+  table.id = "3.3";
+  table.columns = {{"damping A", "", 1}};
+  table.rows[0].name = "P1";
+  EXPECT_EQ(compared(table), Agreement::round_trip);
+  table.rows[0].cells[0].ours = 176.86;
+  EXPECT_EQ(compared(table), Agreement::differs) << "it has to come back";
+  table.provenance = Provenance::simulated;
+  table.rows[0].cells[0].ours = 176.84;
+  EXPECT_EQ(compared(table), Agreement::not_compared);
+
+  // Where the given number is another one, ours does not come from the printed one.
+  Source changed = printed();
+  changed.given.tables.at("3.3").rows.at("P1").at(3).text = "176.9";
+  Exhibit exhibit;
+  table.provenance = Provenance::recomputed;
+  exhibit.tables = {table};
+  compare(changed, exhibit);
+  EXPECT_EQ(exhibit.tables[0].rows[0].cells[0].agreement, Agreement::within_rounding);
 }
 
 TEST(Compare, DoesNotJudgeWhatIsSimulated) {

@@ -51,16 +51,16 @@ TEST(Statements, FollowFromWhatIsGiven) {
 }
 
 TEST(Statements, NoneDiffersUnexplained) {
-  int agree = 0, slips = 0;
+  int agree = 0, errata = 0;
   for (const ReproducedTable& table : statements().tables) {
     for (const ReproducedRow& row : table.rows) {
       EXPECT_NE(row.cells.at(0).agreement, Agreement::differs) << row.name;
       agree += row.cells.at(0).agreement == Agreement::within_rounding ? 1 : 0;
-      slips += row.cells.at(0).agreement == Agreement::slip ? 1 : 0;
+      errata += row.cells.at(0).agreement == Agreement::erratum ? 1 : 0;
     }
   }
   EXPECT_GE(agree, 12);
-  EXPECT_EQ(slips, 2) << "the range of the excess";
+  EXPECT_EQ(errata, 2) << "the range of the excess";
 }
 
 // What is printed in source.json and made by no row would be compared with nothing.

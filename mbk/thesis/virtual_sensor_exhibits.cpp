@@ -213,7 +213,7 @@ Result<void> table_5_4(Workbench& bench, Draft& exhibit) {
   if (!trials) return tl::unexpected(trials.error());
   const auto& [springs, linear] = **trials;
   if (auto ok = add_rig_commands(bench, exhibit); !ok) return ok;
-  exhibit.related = {"table-5.1", "table-5.3", "table-5.5", "figure-5.4", "slip-12"};
+  exhibit.related = {"table-5.1", "table-5.3", "table-5.5", "figure-5.4", "erratum-12"};
   const std::vector<Element> stiffness(kStiffnesses.begin(), kStiffnesses.end());
   const std::vector<Method> published_methods = {{"method 1", kMethod1}, {"method 2", kMethod2}};
   const std::vector<Method> coulomb = {{"method 1", kMethod1Coulomb}};

@@ -87,11 +87,11 @@ class Equations(unittest.TestCase):
                     self.assertIn(program, self.programs, source)
                     self.assertIn(name, self.programs[program], f"{source}: {program} has no such test")
 
-    def test_slips_have_both_ends(self):
-        """Each section of the slips is named by a row."""
-        headings = re.findall(r"^## (.*)$", (THEORY / "sources-slips.md").read_text(), re.MULTILINE)
+    def test_errata_have_both_ends(self):
+        """Each section of the errata is named by a row."""
+        headings = re.findall(r"^## (.*)$", (THEORY / "errata.md").read_text(), re.MULTILINE)
         anchors = {re.sub(r"[^\w\- ]", "", one.lower()).replace(" ", "-") for one in headings}
-        linked = {anchor for cells in self.rows for anchor in re.findall(r"sources-slips\.md#([^)]+)", cells[4])}
+        linked = {anchor for cells in self.rows for anchor in re.findall(r"errata\.md#([^)]+)", cells[4])}
         self.assertEqual(linked - anchors, set(), "leads to no section")
         self.assertEqual(anchors - linked, set(), "no row leads there")
 

@@ -445,7 +445,7 @@ class Reproduce(Case):
     def test_files_and_summary(self):
         said, files = self.made()
         self.assertEqual(list(files), self.FILES)
-        self.assertIn("8 agree within their rounding, 8 are slips of the source, 0 differ", said)
+        self.assertIn("16 follow from other printed numbers: 8 agree within their rounding, 8 are errata of the source, 0 differ", said)
         self.assert_lines_fit(said, longest=200)
         head = files["tables/table-3.6.csv"].decode().splitlines()[0]
         self.assertEqual(head, "row,column,unit,printed,ours,difference,spread,range_low,range_high,agreement")

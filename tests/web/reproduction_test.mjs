@@ -35,7 +35,7 @@ const exhibit = (id, kind, chapter, title, provenance, rest = {}) =>
 
 const wideNames = ["m_xx", "m_xy", "m_yx", "m_yy", "b_xx", "b_xy", "b_yx", "b_yy", "k_xx", "k_xy", "k_yx", "k_yy", "x0", "y0", "VAF x", "VAF y", "passive"];
 const widest = {
-  id: "4.1", title: "Impedance with a task", provenance: "simulated", what_rows_are: "participant", spread_is: "standard error over 4 trials", slip: null,
+  id: "4.1", title: "Impedance with a task", provenance: "simulated", what_rows_are: "participant", spread_is: "standard error over 4 trials", erratum: null,
   columns: wideNames.map((name, k) => ({ name, unit: k < 4 ? "kg" : k < 8 ? "N·s/m" : k < 12 ? "N/m" : k < 14 ? "mm" : k < 16 ? "%" : "", decimals: k < 8 ? 2 : 1 })),
   rows: [1, 2, 3, 4, 5, 6].map((person) => ({
     name: `P${person}`,
@@ -43,12 +43,12 @@ const widest = {
   })),
 };
 const differing = {
-  id: "A.1", title: "With everything that a cell can be", provenance: "recomputed", what_rows_are: "", spread_is: "", slip: "slip-99",
+  id: "A.1", title: "With everything that a cell can be", provenance: "recomputed", what_rows_are: "", spread_is: "", erratum: "erratum-99",
   columns: [{ name: "ours", unit: "N", decimals: 3 }, { name: "λ, \"quoted\"", unit: "", decimals: 1 }],
   rows: [
     { name: "agrees", cells: [beside(5.6923, "5.7", { agreement: "within rounding", range: [5.62, 5.76] }), cell("only words, and a comma")] },
     { name: "differs", cells: [beside(-4.5, "-2.90", { agreement: "differs" }), cell(null, { printed: "—" })] },
-    { name: "slip", cells: [beside(3e9, "1", { agreement: "slip" }), beside(1e-9, "0", { agreement: "within rounding" })] },
+    { name: "erratum", cells: [beside(3e9, "1", { agreement: "erratum" }), beside(1e-9, "0", { agreement: "within rounding" })] },
     { name: "nothing", cells: [cell(null), cell(0, { spread: 0.0004 })] },
   ],
 };
@@ -62,13 +62,14 @@ const every = changed(real.file, "every", (page) => {
     exhibit("figure-3.2", "figure", 3, "A photograph of the rig", "not recoverable", { text: ["It is a photograph; nothing stands in for it."], commands: [] }),
     exhibit("table-4.1", "table", 4, "Impedance of the arm with a task", "simulated", { tables: [widest] }),
     exhibit("table-a.1", "table", 0, "Parameters of the robot", "recomputed", { tables: [differing] }),
-    exhibit("slip-1", "slip", 3, "Half of the largest eigenvalue stands for the smallest", "recomputed", { related: ["table-3.6"] }),
+    exhibit("erratum-1", "erratum", 3, "Half of the largest eigenvalue stands for the smallest", "recomputed", { related: ["table-3.6"] }),
     exhibit("question-2", "question", 0, "Is the arm passive while it acts?", "simulated"),
     exhibit("future-work-4", "future work", 6, "Three dimensions", "simulated"),
   );
   agreement.differs += 1;
-  agreement.slip += 1;
+  agreement.erratum += 1;
   agreement["within rounding"] += 2;
+  agreement["not compared"] += widest.rows.flatMap(({ cells }) => cells).filter(({ printed }) => printed !== null).length + 1;
   page.drawings["figure-4.3"] = ["#0072b2", "#d55e00", "#009e73"].map((colour, k) => drawing(`${["First", "Second", "Third"][k]} pulse`, colour));
   page.drawings["figure-3.1"] = [drawing("Only one", "#0072b2")];
 });
@@ -126,13 +127,18 @@ for (const [name, file] of Object.entries({ "what mbk made": real.file, "every k
     const { exhibits, agreement } = documentOf(file).reproduction;
     const cells = exhibits.flatMap(({ tables }) => tables.flatMap(({ rows }) => rows.flatMap((row) => row.cells)));
     const read = await numbers(page, "#tally");
-    for (const [word, sign] of [["within rounding", "✓"], ["slip", "!"], ["differs", "≠"]]) {
+    for (const [word, sign] of [["within rounding", "✓"], ["round trip", "↺"], ["erratum", "!"], ["differs", "≠"]]) {
       const count = cells.filter((cell) => cell.agreement === word).length;
       assert.equal(agreement[word], count, word);
       assert.equal(read[`tally-${word.replace(" ", "-")}`].value, count, word);
       const marks = await page.$$eval(`article td .mark.${word.replace(" ", "-")} [aria-hidden]`, (all) => all.map((one) => one.textContent));
       assert.deepEqual(marks, Array(count).fill(sign));
     }
+    // Every printed cell is counted once: what is compared with nothing has its own count.
+    const printed = cells.filter((cell) => cell.printed !== null);
+    assert.equal(read["tally-not-compared"].value, printed.filter((cell) => cell.agreement === "not compared").length);
+    assert.equal(Object.values(read).reduce((sum, { value }) => sum + value, 0), printed.length);
+    assert.match(await page.textContent("#tally"), new RegExp(`Of ${printed.length} printed numbers`));
     assert.equal(await page.textContent(".source"), documentOf(file).reproduction.source);
   }));
 
@@ -150,13 +156,13 @@ test("chapters and kinds follow each other, by number", () => onPage(every, asyn
     ["chapter-4", ["table-4.1", "figure-4.3"]],
     ["chapter-5", ["table-5.3"]],
     ["appendices", ["table-a.1"]],
-    ["slips", ["slip-1"]],
+    ["errata", ["erratum-1"]],
     ["questions", ["question-2"]],
     ["future-work", ["future-work-4"]],
   ]);
   const names = await page.$$eval("nav a:not(.group)", (all) => all.map((link) => [link.hash.slice(1), link.querySelector("strong").textContent]));
   assert.deepEqual(names.map(([id]) => id), groups.flatMap(([, ids]) => ids));
-  assert.deepEqual(names.filter(([id]) => /a\.1|future|slip/.test(id)).map(([, name]) => name), ["Table A.1", "Slip 1", "Future work 4"]);
+  assert.deepEqual(names.filter(([id]) => /a\.1|future|erratum/.test(id)).map(([, name]) => name), ["Table A.1", "Erratum 1", "Future work 4"]);
   const chips = await page.$$eval("article > .exhibit-name .chip", (all) => all.map((one) => one.dataset.provenance));
   assert.deepEqual(new Set(chips), new Set(["recomputed", "simulated", "not recoverable"]));
 }));
@@ -190,7 +196,7 @@ test("a filter by words and by provenance, with the keyboard alone", () => onPag
 }));
 
 test("the tally leads to where the numbers are", () => onPage(every, async (page) => {
-  await page.locator("#tally li.slip button").click();
+  await page.locator("#tally li.erratum button").click();
   await eventually(async () => assert.deepEqual(await shownArticles(page), ["table-3.6", "table-a.1"]));
   await eventually(async () => assert.equal(await focusedId(page), "table-3.6"));
   await page.locator("#tally li.differs button").click();
@@ -207,8 +213,8 @@ test("an address leads to an exhibit, and past a filter", async () => {
   assert.ok(Math.abs(await at("table-5.3")) < 60, `${await at("table-5.3")}`);
   await page.waitForSelector('nav a[href="#table-5.3"][aria-current]');
   await page.fill("#filter-text", "pulse");
-  await page.evaluate(() => (location.hash = "slip-1"));
-  await page.waitForFunction(() => document.activeElement?.id === "slip-1");
+  await page.evaluate(() => (location.hash = "slip-1")); // the name that errata had before
+  await page.waitForFunction(() => document.activeElement?.id === "erratum-1");
   assert.equal(await page.inputValue("#filter-text"), "");
   await page.locator('nav a[href="#figure-4.3"]').focus();
   await pressed(page, "Enter");
@@ -225,17 +231,17 @@ test("links lead somewhere: to exhibits of this page, and to files that are ther
   for (const href of files) assert.ok(existsSync(join(dirname(real.file), href)), href);
   assert.equal(files.length, 2 * real.json.exhibits.reduce((sum, { tables }) => sum + tables.length, 0) + 1);
   // What is not on the page is named and not linked.
-  assert.match(await page.textContent('[id="table-3.6"] .see-also'), /Slip 1/);
-  assert.equal(await page.locator('a[href="#slip-1"]').count(), 0);
+  assert.match(await page.textContent('[id="table-3.6"] .see-also'), /Erratum 1/);
+  assert.equal(await page.locator('a[href="#erratum-1"]').count(), 0);
 }));
 
-test("a slip is linked from its cells, and lists the tables that it explains", () => onPage(every, async (page) => {
-  const slips = page.locator('[id="table-3.6"] td.slip a');
-  assert.equal(await slips.count(), 8);
-  await page.locator('[id="table-3.6"] td.slip').first().focus();
+test("an erratum is linked from its cells, and lists the tables that it explains", () => onPage(every, async (page) => {
+  const errata = page.locator('[id="table-3.6"] td.erratum a');
+  assert.equal(await errata.count(), 8);
+  await page.locator('[id="table-3.6"] td.erratum').first().focus();
   await pressed(page, "Enter");
-  await page.waitForFunction(() => document.activeElement?.id === "slip-1");
-  assert.deepEqual(await page.$$eval('[id="slip-1"] .related a', (all) => all.map((link) => link.hash)), ["#table-3.6"]);
+  await page.waitForFunction(() => document.activeElement?.id === "erratum-1");
+  assert.deepEqual(await page.$$eval('[id="erratum-1"] .related a', (all) => all.map((link) => link.hash)), ["#table-3.6"]);
 }));
 
 test("a cell says everything when it is chosen, and the arrow keys lead from cell to cell", () => onPage(every, async (page) => {
@@ -251,7 +257,7 @@ test("a cell says everything when it is chosen, and the arrow keys lead from cel
   }
   assert.equal(await page.getAttribute(`${block} td[tabindex="0"]`, "title"), said);
   await pressed(page, "End");
-  await eventually(async () => assert.match(await page.textContent(`${block} .cell-facts`), new RegExp(`${table.columns.at(-1).name}.*slip 1`)));
+  await eventually(async () => assert.match(await page.textContent(`${block} .cell-facts`), new RegExp(`${table.columns.at(-1).name}.*erratum 1`)));
   await eventually(async () => assert.equal(await page.locator(`${block} td[tabindex="0"]`).count(), 1));
 }));
 
@@ -356,7 +362,7 @@ test("on a narrow screen nothing is wider than it, and the contents open and clo
 
 test("nothing to show, and nothing known, is no error", async () => {
   const none = (value) => (Array.isArray(value) ? value.map(none) : value && typeof value === "object" ? Object.fromEntries(Object.entries(value).map(([k, v]) => [k, none(v)])) : typeof value === "number" ? null : value);
-  const empty = changed(real.file, "empty", (page) => Object.assign(page.reproduction, { exhibits: [], agreement: { "within rounding": 0, slip: 0, differs: 0 } }));
+  const empty = changed(real.file, "empty", (page) => Object.assign(page.reproduction, { exhibits: [], agreement: { "not compared": 0, "within rounding": 0, "round trip": 0, erratum: 0, slip: 0, differs: 0 } }));
   const bare = changed(every, "bare", (page) => {
     for (const one of page.reproduction.exhibits) Object.assign(one, { text: [], commands: [], related: [], tables: [], charts: [] });
   });

@@ -30,7 +30,7 @@ struct Options {
 /// method. Several trials are one fit: rows are stacked, products of residuals never cross a break.
 ///
 /// Do not trust it where the limb pushes back on its own account: position and force are then measured in a closed
-/// loop, and least squares is biased towards the negative robot impedance's impedance; noise in the position draws the
+/// loop, and least squares is biased towards the negative robot impedance; noise in the position draws the
 /// inertia towards zero. The warnings name what can be seen of this. Where the regressors cannot be distinguished
 /// (rank) there is no model: every number of it is NaN, and it is not usable. With Method::instrumental_variables the
 /// same rows are solved by θ = (RᵀZ)⁻¹RᵀY, R from the known perturbation (instruments.h): what the limb does on its own

@@ -20,7 +20,7 @@ Result<Recording> resample(const Recording& recording, Hertz rate) {
   }
   const double first = recording.time[0];
   const double span = (recording.time[n - 1] - first) * rate.value;
-  constexpr double kMax = 100.0;  // times as many samples: more is a slip in the unit of time or rate
+  constexpr double kMax = 100.0;  // times as many samples: more is a mistake in the unit of time or rate
   if (!(span <= kMax * static_cast<double>(n))) {
     return bad_usage(fmt::format("--resample {:g} Hz would make {:.3g} samples of {}", rate.value, span, n),
                      "give the rate in Hz, near that of the recording");

@@ -45,7 +45,7 @@ struct Sensitive {
 [[nodiscard]] std::optional<Sensitive> excess_of_passivity(const Model& model);
 
 /// What table 3.6 of Dyck (2013) prints in its place, λ_max(B_s)/2. It is the excess of no system: half of the
-/// *largest* eigenvalue (docs/theory/sources-slips.md).
+/// *largest* eigenvalue (docs/theory/errata.md).
 [[nodiscard]] Sensitive published_excess_of_passivity(const Model& model);
 
 }  // namespace mbk::impedance

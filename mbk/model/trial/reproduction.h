@@ -25,16 +25,21 @@ enum class Provenance {
 
 /// How a number of ours stands to the printed one.
 enum class Agreement {
-  not_compared,     ///< one of the two is missing, or ours is simulated and need not be the same
+  not_compared,     ///< one of the two is missing or is words, or ours is simulated and need not be the same
   within_rounding,  ///< what the rounding of the numbers that ours rests on leaves open reaches the printed one's
-  slip,             ///< it does not, and the source is at fault: the table names the slip
+  round_trip,       ///< as within_rounding, but ours was computed from that printed number itself: the formulas undo
+                    ///< each other, and nothing is known of the source
+  erratum,          ///< it does not, and the source is at fault: the table names the erratum
   differs,          ///< it does not, and nothing explains it
 };
 
 [[nodiscard]] constexpr auto word_table(Agreement) {
   using enum Agreement;
-  return std::to_array<Word<Agreement>>(
-      {{not_compared, "not compared"}, {within_rounding, "within rounding"}, {slip, "slip"}, {differs, "differs"}});
+  return std::to_array<Word<Agreement>>({{not_compared, "not compared"},
+                                         {within_rounding, "within rounding"},
+                                         {round_trip, "round trip"},
+                                         {erratum, "erratum"},
+                                         {differs, "differs"}});
 }
 
 /// One cell of a table: numbers, or words where there is no number.
@@ -75,13 +80,13 @@ struct ReproducedTable {
   std::string spread_is;      ///< "standard error over four trials"; empty: no cell has one
   std::vector<ReproducedColumn> columns;
   std::vector<ReproducedRow> rows;
-  std::string slip;  ///< id of the slip that explains cells that differ; empty: none does
+  std::string erratum;  ///< id of the erratum that explains cells that differ; empty: none does
 };
 
-/// One item of the source, reproduced: a table, a figure, a slip, a question or a piece of future work.
+/// One item of the source, reproduced: a table, a figure, an erratum, a question or a piece of future work.
 struct Exhibit {
-  enum class Kind { table, figure, slip, question, future_work };
-  std::string id;     ///< "table-3.6", "figure-4.3", "slip-1", "question-2", "future-work-4"
+  enum class Kind { table, figure, erratum, question, future_work };
+  std::string id;     ///< "table-3.6", "figure-4.3", "erratum-1", "question-2", "future-work-4"
   std::string title;  ///< in words of our own
   Kind kind = Kind::table;
   int chapter = 0;  ///< 3 to 6; 0: an appendix
@@ -95,8 +100,11 @@ struct Exhibit {
 
 [[nodiscard]] constexpr auto word_table(Exhibit::Kind) {
   using enum Exhibit::Kind;
-  return std::to_array<Word<Exhibit::Kind>>(
-      {{table, "table"}, {figure, "figure"}, {slip, "slip"}, {question, "question"}, {future_work, "future work"}});
+  return std::to_array<Word<Exhibit::Kind>>({{table, "table"},
+                                             {figure, "figure"},
+                                             {erratum, "erratum"},
+                                             {question, "question"},
+                                             {future_work, "future work"}});
 }
 
 /// What of a source was reproduced.
@@ -104,13 +112,30 @@ struct Reproduction {
   std::string source;  ///< what it is a reproduction of
   std::vector<Exhibit> exhibits;
 
-  /// How many cells of recomputed tables stand so to the printed ones.
+  /// How many printed numbers and words stand so to ours. Each has one agreement, so that these add up to printed().
   [[nodiscard]] int count(Agreement agreement) const {
+    return count_printed(
+        [&](const ReproducedTable&, const ReproducedCell& cell) { return cell.agreement == agreement; });
+  }
+
+  [[nodiscard]] int printed() const {
+    return count_printed([](const ReproducedTable&, const ReproducedCell&) { return true; });
+  }
+
+  /// How many of the printed ones stand beside simulated numbers, with which none is compared.
+  [[nodiscard]] int beside_simulated() const {
+    return count_printed(
+        [](const ReproducedTable& table, const ReproducedCell&) { return table.provenance == Provenance::simulated; });
+  }
+
+ private:
+  template <typename Condition>
+  [[nodiscard]] int count_printed(const Condition& condition) const {
     int cells = 0;
     for (const Exhibit& exhibit : exhibits) {
       for (const ReproducedTable& table : exhibit.tables) {
         for (const ReproducedRow& row : table.rows) {
-          for (const ReproducedCell& cell : row.cells) cells += cell.agreement == agreement ? 1 : 0;
+          for (const ReproducedCell& cell : row.cells) cells += !cell.printed.empty() && condition(table, cell) ? 1 : 0;
         }
       }
     }

@@ -9,6 +9,12 @@ Json optional(const std::optional<double>& value) {
   return value ? number(*value) : Json(nullptr);
 }
 
+/// nullptr where it has kept its name.
+const char* agreement_in_schema_1(Agreement agreement) {
+  if (agreement == Agreement::erratum) return "slip";
+  return agreement == Agreement::round_trip ? "within rounding" : nullptr;
+}
+
 Json cell_json(const ReproducedCell& cell) {
   Json json = {{"printed", cell.printed.empty() ? Json(nullptr) : Json(cell.printed)},
                {"printed_value", optional(cell.printed_value)},
@@ -18,6 +24,7 @@ Json cell_json(const ReproducedCell& cell) {
                {"spread", optional(cell.spread)},
                {"range", cell.range ? interval(*cell.range) : Json(nullptr)},
                {"agreement", word_of(cell.agreement)}};
+  if (const char* was = agreement_in_schema_1(cell.agreement)) json["was"] = was;
   return json;
 }
 
@@ -27,7 +34,8 @@ Json table_json(const ReproducedTable& table) {
                {"provenance", word_of(table.provenance)},
                {"what_rows_are", table.what_rows_are},
                {"spread_is", table.spread_is},
-               {"slip", table.slip.empty() ? Json(nullptr) : Json(table.slip)},
+               {"erratum", table.erratum.empty() ? Json(nullptr) : Json(table.erratum)},
+               {"slip", table.erratum.empty() ? Json(nullptr) : Json(table.erratum)},
                {"columns", Json::array()},
                {"rows", Json::array()}};
   for (const ReproducedColumn& column : table.columns) {
@@ -99,12 +107,13 @@ std::string field(const std::optional<double>& value) {
 }  // namespace
 
 std::string to_json(const Reproduction& reproduction) {
-  Json json = header("mbk.reproduction/1");
+  Json json = header("mbk.reproduction/2");
   json["source"] = reproduction.source;
   json["agreement"] = Json::object();
-  for (const Agreement agreement : {Agreement::within_rounding, Agreement::slip, Agreement::differs}) {
-    json["agreement"][std::string(word_of(agreement))] = reproduction.count(agreement);
+  for (const auto& [agreement, word] : word_table(Agreement())) {
+    json["agreement"][std::string(word)] = reproduction.count(agreement);
   }
+  json["agreement"]["slip"] = reproduction.count(Agreement::erratum);
   json["exhibits"] = Json::array();
   for (const Exhibit& exhibit : reproduction.exhibits) {
     Json one = {{"id", exhibit.id},
@@ -117,6 +126,9 @@ std::string to_json(const Reproduction& reproduction) {
                 {"related", exhibit.related},
                 {"tables", Json::array()},
                 {"charts", Json::array()}};
+    if (exhibit.kind == Exhibit::Kind::erratum && exhibit.id.starts_with("erratum-")) {
+      one["was"] = "slip" + exhibit.id.substr(std::string_view("erratum").size());
+    }
     for (const ReproducedTable& table : exhibit.tables) one["tables"].push_back(table_json(table));
     for (const Chart& chart : exhibit.charts) one["charts"].push_back(chart_json(chart));
     json["exhibits"].push_back(std::move(one));
@@ -125,7 +137,7 @@ std::string to_json(const Reproduction& reproduction) {
 }
 
 std::string to_json(const Exhibit& exhibit, const ReproducedTable& table) {
-  Json json = header("mbk.reproduced_table/1");
+  Json json = header("mbk.reproduced_table/2");
   json["exhibit"] = exhibit.id;
   json.update(table_json(table));
   return dumped(json);

@@ -6,10 +6,12 @@
 
 namespace mbk::result {
 
-/// Schema "mbk.reproduction/1": every exhibit with its tables, cell by cell, and the numbers of its charts.
+/// Schema "mbk.reproduction/2": every exhibit with its tables, cell by cell, and the numbers of its charts. What schema
+/// 1 called a slip is an erratum; for one version the old name stands beside the new one: `slip` of a table and of the
+/// counts, `was` of a cell and of an exhibit.
 [[nodiscard]] std::string to_json(const Reproduction& reproduction);
 
-/// Schema "mbk.reproduced_table/1": one table of it.
+/// Schema "mbk.reproduced_table/2": one table of it.
 [[nodiscard]] std::string to_json(const Exhibit& exhibit, const ReproducedTable& table);
 
 /// The same table as CSV: a row for each cell, with its row, column, unit, the printed number, ours, their difference,

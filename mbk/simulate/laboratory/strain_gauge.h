@@ -35,7 +35,7 @@ struct StrainGaugeOptions {
 ///   then white noise, the anti-aliasing filter and the converter,
 ///   f_read = (L₀/L̂) a (V − V̂₀),   V̂₀ = −b̂/a                               (Dyck 2013, eqs. E.1–E.3)
 /// The lever arm scales the slope alone; the voltage V₀ of no force does not depend on it. With 12 bits and ±10 V, one
-/// step is 4.88 mV, so 0.042 N in x (0.012 N rms, more than the noise). The filter is the bilinear image of the
+/// step is 4.88 mV, so 0.042 N in x (0.012 N rms, as the noise). The filter is the bilinear image of the
 /// analogue one, exact at its −3 dB; it delays slow forces by `delay()`, 8.6 ms by default. The first reading finds it
 /// settled.
 class StrainGauge {

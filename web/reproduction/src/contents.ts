@@ -23,7 +23,7 @@ function wordsOf(exhibit: Exhibit): string {
 }
 
 const signsOf = (exhibit: Exhibit): HTMLElement[] =>
-  (["slip", "differs"] as const).filter((agreement) => count(exhibit, agreement) > 0)
+  (["erratum", "differs"] as const).filter((agreement) => count(exhibit, agreement) > 0)
     .map((agreement) => h("span", { class: `mark ${agreements[agreement].name}`, title: `${count(exhibit, agreement)} ${agreement}`, "aria-hidden": "true" }, agreements[agreement].sign));
 
 /** Which exhibit is being read, and its entry in view. */
@@ -63,13 +63,13 @@ export function contents(groups: Group[], articles: Map<string, HTMLElement>): C
     element: h("li", {}, h("a", { class: "group", href: `#${group.id}` }, group.title), h("ul", {}, ...group.exhibits.map(({ id }) => h("li", {}, links.get(id))))),
   }));
 
-  const search = h("input", { type: "search", id: "filter-text", placeholder: "stiffness, table 3.6, slip …", autocomplete: "off" });
+  const search = h("input", { type: "search", id: "filter-text", placeholder: "stiffness, table 3.6, erratum …", autocomplete: "off" });
   const boxes = (Object.keys(provenances) as Provenance[]).map((provenance) => {
     const box = h("input", { type: "checkbox", checked: true, value: provenance });
     return { provenance, box, label: h("label", {}, box, provenanceSign(provenance), provenance) };
   });
   const agreement = h("select", { id: "filter-agreement" }, h("option", { value: "" }, "any numbers"),
-    ...Object.keys(agreements).map((value) => h("option", { value }, `numbers ${value === "slip" ? "that are slips" : value === "differs" ? "that differ" : value}`)));
+    ...Object.entries(agreements).map(([value, { which }]) => h("option", { value }, `numbers ${which}`)));
   const shownCount = h("p", { class: "shown-count", role: "status" });
   const clear = h("button", { type: "button" }, "Show all");
   const nothing = document.getElementById("nothing");

@@ -1,10 +1,10 @@
-// The document of schema mbk.reproduction/1 that stands in the page, with the drawing of each chart.
+// The document of schema mbk.reproduction/2 that stands in the page, with the drawing of each chart.
 import type { Agreement, Cell, Exhibit, Provenance, ReproductionPage } from "@mbk/shared/documents";
 
 /** Reads the document out of the page. Throws where it is none. */
 export function readPage(json: ReproductionPage): ReproductionPage {
   const schema = json?.reproduction?.schema;
-  if (schema !== "mbk.reproduction/1") throw new Error(`schema ${String(schema)} is not mbk.reproduction/1`);
+  if (schema !== "mbk.reproduction/2") throw new Error(`schema ${String(schema)} is not mbk.reproduction/2`);
   return { reproduction: json.reproduction, drawings: json.drawings ?? {} };
 }
 
@@ -23,7 +23,7 @@ export interface Group {
 }
 
 const groups: [id: string, title: string, belongs: (exhibit: Exhibit) => boolean][] = [
-  ["slips", "Slips in the source", ({ kind }) => kind === "slip"],
+  ["errata", "Errata in the source", ({ kind }) => kind === "erratum"],
   ["questions", "Research questions", ({ kind }) => kind === "question"],
   ["future-work", "Future work", ({ kind }) => kind === "future work"],
   ["chapter-3", "Chapter 3: the relaxed arm", ({ chapter }) => chapter === 3],
@@ -32,7 +32,7 @@ const groups: [id: string, title: string, belongs: (exhibit: Exhibit) => boolean
   ["chapter-6", "Chapter 6: conclusions", ({ chapter }) => chapter === 6],
   ["appendices", "Appendices", () => true],
 ];
-const order = ["chapter-3", "chapter-4", "chapter-5", "chapter-6", "appendices", "slips", "questions", "future-work"];
+const order = ["chapter-3", "chapter-4", "chapter-5", "chapter-6", "appendices", "errata", "questions", "future-work"];
 
 const rank = (exhibit: Exhibit): number => ["table", "figure"].indexOf(exhibit.kind);
 const byNumber = new Intl.Collator("en", { numeric: true }).compare;

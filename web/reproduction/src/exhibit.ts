@@ -1,4 +1,4 @@
-// One item of the source, reproduced.
+// One exhibit: a table, a figure, an erratum, a question or a piece of future work.
 import type { Exhibit } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
 import { chartsBlock } from "./charts";
@@ -9,12 +9,12 @@ import { agreements, chip, scripted } from "./words";
 /** "8 agree within rounding", for what there is of it. */
 function tally(exhibit: Exhibit): HTMLElement | undefined {
   const parts = Object.entries(agreements)
-    .map(([agreement, { sign, name }]) => ({ agreement, sign, name, cells: count(exhibit, agreement as keyof typeof agreements) }))
+    .map(([agreement, { sign, name, several }]) => ({ agreement, sign, name, several, cells: count(exhibit, agreement as keyof typeof agreements) }))
     .filter(({ cells }) => cells > 0);
   if (parts.length === 0) return undefined;
   return h("span", { class: "tally-line" },
-    ...parts.map(({ agreement, sign, name, cells }) =>
-      h("span", {}, h("span", { class: `mark ${name}`, "aria-hidden": "true" }, sign), ` ${cells} ${agreement === "slip" && cells !== 1 ? "slips" : agreement}`)));
+    ...parts.map(({ agreement, sign, name, several, cells }) =>
+      h("span", {}, h("span", { class: `mark ${name}`, "aria-hidden": "true" }, sign), ` ${cells} ${cells === 1 ? agreement : several}`)));
 }
 
 function commandBlock(command: string): HTMLElement {
@@ -39,7 +39,7 @@ function relatedLinks(ids: string[], known: Set<string>): HTMLElement {
     ...ids.map((id) => h("li", {}, known.has(id) ? h("a", { href: `#${id}` }, shortName(id)) : h("span", { title: "not on this page" }, shortName(id)))));
 }
 
-/** @param known  ids that a link can lead to    @param explains  exhibits whose tables name this slip */
+/** @param known  ids that a link can lead to    @param explains  exhibits whose tables name this erratum */
 export function exhibitArticle(exhibit: Exhibit, drawings: string[], known: Set<string>, explains: string[]): HTMLElement {
   const empty = exhibit.text.length === 0 && exhibit.tables.length === 0 && exhibit.charts.length === 0;
   const related = [...new Set([...explains, ...exhibit.related])];
@@ -52,7 +52,7 @@ export function exhibitArticle(exhibit: Exhibit, drawings: string[], known: Set<
     exhibit.charts.length > 0 ? chartsBlock(exhibit, drawings) : "",
     ...exhibit.tables.map((_, k) => tableBlock(exhibit, k, known)),
     exhibit.commands.length > 0
-      ? h("details", { class: "commands" }, h("summary", {}, "Make it yourself"), ...exhibit.commands.map(commandBlock))
+      ? h("details", { class: "commands" }, h("summary", {}, "How to reproduce this"), ...exhibit.commands.map(commandBlock))
       : "",
     related.length > 0 ? h("div", { class: "see-also" }, h("span", {}, "See also"), relatedLinks(related, known)) : "");
 }

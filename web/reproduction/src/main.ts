@@ -10,7 +10,7 @@ import "./style.css";
 /** An address with an exhibit behind # leads there, also where the filter hides it, and the keyboard goes on from there. */
 function followAddress(reveal: (id: string) => void): void {
   const go = () => {
-    const id = location.hash.slice(1);
+    const id = location.hash.slice(1).replace(/^slip-(?=\d)/, "erratum-"); // the name that they had before
     reveal(id);
     const target = document.getElementById(id);
     target?.scrollIntoView();
@@ -41,7 +41,7 @@ function groupSection(group: Group, articles: Map<string, HTMLElement>): HTMLEle
 function draw({ reproduction, drawings }: ReproductionPage): void {
   const { exhibits } = reproduction;
   const known = new Set(exhibits.map(({ id }) => id));
-  const explains = (slip: string) => exhibits.filter(({ tables }) => tables.some((table) => table.slip === slip)).map(({ id }) => id);
+  const explains = (erratum: string) => exhibits.filter(({ tables }) => tables.some((table) => table.erratum === erratum)).map(({ id }) => id);
   const articles = new Map(exhibits.map((exhibit) => [exhibit.id, exhibitArticle(exhibit, drawings[exhibit.id] ?? [], known, explains(exhibit.id))]));
   const groups = grouped(exhibits);
   const place = h("div", { class: "sidebar-place" });
@@ -52,7 +52,7 @@ function draw({ reproduction, drawings }: ReproductionPage): void {
     h("p", { id: "nothing", hidden: true }, exhibits.length > 0 ? "Nothing fits the filter." : "There is no exhibit on this page."),
     ...groups.map((group) => groupSection(group, articles)),
     h("footer", {},
-      h("p", {}, "All numbers in one file beside this page: ", h("a", { href: "reproduction.json" }, "reproduction.json"), ", of schema mbk.reproduction/1."),
+      h("p", {}, "All numbers in one file beside this page: ", h("a", { href: "reproduction.json" }, "reproduction.json"), ", of schema mbk.reproduction/2."),
       h("p", {}, "Made with ", h("strong", {}, reproduction.software), ". The same version and seed give the same numbers, digit for digit.")));
   document.getElementById("page")?.replaceWith(h("div", { class: "page" }, place, main));
   const found = contents(groups, articles);

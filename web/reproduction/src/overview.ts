@@ -1,7 +1,7 @@
-// What this is, how the printed numbers fare, and what the signs mean.
+// What this is, how ours agrees with the printed numbers, and what the signs mean.
 import type { Provenance, Reproduction } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
-import { cellsOf, provenancesOf } from "./document";
+import { provenancesOf } from "./document";
 import { agreements, provenances, provenanceSign } from "./words";
 
 export function head(reproduction: Reproduction): HTMLElement {
@@ -9,20 +9,19 @@ export function head(reproduction: Reproduction): HTMLElement {
     h("p", { class: "kicker" }, "Reproduction"),
     h("h1", {}, "Reproduction of the thesis"),
     h("p", { class: "source" }, reproduction.source),
-    h("p", {}, "mbk grew from this thesis. Its tables and figures are reproduced here, one by one, beside the printed numbers, with the slips found in it, its research questions and its future work."));
+    h("p", {}, "mbk grew out of this thesis. This page reproduces its tables and figures one by one beside the printed numbers, and adds its errata, its research questions and its future work."));
 }
 
 /** @param show  asked with the agreement whose exhibits are to be shown */
 export function tallySection(reproduction: Reproduction, show: (agreement: string) => void): HTMLElement {
   const entries = Object.entries(agreements) as [keyof typeof agreements, (typeof agreements)[keyof typeof agreements]][];
-  const all = entries.reduce((sum, [agreement]) => sum + reproduction.agreement[agreement], 0);
-  const printed = reproduction.exhibits.some((exhibit) => cellsOf(exhibit).some((cell) => cell.printed !== null));
-  const beside = reproduction.exhibits.reduce((sum, exhibit) => sum + cellsOf(exhibit).filter((cell) => cell.printed_value !== null && cell.agreement === "not compared").length, 0);
+  const aside = reproduction.agreement["not compared"];
+  const all = entries.reduce((sum, [agreement]) => sum + reproduction.agreement[agreement], aside);
+  const simulated = reproduction.exhibits.flatMap(({ tables }) => tables.filter(({ provenance }) => provenance === "simulated"))
+    .reduce((sum, { rows }) => sum + rows.flatMap(({ cells }) => cells).filter(({ printed }) => printed !== null).length, 0);
   return h("section", { id: "tally", "aria-labelledby": "tally-heading" },
-    h("h2", { id: "tally-heading" }, "How the printed numbers fare"),
-    h("p", {}, all > 0
-      ? `Of ${all} printed numbers that follow from other printed numbers:`
-      : printed ? "No printed number on this page follows from other printed numbers." : "No printed number stands beside ours on this page."),
+    h("h2", { id: "tally-heading" }, "Agreement with the printed numbers"),
+    h("p", {}, all > 0 ? `Of ${all} printed numbers and words that stand beside ours:` : "Nothing printed stands beside ours on this page."),
     h("ul", { class: "tally" },
       ...entries.map(([agreement, { sign, name, word, meaning }]) => {
         const cells = reproduction.agreement[agreement];
@@ -33,8 +32,11 @@ export function tallySection(reproduction: Reproduction, show: (agreement: strin
           h("p", { class: "tally-word" }, word),
           h("p", { class: "tally-meaning" }, meaning),
           cells > 0 ? button : "");
-      })),
-    beside > 0 ? h("p", { class: "note" }, `${beside} more stand beside simulated ones, which need not be the same; they are not counted.`) : "");
+      }),
+      h("li", { class: "not-compared" },
+        h("p", { class: "headline" }, h("data", { value: aside, "data-name": "tally-not-compared" }, String(aside))),
+        h("p", { class: "tally-word" }, "are not compared"),
+        h("p", { class: "tally-meaning" }, `${simulated} stand beside simulated numbers, which need not be equal; ${aside - simulated} are words, or ours is.`))));
 }
 
 export function legendSection(reproduction: Reproduction): HTMLElement {
@@ -51,6 +53,6 @@ export function legendSection(reproduction: Reproduction): HTMLElement {
         h("span", { class: "ours" }, "5.69", h("span", { class: "half" }, " ± 0.03"), h("span", { class: "mark within-rounding" }, "✓")),
         h("span", { class: "range" }, "[5.62, 5.75]"),
         h("span", { class: "printed" }, "5.7"))))),
-      h("p", {}, "In a table, ours stands on top, with ± its spread where there is one and the mark of its agreement. In brackets is what the rounding of the printed inputs leaves open. ",
-        h("span", { class: "printed inline" }, "The printed number"), " stands below, as it is printed. Choose a cell, or use the arrow keys in a table, for every digit and the difference.")));
+      h("p", {}, "In a table our number comes first, with ± its spread, if any, and the mark of its agreement. The brackets give its range from the rounding of the printed inputs. ",
+        h("span", { class: "printed inline" }, "The printed number"), " stands below it, as printed. Select a cell, or use the arrow keys in a table, for all digits and the difference.")));
 }

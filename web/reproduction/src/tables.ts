@@ -27,18 +27,18 @@ function signed(value: number, decimals: number): string {
   return value > 0 ? `+${text}` : text;
 }
 
-function mark(cell: Cell, slip: string | undefined): HTMLElement | undefined {
+function mark(cell: Cell, erratum: string | undefined): HTMLElement | undefined {
   if (cell.agreement === "not compared") return undefined;
   const { sign, name } = agreements[cell.agreement];
-  const linked = cell.agreement === "slip" && slip !== undefined;
+  const linked = cell.agreement === "erratum" && erratum !== undefined;
   // The arrow keys lead from cell to cell, and Enter follows the link of the cell: it needs no stop of its own.
   return linked
-    ? h("a", { class: `mark ${name}`, href: `#${slip}`, tabindex: -1 }, h("span", { "aria-hidden": "true" }, sign), hidden(shortName(slip)))
+    ? h("a", { class: `mark ${name}`, href: `#${erratum}`, tabindex: -1 }, h("span", { "aria-hidden": "true" }, sign), hidden(shortName(erratum)))
     : h("span", { class: `mark ${name}` }, h("span", { "aria-hidden": "true" }, sign), hidden(cell.agreement));
 }
 
 function oursOf(cell: Cell, column: Column, name: string): (Node | string)[] {
-  if (typeof cell.ours === "string") return [h("span", { class: "words" }, cell.ours)];
+  if (typeof cell.ours === "string") return [h("span", { class: cell.ours.length > 30 ? "words sentence" : "words" }, ...scripted(cell.ours))];
   if (cell.ours === null) return [h("span", { class: "none" }, h("span", { "aria-hidden": "true" }, "–"), hidden("no number of ours"))];
   const decimals = decimalsOf(cell, column);
   const number = [data(cell.ours, fixed(cell.ours, decimals), name)];
@@ -52,19 +52,19 @@ export function factsOf(table: Table, row: string, column: Column, cell: Cell): 
   const every = (value: Value): string => minus(String(value));
   const parts = [typeof cell.ours === "string" ? `ours: ${cell.ours}` : cell.ours === null ? "no number of ours" : `ours ${every(cell.ours)}${unit}`];
   if (cell.spread !== null) parts.push(`± ${every(cell.spread)}${table.spread_is ? ` (${table.spread_is})` : ""}`);
-  if (cell.range) parts.push(`rounding leaves ${every(cell.range[0])} to ${every(cell.range[1])}`);
+  if (cell.range) parts.push(`range from rounding ${every(cell.range[0])} to ${every(cell.range[1])}`);
   parts.push(cell.printed === null ? "nothing printed" : `printed ${minus(cell.printed)}`);
   if (cell.difference !== null) parts.push(`difference ${cell.difference > 0 ? "+" : ""}${every(cell.difference)}`);
-  if (cell.agreement !== "not compared") parts.push(cell.agreement === "slip" && table.slip ? shortName(table.slip).toLowerCase() : cell.agreement);
+  if (cell.agreement !== "not compared") parts.push(cell.agreement === "erratum" && table.erratum ? shortName(table.erratum).toLowerCase() : cell.agreement);
   return `${row}, ${column.name}: ${parts.join("; ")}.`;
 }
 
-function cellElement(table: Table, row: string, column: Column, cell: Cell, name: string, slip: string | undefined): HTMLElement {
+function cellElement(table: Table, row: string, column: Column, cell: Cell, name: string, erratum: string | undefined): HTMLElement {
   const decimals = decimalsOf(cell, column);
-  const children: (Node | string | undefined)[] = [h("span", { class: "ours" }, ...oursOf(cell, column, name), mark(cell, slip))];
+  const children: (Node | string | undefined)[] = [h("span", { class: "ours" }, ...oursOf(cell, column, name), mark(cell, erratum))];
   if (cell.range && cell.range[0] !== null && cell.range[1] !== null) {
     const [low, high] = cell.range;
-    children.push(h("span", { class: "range" }, hidden("rounding leaves "), "[", data(low, fixed(low, decimals + 1), `${name}-low`), ", ", data(high, fixed(high, decimals + 1), `${name}-high`), "]"));
+    children.push(h("span", { class: "range" }, hidden("range from rounding "), "[", data(low, fixed(low, decimals + 1), `${name}-low`), ", ", data(high, fixed(high, decimals + 1), `${name}-high`), "]"));
   }
   if (cell.printed !== null) {
     const shown = minus(cell.printed);
@@ -131,7 +131,7 @@ function walkable(grid: HTMLTableElement, say: (text: string) => void): void {
 export function tableBlock(exhibit: Exhibit, k: number, known: Set<string>): HTMLElement {
   const table = exhibit.tables[k] as Table;
   const id = `${exhibit.id}-table-${k + 1}`;
-  const slip = table.slip !== null && known.has(table.slip) ? table.slip : undefined;
+  const erratum = table.erratum !== null && known.has(table.erratum) ? table.erratum : undefined;
   const head = h("tr", {},
     table.what_rows_are ? h("th", { scope: "col" }, table.what_rows_are) : h("td", {}, hidden("row")),
     ...table.columns.map((column) => h("th", { scope: "col" }, ...scripted(column.name), column.unit ? h("span", { class: "unit" }, column.unit) : "")));
@@ -139,7 +139,7 @@ export function tableBlock(exhibit: Exhibit, k: number, known: Set<string>): HTM
     h("tr", {}, h("th", { scope: "row" }, ...scripted(row.name)),
       ...table.columns.map((column, c) => {
         const cell = row.cells[c];
-        return cell ? cellElement(table, row.name, column, cell, `${id}-r${r + 1}c${c + 1}`, slip) : h("td", {});
+        return cell ? cellElement(table, row.name, column, cell, `${id}-r${r + 1}c${c + 1}`, erratum) : h("td", {});
       })));
   const grid = h("table", { role: "grid", "aria-readonly": "true", "aria-labelledby": `${id}-title`, class: table.columns.length >= wide ? "wide" : "" },
     h("thead", {}, head), h("tbody", {}, ...rows));
@@ -157,7 +157,7 @@ export function tableBlock(exhibit: Exhibit, k: number, known: Set<string>): HTM
     h("p", { class: "table-notes" }, table.provenance === exhibit.provenance && exhibit.tables.length === 1 ? "" : chip(table.provenance),
       cells.some((cell) => cell.printed !== null) ? h("span", {}, "ours above, ", h("span", { class: "printed" }, "printed"), " below") : "",
       table.spread_is ? h("span", {}, `± ${table.spread_is}`) : "",
-      table.slip === null ? "" : h("span", {}, "What differs is ", slip ? h("a", { href: `#${slip}` }, shortName(slip).toLowerCase()) : shortName(table.slip).toLowerCase())),
+      table.erratum === null ? "" : h("span", {}, "Differences: ", erratum ? h("a", { href: `#${erratum}` }, shortName(erratum).toLowerCase()) : shortName(table.erratum).toLowerCase())),
     table.rows.length > 0 && table.columns.length > 0 ? scrolling(table.title, grid) : h("p", { class: "none" }, "This table has no numbers."),
     facts,
     h("div", { class: "tools", role: "group", "aria-label": `Tools: ${table.title}` },

@@ -1,4 +1,4 @@
-// The three provenances and how numbers agree: a sign, a colour and words for each, so that nothing hangs on one of them.
+// The three provenances and the agreements: a sign, a colour and words for each, so that none of them is needed alone.
 import type { Agreement, Provenance } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
 
@@ -7,40 +7,55 @@ export const provenances: Record<Provenance, { sign: string; name: string; word:
     sign: "=",
     name: "recomputed",
     word: "Recomputed from printed numbers",
-    meaning: "The source prints what it follows from. Ours has to be the printed number, up to what rounding leaves open.",
+    meaning: "It follows from other numbers that the source prints. Ours must equal the printed number within rounding.",
   },
   simulated: {
     sign: "≈",
     name: "simulated",
     word: "Simulated by mechanism",
-    meaning: "The recordings were never published. Simulated participants, robots or rigs stand in for them: expect the same form and the same findings, not the same values.",
+    meaning: "The recordings were never published. Simulated participants, robots or rigs replace them: expect the same form and the same findings, not the same values.",
   },
   "not recoverable": {
     sign: "∅",
     name: "not-recoverable",
     word: "Not recoverable",
-    meaning: "What it rests on was never published, and nothing can stand in for it. The reason is given; no number is invented.",
+    meaning: "The data behind it were never published and nothing can replace them. The reason is given; no number is invented.",
   },
 };
 
-export const agreements: Record<Exclude<Agreement, "not compared">, { sign: string; name: string; word: string; meaning: string }> = {
+/** `several` says it of several cells, `which` in "numbers that …", `word` behind a count of all. */
+export const agreements: Record<Exclude<Agreement, "not compared">, { sign: string; name: string; several: string; which: string; word: string; meaning: string }> = {
   "within rounding": {
     sign: "✓",
     name: "within-rounding",
+    several: "within rounding",
+    which: "within rounding",
     word: "agree within rounding",
-    meaning: "What the rounding of the printed inputs leaves open reaches the printed number.",
+    meaning: "They follow from other printed numbers, and the rounding of those covers any difference.",
   },
-  slip: {
+  erratum: {
     sign: "!",
-    name: "slip",
-    word: "are slips of the source",
-    meaning: "Rounding does not account for the difference, and the source is at fault: the mark leads to the slip.",
+    name: "erratum",
+    several: "errata",
+    which: "that are errata",
+    word: "are errata of the source",
+    meaning: "They follow from other printed numbers, rounding does not explain the difference, and the source is at fault: the mark links to the erratum.",
   },
   differs: {
     sign: "≠",
     name: "differs",
+    several: "differ",
+    which: "that differ",
     word: "differ",
-    meaning: "Rounding does not account for the difference, and nothing else does.",
+    meaning: "They follow from other printed numbers, and nothing explains the difference.",
+  },
+  "round trip": {
+    sign: "↺",
+    name: "round-trip",
+    several: "round trips",
+    which: "that make a round trip",
+    word: "make a round trip",
+    meaning: "Ours was computed from the printed number itself and returns to it. This checks the formulas, not the source.",
   },
 };
 

@@ -1,25 +1,21 @@
-// Slips about filters, samples, errors and models: chapters 3 to 5 and appendix C.
+// Errata about filters, samples, errors and models: chapters 3 to 5 and appendix C.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/savitzky_golay.h"
-#include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/inspect.h"
-#include "mbk/measure/identify/srivc.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/measure/preprocess/prepare.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/perturbation/multisine.h"
-#include "mbk/model/perturbation/random_binary.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
-#include "mbk/thesis/slips.h"
+#include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
 namespace {
@@ -48,7 +44,7 @@ Result<void> orientation_of_an_ellipse(Workbench& bench, Draft& exhibit) {
       "ellipse relaxed.json"};
   exhibit.related = {"table-3.3", "table-3.5"};
   ReproducedTable table =
-      computed_table("slip-6", "z_xx, z_yy, z_s", {{"(3.17), as printed", "°", 2}, {"½ atan2", "°", 2}});
+      computed_table("erratum-6", "z_xx, z_yy, z_s", {{"(3.17), as printed", "°", 2}, {"½ atan2", "°", 2}});
   const auto add = [&](const std::string& name, const Matrix& Z) {
     table.rows.push_back(
         {name, {number_or_none(printed_orientation(Z)), cell(kDegrees * impedance::ellipse(Z).orientation)}});
@@ -70,8 +66,8 @@ Result<void> orientation_of_an_ellipse(Workbench& bench, Draft& exhibit) {
       }
     }
   }
-  ReproducedTable all =
-      computed_table("slip-6 all", "", {{"ellipses", "", 0}, {"(3.17) below 0°", "", 0}, {"apart, mod 180°", "°", 9}});
+  ReproducedTable all = computed_table("erratum-6 all", "",
+                                       {{"ellipses", "", 0}, {"(3.17) below 0°", "", 0}, {"apart, mod 180°", "°", 9}});
   all.rows.push_back(
       {"both tables", {cell(static_cast<double>(ellipses)), cell(static_cast<double>(negative)), cell(apart)}});
   exhibit.tables = {std::move(table), std::move(all)};
@@ -120,7 +116,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Draft& exhibit) {
       "--sg-window 101 --cutoff 5      # the filters are named in the output"};
   exhibit.related = {"figure-3.5", "statements"};
   ReproducedTable table = computed_table(
-      "slip-7", "N, W", {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
+      "erratum-7", "N, W", {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
   for (const dsp::SavitzkyGolay& filter : {kSmoothing, dsp::SavitzkyGolay{6, 151}, dsp::SavitzkyGolay{4, 51}}) {
     const auto cutoff = dsp::savitzky_golay_cutoff(filter, kRate);
     if (!cutoff) return tl::unexpected(cutoff.error());
@@ -130,7 +126,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Draft& exhibit) {
          {cell(nyquist * (filter.order + 1) / (1.6 * filter.window - 4.6)),
           cell(nyquist * (filter.order + 1) / (3.2 * filter.half_window() - 4.6)), cell(cutoff->value)}});
   }
-  ReproducedTable derivatives = computed_table("slip-7 derivatives", "derivative", {{"cutoff", "Hz", 1}});
+  ReproducedTable derivatives = computed_table("erratum-7 derivatives", "derivative", {{"cutoff", "Hz", 1}});
   for (const int derivative : {1, 2}) {
     const auto cutoff = minus_3_db(kSmoothing, derivative);
     if (!cutoff) return tl::unexpected(cutoff.error());
@@ -140,7 +136,7 @@ Result<void> smoothing_cutoff(Workbench& bench, Draft& exhibit) {
   const auto lowpass = dsp::butterworth_lowpass(5, Hertz(cutoff), kRate);
   if (!lowpass) return tl::unexpected(lowpass.error());
   ReproducedTable twice =
-      computed_table("slip-7 low-pass", "frequency", {{"gain, once", "", 3}, {"gain, forward and backward", "", 3}});
+      computed_table("erratum-7 low-pass", "frequency", {{"gain, once", "", 3}, {"gain, forward and backward", "", 3}});
   for (const double frequency : {2.0, 3.0, 4.0, 5.0}) {
     const double gain = dsp::gain(*lowpass, Hertz(frequency), kRate);
     twice.rows.push_back({fmt::format("{:g} Hz", frequency), {cell(gain), cell(gain * gain)}});
@@ -156,9 +152,9 @@ Result<void> sign_of_the_errors(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk simulate rig_table_5_1 --trial K1_M1 --out rig.h5 && mbk measure rig_K1_M1.h5 --structure "
       "mass-spring --mode reference --procedure chapter5"};
-  exhibit.related = {"table-5.3", "table-5.4", "slip-19"};
+  exhibit.related = {"table-5.3", "table-5.4"};
   ReproducedTable table = computed_table(
-      "slip-12", "statement", {{"theoretical + entry, as captioned", "", 0}, {"theoretical − entry", "", 0}});
+      "erratum-12", "statement", {{"theoretical + entry, as captioned", "", 0}, {"theoretical − entry", "", 0}});
   const auto count = [&](const std::vector<PrintedRig>& rigs, std::size_t elements, const auto& holds) {
     std::array<int, 3> counts{};
     for (const PrintedRig& rig : rigs) {
@@ -259,7 +255,7 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
     first = std::min(first, segment.first_sample);
   }
   ReproducedTable centres =
-      computed_table("slip-13", "", {{"possible", "", 0}, {"used by the program", "", 0}, {"seconds", "s", 3}});
+      computed_table("erratum-13", "", {{"possible", "", 0}, {"used by the program", "", 0}, {"seconds", "s", 3}});
   centres.rows = {{"all",
                    {cell(static_cast<double>(possible)), cell(static_cast<double>(used)),
                     cell(static_cast<double>(used) / kRate.value)}},
@@ -272,7 +268,7 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
   const auto pulses = pulse_recording(model);
   if (!pulses) return tl::unexpected(pulses.error());
   ReproducedTable smear = computed_table(
-      "slip-13 pulses", "procedure",
+      "erratum-13 pulses", "procedure",
       {{"m_yy", "kg", 5}, {"b_yy", "N·s/m", 4}, {"k_yy", "N/m", 4}, {"largest error of M, B, K", "", 6}});
   smear.rows.push_back({"the arm", {cell(model.M(1, 1)), cell(model.B(1, 1)), cell(model.K(1, 1)), cell(0.0)}});
   for (const auto& [name, mode] : {std::pair{"filtered, then cut (reference mode)", Mode::reference},
@@ -305,7 +301,7 @@ Result<void> offset_of_the_fit(Workbench& /*bench*/, Draft& exhibit) {
     force[i] = 2.0 * std::sin(phase);
     shifted[i] = 2.0 * std::sin(phase - 1.1);
   }
-  ReproducedTable table = computed_table("slip-14", "model", {{"VAF", "%", 1}, {"RMSE", "N", 3}});
+  ReproducedTable table = computed_table("erratum-14", "model", {{"VAF", "%", 1}, {"RMSE", "N", 3}});
   const auto add = [&](const char* name, const Vector& residual) {
     table.rows.push_back(
         {name, {cell(numeric::variance_accounted_for(force, residual)), cell(numeric::root_mean_square(residual))}});
@@ -314,160 +310,6 @@ Result<void> offset_of_the_fit(Workbench& /*bench*/, Draft& exhibit) {
   add("off by 10 N", Vector::Constant(kSamples, 10.0));
   add("0.9 of the force", 0.1 * force);
   add("63° late", force - shifted);
-  exhibit.tables = {std::move(table)};
-  return {};
-}
-
-namespace {
-
-constexpr double kFitRate = 100.0;  // [Hz]
-
-/// A mass on a spring and a damper, y axis.
-struct OneAxis {
-  double m, b, k;
-  [[nodiscard]] double impedance(double frequency) const {
-    const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency);
-    return std::abs(m * s * s + b * s + k);
-  }
-};
-
-/// The arm of P2 along y on a robot of 1 kg and 8 N·s/m, moved by a random binary force through (3.5).
-struct OneAxisTrial {
-  SignalPair impedance;   ///< place to the force on the arm
-  SignalPair admittance;  ///< the force on the arm to the place
-};
-
-Result<OneAxisTrial> one_axis_trial(const OneAxis& arm, std::uint64_t seed) {
-  constexpr double kRobotMass = 1.0, kRobotDamping = 8.0, kDuration = 50.0, kNoise = 0.02;
-  const auto drive = perturbation::RandomBinary::create({.switching_time = 1.0, .seed = seed}, kDuration);
-  if (!drive) return tl::unexpected(drive.error());
-  const auto samples = static_cast<Index>(kDuration * kFitRate);
-  SignalPair whole;
-  whole.step = 1.0 / kFitRate;
-  whole.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / kFitRate;
-  whole.input = whole.time.unaryExpr([&](double t) { return drive->at(t).value; });
-  const double mass = arm.m + kRobotMass, damping = arm.b + kRobotDamping;
-  const Vector a{{arm.k / mass, damping / mass}};
-  whole.output = identify::simulate_continuous(a, Vector{{1.0 / mass}}, whole);
-  // On the arm alone: what it takes of the force by its share of the same motion, (m s² + b s + k) x.
-  const Vector speed = identify::simulate_continuous(a, Vector{{0.0, 1.0 / mass}}, whole);
-  const Vector acceleration = (whole.input - damping * speed - arm.k * whole.output) / mass;
-  Vector force = arm.m * acceleration + arm.b * speed + arm.k * whole.output;
-  numeric::Random random(seed, 7);
-  for (double& value : force) value += kNoise * random.normal();
-  OneAxisTrial trial{whole, whole};
-  trial.impedance.input = whole.output;
-  trial.impedance.output = force;
-  trial.admittance.input = force;
-  return trial;
-}
-
-/// |B/A| at a frequency.
-double gain_of(const identify::ContinuousFit& fit, double frequency) {
-  const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency);
-  std::complex<double> numerator = 0.0, denominator = std::pow(s, static_cast<int>(fit.a.size()));
-  for (Index k = 0; k < fit.b.size(); ++k) numerator += fit.b[k] * std::pow(s, static_cast<int>(k));
-  for (Index k = 0; k < fit.a.size(); ++k) denominator += fit.a[k] * std::pow(s, static_cast<int>(k));
-  return std::abs(numerator / denominator);
-}
-
-Result<identify::ContinuousFit> fitted(const SignalPair& pair, Index poles, Index zeros) {
-  identify::ContinuousFitOptions options;
-  options.poles = poles;
-  options.zeros = zeros;
-  options.threads = 1;
-  return identify::fit_continuous({pair}, options);
-}
-
-}  // namespace
-
-Result<void> improper_impedance(Workbench& bench, Draft& exhibit) {
-  exhibit.commands = {
-      "mbk simulate one_axis_random_binary --trial trial_1 --out binary.h5 && mbk tf binary_trial_1.h5 --input "
-      "-force_y "
-      "--output hand_y --poles 2 --zeros 0 --invert position"};
-  exhibit.related = {"table-4.4", "figure-4.7"};
-  const impedance::Model p2 = model_of(arm_of(bench.given().sinusoidal, "P2"));
-  const OneAxis arm{p2.M(1, 1), p2.B(1, 1), p2.K(1, 1)};
-  const auto trial = one_axis_trial(arm, bench.seed(2, 1));
-  if (!trial) return tl::unexpected(trial.error());
-  const auto direct = fitted(trial->impedance, 4, 3);
-  const auto admittance = fitted(trial->admittance, 2, 0);
-  if (!direct) return tl::unexpected(direct.error());
-  if (!admittance) return tl::unexpected(admittance.error());
-  ReproducedTable numbers = computed_table("slip-16", "", {{"m", "kg", 3}, {"b", "N·s/m", 2}, {"k", "N/m", 1}});
-  numbers.provenance = Provenance::simulated;
-  const double m = 1.0 / admittance->b[0];
-  numbers.rows = {{"the arm", {cell(arm.m), cell(arm.b), cell(arm.k)}},
-                  {"1/admittance, 2 poles", {cell(m), cell(m * admittance->a[1]), cell(m * admittance->a[0])}}};
-  ReproducedTable table = computed_table(
-      "slip-16 size", "frequency", {{"the arm", "N/m", 1}, {"1/admittance", "N/m", 1}, {"4 poles, 3 zeros", "N/m", 1}});
-  table.provenance = Provenance::simulated;
-  Chart chart;
-  chart.x = {"frequency", "Hz", true};
-  chart.y = {"size of the impedance", "N/m", true};
-  chart.series = {{"the arm", {}, {}, {}, ChartSeries::Drawn::line},
-                  {"1/admittance", {}, {}, {}, ChartSeries::Drawn::line},
-                  {"4 poles, 3 zeros", {}, {}, {}, ChartSeries::Drawn::line}};
-  const auto sizes = [&](double frequency) {
-    return std::array{arm.impedance(frequency), 1.0 / gain_of(*admittance, frequency), gain_of(*direct, frequency)};
-  };
-  for (const double frequency : {0.5, 1.0, 3.0, 10.0, 100.0, 1000.0}) {
-    const auto [truth, inverted, proper] = sizes(frequency);
-    table.rows.push_back({fmt::format("{:g} Hz", frequency), {cell(truth), cell(inverted), cell(proper)}});
-  }
-  for (int i = 0; i <= 80; ++i) {
-    const double frequency = 0.1 * std::pow(1e4, i / 80.0);
-    const auto all = sizes(frequency);
-    for (std::size_t k = 0; k < 3; ++k) {
-      chart.series[k].x.push_back(frequency);
-      chart.series[k].y.push_back(all[k]);
-    }
-  }
-  ReproducedTable fit =
-      computed_table("slip-16 fit", "form", {{"R² in sample", "", 5}, {"settled on a stable model", "", 0}});
-  fit.provenance = Provenance::simulated;
-  fit.rows = {{"admittance, 2 poles", {cell(admittance->fit), words(yes(admittance->converged))}},
-              {"impedance, 4 poles, 3 zeros", {cell(direct->fit), words(yes(direct->converged))}}};
-  exhibit.tables = {std::move(numbers), std::move(table), std::move(fit)};
-  exhibit.charts = {std::move(chart)};
-  return {};
-}
-
-Result<void> largest_discrepancy(Workbench& bench, Draft& exhibit) {
-  exhibit.commands = {
-      "mbk reproduce --only table-5.3 --out folder      # both methods' stiffness, from which it follows"};
-  exhibit.related = {"table-5.4", "slip-12", "statements"};
-  struct Mean {
-    double absolute = 0, to_theory = 0, to_method_2 = 0, largest = 0;
-  };
-  const auto mean_of = [](const std::vector<PrintedRig>& rigs, std::size_t k) {
-    Mean mean;
-    const double share = 1.0 / static_cast<double>(rigs.size());
-    for (const PrintedRig& rig : rigs) {
-      const double apart = std::abs(rig.error_method_1[k].value - rig.error_method_2[k].value);
-      const double theory = std::abs(rig.theoretical[k].value);
-      const double second = std::abs(rig.theoretical[k].value - rig.error_method_2[k].value);
-      mean.absolute += share * apart;
-      mean.to_theory += share * 100.0 * apart / theory;
-      mean.to_method_2 += share * 100.0 * apart / second;
-      mean.largest = std::max(mean.largest, 100.0 * apart / second);
-    }
-    return mean;
-  };
-  ReproducedTable table = computed_table("slip-19", "parameter",
-                                         {{"discrepancy", "N/m or kg", 3},
-                                          {"of the theoretical value", "%", 1},
-                                          {"of method 2", "%", 1},
-                                          {"largest of method 2", "%", 1}});
-  const auto add = [&](const char* name, const Mean& mean) {
-    table.rows.push_back(
-        {name, {cell(mean.absolute), cell(mean.to_theory), cell(mean.to_method_2), cell(mean.largest)}});
-  };
-  add("k_xx", mean_of(bench.given().stiffnesses, 0));
-  add("k_yy", mean_of(bench.given().stiffnesses, 1));
-  add("k_s", mean_of(bench.given().stiffnesses, 2));
-  add("m", mean_of(bench.given().masses, 0));
   exhibit.tables = {std::move(table)};
   return {};
 }

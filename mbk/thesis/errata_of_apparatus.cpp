@@ -1,4 +1,4 @@
-// Slips of the appendices about the robot, its springs and its force sensor.
+// Errata of the appendices about the robot, its springs and its force sensor.
 #include <fmt/format.h>
 
 #include <array>
@@ -8,13 +8,10 @@
 #include <tuple>
 #include <vector>
 
-#include "mbk/base/numeric/statistics.h"
-#include "mbk/measure/calibration/force_sensor.h"
 #include "mbk/measure/calibration/spring_array.h"
 #include "mbk/model/robot/dynamics.h"
 #include "mbk/model/robot/workspace.h"
-#include "mbk/simulate/laboratory/strain_gauge.h"
-#include "mbk/thesis/slips.h"
+#include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
 namespace {
@@ -44,14 +41,14 @@ Matrix2d differences(const Function& function, const Vector2d& at) {
 
 Result<void> jacobian_in_one_column(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.commands = {"mbk robot workspace --at 300,-50      # the posture there"};
-  exhibit.related = {"slip-9", "figure-A.2"};
+  exhibit.related = {"erratum-9", "figure-A.2"};
   const robot::Geometry geometry;
   const Matrix2d J = robot::jacobian(geometry, kTheta);
   const Matrix2d numerical =
       differences([&](const Vector2d& theta) { return robot::hand_position(geometry, theta); }, kTheta);
   const Vector2d printed(-geometry.d1 * std::sin(kTheta[0]) + geometry.d2 * std::cos(kTheta[1]),
                          geometry.d1 * std::cos(kTheta[0]) + geometry.d2 * std::sin(kTheta[1]));
-  ReproducedTable table = computed_table("slip-8", "derivative",
+  ReproducedTable table = computed_table("erratum-8", "derivative",
                                          {{"by differences", "m", 5}, {"J", "m", 5}, {"its row as printed", "m", 5}});
   for (Index row = 0; row < 2; ++row) {
     for (Index column = 0; column < 2; ++column) {
@@ -104,12 +101,12 @@ Chart power_chart(const robot::Inertia& inertia) {
 
 Result<void> coriolis_sign(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.commands = {"mbk robot describe examples/robots/thesis.toml"};
-  exhibit.related = {"slip-8", "table-A.1"};
+  exhibit.related = {"erratum-8", "table-A.1"};
   const robot::Inertia inertia;
   const Matrix2d I_rate =
       (inertia.matrix(kTheta + kStep * kRate) - inertia.matrix(kTheta - kStep * kRate)) / (2.0 * kStep);
   ReproducedTable table = computed_table(
-      "slip-9", "C", {{"N₁₁", "N·m·s", 6}, {"N₁₂ + N₂₁", "N·m·s", 6}, {"N₂₂", "N·m·s", 6}, {"½ θ̇ᵀNθ̇", "W", 6}});
+      "erratum-9", "C", {{"N₁₁", "N·m·s", 6}, {"N₁₂ + N₂₁", "N·m·s", 6}, {"N₂₂", "N·m·s", 6}, {"½ θ̇ᵀNθ̇", "W", 6}});
   for (const auto& [name, C] : {std::pair{"as printed", printed_coriolis(inertia, kTheta, kRate)},
                                 {"with −½ α₂ cos(θ₁ − θ₂) θ̇₁", inertia.coriolis(kTheta, kRate)}}) {
     const Matrix2d N = I_rate - 2.0 * C;
@@ -122,7 +119,7 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Draft& exhibit) {
   const Matrix2d wanted = inertia.matrix(kTheta) + kPayload * J.transpose() * J;
   const Matrix2d got = inertia.with_payload(geometry, kPayload).matrix(kTheta);
   ReproducedTable payload =
-      computed_table("slip-9 payload", "entry", {{"I + m JᵀJ", "kg·m²", 6}, {"I with the changed α", "kg·m²", 6}});
+      computed_table("erratum-9 payload", "entry", {{"I + m JᵀJ", "kg·m²", 6}, {"I with the changed α", "kg·m²", 6}});
   for (const auto& [name, row, column] : {std::tuple{"I₁₁", 0, 0}, {"I₁₂", 0, 1}, {"I₂₂", 1, 1}}) {
     payload.rows.push_back({name, {cell(wanted(row, column)), cell(got(row, column))}});
   }
@@ -135,7 +132,7 @@ Result<void> gradient_of_springs(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk springs field --spring k=120,l=90,anchor=565:183 --spring k=120,l=90,anchor=565:-183 --spring "
       "k=150,l=80,anchor=215:0 --grid-step 0.15"};
-  exhibit.related = {"table-3.1", "table-5.1", "slip-4"};
+  exhibit.related = {"table-3.1", "table-5.1", "erratum-4"};
   const Given& given = bench.given();
   const double d1 = given.number("setup", "frame d1, m"), d2 = given.number("setup", "frame d2, m");
   const auto array = calibration::SpringArray::create({{120.0, 0.09, {d2, d1}, {0.0, 0.0}},
@@ -163,7 +160,7 @@ Result<void> gradient_of_springs(Workbench& bench, Draft& exhibit) {
   K(0, 1) += k_a;
   K(1, 0) -= k_a;
   const Matrix2d of_arm = differences([&](const Vector2d& x) { return Vector2d(-K * x); }, hand);
-  exhibit.tables = {table_of("slip-10", of_springs, array->stiffness(hand)), table_of("slip-10 arm", of_arm, K)};
+  exhibit.tables = {table_of("erratum-10", of_springs, array->stiffness(hand)), table_of("erratum-10 arm", of_arm, K)};
   return {};
 }
 
@@ -177,77 +174,15 @@ Result<void> majority_of_the_workspace(Workbench& bench, Draft& exhibit) {
   const auto swept = [&](double range) { return geometry.d1 * geometry.d2 * 2.0 * (1.0 - std::cos(range)); };
   const double range = bench.given().number("setup", "joint range of appendix A, °") * std::numbers::pi / 180.0;
   const double half = std::acos(1.0 - 0.25 * workspace->area / (geometry.d1 * geometry.d2));
-  ReproducedTable table = computed_table("slip-20", "", {{"area", "m²", 4}, {"of the workspace", "%", 1}});
+  ReproducedTable table = computed_table("erratum-20", "", {{"area", "m²", 4}, {"of the workspace", "%", 1}});
   const auto add = [&](std::string name, double area) {
     table.rows.push_back({std::move(name), {cell(area), cell(100.0 * area / workspace->area)}});
   };
+  exhibit.values = {{"swept", 100.0 * swept(range) / workspace->area}};
   add("the workspace", workspace->area);
   add("40° of each joint", swept(range));
   add(fmt::format("{:.0f}° of each joint", half * 180.0 / std::numbers::pi), swept(half));
   exhibit.tables = {std::move(table)};
-  return {};
-}
-
-namespace {
-
-/// What the whole chain makes of a slow ramp, without noise and without filter: readings less the force.
-Result<Vector> errors_of_converter(double from, double to) {
-  laboratory::StrainGaugeOptions options;
-  options.bridge_noise = 0.0;
-  options.cutoff = Hertz(0.0);
-  auto gauge = laboratory::StrainGauge::create(options, 1e-3, 1);
-  if (!gauge) return tl::unexpected(gauge.error());
-  constexpr Index kSamples = 20000;
-  Vector errors(kSamples);
-  for (Index i = 0; i < kSamples; ++i) {
-    const double force = from + (to - from) * static_cast<double>(i) / kSamples;
-    errors[i] = gauge->added({force, 0.0})[0];
-  }
-  return errors;
-}
-
-}  // namespace
-
-Result<void> gauge_and_converter(Workbench& bench, Draft& exhibit) {
-  exhibit.commands = {"mbk sensor calibrate --help      # --lever-arm-mm, --bits, --range"};
-  exhibit.related = {"figure-E.5", "statements"};
-  const Given& given = bench.given();
-  const double slope = given.number("setup", "slope of Fx, N/V"), offset = given.number("setup", "offset of Fx, N");
-  const double L0 = given.number("setup", "lever arm L0, m"), L = 0.1;
-  ReproducedTable table = computed_table("slip-15", "force on x",
-                                         {{"voltage", "V", 3},
-                                          {"(L₀/L) slope (V − V₀)", "N", 3},
-                                          {"(E.3), intercept of (E.2)", "N", 3},
-                                          {"(E.3), intercept tuned at 100 mm", "N", 3},
-                                          {"slope scaled, intercept of (E.2)", "N", 3}});
-  const double zero = -offset / slope, scale = L0 / L, tuned = -scale * slope * zero;
-  for (const double force : {0.0, 5.0, -5.0}) {
-    const double voltage = force * L / L0 / slope + zero;
-    table.rows.push_back(
-        {fmt::format("{:g} N", force),
-         {cell(voltage), cell(scale * slope * (voltage - zero) + 0.0), cell(scale * (slope * voltage + offset) + 0.0),
-          cell(scale * (slope * voltage + tuned)), cell(scale * slope * voltage + offset)}});
-  }
-  laboratory::StrainGaugeOptions options;
-  options.arm = options.assumed_arm = L;
-  options.bridge_noise = 0.0;
-  options.cutoff = Hertz(0.0);
-  options.converter_bits = 0;
-  auto gauge = laboratory::StrainGauge::create(options, 1e-3, 1);
-  if (!gauge) return tl::unexpected(gauge.error());
-  ReproducedTable chain = computed_table("slip-15 gauge", "force on x", {{"reading", "N", 3}});
-  for (const double force : {0.0, 5.0, -5.0}) {
-    chain.rows.push_back({fmt::format("{:g} N", force), {cell(gauge->read({force, 0.0})[0] + 0.0)}});
-  }
-  const calibration::Converter converter;
-  const auto errors = errors_of_converter(-20.0, 20.0);
-  if (!errors) return tl::unexpected(errors.error());
-  ReproducedTable steps = computed_table("slip-15 converter", "", {{"value", "", 4}});
-  steps.rows = {{"step [V]", {cell(converter.step())}},
-                {"step [N]", {cell(std::abs(slope) * converter.step())}},
-                {"step/√12 [N]", {cell(std::abs(slope) * converter.step() / std::sqrt(12.0))}},
-                {"noise of one axis [N]", {cell(std::sqrt(numeric::variance(*errors)))}}};
-  exhibit.tables = {std::move(table), std::move(chain), std::move(steps)};
   return {};
 }
 

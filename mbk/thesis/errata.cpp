@@ -1,5 +1,5 @@
-// The slips of the source, in the order of docs/theory/sources-slips.md.
-#include "mbk/thesis/slips.h"
+// The errata of the source, in the order of docs/theory/errata.md.
+#include "mbk/thesis/errata.h"
 
 #include <algorithm>
 #include <array>
@@ -41,27 +41,35 @@ std::string yes(bool is) {
 
 namespace {
 
-constexpr Maker slip(int chapter, const char* id, Result<void> (*make)(Workbench& bench, Draft& exhibit),
-                     Provenance provenance = Provenance::recomputed) {
-  return {Exhibit::Kind::slip, chapter, id, provenance, make};
+constexpr Maker erratum(int chapter, const char* id, Result<void> (*make)(Workbench& bench, Draft& exhibit)) {
+  return {Exhibit::Kind::erratum, chapter, id, Provenance::recomputed, make};
 }
 
+// 15, 16 and 19 were withdrawn; a number is not given again.
 constexpr std::array kMakers = {
-    slip(3, "slip-1", excess_of_the_largest),   slip(3, "slip-2", theorem_at_its_boundary),
-    slip(3, "slip-3", theorem_without_poles),   slip(3, "slip-4", antisymmetry_dropped),
-    slip(3, "slip-5", hermitian_part),          slip(3, "slip-6", orientation_of_an_ellipse),
-    slip(3, "slip-7", smoothing_cutoff),        slip(0, "slip-8", jacobian_in_one_column),
-    slip(0, "slip-9", coriolis_sign),           slip(0, "slip-10", gradient_of_springs),
-    slip(4, "slip-11", any_immittance),         slip(5, "slip-12", sign_of_the_errors),
-    slip(0, "slip-13", samples_of_the_program), slip(3, "slip-14", offset_of_the_fit),
-    slip(0, "slip-15", gauge_and_converter),    slip(4, "slip-16", improper_impedance, Provenance::simulated),
-    slip(4, "slip-17", unnamed_poles),          slip(3, "slip-18", sign_of_the_force),
-    slip(5, "slip-19", largest_discrepancy),    slip(0, "slip-20", majority_of_the_workspace),
+    erratum(3, "erratum-1", excess_of_the_largest),
+    erratum(3, "erratum-2", theorem_at_its_boundary),
+    erratum(3, "erratum-3", theorem_without_poles),
+    erratum(3, "erratum-4", antisymmetry_dropped),
+    erratum(3, "erratum-5", hermitian_part),
+    erratum(3, "erratum-6", orientation_of_an_ellipse),
+    erratum(3, "erratum-7", smoothing_cutoff),
+    erratum(0, "erratum-8", jacobian_in_one_column),
+    erratum(0, "erratum-9", coriolis_sign),
+    erratum(0, "erratum-10", gradient_of_springs),
+    erratum(4, "erratum-11", any_immittance),
+    erratum(5, "erratum-12", sign_of_the_errors),
+    erratum(0, "erratum-13", samples_of_the_program),
+    erratum(3, "erratum-14", offset_of_the_fit),
+    erratum(4, "erratum-17", unnamed_poles),
+    erratum(3, "erratum-18", sign_of_the_force),
+    erratum(0, "erratum-20", majority_of_the_workspace),
+    erratum(0, "withdrawn-errata", withdrawn_errata),
 };
 
 }  // namespace
 
-std::span<const Maker> slips() {
+std::span<const Maker> errata() {
   return kMakers;
 }
 

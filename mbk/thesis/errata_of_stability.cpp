@@ -1,4 +1,4 @@
-// Slips of chapter 4 about the stability of coupled networks: theorems 4.1 and 4.2.
+// Errata of chapter 4 about the stability of coupled networks: theorems 4.1 and 4.2.
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 #include "mbk/teleop/admissible.h"
 #include "mbk/teleop/architectures.h"
 #include "mbk/teleop/llewellyn.h"
-#include "mbk/thesis/slips.h"
+#include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
 namespace {
@@ -58,7 +58,7 @@ std::string violated_text(const AbsoluteStability& stability) {
 
 Result<void> any_immittance(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.commands = {"mbk teleop examples/teleop/position_position.toml      # the largest shortage it allows"};
-  exhibit.related = {"slip-17", "question-4", "slip-5"};
+  exhibit.related = {"erratum-17", "question-4", "erratum-5"};
   const Rational a = 1;
   const teleop::TwoPort z =
       resistive(teleop::Form::z, {Rational(1, 5), Rational(1, 10), Rational(1, 10), Rational(1, 5)});
@@ -69,7 +69,7 @@ Result<void> any_immittance(Workbench& /*bench*/, Draft& exhibit) {
   teleop::TwoPort printed = *y;
   printed.matrix(1, 1) = printed.matrix(1, 1) - lti::RationalFunction(lti::Polynomial{a});
   ReproducedTable table = computed_table(
-      "slip-11", "form",
+      "erratum-11", "form",
       {{"r₁₁", "", 2}, {"r₂₂ − a", "", 2}, {"third condition, scaled", "", 2}, {"criterion says", "", 0}});
   for (const auto& [name, network] : std::array<std::pair<const char*, const teleop::TwoPort*>, 2>{
            {{"y₂₂ − a, as the theorem allows", &printed}, {"z₂₂ − a", &*right}}}) {
@@ -78,7 +78,7 @@ Result<void> any_immittance(Workbench& /*bench*/, Draft& exhibit) {
                           {cell(values.r11), cell(values.r22), cell(values.third),
                            words(teleop::is_absolutely_stable(*network) ? "stable" : "not stable")}});
   }
-  ReproducedTable bound = computed_table("slip-11 bound", "a",
+  ReproducedTable bound = computed_table("erratum-11 bound", "a",
                                          {{"Re z", "N·s/m", 2}, {"Re 1/z", "m/(N·s)", 2}, {"−a holds for 1/z", "", 0}});
   for (const double value : {0.1, 0.5, 2.0}) {
     bound.rows.push_back(
@@ -90,7 +90,7 @@ Result<void> any_immittance(Workbench& /*bench*/, Draft& exhibit) {
                          {"master.d", d_m}, {"master.k", 100}, {"slave.d", d_s},  {"slave.k", 200}};
   const LargestShortage largest = teleop::largest_shortage(teleoperator.equations(), teleop::Port::two);
   ReproducedTable allowed = computed_table(
-      "slip-11 allowed", "", {{"bisection between exact decisions", "N·s/m", 4}, {"closed form", "N·s/m", 4}});
+      "erratum-11 allowed", "", {{"bisection between exact decisions", "N·s/m", 4}, {"closed form", "N·s/m", 4}});
   allowed.rows.push_back({"b_m = 2, b_s = 3, d_m = 10, d_s = 20 N·s/m",
                           {cell(largest.value()), cell(b_s + static_cast<double>(d_s * b_m) / (b_m + d_m))}});
   exhibit.tables = {std::move(table), std::move(bound), std::move(allowed)};
@@ -99,7 +99,7 @@ Result<void> any_immittance(Workbench& /*bench*/, Draft& exhibit) {
 
 Result<void> unnamed_poles(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.commands = {"mbk teleop examples/teleop/narrow_resonance.toml      # each condition, decided exactly"};
-  exhibit.related = {"slip-11", "slip-3"};
+  exhibit.related = {"erratum-11", "erratum-3"};
   using lti::Polynomial;
   const Polynomial one{1}, s{0, 1};
   teleop::TwoPort mass{teleop::Form::z, lti::RationalMatrix(2)}, right = mass, spring = mass;
@@ -110,7 +110,7 @@ Result<void> unnamed_poles(Workbench& /*bench*/, Draft& exhibit) {
   right.matrix(1, 0) = lti::RationalFunction(Polynomial{Rational(1, 10)});
   spring.matrix(0, 0) = spring.matrix(1, 1) = ratio(one, s);
   spring.matrix(0, 1) = spring.matrix(1, 0) = ratio(Polynomial{2}, s);
-  ReproducedTable table = computed_table("slip-17", "z",
+  ReproducedTable table = computed_table("erratum-17", "z",
                                          {{"least r₁₁", "", 3},
                                           {"least r₂₂", "", 3},
                                           {"least third condition", "", 3},

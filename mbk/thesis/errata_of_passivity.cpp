@@ -1,4 +1,4 @@
-// Slips of chapters 3 and 4 about the passivity of the limb: theorems 3.1 and 3.2 and what follows from them.
+// Errata of chapters 3 and 4 about the passivity of the limb: theorems 3.1 and 3.2 and what follows from them.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -15,7 +15,7 @@
 #include "mbk/measure/analyse/energy_blocks.h"
 #include "mbk/model/impedance/passivity_index.h"
 #include "mbk/model/robot/dynamics.h"
-#include "mbk/thesis/slips.h"
+#include "mbk/thesis/errata.h"
 
 namespace mbk::thesis {
 namespace {
@@ -50,8 +50,8 @@ impedance::Model with_antisymmetry(impedance::Model model, double k_a) {
 
 Result<void> excess_of_the_largest(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {"mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5"};
-  exhibit.related = {"table-3.6", "table-3.3", "table-3.5", "slip-3", "question-4"};
-  ReproducedTable table = computed_table("slip-1", "participant",
+  exhibit.related = {"table-3.6", "table-3.3", "table-3.5", "erratum-3", "question-4"};
+  ReproducedTable table = computed_table("erratum-1", "participant",
                                          {{"λ_max/2, as published", "N·s/m", 2},
                                           {"λ_min", "N·s/m", 2},
                                           {"index of Z, exactly", "N·s/m", 2},
@@ -78,9 +78,9 @@ Result<void> excess_of_the_largest(Workbench& bench, Draft& exhibit) {
 
 Result<void> theorem_at_its_boundary(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.commands = {"mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5"};
-  exhibit.related = {"slip-3", "slip-4"};
+  exhibit.related = {"erratum-3", "erratum-4"};
   ReproducedTable table = computed_table(
-      "slip-2", "diag(0, −1) stands for",
+      "erratum-2", "diag(0, −1) stands for",
       {{"z_xx", "", 1}, {"determinant", "", 1}, {"theorem 3.2", "", 0}, {"λ_min", "", 1}, {"positive real", "", 0}});
   constexpr std::array<const char*, 4> kNames = {"M", "B", "K", "none of them"};
   for (int k = 0; k < 4; ++k) {
@@ -105,7 +105,7 @@ Result<void> theorem_at_its_boundary(Workbench& /*bench*/, Draft& exhibit) {
 
 Result<void> theorem_without_poles(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {"mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5"};
-  exhibit.related = {"slip-1", "slip-2", "slip-17"};
+  exhibit.related = {"erratum-1", "erratum-2", "erratum-17"};
   const impedance::Model p1 = model_of(arm_of(bench.given().sinusoidal, "P1"));
   const double excess = impedance::smallest_eigenvalue(p1, 1).value;
   const auto Z = impedance_of(p1);
@@ -114,7 +114,7 @@ Result<void> theorem_without_poles(Workbench& bench, Draft& exhibit) {
   for (const auto& pole : lti::poles(*Z)) finite += fmt::format("{}{:g}", finite.empty() ? "" : ", ", pole.real());
   exhibit.values = {{"finite_poles", finite}, {"poles_at_infinity", (*Z)(0, 0).is_proper() ? "none" : "one"}};
   ReproducedTable table = computed_table(
-      "slip-3", "δ taken off the damping",
+      "erratum-3", "δ taken off the damping",
       {{"δ", "N·s/m", 3}, {"½ λ_min(H)", "N·s/m", 3}, {"λ_min(K)", "N/m", 1}, {"Z − δI positive real", "", 0}});
   const auto add = [&](const char* name, impedance::Model model, double delta) -> Result<void> {
     model.B -= delta * Matrix::Identity(2, 2);
@@ -161,7 +161,7 @@ Result<void> antisymmetry_dropped(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk passivity relaxed.h5 --band 0.05:3      # against "
       "--band 0.5:3"};
-  exhibit.related = {"figure-3.12", "figure-3.13", "slip-2", "question-1"};
+  exhibit.related = {"figure-3.12", "figure-3.13", "erratum-2", "question-1"};
   const impedance::Model without = model_of(arm_of(bench.given().sinusoidal, "P1"));
   const double k_a = antisymmetric_stiffness(bench.given());
   const impedance::Model with = with_antisymmetry(without, k_a);
@@ -169,7 +169,7 @@ Result<void> antisymmetry_dropped(Workbench& bench, Draft& exhibit) {
       {"k_a", k_a},
       {"not_passive_below", impedance::nonpassive_below(with).value_or(std::numeric_limits<double>::quiet_NaN())}};
   ReproducedTable table = computed_table(
-      "slip-4", "frequency",
+      "erratum-4", "frequency",
       {{"index, closed form", "N·s/m", 2}, {"½ λ_min(Z + Z*)", "N·s/m", 2}, {"without k_a", "N·s/m", 2}});
   for (const double frequency : {0.05, 0.1, 0.2, 0.5, 1.0, 3.0}) {
     const double omega = 2.0 * std::numbers::pi * frequency;
@@ -179,7 +179,7 @@ Result<void> antisymmetry_dropped(Workbench& bench, Draft& exhibit) {
           cell(impedance::passivity_index(without, omega).value)}});
   }
   ReproducedTable tolerated =
-      computed_table("slip-4 tolerated", "participant", {{"k_a", "N/m", 1}, {"not passive below", "Hz", 2}});
+      computed_table("erratum-4 tolerated", "participant", {{"k_a", "N/m", 1}, {"not passive below", "Hz", 2}});
   const double share = 0.01 * bench.given().number("setup", "antisymmetry that was neglected, %");
   for (const PrintedArm& arm : bench.given().sinusoidal) {
     const double largest = share * std::sqrt(arm.ellipses[2].area.value / std::numbers::pi);
@@ -197,19 +197,19 @@ Result<void> hermitian_part(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk simulate rigid_underdamped_2N --out rigid.h5 && mbk passivity rigid.h5      # shortage at "
       "the end and at its largest"};
-  exhibit.related = {"slip-1", "slip-18", "table-4.5", "figure-4.3"};
+  exhibit.related = {"erratum-1", "erratum-18", "table-4.5", "figure-4.3"};
   const impedance::Model p1 = model_of(arm_of(bench.given().sinusoidal, "P1"));
   const std::complex<double> s(0.0, 2.0 * std::numbers::pi);
   const auto Z = [&](std::complex<double> at) { return (p1.M * at + p1.B + p1.K / at).eval(); };
   ReproducedTable table = computed_table(
-      "slip-5", "H is", {{"‖H − H*‖, 0 if Hermitian", "N·s/m", 1}, {"½ λ_min of its Hermitian part", "N·s/m", 2}});
+      "erratum-5", "H is", {{"‖H − H*‖, 0 if Hermitian", "N·s/m", 1}, {"½ λ_min of its Hermitian part", "N·s/m", 2}});
   const Eigen::MatrixXcd printed = Z(s) + Z(s).transpose(), right = Z(s) + Z(-s).transpose();
   for (const auto& [name, H] : {std::pair{"Z(jω) + Zᵀ(jω), as printed", &printed}, {"Z(jω) + Zᵀ(−jω)", &right}}) {
     const Eigen::MatrixXcd half = 0.5 * (*H + H->adjoint());
     table.rows.push_back(
         {name, {cell((*H - H->adjoint()).norm()), cell(0.5 * numeric::hermitian_eigenvalues(half)[0])}});
   }
-  ReproducedTable lemma = computed_table("slip-5 lemma", "s", {{"Re Z", "N·s/m"}});
+  ReproducedTable lemma = computed_table("erratum-5 lemma", "s", {{"Re Z", "N·s/m"}});
   const auto one = [&](std::complex<double> at) { return (p1.M(1, 1) * at + p1.B(1, 1) + p1.K(1, 1) / at).real(); };
   for (const double real : {-10.0, -1.0, 1.0}) lemma.rows.push_back({fmt::format("{:g}", real), {cell(one(real))}});
   lemma.rows.push_back({"jω, any ω", {cell(one(s))}});
@@ -217,7 +217,7 @@ Result<void> hermitian_part(Workbench& bench, Draft& exhibit) {
   const double smallest = analyse::largest_shortage(blocks, {0}, 0.0);
   exhibit.values = {{"smallest", smallest}};
   ReproducedTable lambda =
-      computed_table("slip-5 shortage", "λ", {{"least of E + λ∫v² over t", "J", 2}, {"holds", "", 0}});
+      computed_table("erratum-5 shortage", "λ", {{"least of E + λ∫v² over t", "J", 2}, {"holds", "", 0}});
   for (const double value : {0.6 * smallest, smallest, 2.0 * smallest, 100.0 * smallest}) {
     double least = std::numeric_limits<double>::infinity();
     for (const analyse::EnergySums& sums : blocks[0].sums) {
@@ -233,7 +233,7 @@ Result<void> sign_of_the_force(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {
       "mbk simulate relaxed_sinusoidal --out relaxed.h5 && mbk measure relaxed.h5 --channels "
       "x=hand_x,y=hand_y,Fx=-force_x,Fy=-force_y,xr=reference_x,yr=reference_y      # warns of the sign; exit code 4"};
-  exhibit.related = {"slip-5", "figure-3.15", "figure-4.3"};
+  exhibit.related = {"erratum-5", "figure-3.15", "figure-4.3"};
   const impedance::Model p1 = model_of(arm_of(bench.given().sinusoidal, "P1"));
   const double amplitude = 0.005, omega = 2.0 * std::numbers::pi;
   constexpr int kSamples = 10000, kPeriods = 10;
@@ -246,8 +246,8 @@ Result<void> sign_of_the_force(Workbench& bench, Draft& exhibit) {
     integral += force_hand_on_robot * v * kPeriods / kSamples;
   }
   const double expected = kPeriods * std::numbers::pi * p1.B(0, 0) * omega * amplitude * amplitude;
-  ReproducedTable energy =
-      computed_table("slip-18", "", {{"∫F_h·v, as printed", "J", 4}, {"−∫F_h·v", "J", 4}, {"πbωa² a period", "J", 4}});
+  ReproducedTable energy = computed_table(
+      "erratum-18", "", {{"∫F_h·v, as printed", "J", 4}, {"−∫F_h·v", "J", 4}, {"πbωa² a period", "J", 4}});
   energy.rows.push_back({"5 mm at 1 Hz along x", {cell(integral), cell(-integral), cell(expected)}});
   const robot::PlanarRobot robot;
   const Eigen::Vector2d theta(0.3, 0.9), rate(0.8, -0.5), acceleration(2.0, 1.0), push(3.0, -2.0);
@@ -256,8 +256,9 @@ Result<void> sign_of_the_force(Workbench& bench, Draft& exhibit) {
   const Eigen::Matrix2d J = robot::jacobian(robot.geometry, theta);
   const Eigen::Vector2d right = J.transpose().inverse() * (without - torque);
   const Eigen::Vector2d printed = J.transpose().inverse() * (torque - without);
-  ReproducedTable force = computed_table(
-      "slip-18 robot", "axis", {{"pushed with", "N", 3}, {"from (5.1)", "N", 3}, {"from (5.2), as printed", "N", 3}});
+  ReproducedTable force =
+      computed_table("erratum-18 robot", "axis",
+                     {{"pushed with", "N", 3}, {"from (5.1)", "N", 3}, {"from (5.2), as printed", "N", 3}});
   for (Index k = 0; k < 2; ++k) {
     force.rows.push_back({k == 0 ? "x" : "y", {cell(push[k]), cell(right[k]), cell(printed[k])}});
   }

@@ -6,7 +6,7 @@
 #include "mbk/model/impedance/model.h"
 #include "mbk/thesis/exhibits.h"
 
-/// The slips of the source, each with the computation that shows it. For the sources of this module only.
+/// The errata of the source, each with the computation that shows it. For the sources of this module only.
 namespace mbk::thesis {
 
 /// An empty table of what mbk computes.
@@ -42,7 +42,6 @@ namespace mbk::thesis {
 [[nodiscard]] Result<void> coriolis_sign(Workbench& bench, Draft& exhibit);
 [[nodiscard]] Result<void> gradient_of_springs(Workbench& bench, Draft& exhibit);
 [[nodiscard]] Result<void> majority_of_the_workspace(Workbench& bench, Draft& exhibit);
-[[nodiscard]] Result<void> gauge_and_converter(Workbench& bench, Draft& exhibit);
 
 // Of the procedure and its judgement.
 [[nodiscard]] Result<void> orientation_of_an_ellipse(Workbench& bench, Draft& exhibit);
@@ -50,7 +49,8 @@ namespace mbk::thesis {
 [[nodiscard]] Result<void> sign_of_the_errors(Workbench& bench, Draft& exhibit);
 [[nodiscard]] Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit);
 [[nodiscard]] Result<void> offset_of_the_fit(Workbench& bench, Draft& exhibit);
-[[nodiscard]] Result<void> improper_impedance(Workbench& bench, Draft& exhibit);
-[[nodiscard]] Result<void> largest_discrepancy(Workbench& bench, Draft& exhibit);
+
+// Errata that an earlier version charged, each with the computation that acquits the source.
+[[nodiscard]] Result<void> withdrawn_errata(Workbench& bench, Draft& exhibit);
 
 }  // namespace mbk::thesis
