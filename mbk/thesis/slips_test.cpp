@@ -10,7 +10,7 @@
 #include "mbk/thesis/source.h"
 
 namespace mbk::thesis {
-namespace {
+namespace slips_test {
 
 constexpr double kExact = 1e-9;
 
@@ -285,5 +285,5 @@ TEST(Slips, FortyDegreesAreAPartOfTheWorkspace) {
   EXPECT_NEAR(number(rows, 2, 1), 50.0, kExact);
 }
 
-}  // namespace
+}  // namespace slips_test
 }  // namespace mbk::thesis
