@@ -4,6 +4,12 @@
 option(MBK_UNITY "Compile several sources of a module at a time" ON)
 set(MBK_UNITY_BATCH 5)  # so that none takes more than 15 s
 
+# mbk_unity(TARGET [SOURCE...]): the sources of TARGET are compiled several at a time, but for these.
+function(mbk_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${MBK_UNITY} UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH})
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # Nothing of it is linked: an interface without libraries.
 function(mbk_is_header_only library result)
   get_target_property(type ${library} TYPE)
@@ -23,13 +29,13 @@ endfunction()
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
-# program that is no part of the library. TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources that take
-# long to compile, or have a name in common with another, and so are compiled by themselves; ONE_BY_ONE: all of them.
+# program that is no part of the library. TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources and
+# tests that take long to compile, and so are compiled by themselves.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT;ONE_BY_ONE" "" "ALONE;DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT" "" "ALONE;DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -51,10 +57,7 @@ function(mbk_module name)
     add_library(mbk_${name} STATIC ${sources})
     mbk_precompile(mbk_${name} library)
     set(public PUBLIC)
-    if(NOT ARG_ONE_BY_ONE)
-      set_target_properties(mbk_${name} PROPERTIES UNITY_BUILD ${MBK_UNITY} UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH})
-      set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    endif()
+    mbk_unity(mbk_${name} ${ARG_ALONE})
     target_link_libraries(mbk_${name} PRIVATE $<BUILD_INTERFACE:mbk_settings> ${private_libraries})
   else()
     add_library(mbk_${name} INTERFACE)
@@ -73,7 +76,7 @@ function(mbk_module name)
     if(ARG_TESTS_WAIT)
       set(wait WAITS)
     endif()
-    mbk_test(${name}_test ${wait} SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
+    mbk_test(${name}_test ${wait} SOURCES ${tests} ALONE ${ARG_ALONE} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
   endif()
 endfunction()
 
@@ -81,7 +84,7 @@ endfunction()
 # WAITS: it waits for a socket, which a busy machine may hold up; only tests with this label have a second chance
 # (.ci/run). OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers.
 function(mbk_test name)
-  cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   set(labels "")
   if(ARG_WAITS)
     set(labels LABELS waits)
@@ -90,6 +93,7 @@ function(mbk_test name)
   target_link_libraries(${name} PRIVATE mbk_settings ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   # What is tested is as users have it; the tests themselves compile faster so.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  mbk_unity(${name} ${ARG_ALONE})
   if(NOT ARG_OWN_FLAGS)
     mbk_precompile(${name} tests)
   endif()

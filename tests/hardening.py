@@ -25,7 +25,7 @@ if platform.machine() in ("x86_64", "AMD64"):
     FLAGS.append(("-fcf-protection", ("-fcf-protection=none",)))
 POSITION_INDEPENDENT = {"-fPIC", "-fPIE"}
 OPTIMISED = {"-O1", "-O2", "-O3", "-Os"}  # without, _FORTIFY_SOURCE does nothing
-COMPILED = (".c", ".cpp")
+COMPILED = (".c", ".cpp", ".cxx")
 
 
 def missing_flags(words):

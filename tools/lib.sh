@@ -38,7 +38,7 @@ step() {
   exit "$code"
 }
 
-# build PRESET: configures and builds it
+# build PRESET [TARGET...]: configures and builds it, or only these targets
 build() {
   local launcher=()
   if command -v ccache >/dev/null; then
@@ -47,7 +47,9 @@ build() {
     launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
   step "configuring $1" cmake --preset "$1" "${launcher[@]}"
-  step "building $1" cmake --build --preset "$1" --parallel "$(nproc)"
+  local targets=()
+  if (($# > 1)); then targets=(--target "${@:2}"); fi
+  step "building $1" cmake --build --preset "$1" --parallel "$(nproc)" "${targets[@]}"
 }
 
 # sources: every C++ file of the project, also those that are not committed yet

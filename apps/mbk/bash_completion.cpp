@@ -6,13 +6,13 @@
 namespace mbk::app {
 namespace {
 
-constexpr const char* kBeginning = R"(# bash completion for mbk, as written by 'mbk completion bash'
+constexpr const char* kBashBeginning = R"(# bash completion for mbk, as written by 'mbk completion bash'
 
 )";
 
 // What is typed is one of three things: the value of the option before it, an option, or a command or argument.
 // Bash splits --mode=reference at its '=', which is then a word of its own.
-constexpr const char* kEnd = R"(
+constexpr const char* kBashEnd = R"(
 # _mbk_add_files PATTERN: files whose names match it, and the folders that lead to them
 _mbk_add_files() {
   local name
@@ -113,14 +113,14 @@ std::string bash_completion(const CommandText& root) {
     commands += command_case(command);
     values += value_cases(command);
   });
-  return std::string(kBeginning) +
+  return std::string(kBashBeginning) +
          "# _mbk_command COMMAND: what may follow it; words and files are those of its arguments\n"
          "_mbk_command() {\n  case $1 in\n" +
          commands +
          "  esac\n}\n\n"
          "# _mbk_value COMMAND OPTION: what the value of this option may be\n"
          "_mbk_value() {\n  words='' files=''\n  case \"$1 $2\" in\n" +
-         values + "  esac\n}\n" + kEnd;
+         values + "  esac\n}\n" + kBashEnd;
 }
 
 }  // namespace mbk::app

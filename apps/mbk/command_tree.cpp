@@ -56,7 +56,7 @@ std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
   return names;
 }
 
-OptionText describe(CLI::Option& option) {
+OptionText describe_option(CLI::Option& option) {
   OptionText text;
   for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
@@ -73,7 +73,7 @@ OptionText describe(CLI::Option& option) {
   return text;
 }
 
-CommandText describe(CLI::App& app, std::vector<std::string> path) {
+CommandText describe_command(CLI::App& app, std::vector<std::string> path) {
   CommandText text;
   path.push_back(app.get_name());
   text.path = path;
@@ -81,10 +81,10 @@ CommandText describe(CLI::App& app, std::vector<std::string> path) {
   text.footer = app.get_footer();
   for (CLI::Option* option : app.get_options()) {
     if (option->get_group().empty()) continue;  // kept out of --help too
-    (option->get_positional() ? text.positionals : text.options).push_back(describe(*option));
+    (option->get_positional() ? text.positionals : text.options).push_back(describe_option(*option));
   }
   for (CLI::App* below : app.get_subcommands([](CLI::App* one) { return !one->get_group().empty(); })) {
-    text.commands.push_back(describe(*below, path));
+    text.commands.push_back(describe_command(*below, path));
   }
   return text;
 }
@@ -100,7 +100,7 @@ std::string CommandText::joined(const char* separator) const {
 }
 
 CommandText describe(CLI::App& app) {
-  return describe(app, {});
+  return describe_command(app, {});
 }
 
 }  // namespace mbk::app

@@ -16,12 +16,12 @@ constexpr auto word_table(Shell) {
   return std::to_array<Word<Shell>>({{bash, "bash"}, {zsh, "zsh"}, {fish, "fish"}});
 }
 
-struct Arguments {
+struct CompletionArguments {
   Shell shell = Shell::bash;
   Output output;
 };
 
-int run(const Arguments& arguments, CLI::App& root) {
+int run(const CompletionArguments& arguments, CLI::App& root) {
   const CommandText text = describe(root);
   const std::string script = arguments.shell == Shell::bash  ? bash_completion(text)
                              : arguments.shell == Shell::zsh ? zsh_completion(text)
@@ -40,7 +40,7 @@ std::string single_quoted(const std::string& text) {
 }
 
 Action add_completion(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompletionArguments>();
   CLI::App* command = add_command(app, "completion", "a script that lets the shell complete commands and options");
   command->footer(
       "Examples:\n"

@@ -14,7 +14,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct ConvertArguments {
   ReadingArguments reading;  ///< its files: those to read, and last the one to write
   SensorArguments sensor;
   std::string format;
@@ -43,7 +43,7 @@ std::string summary_line(const Recording& recording, const std::filesystem::path
                      count(recording.metadata.size(), "entry", "entries"));
 }
 
-int run(Arguments arguments) {
+int run(ConvertArguments arguments) {
   ReadingArguments& reading = arguments.reading;
   Output output;
   output.file = reading.files.back();
@@ -71,7 +71,7 @@ int run(Arguments arguments) {
 }  // namespace
 
 Action add_convert(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* command = add_command(app, "convert", "a recording in another format: HDF5, MAT, CSV");
   command->footer(
       "Examples:\n"

@@ -11,13 +11,13 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct EllipseArguments {
   std::filesystem::path file;
   bool json = false;
   Output output;
 };
 
-int run(const Arguments& arguments) {
+int run(const EllipseArguments& arguments) {
   if (auto ok = arguments.output.check({arguments.file}); !ok) return report_error(ok.error());
   const auto text = read_text(arguments.file);
   if (!text) return report_error(text.error());
@@ -41,7 +41,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_ellipse(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EllipseArguments>();
   CLI::App* command = add_command(app, "ellipse", "impedance ellipses of a stored result, with 95 % intervals");
   command->footer(
       "Example:\n"

@@ -16,7 +16,7 @@ std::string quoted_for_fish(const std::string& text) {
   return out + "'";
 }
 
-constexpr const char* kBeginning = R"(# fish completion for mbk, as written by 'mbk completion fish'
+constexpr const char* kFishBeginning = R"(# fish completion for mbk, as written by 'mbk completion fish'
 
 )";
 
@@ -36,7 +36,7 @@ complete -c mbk -f
 )";
 
 /// What completes a value: -x -a '...', -r -F or -x.
-std::string value_of(const Values& values) {
+std::string offer_of(const Values& values) {
   std::vector<std::string> offered = values.words;
   if (values.folders) offered.emplace_back("(__fish_complete_directories)");
   if (values.files && values.extensions.empty() && offered.empty()) return "-r -F";
@@ -58,11 +58,11 @@ std::string lines_of(const CommandText& command) {
     for (const std::string& name : option.names) {
       lines += name.starts_with("--") ? "-l " + name.substr(2) + " " : "-s " + name.substr(1) + " ";
     }
-    if (!option.value.empty()) lines += value_of(option.values) + " ";
+    if (!option.value.empty()) lines += offer_of(option.values) + " ";
     lines += "-d " + quoted_for_fish(option.description) + "\n";
   }
   for (const OptionText& one : command.positionals) {
-    lines += beginning + value_of(one.values) + " -d " + quoted_for_fish(one.value) + "\n";
+    lines += beginning + offer_of(one.values) + " -d " + quoted_for_fish(one.value) + "\n";
   }
   return lines;
 }
@@ -75,7 +75,7 @@ std::string fish_completion(const CommandText& root) {
     if (&command != &root) names += " " + quoted_for_fish(command.joined(" "));
     lines += lines_of(command);
   });
-  return kBeginning + names + "\n" + kAt + lines;
+  return kFishBeginning + names + "\n" + kAt + lines;
 }
 
 }  // namespace mbk::app

@@ -12,14 +12,14 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct InfoArguments {
   ReadingArguments reading;
   SensorArguments sensor;
   OutputArguments output;
 };
 
 /// A file that is sound but speaks of no channel still shows what it holds; everything else is an error.
-int list_unrecognised(const Arguments& arguments, const Error& error) {
+int list_unrecognised(const InfoArguments& arguments, const Error& error) {
   if (error.kind != ErrorKind::data || arguments.reading.files.size() != 1 || !arguments.reading.channels.empty()) {
     return report_error(error);
   }
@@ -42,7 +42,7 @@ Result<std::vector<Recording>> read_journal(const std::filesystem::path& file) {
   return std::vector<Recording>{std::move(*recording)};
 }
 
-int run(const Arguments& arguments) {
+int run(const InfoArguments& arguments) {
   if (auto ok = arguments.output.to.check(arguments.reading.files); !ok) return report_error(ok.error());
   const bool journal = arguments.reading.files.size() == 1 && journal::is_journal(arguments.reading.files.front());
   const auto recordings =
@@ -66,7 +66,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_info(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = add_command(app, "info", "what is in a recording: channels, rate, gaps, problems");
   command->footer(
       "Examples:\n"

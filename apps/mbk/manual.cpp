@@ -15,7 +15,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct ManualArguments {
   std::vector<std::string> command;
   std::optional<std::filesystem::path> pages;
   bool overwrite = false;
@@ -48,7 +48,7 @@ int write_pages(const CommandText& root, const std::filesystem::path& folder, bo
   return written ? kFine : report_error(written.error());
 }
 
-int run(const Arguments& arguments, CLI::App& app) {
+int run(const ManualArguments& arguments, CLI::App& app) {
   const CommandText root = describe(app);
   if (arguments.pages) {
     if (arguments.command.empty()) return write_pages(root, *arguments.pages, arguments.overwrite);
@@ -69,7 +69,7 @@ int run(const Arguments& arguments, CLI::App& app) {
 }  // namespace
 
 Action add_manual(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ManualArguments>();
   CLI::App* command = add_command(app, "manual", "the manual page of a command, for man");
   command->footer(
       "Examples:\n"

@@ -17,7 +17,7 @@ namespace {
 
 using measurement::Examined;
 
-struct Arguments : MeasureArguments {
+struct MeasureCommandArguments : MeasureArguments {
   AnalyseArguments analyse;
   ReportArguments report;
 };
@@ -33,7 +33,8 @@ Result<Examined> measure_one(std::span<const Recording> recordings, const measur
 
 /// One result per recording, several at a time; the order is that of the recordings.
 std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordings,
-                                           const measurement::Options& options, const Arguments& arguments) {
+                                           const measurement::Options& options,
+                                           const MeasureCommandArguments& arguments) {
   std::vector<Result<Examined>> results(recordings.size(), bad_data("not measured"));
   const int count = static_cast<int>(recordings.size());
   Progress progress(arguments.output.quiet);
@@ -53,7 +54,7 @@ std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordi
 }
 
 /// The work of `measure` and `identify`, which differ only in whether the ellipses are shown.
-int run(const Arguments& arguments, const std::string& typed, bool with_findings) {
+int run(const MeasureCommandArguments& arguments, const std::string& typed, bool with_findings) {
   const auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
   if (!options) return report_error(options.error());
   if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok)
@@ -122,7 +123,7 @@ int run(const Arguments& arguments, const std::string& typed, bool with_findings
 
 Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
            bool with_findings) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<MeasureCommandArguments>();
   CLI::App* command = add_command(app, name, summary);
   command->footer(footer);
   add_measure_options(*command, *arguments);

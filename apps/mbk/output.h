@@ -10,7 +10,7 @@
 
 namespace mbk::app {
 
-inline constexpr int kFine = 0, kWrongUsage = 2, kBadData = 3, kNotUsable = 4;
+inline constexpr int kFine = 0, kFallsShort = 1, kWrongUsage = 2, kBadData = 3, kNotUsable = 4;
 
 /// What they mean, as help and manual say it; a command with other codes has a line "Exit codes: …" in its footer.
 inline constexpr const char* kExitCodes = "0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable.";

@@ -19,7 +19,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments : MeasureArguments {
+struct PassivityArguments : MeasureArguments {
   std::string band;
 };
 
@@ -48,7 +48,8 @@ struct Answer {
   Motion motion = Motion::translation;
 };
 
-Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const std::optional<PassivityBand>& band) {
+Result<std::vector<Answer>> from_recordings(const PassivityArguments& arguments,
+                                            const std::optional<PassivityBand>& band) {
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
@@ -67,7 +68,8 @@ Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const st
 }
 
 /// A stored result holds the model and not the data, so that only the model can be judged.
-Result<std::vector<Answer>> from_results(const Arguments& arguments, const std::optional<PassivityBand>& band) {
+Result<std::vector<Answer>> from_results(const PassivityArguments& arguments,
+                                         const std::optional<PassivityBand>& band) {
   std::vector<Answer> answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
     const auto text = read_text(file);
@@ -103,7 +105,7 @@ std::string text_of(const Answer& answer) {
   return text;
 }
 
-int run(const Arguments& arguments) {
+int run(const PassivityArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
   const auto band = band_of(arguments.band);
   if (!band) return report_error(band.error());
@@ -131,7 +133,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_passivity(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PassivityArguments>();
   CLI::App* command = add_command(app, "passivity", "is the limb passive? by the model and by the energy it absorbs");
   command->footer(
       "Examples:\n"

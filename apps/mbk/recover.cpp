@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RecoverArguments {
   fs::path journal, out;
   session::RecoverOptions options;
 };
@@ -27,7 +27,7 @@ std::string paragraph(std::string_view first, std::string_view text) {
   return lines + '\n';
 }
 
-std::string outcome_text(const session::Recovered& recovered, const Arguments& arguments, const fs::path& out) {
+std::string outcome_text(const session::Recovered& recovered, const RecoverArguments& arguments, const fs::path& out) {
   const Recording& recording = recovered.recording;
   const auto& metadata = recording.metadata;
   const auto detail = metadata.find("ended_detail");
@@ -40,7 +40,7 @@ std::string outcome_text(const session::Recovered& recovered, const Arguments& a
   return text + fmt::format("  the journal is kept: {}\n", arguments.journal.string());
 }
 
-int run(const Arguments& arguments) {
+int run(const RecoverArguments& arguments) {
   fs::path out = arguments.out;
   if (out.empty()) {
     out = arguments.journal;
@@ -60,7 +60,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_recover(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RecoverArguments>();
   CLI::App* command = add_command(app, "recover", "make the recording of a session that was cut off");
   command->footer(
       "Examples:\n"

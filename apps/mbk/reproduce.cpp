@@ -25,9 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFallsShort = 1;
-
-struct Arguments {
+struct ReproduceArguments {
   fs::path folder = "thesis";
   std::vector<std::string> only;
   std::uint64_t seed = 1;
@@ -54,7 +52,7 @@ std::string table_file(const Exhibit& exhibit, std::size_t k) {
 }
 
 /// What one exhibit leaves in the folders tables and figures.
-Result<void> write_exhibit(const Exhibit& exhibit, const Arguments& arguments) {
+Result<void> write_exhibit(const Exhibit& exhibit, const ReproduceArguments& arguments) {
   for (std::size_t k = 0; k < exhibit.tables.size(); ++k) {
     const fs::path file = arguments.folder / "tables" / table_file(exhibit, k);
     const auto csv =
@@ -72,7 +70,7 @@ Result<void> write_exhibit(const Exhibit& exhibit, const Arguments& arguments) {
   return {};
 }
 
-Result<void> make_folders(const Arguments& arguments) {
+Result<void> make_folders(const ReproduceArguments& arguments) {
   for (const char* folder : {"", "tables", "figures"}) {
     std::error_code error;
     fs::create_directories(arguments.folder / folder, error);
@@ -83,7 +81,7 @@ Result<void> make_folders(const Arguments& arguments) {
 }
 
 /// Everything, tables and figures first, so that the page is there only once all of it is.
-Result<void> write_all(const Reproduction& made, const Arguments& arguments, const std::string& document) {
+Result<void> write_all(const Reproduction& made, const ReproduceArguments& arguments, const std::string& document) {
   if (auto ok = make_folders(arguments); !ok) return ok;
   for (const Exhibit& exhibit : made.exhibits) {
     if (auto ok = write_exhibit(exhibit, arguments); !ok) return ok;
@@ -111,7 +109,7 @@ std::string summary_text(const Reproduction& made, const fs::path& folder) {
   return text;
 }
 
-int run(const Arguments& arguments) {
+int run(const ReproduceArguments& arguments) {
   if (arguments.list) {
     const auto ok = Output().write(list_text());
     return ok ? kFine : report_error(ok.error());
@@ -139,7 +137,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_reproduce(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReproduceArguments>();
   CLI::App* command = add_command(app, "reproduce", "the thesis mbk grew from, table by table and figure by figure");
   command->footer(
       "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"

@@ -18,7 +18,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct RobotArguments {
   std::optional<std::string> at;
   std::optional<double> d1_mm, d2_mm;
   bool json = false;
@@ -44,7 +44,7 @@ Result<Eigen::Vector2d> place(const std::string& given) {
   return metres;
 }
 
-int run_workspace(const Arguments& arguments) {
+int run_workspace(const RobotArguments& arguments) {
   if (auto ok = arguments.output.check({}); !ok) return report_error(ok.error());
   const bool drawing = arguments.output.file && arguments.output.file->extension() == ".svg";
   if (drawing && arguments.json) {
@@ -75,7 +75,7 @@ int run_workspace(const Arguments& arguments) {
 }
 
 Action add_workspace(CLI::App& group) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RobotArguments>();
   CLI::App* command = add_command(group, "workspace", "where the hand can be, and the robot at one place");
   command->footer(
       "Examples:\n"

@@ -14,7 +14,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct RobotCheckArguments {
   std::string file;
   std::optional<double> live;
 };
@@ -29,7 +29,7 @@ std::string findings_text(const std::vector<session::Finding>& findings) {
   return text;
 }
 
-int run(const Arguments& arguments) {
+int run(const RobotCheckArguments& arguments) {
   const auto text = read_scenario_text(arguments.file);
   if (!text) return report_error(text.error());
   const auto setup = session::read_robot_setup(text->text, text->file, laboratory::read_simulation);
@@ -59,7 +59,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_robot_check(CLI::App& group) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RobotCheckArguments>();
   CLI::App* command = add_command(group, "check", "whether a robot is described, wired and reached as it should be");
   command->footer(
       "Examples:\n"

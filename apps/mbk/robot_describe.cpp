@@ -11,13 +11,13 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct RobotDescribeArguments {
   std::filesystem::path file;
   bool json = false;
   Output output;
 };
 
-int run(const Arguments& arguments) {
+int run(const RobotDescribeArguments& arguments) {
   if (auto ok = arguments.output.check({arguments.file}); !ok) return report_error(ok.error());
   const auto description = robot_file::read_robot_description(arguments.file);
   if (!description) return report_error(description.error());
@@ -31,7 +31,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_robot_describe(CLI::App& group) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RobotDescribeArguments>();
   CLI::App* command = add_command(group, "describe", "what mbk understands of a robot's description or URDF");
   command->footer(
       "Examples:\n"

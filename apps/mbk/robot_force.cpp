@@ -16,7 +16,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct RobotForceArguments {
   ReadingArguments reading;
   WindowArguments window;
   FilterArguments filters;
@@ -26,7 +26,7 @@ struct Arguments {
   AccelerationSource acceleration = AccelerationSource::derivative;
 };
 
-int run(const Arguments& arguments) {
+int run(const RobotForceArguments& arguments) {
   std::optional<recording::Format> format;
   if (arguments.output.to.file) {
     const auto found = recording::format_of(*arguments.output.to.file);
@@ -66,7 +66,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_robot_force(CLI::App& group) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RobotForceArguments>();
   CLI::App* command = add_command(group, "force", "the force at the hand without a force sensor");
   command->footer(
       "Examples:\n"

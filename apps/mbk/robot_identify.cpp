@@ -23,7 +23,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct RobotIdentifyArguments {
   ReadingArguments reading;
   WindowArguments window;
   FilterArguments filters;
@@ -82,7 +82,8 @@ Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) 
 }
 
 /// The robot's structure with what the options say of its drives.
-Result<void> choose(const Arguments& arguments, robot::RobotDescription& robot, measurement::RobotOptions& options) {
+Result<void> choose(const RobotIdentifyArguments& arguments, robot::RobotDescription& robot,
+                    measurement::RobotOptions& options) {
   const bool usual = !arguments.robot && arguments.terms.empty();
   if (usual || !arguments.terms.empty()) {
     if (auto ok = set_terms(usual ? "viscous,coulomb,offset" : arguments.terms, robot); !ok) return ok;
@@ -131,7 +132,7 @@ Result<std::vector<Index>> indices_of(const std::string& list, const robot::Robo
   return indices;
 }
 
-int run(const Arguments& arguments) {
+int run(const RobotIdentifyArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
   measurement::RobotOptions options;
   auto robot = describe_robot(arguments.robot);
@@ -166,7 +167,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_robot_identify(CLI::App& group) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RobotIdentifyArguments>();
   CLI::App* command = add_command(group, "identify", "the robot's own inertia and friction, from its motion alone");
   command->footer(
       "Examples:\n"

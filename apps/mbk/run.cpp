@@ -37,7 +37,7 @@ using session::Session;
 
 constexpr int kSafetyStop = 5, kMotorsNotOff = 7;
 
-struct Arguments {
+struct RunArguments {
   std::string experiment;
   std::vector<std::string> trials;
   fs::path out;
@@ -49,7 +49,7 @@ struct Arguments {
   ConsoleArguments console;
 };
 
-Result<std::vector<Trial>> trials_of(const Arguments& arguments) {
+Result<std::vector<Trial>> trials_of(const RunArguments& arguments) {
   const auto text = read_scenario_text(arguments.experiment);
   if (!text) return tl::unexpected(text.error());
   auto trials = protocol::read_experiment(text->text, text->file, laboratory::read_simulation);
@@ -270,7 +270,7 @@ class TerminalOperator : public conduct::Operator {
 
 /// @returns  the exit code, where no signal ended the session outside of a trial
 int perform(Session& session, const conduct::Experiment& experiment, const session::Pace& pace,
-            const Arguments& arguments) {
+            const RunArguments& arguments) {
   const auto console = RunConsole::open(arguments.console, experiment, session.flags());
   if (!console) return report_error(console.error());
   if (auto* const page = console->page(); page != nullptr && !page->may_begin(session, experiment)) return kFine;
@@ -289,7 +289,7 @@ int perform(Session& session, const conduct::Experiment& experiment, const sessi
   return code;
 }
 
-int run(const Arguments& arguments) {
+int run(const RunArguments& arguments) {
   const auto trials = trials_of(arguments);
   if (!trials) return report_error(trials.error());
   for (const std::string& warning : protocol::personal_warnings(*trials)) {
@@ -316,7 +316,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_run(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = add_command(app, "run", "run an experiment at 1 kHz: perturb, record, measure");
   command->footer(
       "Examples:\n"

@@ -14,9 +14,9 @@
 namespace mbk::app {
 namespace {
 
-constexpr double kMillimetres = 1000.0, kMilliseconds = 1000.0;
+constexpr double kMilliseconds = 1000.0;
 
-struct Arguments {
+struct SensorCalibrateArguments {
   ReadingArguments reading;
   OutputArguments output;
   std::optional<double> lever_arm_mm, range;
@@ -26,7 +26,7 @@ struct Arguments {
   double longest_delay_ms = 50.0;
 };
 
-Result<calibration::SensorCalibrationOptions> options_of(const Arguments& arguments) {
+Result<calibration::SensorCalibrationOptions> options_of(const SensorCalibrateArguments& arguments) {
   calibration::SensorCalibrationOptions options;
   options.crosstalk = arguments.reading.axes != 1;
   if (arguments.lever_arm_mm) options.lever_arm = *arguments.lever_arm_mm / kMillimetres;
@@ -36,7 +36,7 @@ Result<calibration::SensorCalibrationOptions> options_of(const Arguments& argume
   return options;
 }
 
-Result<SensorCalibration> calibrate(const Arguments& arguments) {
+Result<SensorCalibration> calibrate(const SensorCalibrateArguments& arguments) {
   const auto options = options_of(arguments);
   if (!options) return tl::unexpected(options.error());
   ReadingArguments reading = arguments.reading;
@@ -53,7 +53,7 @@ Result<SensorCalibration> calibrate(const Arguments& arguments) {
   return calibration::calibrate_sensor(runs, *options);
 }
 
-int run_calibrate(const Arguments& arguments) {
+int run_calibrate(const SensorCalibrateArguments& arguments) {
   const Output& output = arguments.output.to;
   if (auto ok = output.check(arguments.reading.files); !ok) return report_error(ok.error());
   const auto calibration = calibrate(arguments);
@@ -64,7 +64,7 @@ int run_calibrate(const Arguments& arguments) {
 }
 
 Action add_calibrate(CLI::App& sensor) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SensorCalibrateArguments>();
   CLI::App* command = add_command(sensor, "calibrate", "slope, zero, crosstalk and noise from known loads");
   command->footer(
       "Examples:\n"

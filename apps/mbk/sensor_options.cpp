@@ -16,8 +16,6 @@
 namespace mbk::app {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
-
 std::optional<double> number_of(std::string_view text) {
   double value = 0.0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct SimulateArguments {
   std::string scenario;
   std::vector<std::string> trials;
   fs::path out;
@@ -39,14 +39,14 @@ struct Job {
 };
 
 /// out.mat → out_NAME_seedN.mat, where there are several trials or seeds.
-fs::path file_name(const Arguments& arguments, const std::string& trial, std::optional<std::uint64_t> seed) {
+fs::path file_name(const SimulateArguments& arguments, const std::string& trial, std::optional<std::uint64_t> seed) {
   std::string stem = arguments.out.stem().string();
   if (!trial.empty()) stem += "_" + trial;
   if (seed) stem += fmt::format("_seed{}", *seed);
   return arguments.out.parent_path() / (stem + arguments.out.extension().string());
 }
 
-Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
+Result<std::vector<Job>> jobs_of(const SimulateArguments& arguments) {
   const auto scenarios = read_scenario_argument(arguments.scenario);
   if (!scenarios) return tl::unexpected(scenarios.error());
   std::vector<laboratory::Scenario> chosen;
@@ -72,12 +72,12 @@ Result<std::vector<Job>> jobs_of(const Arguments& arguments) {
 }
 
 /// The scenario as it was asked for, and the trial in it: where an experiment that cannot be is described.
-std::string place_of(const Arguments& arguments, const Job& job) {
+std::string place_of(const SimulateArguments& arguments, const Job& job) {
   const std::string& trial = job.scenario.name;
   return trial.empty() ? arguments.scenario : fmt::format("{}, trial '{}'", arguments.scenario, trial);
 }
 
-Result<void> check_files(const std::vector<Job>& jobs, const Arguments& arguments) {
+Result<void> check_files(const std::vector<Job>& jobs, const SimulateArguments& arguments) {
   for (const Job& job : jobs) {
     Output output;
     output.file = job.file;
@@ -120,7 +120,7 @@ int show(const std::string& name) {
 }
 
 /// What the perturbation of each trial demands; nothing is simulated.
-int show_facts(const Arguments& arguments) {
+int show_facts(const SimulateArguments& arguments) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
   std::string text;
@@ -135,7 +135,7 @@ int show_facts(const Arguments& arguments) {
   return kFine;
 }
 
-int run(const Arguments& arguments, recording::Format format) {
+int run(const SimulateArguments& arguments, recording::Format format) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
   if (auto ok = check_files(*jobs, arguments); !ok) return report_error(ok.error());
@@ -169,7 +169,7 @@ int run(const Arguments& arguments, recording::Format format) {
 }  // namespace
 
 Action add_simulate(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   auto shown = std::make_shared<std::string>();
   CLI::App* command = add_command(app, "simulate", "a simulated trial: a recording with the truth in it");
   command->footer(

@@ -14,8 +14,7 @@
 namespace mbk::app {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
-constexpr double kLargest = 1e9;
+constexpr double kLargestNumber = 1e9;
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -32,7 +31,8 @@ std::optional<double> number(std::string_view text, std::string_view unit = "") 
   if (!unit.empty() && text.ends_with(unit)) text.remove_suffix(unit.size());
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) < kLargest)) return std::nullopt;
+  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) < kLargestNumber))
+    return std::nullopt;
   return value;
 }
 

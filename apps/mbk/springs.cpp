@@ -18,8 +18,6 @@
 namespace mbk::app {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
-
 struct FieldArguments {
   std::string scenario, trial;
   std::vector<std::string> springs;

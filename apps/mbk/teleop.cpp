@@ -19,7 +19,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct TeleopArguments {
   std::filesystem::path design;
   std::filesystem::path operator_result;
   std::string parameter, excess;
@@ -29,7 +29,7 @@ struct Arguments {
 };
 
 /// The last part of the names of the files that --charts writes.
-std::vector<std::string> chart_names(const Arguments& arguments) {
+std::vector<std::string> chart_names(const TeleopArguments& arguments) {
   std::vector<std::string> names = {"r11", "r22", "third"};
   if (!arguments.excess.empty()) names.emplace_back("excess");
   if (arguments.simulate) {
@@ -38,7 +38,7 @@ std::vector<std::string> chart_names(const Arguments& arguments) {
   return names;
 }
 
-std::filesystem::path chart_file(const Arguments& arguments, const std::string& name) {
+std::filesystem::path chart_file(const TeleopArguments& arguments, const std::string& name) {
   return arguments.charts.string() + "_" + name + ".svg";
 }
 
@@ -52,7 +52,7 @@ std::vector<Chart> charts_of(const TeleoperationFinding& finding) {
   return charts;
 }
 
-Result<void> check(const Arguments& arguments) {
+Result<void> check(const TeleopArguments& arguments) {
   std::vector<std::filesystem::path> inputs = {arguments.design};
   if (!arguments.operator_result.empty()) inputs.push_back(arguments.operator_result);
   if (arguments.output.overwrite && !arguments.output.file && arguments.charts.empty()) {
@@ -67,7 +67,7 @@ Result<void> check(const Arguments& arguments) {
   return {};
 }
 
-Result<TeleoperationFinding> find(const Arguments& arguments) {
+Result<TeleoperationFinding> find(const TeleopArguments& arguments) {
   teleop::Question question;
   if (!arguments.parameter.empty()) {
     auto sweep = teleop::parse_sweep(arguments.parameter);
@@ -101,7 +101,7 @@ Result<TeleoperationFinding> find(const Arguments& arguments) {
   return finding;
 }
 
-int run(const Arguments& arguments) {
+int run(const TeleopArguments& arguments) {
   if (auto ok = check(arguments); !ok) return report_error(ok.error());
   const auto finding = find(arguments);
   if (!finding) return report_error(finding.error());
@@ -122,7 +122,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_teleop(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TeleopArguments>();
   CLI::App* command = add_command(app, "teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
   command->footer(
       "Examples:\n"

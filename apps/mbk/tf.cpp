@@ -28,7 +28,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments {
+struct TfArguments {
   ReadingArguments reading;
   WindowArguments window;
   OutputArguments output;
@@ -58,7 +58,7 @@ std::optional<Index> take_number(std::string_view& text) {
 }
 
 /// The number that `text` is.
-std::optional<double> value_of(const std::string& text) {
+std::optional<double> number_in(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -96,7 +96,7 @@ Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given)
   return orders;
 }
 
-Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) {
+Result<measurement::TransferFunctionMeasurement> options_of(const TfArguments& a) {
   measurement::TransferFunctionMeasurement options;
   const auto window = window_limits(a.window);
   if (!window) return tl::unexpected(window.error());
@@ -125,7 +125,7 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
   }
   fit.find_delay = a.delay == "auto";
   if (!fit.find_delay) {
-    const auto delay = value_of(a.delay);
+    const auto delay = number_in(a.delay);
     if (!delay || !(*delay >= 0.0 && *delay < 1e6)) {
       return bad_usage(fmt::format("--delay: {} is neither a number of seconds from 0 on nor 'auto'", quoted(a.delay)));
     }
@@ -134,7 +134,7 @@ Result<measurement::TransferFunctionMeasurement> options_of(const Arguments& a) 
   if (a.sample_rate == "recorded") {
     options.sample_rate_hz = 0.0;
   } else if (!a.sample_rate.empty()) {
-    options.sample_rate_hz = value_of(a.sample_rate);
+    options.sample_rate_hz = number_in(a.sample_rate);
     if (!options.sample_rate_hz || !(*options.sample_rate_hz > 0.0)) {
       return bad_usage(
           fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'", quoted(a.sample_rate)));
@@ -159,7 +159,7 @@ struct Signal {
 
 /// Where the signals stand: channels under their own names (position, Fx), or else columns, rows or variables of the
 /// file, which the map then makes `input`, `output` and `drive`.
-Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasurement& options) {
+Result<void> place_signals(TfArguments& a, measurement::TransferFunctionMeasurement& options) {
   const auto mapped = a.reading.channels.empty() ? Result<std::vector<recording::ChannelSource>>()
                                                  : recording::parse_channel_map(a.reading.channels);
   if (!mapped) return tl::unexpected(mapped.error());
@@ -190,7 +190,7 @@ Result<void> place_signals(Arguments& a, measurement::TransferFunctionMeasuremen
   return {};
 }
 
-Result<std::vector<Recording>> read_all(const Arguments& a, const std::vector<std::filesystem::path>& files) {
+Result<std::vector<Recording>> read_all(const TfArguments& a, const std::vector<std::filesystem::path>& files) {
   ReadingArguments reading = a.reading;
   reading.files = files;
   auto recordings = files.empty() ? Result<std::vector<Recording>>() : read_perturbations(reading);
@@ -212,12 +212,12 @@ std::string shown_name(const std::string& given) {
 
 constexpr std::array kChartNames = {"magnitude", "phase", "nyquist"};
 
-std::filesystem::path chart_file(const Arguments& arguments, std::size_t chart) {
+std::filesystem::path chart_file(const TfArguments& arguments, std::size_t chart) {
   return arguments.charts.string() + "_" + kChartNames[chart] + ".svg";
 }
 
 /// What can be said of every file that is to be written before the work begins.
-Result<void> check_written(const Arguments& arguments) {
+Result<void> check_written(const TfArguments& arguments) {
   Output output = arguments.output.to;
   const bool charts_alone = !output.file && !arguments.report.file && !arguments.charts.empty();
   if (charts_alone) output.overwrite = false;
@@ -233,7 +233,7 @@ Result<void> check_written(const Arguments& arguments) {
   return {};
 }
 
-Result<void> write_charts(const Arguments& arguments, const std::vector<Chart>& charts) {
+Result<void> write_charts(const TfArguments& arguments, const std::vector<Chart>& charts) {
   for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
     const Output file{chart_file(arguments, k), arguments.output.to.overwrite};
     if (auto ok = file.write(report::chart_svg(charts[k])); !ok) return ok;
@@ -241,8 +241,8 @@ Result<void> write_charts(const Arguments& arguments, const std::vector<Chart>& 
   return {};
 }
 
-int run(const Arguments& given, const std::string& typed) {
-  Arguments arguments = given;
+int run(const TfArguments& given, const std::string& typed) {
+  TfArguments arguments = given;
   if (auto ok = check_written(arguments); !ok) return report_error(ok.error());
   auto options = options_of(arguments);
   if (!options) return report_error(options.error());
@@ -276,7 +276,7 @@ int run(const Arguments& given, const std::string& typed) {
 }  // namespace
 
 Action add_tf(CLI::App& app, const std::string& typed) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TfArguments>();
   CLI::App* command = add_command(app, "tf", "a transfer function from one signal to another");
   command->footer(
       "Examples:\n"

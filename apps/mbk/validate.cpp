@@ -23,8 +23,6 @@
 namespace mbk::app {
 namespace {
 
-constexpr int kFallsShort = 1;
-
 /// Over what the faulty robots of a study are driven.
 enum class Link { function, udp };
 
@@ -33,7 +31,7 @@ constexpr auto word_table(Link) {
   return std::to_array<Word<Link>>({{function, "function"}, {udp, "udp"}});
 }
 
-struct Arguments {
+struct ValidateArguments {
   std::string study = "coverage";
   std::optional<int> runs;
   std::uint64_t seed = 1;
@@ -88,7 +86,7 @@ Result<void> write_charts(const ValidationTable& table, const std::filesystem::p
 }
 
 Result<ValidationTable> perform(const validation::Study& study, const validation::StudyOptions& options,
-                                const Arguments& arguments) {
+                                const ValidateArguments& arguments) {
   if (arguments.link == Link::function && arguments.faults.empty()) return study.perform(options);
   if (study.name != "faults" || arguments.link != Link::udp) {
     return bad_usage("--link and --fault belong to 'mbk validate faults --link udp'", "leave them out");
@@ -99,7 +97,7 @@ Result<ValidationTable> perform(const validation::Study& study, const validation
   return validation::udp_faults_study({options, program, arguments.faults});
 }
 
-int run(const Arguments& arguments) {
+int run(const ValidateArguments& arguments) {
   const validation::Study& study = *find_study(arguments.study);
   if (arguments.page) {
     if (study.name != "faults") return report_error({ErrorKind::usage, "--page belongs to 'faults'", "", ""});
@@ -125,7 +123,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_validate(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ValidateArguments>();
   CLI::App* command = add_command(app, "validate", "a method against known truth, as a table");
   command->footer("Studies:\n" + study_lines() +
                   "\nExamples:\n"

@@ -8,13 +8,13 @@
 namespace mbk::app {
 namespace {
 
-constexpr const char* kBeginning = R"(#compdef mbk
+constexpr const char* kZshBeginning = R"(#compdef mbk
 # zsh completion for mbk, as written by 'mbk completion zsh'
 
 )";
 
 // The file is autoloaded as the function _mbk, or read by a start-up file.
-constexpr const char* kEnd = R"(if [[ $funcstack[1] == _mbk ]]; then
+constexpr const char* kZshEnd = R"(if [[ $funcstack[1] == _mbk ]]; then
   _mbk "$@"
 else
   compdef _mbk mbk
@@ -99,7 +99,7 @@ std::string function_of(const CommandText& command) {
 std::string zsh_completion(const CommandText& root) {
   std::string functions;
   for_each_command(root, [&](const CommandText& command) { functions += function_of(command); });
-  return kBeginning + functions + kEnd;
+  return kZshBeginning + functions + kZshEnd;
 }
 
 }  // namespace mbk::app

@@ -188,7 +188,6 @@ Result<void> figure_A_2(Workbench& /*bench*/, Draft& exhibit) {
   const auto add = [&](const char* name, double value, const char* unit) {
     table.rows.push_back({name, {cell(value), words(unit)}});
   };
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   add("area", 1e4 * workspace->area, "cm²");
   add("least x", 1e3 * workspace->low[0], "mm");
   add("largest x", 1e3 * workspace->high[0], "mm");
@@ -433,16 +432,17 @@ Result<void> figure_E_5(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-constexpr std::array kMakers = {Maker{Exhibit::Kind::figure, 0, "figure-A.2", Provenance::recomputed, figure_A_2},
-                                Maker{Exhibit::Kind::table, 0, "table-A.1", Provenance::simulated, table_A_1},
-                                Maker{Exhibit::Kind::figure, 0, "figure-A.4", Provenance::simulated, figure_A_4},
-                                Maker{Exhibit::Kind::table, 0, "table-E.2", Provenance::simulated, table_E_2},
-                                Maker{Exhibit::Kind::figure, 0, "figure-E.5", Provenance::simulated, figure_E_5}};
+constexpr std::array kApparatusExhibits = {
+    Maker{Exhibit::Kind::figure, 0, "figure-A.2", Provenance::recomputed, figure_A_2},
+    Maker{Exhibit::Kind::table, 0, "table-A.1", Provenance::simulated, table_A_1},
+    Maker{Exhibit::Kind::figure, 0, "figure-A.4", Provenance::simulated, figure_A_4},
+    Maker{Exhibit::Kind::table, 0, "table-E.2", Provenance::simulated, table_E_2},
+    Maker{Exhibit::Kind::figure, 0, "figure-E.5", Provenance::simulated, figure_E_5}};
 
 }  // namespace
 
 std::span<const Maker> apparatus_exhibits() {
-  return kMakers;
+  return kApparatusExhibits;
 }
 
 }  // namespace mbk::thesis

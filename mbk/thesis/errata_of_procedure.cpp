@@ -20,7 +20,6 @@
 namespace mbk::thesis {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr Hertz kRate(1000.0);
 constexpr dsp::SavitzkyGolay kSmoothing{6, 101};
 

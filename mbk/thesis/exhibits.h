@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +17,10 @@
 
 /// What the exhibits are put together from. For the sources of this module only.
 namespace mbk::thesis {
+
+inline constexpr auto kFigure = Exhibit::Kind::figure, kTable = Exhibit::Kind::table;
+inline constexpr std::array<const char*, 3> kMatrices = {"inertia", "damping", "stiffness"};
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< in a radian
 
 /// One exhibit: what it is, and what makes its content. `make` fills commands, tables, charts, related and the values
 /// of which its text (exhibit_text.h) speaks.

@@ -306,18 +306,18 @@ Result<void> impedance_width(Workbench& bench, Draft& exhibit) {
 }
 
 constexpr auto kFuture = Exhibit::Kind::future_work;
-constexpr std::array kMakers = {Maker{kFuture, 6, "future-work-1", Provenance::simulated, teleoperation},
-                                Maker{kFuture, 6, "future-work-2", Provenance::simulated, cns_model},
-                                Maker{kFuture, 6, "future-work-3", Provenance::simulated, reaction_time},
-                                Maker{kFuture, 6, "future-work-4", Provenance::simulated, joint_domain},
-                                Maker{kFuture, 6, "future-work-5", Provenance::simulated, force_task},
-                                Maker{kFuture, 6, "future-work-6", Provenance::simulated, pathologies},
-                                Maker{kFuture, 6, "future-work-7", Provenance::simulated, impedance_width}};
+constexpr std::array kFutureWork = {Maker{kFuture, 6, "future-work-1", Provenance::simulated, teleoperation},
+                                    Maker{kFuture, 6, "future-work-2", Provenance::simulated, cns_model},
+                                    Maker{kFuture, 6, "future-work-3", Provenance::simulated, reaction_time},
+                                    Maker{kFuture, 6, "future-work-4", Provenance::simulated, joint_domain},
+                                    Maker{kFuture, 6, "future-work-5", Provenance::simulated, force_task},
+                                    Maker{kFuture, 6, "future-work-6", Provenance::simulated, pathologies},
+                                    Maker{kFuture, 6, "future-work-7", Provenance::simulated, impedance_width}};
 
 }  // namespace
 
 std::span<const Maker> future_work() {
-  return kMakers;
+  return kFutureWork;
 }
 
 }  // namespace mbk::thesis

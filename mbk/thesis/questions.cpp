@@ -298,13 +298,13 @@ constexpr Maker question(const char* id, Result<void> (*make)(Workbench& bench, 
   return {Exhibit::Kind::question, 3, id, Provenance::simulated, make};
 }
 
-constexpr std::array kMakers = {question("question-1", with_dynamics), question("question-2", with_a_task),
-                                question("question-3", with_other_protocols), question("question-4", how_much)};
+constexpr std::array kQuestions = {question("question-1", with_dynamics), question("question-2", with_a_task),
+                                   question("question-3", with_other_protocols), question("question-4", how_much)};
 
 }  // namespace
 
 std::span<const Maker> questions() {
-  return kMakers;
+  return kQuestions;
 }
 
 }  // namespace mbk::thesis

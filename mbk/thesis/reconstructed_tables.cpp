@@ -94,14 +94,15 @@ Result<void> lost(Workbench& /*bench*/, Draft& exhibit) {
   return {};
 }
 
-constexpr std::array kMakers = {Maker{Exhibit::Kind::table, 3, "table-3.6", Provenance::recomputed, table_3_6},
-                                Maker{Exhibit::Kind::table, 5, "table-5.3", Provenance::recomputed, table_5_3},
-                                Maker{Exhibit::Kind::table, 0, "lost", Provenance::not_recoverable, lost}};
+constexpr std::array kReconstructedTables = {
+    Maker{Exhibit::Kind::table, 3, "table-3.6", Provenance::recomputed, table_3_6},
+    Maker{Exhibit::Kind::table, 5, "table-5.3", Provenance::recomputed, table_5_3},
+    Maker{Exhibit::Kind::table, 0, "lost", Provenance::not_recoverable, lost}};
 
 }  // namespace
 
 std::span<const Maker> reconstructed_tables() {
-  return kMakers;
+  return kReconstructedTables;
 }
 
 }  // namespace mbk::thesis

@@ -15,8 +15,6 @@
 namespace mbk::thesis {
 namespace {
 
-constexpr std::array<const char*, 3> kMatrices = {"inertia", "damping", "stiffness"};
-
 /// The impedance whose reference circle has radius 1, of inertia [kg], damping [N·s/m] and stiffness [N/m], as in the
 /// scales of figures 3.11 and 3.16.
 constexpr std::array<double, 3> kReference = {1.5, 10.0, 75.0};
@@ -222,21 +220,20 @@ Result<void> figure_3_17(Workbench& bench, Draft& exhibit) {
   return energy_figure(bench, Task::relaxed_underdamped, exhibit);
 }
 
-constexpr auto kFigure = Exhibit::Kind::figure;
-constexpr std::array kMakers = {Maker{kFigure, 3, "figure-3.9", Provenance::recomputed, figure_3_9},
-                                Maker{kFigure, 3, "figure-3.10", Provenance::recomputed, figure_3_10},
-                                Maker{kFigure, 3, "figure-3.11", Provenance::recomputed, figure_3_11},
-                                Maker{kFigure, 3, "figure-3.12", Provenance::recomputed, figure_3_12},
-                                Maker{kFigure, 3, "figure-3.13", Provenance::simulated, figure_3_13},
-                                Maker{kFigure, 3, "figure-3.14", Provenance::simulated, figure_3_14},
-                                Maker{kFigure, 3, "figure-3.15", Provenance::simulated, figure_3_15},
-                                Maker{kFigure, 3, "figure-3.16", Provenance::recomputed, figure_3_16},
-                                Maker{kFigure, 3, "figure-3.17", Provenance::simulated, figure_3_17}};
+constexpr std::array kRelaxedFigures = {Maker{kFigure, 3, "figure-3.9", Provenance::recomputed, figure_3_9},
+                                        Maker{kFigure, 3, "figure-3.10", Provenance::recomputed, figure_3_10},
+                                        Maker{kFigure, 3, "figure-3.11", Provenance::recomputed, figure_3_11},
+                                        Maker{kFigure, 3, "figure-3.12", Provenance::recomputed, figure_3_12},
+                                        Maker{kFigure, 3, "figure-3.13", Provenance::simulated, figure_3_13},
+                                        Maker{kFigure, 3, "figure-3.14", Provenance::simulated, figure_3_14},
+                                        Maker{kFigure, 3, "figure-3.15", Provenance::simulated, figure_3_15},
+                                        Maker{kFigure, 3, "figure-3.16", Provenance::recomputed, figure_3_16},
+                                        Maker{kFigure, 3, "figure-3.17", Provenance::simulated, figure_3_17}};
 
 }  // namespace
 
 std::span<const Maker> relaxed_figures() {
-  return kMakers;
+  return kRelaxedFigures;
 }
 
 }  // namespace mbk::thesis

@@ -12,8 +12,6 @@
 namespace mbk::thesis {
 namespace {
 
-constexpr std::array<const char*, 3> kMatrices = {"inertia", "damping", "stiffness"};
-
 /// The place of a number of M, B, K and x₀ in a stacked model, and how it is shown.
 struct Parameter {
   const char *name, *unit;
@@ -99,8 +97,6 @@ ReproducedTable ellipse_table(const char* id, Provenance provenance) {
   return table;
 }
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
 /// Matrices out of A, R and θ, and A, R and θ out of these again.
 ReproducedRow rebuilt_row(const PrintedArm& arm) {
   ReproducedRow row{arm.name, {}};
@@ -160,7 +156,7 @@ Result<void> table_3_5(Workbench& bench, Draft& exhibit) {
   return ellipse_exhibit(bench, Task::relaxed_underdamped, bench.given().underdamped, "3.5", exhibit);
 }
 
-constexpr std::array kMakers = {
+constexpr std::array kRelaxedTables = {
     Maker{Exhibit::Kind::table, 3, "table-3.2", Provenance::simulated, table_3_2},
     Maker{Exhibit::Kind::table, 3, "table-3.3", Provenance::recomputed, table_3_3},
     Maker{Exhibit::Kind::table, 3, "table-3.4", Provenance::simulated, table_3_4},
@@ -170,7 +166,7 @@ constexpr std::array kMakers = {
 }  // namespace
 
 std::span<const Maker> relaxed_tables() {
-  return kMakers;
+  return kRelaxedTables;
 }
 
 }  // namespace mbk::thesis

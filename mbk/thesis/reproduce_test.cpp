@@ -11,7 +11,7 @@
 #include "mbk/thesis/thesis_page.h"
 
 namespace mbk::thesis {
-namespace {
+namespace reproduce_test {
 
 using ::testing::HasSubstr;
 
@@ -148,5 +148,5 @@ TEST(ReproductionPage, HoldsTheDocumentAndNothingOfItCanEndItsElement) {
 }
 #endif
 
-}  // namespace
+}  // namespace reproduce_test
 }  // namespace mbk::thesis

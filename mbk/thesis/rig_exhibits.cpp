@@ -344,14 +344,14 @@ Result<void> figure_3_8(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-constexpr std::array kMakers = {Maker{Exhibit::Kind::table, 3, "table-3.1", Provenance::simulated, table_3_1},
-                                Maker{Exhibit::Kind::figure, 3, "figure-3.8", Provenance::simulated, figure_3_8},
-                                Maker{Exhibit::Kind::table, 5, "table-5.1", Provenance::simulated, table_5_1}};
+constexpr std::array kRigExhibits = {Maker{Exhibit::Kind::table, 3, "table-3.1", Provenance::simulated, table_3_1},
+                                     Maker{Exhibit::Kind::figure, 3, "figure-3.8", Provenance::simulated, figure_3_8},
+                                     Maker{Exhibit::Kind::table, 5, "table-5.1", Provenance::simulated, table_5_1}};
 
 }  // namespace
 
 std::span<const Maker> rig_exhibits() {
-  return kMakers;
+  return kRigExhibits;
 }
 
 }  // namespace mbk::thesis

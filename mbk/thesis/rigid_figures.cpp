@@ -30,7 +30,7 @@ Result<void> figure_4_1(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-Result<void> energy_figure(Workbench& bench, Task task, Draft& exhibit) {
+Result<void> rigid_energy_figure(Workbench& bench, Task task, Draft& exhibit) {
   const auto results = bench.results(task);
   if (!results) return tl::unexpected(results.error());
   exhibit.charts = {energy_chart(**results)};
@@ -43,12 +43,12 @@ Result<void> energy_figure(Workbench& bench, Task task, Draft& exhibit) {
 
 Result<void> figure_4_3(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3", "table-4.5", "figure-4.5"};
-  return energy_figure(bench, Task::rigid_underdamped, exhibit);
+  return rigid_energy_figure(bench, Task::rigid_underdamped, exhibit);
 }
 
 Result<void> figure_4_4(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.3", "figure-4.3"};
-  return energy_figure(bench, Task::rigid_sinusoidal, exhibit);
+  return rigid_energy_figure(bench, Task::rigid_sinusoidal, exhibit);
 }
 
 /// Energy and distance from where it began, of one pulse, from half a second before its onset on.
@@ -174,19 +174,18 @@ Result<void> figure_4_8(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-constexpr auto kFigure = Exhibit::Kind::figure;
-constexpr std::array kMakers = {Maker{kFigure, 4, "figure-4.1", Provenance::simulated, figure_4_1},
-                                Maker{kFigure, 4, "figure-4.3", Provenance::simulated, figure_4_3},
-                                Maker{kFigure, 4, "figure-4.4", Provenance::simulated, figure_4_4},
-                                Maker{kFigure, 4, "figure-4.5", Provenance::simulated, figure_4_5},
-                                Maker{kFigure, 4, "figure-4.6", Provenance::simulated, figure_4_6},
-                                Maker{kFigure, 4, "figure-4.7", Provenance::simulated, figure_4_7},
-                                Maker{kFigure, 4, "figure-4.8", Provenance::recomputed, figure_4_8}};
+constexpr std::array kRigidFigures = {Maker{kFigure, 4, "figure-4.1", Provenance::simulated, figure_4_1},
+                                      Maker{kFigure, 4, "figure-4.3", Provenance::simulated, figure_4_3},
+                                      Maker{kFigure, 4, "figure-4.4", Provenance::simulated, figure_4_4},
+                                      Maker{kFigure, 4, "figure-4.5", Provenance::simulated, figure_4_5},
+                                      Maker{kFigure, 4, "figure-4.6", Provenance::simulated, figure_4_6},
+                                      Maker{kFigure, 4, "figure-4.7", Provenance::simulated, figure_4_7},
+                                      Maker{kFigure, 4, "figure-4.8", Provenance::recomputed, figure_4_8}};
 
 }  // namespace
 
 std::span<const Maker> rigid_figures() {
-  return kMakers;
+  return kRigidFigures;
 }
 
 }  // namespace mbk::thesis

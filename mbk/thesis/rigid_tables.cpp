@@ -190,17 +190,16 @@ Result<void> table_4_5(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-constexpr auto kTable = Exhibit::Kind::table;
-constexpr std::array kMakers = {Maker{kTable, 4, "table-4.1", Provenance::simulated, table_4_1},
-                                Maker{kTable, 4, "table-4.2", Provenance::simulated, table_4_2},
-                                Maker{kTable, 4, "table-4.3", Provenance::simulated, table_4_3},
-                                Maker{kTable, 4, "table-4.4", Provenance::simulated, table_4_4},
-                                Maker{kTable, 4, "table-4.5", Provenance::simulated, table_4_5}};
+constexpr std::array kRigidTables = {Maker{kTable, 4, "table-4.1", Provenance::simulated, table_4_1},
+                                     Maker{kTable, 4, "table-4.2", Provenance::simulated, table_4_2},
+                                     Maker{kTable, 4, "table-4.3", Provenance::simulated, table_4_3},
+                                     Maker{kTable, 4, "table-4.4", Provenance::simulated, table_4_4},
+                                     Maker{kTable, 4, "table-4.5", Provenance::simulated, table_4_5}};
 
 }  // namespace
 
 std::span<const Maker> rigid_tables() {
-  return kMakers;
+  return kRigidTables;
 }
 
 }  // namespace mbk::thesis

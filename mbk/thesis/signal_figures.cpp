@@ -103,15 +103,14 @@ Result<void> figure_3_6(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-constexpr auto kFigure = Exhibit::Kind::figure;
-constexpr std::array kMakers = {Maker{kFigure, 3, "figure-3.4", Provenance::simulated, figure_3_4},
-                                Maker{kFigure, 3, "figure-3.5", Provenance::recomputed, figure_3_5},
-                                Maker{kFigure, 3, "figure-3.6", Provenance::simulated, figure_3_6}};
+constexpr std::array kSignalFigures = {Maker{kFigure, 3, "figure-3.4", Provenance::simulated, figure_3_4},
+                                       Maker{kFigure, 3, "figure-3.5", Provenance::recomputed, figure_3_5},
+                                       Maker{kFigure, 3, "figure-3.6", Provenance::simulated, figure_3_6}};
 
 }  // namespace
 
 std::span<const Maker> signal_figures() {
-  return kMakers;
+  return kSignalFigures;
 }
 
 }  // namespace mbk::thesis

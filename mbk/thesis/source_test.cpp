@@ -8,7 +8,7 @@
 #include "mbk/thesis/exhibits.h"
 
 namespace mbk::thesis {
-namespace {
+namespace source_test {
 
 using ::testing::HasSubstr;
 
@@ -109,5 +109,5 @@ TEST(Compare, DoesNotJudgeWhatIsSimulated) {
   EXPECT_EQ(compared(one_cell(words("passive"), Provenance::recomputed)), Agreement::not_compared);
 }
 
-}  // namespace
+}  // namespace source_test
 }  // namespace mbk::thesis

@@ -23,7 +23,7 @@
 namespace mbk::thesis {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi, kInch = 0.0254;
+constexpr double kInch = 0.0254;
 
 /// Statements of one chapter: what is said and the number that follows; from what is in the text.
 class Statements {
@@ -439,12 +439,13 @@ Result<void> all_statements(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-constexpr std::array kMakers = {Maker{Exhibit::Kind::table, 0, "statements", Provenance::recomputed, all_statements}};
+constexpr std::array kStatements = {
+    Maker{Exhibit::Kind::table, 0, "statements", Provenance::recomputed, all_statements}};
 
 }  // namespace
 
 std::span<const Maker> statements() {
-  return kMakers;
+  return kStatements;
 }
 
 }  // namespace mbk::thesis

@@ -528,16 +528,17 @@ Result<void> table_5_6(Workbench& bench, Draft& exhibit) {
   return {};
 }
 
-constexpr std::array kMakers = {Maker{Exhibit::Kind::figure, 5, "figure-5.3", Provenance::simulated, figure_5_3},
-                                Maker{Exhibit::Kind::figure, 5, "figure-5.4", Provenance::simulated, figure_5_4},
-                                Maker{Exhibit::Kind::table, 5, "table-5.4", Provenance::simulated, table_5_4},
-                                Maker{Exhibit::Kind::table, 5, "table-5.5", Provenance::simulated, table_5_5},
-                                Maker{Exhibit::Kind::table, 5, "table-5.6", Provenance::simulated, table_5_6}};
+constexpr std::array kVirtualSensorExhibits = {
+    Maker{Exhibit::Kind::figure, 5, "figure-5.3", Provenance::simulated, figure_5_3},
+    Maker{Exhibit::Kind::figure, 5, "figure-5.4", Provenance::simulated, figure_5_4},
+    Maker{Exhibit::Kind::table, 5, "table-5.4", Provenance::simulated, table_5_4},
+    Maker{Exhibit::Kind::table, 5, "table-5.5", Provenance::simulated, table_5_5},
+    Maker{Exhibit::Kind::table, 5, "table-5.6", Provenance::simulated, table_5_6}};
 
 }  // namespace
 
 std::span<const Maker> virtual_sensor_exhibits() {
-  return kMakers;
+  return kVirtualSensorExhibits;
 }
 
 }  // namespace mbk::thesis

@@ -22,7 +22,7 @@
 #include "tests/support/schemas.h"
 
 namespace mbk::console {
-namespace {
+namespace console_test {
 
 namespace beast = boost::beast;
 namespace fs = std::filesystem;
@@ -590,5 +590,5 @@ TEST_F(ConsoleOfASession, NotesReachTheRecording) {
   EXPECT_EQ(after.events.size(), before.events.size());
 }
 
-}  // namespace
+}  // namespace console_test
 }  // namespace mbk::console

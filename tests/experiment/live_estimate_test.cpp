@@ -12,7 +12,7 @@
 #include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::console {
-namespace {
+namespace live_estimate_test {
 
 using protocol::read_experiment;
 using protocol::Trial;
@@ -110,5 +110,5 @@ TEST(LiveEstimate, WaitsForThePerturbation) {
   EXPECT_NE(nothing.error().line().find("nothing was perturbed yet"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace live_estimate_test
 }  // namespace mbk::console

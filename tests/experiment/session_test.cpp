@@ -21,7 +21,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::session {
-namespace {
+namespace session_test {
 
 using protocol::read_experiment;
 using protocol::Trial;
@@ -569,5 +569,5 @@ TEST_F(SessionFolder, MemoryStaysFlatAndNothingIsDropped) {
   EXPECT_LT(late - early, 4.0);  // MiB; what was recorded between the two are 13
 }
 
-}  // namespace
+}  // namespace session_test
 }  // namespace mbk::session

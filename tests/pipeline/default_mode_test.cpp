@@ -8,7 +8,7 @@
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {
-namespace {
+namespace default_mode_test {
 
 Identification measured(const std::vector<Recording>& recordings, const measurement::Options& options = {}) {
   auto result = measurement::measure(recordings, options);
@@ -171,5 +171,5 @@ TEST_P(RealAnkle, PlantarFlexionIsNotExplainedWithoutItsReflexes) {
   }
 }
 
-}  // namespace
+}  // namespace default_mode_test
 }  // namespace mbk::pipeline

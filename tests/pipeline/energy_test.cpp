@@ -15,7 +15,7 @@
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {
-namespace {
+namespace energy_test {
 
 using analyse::absorbed_energy;
 
@@ -291,5 +291,5 @@ TEST_P(RealLimb, ForetellsWhatADelayOfTheForceDoes) {
   EXPECT_NEAR(added * trial.recording_rate, energy.added_per_delay, 0.15 * std::abs(energy.added_per_delay));
 }
 
-}  // namespace
+}  // namespace energy_test
 }  // namespace mbk::pipeline

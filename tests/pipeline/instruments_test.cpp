@@ -14,7 +14,7 @@
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {
-namespace {
+namespace instruments_test {
 
 using identify::Comparison;
 using testing::HasSubstr;
@@ -207,5 +207,5 @@ TEST(Bootstrap, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one->model.K, identify::identify_impedance({trial}, {.method = Method::instrumental_variables})->model.K);
 }
 
-}  // namespace
+}  // namespace instruments_test
 }  // namespace mbk::pipeline

@@ -13,7 +13,7 @@
 #include "mbk/simulate/laboratory/simulated_experiment.h"
 
 namespace mbk::pipeline {
-namespace {
+namespace observed_force_test {
 
 using robot::EncoderMomentumObserver;
 
@@ -113,5 +113,5 @@ TEST(ObservedForce, FromTheEncodersOfTheThesisIsNoiseAwayFromThatOfPerfectOnes) 
   }
 }
 
-}  // namespace
+}  // namespace observed_force_test
 }  // namespace mbk::pipeline

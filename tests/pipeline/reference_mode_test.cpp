@@ -6,7 +6,7 @@
 #include "tests/reference/quad_procedure.h"
 
 namespace mbk::pipeline {
-namespace {
+namespace reference_mode_test {
 
 /// What is promised of reference mode; filters in double leave 1e-11 and less.
 constexpr double kPromised = 1e-9;
@@ -127,5 +127,5 @@ TEST_P(Golden, ReferenceModeAgreesWithItsExpectedNumbers) {
   EXPECT_LE(difference(id.fit.vaf, vector2(numbers("VAF"))), kPromised);
 }
 
-}  // namespace
+}  // namespace reference_mode_test
 }  // namespace mbk::pipeline

@@ -6,7 +6,7 @@
 #include <random>
 
 namespace mbk::dsp {
-namespace {
+namespace autocorrelation_test {
 
 Vector noise(Index samples, unsigned seed) {
   std::mt19937 random(seed);
@@ -78,5 +78,5 @@ TEST(Autocorrelation, IsUndefinedWithoutASignal) {
   EXPECT_EQ(autocorrelation({Vector::Constant(1, 3.0)}, 0)[0], 1.0);
 }
 
-}  // namespace
+}  // namespace autocorrelation_test
 }  // namespace mbk::dsp

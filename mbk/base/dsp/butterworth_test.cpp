@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace mbk::dsp {
-namespace {
+namespace butterworth_test {
 
 constexpr double kEps = 2.3e-16;
 const Hertz kRate(1000.0);
@@ -57,5 +57,5 @@ TEST(Butterworth, RefusesWhatCannotBe) {
   EXPECT_EQ(high.error().message, "cutoff 600 Hz is not between 0 and Nyquist 500 Hz");
 }
 
-}  // namespace
+}  // namespace butterworth_test
 }  // namespace mbk::dsp

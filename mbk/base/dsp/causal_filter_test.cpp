@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace mbk::dsp {
-namespace {
+namespace causal_filter_test {
 
 constexpr double kPi = std::numbers::pi;
 const Hertz kRate(1000.0);
@@ -65,5 +65,5 @@ TEST(CausalFilter, DelayOfAButterworthIsItsClosedForm) {
   EXPECT_EQ(delay_at_zero({}, kRate), 0.0);
 }
 
-}  // namespace
+}  // namespace causal_filter_test
 }  // namespace mbk::dsp

@@ -10,7 +10,7 @@
 #include "mbk/base/dsp/spectrum.h"
 
 namespace mbk::dsp {
-namespace {
+namespace cross_spectrum_test {
 
 const Hertz kRate(100.0);
 
@@ -224,5 +224,5 @@ TEST(SignificantCoherence, IsPassedByChanceInFiveOfAHundredCases) {
   }
 }
 
-}  // namespace
+}  // namespace cross_spectrum_test
 }  // namespace mbk::dsp

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace mbk::dsp {
-namespace {
+namespace decimate_test {
 
 constexpr Hertz kRate(1000.0);
 
@@ -46,5 +46,5 @@ TEST(Decimate, RefusesWhatCannotBe) {
   EXPECT_FALSE(decimate(sine(1.0, 50), kRate, 10));
 }
 
-}  // namespace
+}  // namespace decimate_test
 }  // namespace mbk::dsp

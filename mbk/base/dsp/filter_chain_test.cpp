@@ -10,7 +10,7 @@
 #include "mbk/base/dsp/test_twins.h"
 
 namespace mbk::dsp {
-namespace {
+namespace filter_chain_test {
 
 const Hertz kRate(1000.0);
 
@@ -164,5 +164,5 @@ TEST(FilterChain, RefusesWhatItCannotFilter) {
   EXPECT_FALSE(smooth_then_lowpass(chain({6, 31}, 5.0), columns_of(unequal), outputs, kRate));
 }
 
-}  // namespace
+}  // namespace filter_chain_test
 }  // namespace mbk::dsp

@@ -8,7 +8,7 @@
 #include "mbk/base/dsp/test_twins.h"
 
 namespace mbk::dsp {
-namespace {
+namespace savitzky_golay_test {
 
 constexpr double kEps = 2.3e-16;
 const Hertz kRate(1000.0);
@@ -98,5 +98,5 @@ TEST(SavitzkyGolay, RefusesWhatCannotBe) {
   EXPECT_TRUE(savitzky_golay({6, 101}, 0, Matrix::Zero(101, 1), kRate));
 }
 
-}  // namespace
+}  // namespace savitzky_golay_test
 }  // namespace mbk::dsp

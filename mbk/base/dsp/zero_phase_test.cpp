@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace mbk::dsp {
-namespace {
+namespace zero_phase_test {
 
 const Hertz kRate(1000.0);
 
@@ -133,5 +133,5 @@ TEST(ZeroPhase, RefusesASignalShorterThanItsPadding) {
   EXPECT_THAT(refused.error().message, testing::HasSubstr("15 samples are too few"));
 }
 
-}  // namespace
+}  // namespace zero_phase_test
 }  // namespace mbk::dsp

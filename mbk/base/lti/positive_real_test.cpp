@@ -9,7 +9,7 @@
 #include "mbk/base/lti/test_polynomials.h"
 
 namespace mbk::lti {
-namespace {
+namespace positive_real_test {
 
 using enum PositiveRealCondition;
 using numeric::Random;
@@ -281,5 +281,5 @@ TEST(PositiveReal, RefusesSizesThatItCannotJudge) {
   EXPECT_FALSE(positive_real(RationalMatrix(kMaxPorts + 1)));
 }
 
-}  // namespace
+}  // namespace positive_real_test
 }  // namespace mbk::lti

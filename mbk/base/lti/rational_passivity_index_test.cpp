@@ -13,7 +13,7 @@
 #include "mbk/base/lti/test_polynomials.h"
 
 namespace mbk::lti {
-namespace {
+namespace rational_passivity_index_test {
 
 using numeric::Random;
 using testing::HasSubstr;
@@ -204,5 +204,5 @@ TEST(RelativePassivityIndex, OfAnUnstableMatrixMayExist) {
   expect_index(relative_passivity_index(siso({5, 1}, {-1, 1})), 1.5);
 }
 
-}  // namespace
+}  // namespace rational_passivity_index_test
 }  // namespace mbk::lti

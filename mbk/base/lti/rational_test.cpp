@@ -8,7 +8,7 @@
 #include "mbk/base/lti/test_polynomials.h"
 
 namespace mbk::lti {
-namespace {
+namespace rational_test {
 
 using numeric::Random;
 
@@ -95,5 +95,5 @@ TEST(Poles, AreThoseOfEveryEntry) {
   EXPECT_NEAR(std::abs(found[1] + 2.0), 0.0, kRounding);
 }
 
-}  // namespace
+}  // namespace rational_test
 }  // namespace mbk::lti

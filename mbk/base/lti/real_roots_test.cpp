@@ -9,7 +9,7 @@
 #include "mbk/base/lti/test_polynomials.h"
 
 namespace mbk::lti {
-namespace {
+namespace real_roots_test {
 
 using numeric::Random;
 
@@ -148,5 +148,5 @@ TEST(NegativeIntervals, AgreeWithADenseGrid) {
   }
 }
 
-}  // namespace
+}  // namespace real_roots_test
 }  // namespace mbk::lti

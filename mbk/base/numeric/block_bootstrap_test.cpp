@@ -15,7 +15,7 @@
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::numeric {
-namespace {
+namespace block_bootstrap_test {
 
 /// Columns of x_t = φ x_{t−1} + √(1 − φ²) w_t, of variance 1.
 Matrix first_order_noise(Random& random, Index rows, Index columns, double correlation) {
@@ -261,5 +261,5 @@ TEST(BootstrapIntervals, AreQuantilesMovedForABias) {
   EXPECT_EQ(bias_corrected_interval(2000.0, values, 0.95).first, 1000.0);
 }
 
-}  // namespace
+}  // namespace block_bootstrap_test
 }  // namespace mbk::numeric

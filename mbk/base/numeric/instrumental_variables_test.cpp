@@ -10,7 +10,7 @@
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::numeric {
-namespace {
+namespace instrumental_variables_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -295,5 +295,5 @@ TEST(FirstStageStrength, GrowsWithTheShareThatTheInstrumentsExplain) {
   EXPECT_GT(before, 1000.0);
 }
 
-}  // namespace
+}  // namespace instrumental_variables_test
 }  // namespace mbk::numeric

@@ -11,7 +11,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::control {
-namespace {
+namespace laws_test {
 
 constexpr double kTick = 1e-3;
 constexpr double kRounding = 1e-12;  // torques of a few N·m, through a handful of operations
@@ -117,5 +117,5 @@ TEST(Laws, RefuseGainsAndTimesThatAreNone) {
   EXPECT_FALSE(LineConstraint::create(options, geometry(), kTick));
 }
 
-}  // namespace
+}  // namespace laws_test
 }  // namespace mbk::control

@@ -11,7 +11,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::control {
-namespace {
+namespace passivity_control_test {
 
 constexpr double kTick = 1e-3;
 constexpr double kRounding = 1e-12;  // [J], of sums of thousands of terms far below 1 J
@@ -178,5 +178,5 @@ TEST(PassivityControllers, DoNotAllocate) {
   EXPECT_GT(testing_support::allocations(), before) << "this counter does not count " << seen.front();
 }
 
-}  // namespace
+}  // namespace passivity_control_test
 }  // namespace mbk::control

@@ -9,7 +9,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::control {
-namespace {
+namespace sequencer_test {
 
 using perturbation::Multisine;
 using perturbation::Quantity;
@@ -195,5 +195,5 @@ TEST(TrialControl, RefusesWhatDoesNotGoTogether) {
   EXPECT_FALSE(refused(ForceMode{}, pulses(Quantity::force, 2.0)));
 }
 
-}  // namespace
+}  // namespace sequencer_test
 }  // namespace mbk::control

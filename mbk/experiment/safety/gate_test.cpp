@@ -13,7 +13,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::safety {
-namespace {
+namespace gate_test {
 
 constexpr double kTick = 1e-3;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
@@ -492,5 +492,5 @@ TEST(Trip, EveryReasonHasItsOwnCodeAndWords) {
   EXPECT_EQ(std::ranges::adjacent_find(codes), codes.end());
 }
 
-}  // namespace
+}  // namespace gate_test
 }  // namespace mbk::safety

@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace mbk::safety {
-namespace {
+namespace robot_reports_test {
 
 constexpr double kTick = 1e-3;
 constexpr int kBegin = 500;
@@ -128,5 +128,5 @@ TEST(ReportCheck, ARobotThatWaitsForItsCommandsHasAClockOfItsOwn) {
   }
 }
 
-}  // namespace
+}  // namespace robot_reports_test
 }  // namespace mbk::safety

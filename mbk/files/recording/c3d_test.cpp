@@ -11,7 +11,7 @@
 #include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
-namespace {
+namespace c3d_test {
 
 using test::C3d;
 using test::small_c3d;
@@ -392,5 +392,5 @@ TEST(DecodeC3dRealFiles, AKneeAsAnalogChannels) {
   EXPECT_EQ(recording->find("reaction")->unit, "N.m");
 }
 
-}  // namespace
+}  // namespace c3d_test
 }  // namespace mbk::recording

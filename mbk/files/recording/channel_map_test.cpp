@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace mbk::recording {
-namespace {
+namespace channel_map_test {
 
 Error error_of(std::string_view text) {
   const auto map = parse_channel_map(text);
@@ -121,5 +121,5 @@ TEST(Readings, TakeNoWordForANumber) {
   }
 }
 
-}  // namespace
+}  // namespace channel_map_test
 }  // namespace mbk::recording

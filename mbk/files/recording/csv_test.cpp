@@ -9,7 +9,7 @@
 #include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
-namespace {
+namespace csv_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -161,5 +161,5 @@ TEST(DecodeCsv, KeepsEpochTimestamps) {
   EXPECT_NEAR(values(1, 0) - values(0, 0), 0.001, 3e-7);
 }
 
-}  // namespace
+}  // namespace csv_test
 }  // namespace mbk::recording

@@ -13,7 +13,7 @@
 #include "mbk/files/recording/mat_hdf5.h"
 
 namespace mbk::recording {
-namespace {
+namespace hdf5_recording_test {
 
 using hdf5::Attributes;
 using hdf5::Dataset;
@@ -186,5 +186,5 @@ TEST(DecodeHdf5, KnowsMatlabsFilesByTheirAttributesToo) {
   EXPECT_TRUE(is_mat_hdf5({}, root));
 }
 
-}  // namespace
+}  // namespace hdf5_recording_test
 }  // namespace mbk::recording

@@ -11,7 +11,7 @@
 #include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
-namespace {
+namespace mat_hdf5_test {
 
 using testing::HasSubstr;
 
@@ -137,5 +137,5 @@ TEST(DecodeMatHdf5, SurvivesFlippedBytes) {
   }
 }
 
-}  // namespace
+}  // namespace mat_hdf5_test
 }  // namespace mbk::recording

@@ -8,7 +8,7 @@
 #include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
-namespace {
+namespace mat_level4_test {
 
 using test::mat4;
 using test::raw;
@@ -81,5 +81,5 @@ TEST(DecodeMatLevel4, SurvivesFlippedBytes) {
   }
 }
 
-}  // namespace
+}  // namespace mat_level4_test
 }  // namespace mbk::recording

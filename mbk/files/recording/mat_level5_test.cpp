@@ -8,7 +8,7 @@
 #include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
-namespace {
+namespace mat_level5_test {
 
 using test::compressed5;
 using test::double5;
@@ -218,5 +218,5 @@ TEST(DecodeMatLevel5, SurvivesFlippedBytes) {
   }
 }
 
-}  // namespace
+}  // namespace mat_level5_test
 }  // namespace mbk::recording

@@ -10,7 +10,7 @@
 #include "mbk/files/recording/write.h"
 
 namespace mbk::recording {
-namespace {
+namespace write_mat_test {
 
 using testing::AllOf;
 using testing::Contains;
@@ -228,5 +228,5 @@ TEST(WriteMat, RefusesAFolderThatIsNotThere) {
   EXPECT_EQ(refused.error().kind, ErrorKind::data);
 }
 
-}  // namespace
+}  // namespace write_mat_test
 }  // namespace mbk::recording

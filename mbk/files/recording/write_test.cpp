@@ -17,7 +17,7 @@
 #include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
-namespace {
+namespace write_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -396,5 +396,5 @@ TEST(FormatOf, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(said("a.mat", "mat4"), "'mat4' is not a format that is written; choose mat5, mat73, hdf5 or csv");
 }
 
-}  // namespace
+}  // namespace write_test
 }  // namespace mbk::recording

@@ -12,7 +12,7 @@
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::analyse {
-namespace {
+namespace absorbed_energy_test {
 
 constexpr double kPi = std::numbers::pi, kRate = 1000.0, kStep = 1.0 / kRate;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -423,5 +423,5 @@ TEST(PooledEnergy, RefusesWhatDoesNotBelongTogether) {
   EXPECT_FALSE(pooled_energy(std::vector{&both[0], &both[1]}, trials));
 }
 
-}  // namespace
+}  // namespace absorbed_energy_test
 }  // namespace mbk::analyse

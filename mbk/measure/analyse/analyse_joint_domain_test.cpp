@@ -12,7 +12,7 @@
 #include "mbk/model/robot/kinematics.h"
 
 namespace mbk::analyse {
-namespace {
+namespace analyse_joint_domain_test {
 
 using Eigen::Vector2d;
 using testing::HasSubstr;
@@ -133,5 +133,5 @@ TEST(JointDomain, RefusesAHandWithoutAnArmAndOneAxis) {
   EXPECT_FALSE(analyse_joint_domain(one, right_angle()));
 }
 
-}  // namespace
+}  // namespace analyse_joint_domain_test
 }  // namespace mbk::analyse

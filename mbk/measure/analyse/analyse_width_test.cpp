@@ -10,7 +10,7 @@
 #include "mbk/model/impedance/impedance_width.h"
 
 namespace mbk::analyse {
-namespace {
+namespace analyse_width_test {
 
 constexpr double kZ95 = 1.959963984540054;
 
@@ -153,5 +153,5 @@ TEST(AnalyseWidth, WithoutACovarianceHasNoInterval) {
   EXPECT_FALSE(found.surely_positive);
 }
 
-}  // namespace
+}  // namespace analyse_width_test
 }  // namespace mbk::analyse

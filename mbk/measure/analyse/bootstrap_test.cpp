@@ -14,7 +14,7 @@
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::analyse {
-namespace {
+namespace bootstrap_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -124,5 +124,5 @@ TEST(BootstrapFindings, NeedABootstrap) {
   EXPECT_FALSE(bootstrap_findings(id));
 }
 
-}  // namespace
+}  // namespace bootstrap_test
 }  // namespace mbk::analyse

@@ -8,7 +8,7 @@
 #include <random>
 
 namespace mbk::analyse {
-namespace {
+namespace thinning_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -160,5 +160,5 @@ TEST(DecimationOf, KeepsExtremesWhereEverySoManyRowsWouldMissThem) {
   EXPECT_EQ(decimation_of(trial, rows), Decimation::extremes);
 }
 
-}  // namespace
+}  // namespace thinning_test
 }  // namespace mbk::analyse

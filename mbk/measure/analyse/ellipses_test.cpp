@@ -10,7 +10,7 @@
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::analyse {
-namespace {
+namespace ellipses_test {
 
 constexpr double kZ95 = 1.959963984540054;
 
@@ -146,5 +146,5 @@ TEST(AnalyseEllipses, RefusesOneAxis) {
   EXPECT_EQ(analyse_ellipses(id).error().message, "one axis has no ellipse");
 }
 
-}  // namespace
+}  // namespace ellipses_test
 }  // namespace mbk::analyse

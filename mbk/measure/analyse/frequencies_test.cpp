@@ -7,7 +7,7 @@
 #include <random>
 
 namespace mbk::analyse {
-namespace {
+namespace frequencies_test {
 
 constexpr double kRate = 1000.0;
 
@@ -141,5 +141,5 @@ TEST(FilterResponse, IsTheSmoothingAloneWithoutALowpass) {
   EXPECT_NEAR(filters.smoothing[at], 1.0, 0.02);
 }
 
-}  // namespace
+}  // namespace frequencies_test
 }  // namespace mbk::analyse

@@ -16,7 +16,7 @@
 #include "mbk/model/impedance/passivity_index.h"
 
 namespace mbk::analyse {
-namespace {
+namespace judge_passivity_test {
 
 using numeric::Random;
 using testing::HasSubstr;
@@ -308,5 +308,5 @@ TEST(PassivityBand, HoldsForEveryTrialAndNotBelowOnePeriod) {
   EXPECT_EQ(passivity_band({one}).low.value, 0.5);  // 100 rows of 20 ms
 }
 
-}  // namespace
+}  // namespace judge_passivity_test
 }  // namespace mbk::analyse

@@ -9,7 +9,7 @@
 #include "mbk/model/robot/kinematics.h"
 
 namespace mbk::analyse {
-namespace {
+namespace posture_test {
 
 using Eigen::Vector2d;
 using testing::HasSubstr;
@@ -114,5 +114,5 @@ TEST(Posture, IsAbsentWithoutAHandOrWithoutSamplesInTheWindow) {
   EXPECT_FALSE(posture(one_axis, 0.0, 3.0));
 }
 
-}  // namespace
+}  // namespace posture_test
 }  // namespace mbk::analyse

@@ -11,7 +11,7 @@
 #include "mbk/model/robot/kinematics.h"
 
 namespace mbk::calibration {
-namespace {
+namespace force_sensor_test {
 
 using testing::HasSubstr;
 
@@ -316,5 +316,5 @@ TEST(QuantisationStep, IsSeenOnlyWhereThereIsOne) {
   EXPECT_FALSE(quantisation_step(Vector()));
 }
 
-}  // namespace
+}  // namespace force_sensor_test
 }  // namespace mbk::calibration

@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace mbk::calibration {
-namespace {
+namespace sensor_force_test {
 
 using testing::HasSubstr;
 
@@ -132,5 +132,5 @@ TEST(ForceFromVoltage, RefusesWhatIsMissing) {
   EXPECT_EQ(force_from_voltage(recording(), no_arm).error().kind, ErrorKind::usage);
 }
 
-}  // namespace
+}  // namespace sensor_force_test
 }  // namespace mbk::calibration

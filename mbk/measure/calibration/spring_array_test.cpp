@@ -11,7 +11,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::calibration {
-namespace {
+namespace spring_array_test {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
@@ -277,5 +277,5 @@ TEST(Linearisation, ErrorGrowsWithTheSquareOfTheRadius) {
   EXPECT_NEAR(large.largest_force / small.largest_force, 2.0, 0.05);
 }
 
-}  // namespace
+}  // namespace spring_array_test
 }  // namespace mbk::calibration

@@ -12,7 +12,7 @@
 #include "mbk/measure/identify/test_trials.h"
 
 namespace mbk::identify {
-namespace {
+namespace fit_checks_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -232,5 +232,5 @@ TEST(Excitation, DoesNotDependOnTheUnitsOfOneAxis) {
   EXPECT_EQ(one.excitation.motion_ratio, 1.0);
 }
 
-}  // namespace
+}  // namespace fit_checks_test
 }  // namespace mbk::identify

@@ -11,7 +11,7 @@
 #include "mbk/measure/identify/test_trials.h"
 
 namespace mbk::identify {
-namespace {
+namespace impedance_fit_test {
 
 using testing_support::arm;
 using testing_support::Making;
@@ -385,5 +385,5 @@ TEST(IdentifyImpedance, RefusesAReachBeyondTheDataUnlessItIsTheDefault) {
   EXPECT_TRUE(flat(id.standard_error).allFinite());
 }
 
-}  // namespace
+}  // namespace impedance_fit_test
 }  // namespace mbk::identify

@@ -9,7 +9,7 @@
 #include "mbk/measure/identify/srivc.h"
 
 namespace mbk::identify {
-namespace {
+namespace prediction_error_test {
 
 /// Poles at 0.95 e^{±0.3i} and 0.9 e^{±1.2i}, three zeros.
 struct Truth {
@@ -270,5 +270,5 @@ TEST(WithoutDiscreteFreeMotion, LeavesNothingOfADecayAndAnOffset) {
   EXPECT_LT(left.cwiseAbs().maxCoeff(), 1e-12);
 }
 
-}  // namespace
+}  // namespace prediction_error_test
 }  // namespace mbk::identify

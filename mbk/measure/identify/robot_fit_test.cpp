@@ -14,7 +14,7 @@
 #include "mbk/model/robot/single_joint.h"
 
 namespace mbk::identify {
-namespace {
+namespace robot_fit_test {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
@@ -352,5 +352,5 @@ TEST(StructuralColumns, OfADriveWhoseMotorMovesWithItsBodyAreOneLess) {
   EXPECT_EQ(structural_columns(model, {0}).kept, (std::vector<Index>{0, 1, 2, 3}));  // counted without the mass
 }
 
-}  // namespace
+}  // namespace robot_fit_test
 }  // namespace mbk::identify

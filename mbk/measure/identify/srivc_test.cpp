@@ -7,7 +7,7 @@
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::identify {
-namespace {
+namespace srivc_test {
 
 /// Rao & Garnier (2002): (−6400 s + 1600)/(s⁴ + 5 s³ + 408 s² + 416 s + 1600).
 struct RaoGarnier {
@@ -251,5 +251,5 @@ TEST(Srivc, SaysWhatIsWrongWithItsData) {
   EXPECT_EQ(fit_continuous({}, order_4_1()).error().kind, ErrorKind::usage);
 }
 
-}  // namespace
+}  // namespace srivc_test
 }  // namespace mbk::identify

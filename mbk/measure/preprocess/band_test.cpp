@@ -9,7 +9,7 @@
 #include "mbk/model/perturbation/underdamped_pulse.h"
 
 namespace mbk::preprocess {
-namespace {
+namespace band_test {
 
 constexpr Hertz kRate{1000.0};
 
@@ -121,5 +121,5 @@ TEST(MotionTop, IsTheLimitWhereTooFewLinesLieBetween) {
   EXPECT_EQ(motion_top(motion, whole(motion), kRate, Hertz(7.0))->value, 7.0);
 }
 
-}  // namespace
+}  // namespace band_test
 }  // namespace mbk::preprocess

@@ -16,7 +16,7 @@
 #include "mbk/model/robot/test_models.h"
 
 namespace mbk::preprocess {
-namespace {
+namespace joint_signals_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -201,5 +201,5 @@ TEST(SmoothJoints, TakeTheAccelerationFromTheHandsAccelerometer) {
   EXPECT_GT((twice->motion.acceleration - truth).cwiseAbs().maxCoeff(), 0.5 * truth.cwiseAbs().maxCoeff());
 }
 
-}  // namespace
+}  // namespace joint_signals_test
 }  // namespace mbk::preprocess

@@ -11,7 +11,7 @@
 #include "mbk/model/robot/test_models.h"
 
 namespace mbk::preprocess {
-namespace {
+namespace prepare_dynamics_test {
 
 constexpr double kRate = 1000.0;  // [Hz]
 
@@ -85,5 +85,5 @@ TEST(PrepareDynamics, LeavesOutTheTorqueOfAJointThatFrictionHolds) {
   EXPECT_TRUE(loose.notes.empty());
 }
 
-}  // namespace
+}  // namespace prepare_dynamics_test
 }  // namespace mbk::preprocess

@@ -14,7 +14,7 @@
 #include "mbk/model/perturbation/underdamped_pulse.h"
 
 namespace mbk::preprocess {
-namespace {
+namespace prepare_test {
 
 using testing::HasSubstr;
 using testing_support::even_recording;
@@ -523,5 +523,5 @@ TEST(Prepare, CarriesSourcesNotesAndDuration) {
   EXPECT_NEAR(trial.recording_duration, 5.0, 1e-9);
 }
 
-}  // namespace
+}  // namespace prepare_test
 }  // namespace mbk::preprocess

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace mbk::preprocess {
-namespace {
+namespace trial_clock_test {
 
 const Hertz kRate(1000.0);
 
@@ -34,5 +34,5 @@ TEST(Clock, TakesTheFirstSampleThatIsLateEnoughWhereTimeRestarts) {
   EXPECT_EQ(Clock(time, kRate).sample(0.002), 2);
 }
 
-}  // namespace
+}  // namespace trial_clock_test
 }  // namespace mbk::preprocess

@@ -12,7 +12,7 @@
 #include "mbk/model/robot/single_joint.h"
 
 namespace mbk::preprocess {
-namespace {
+namespace virtual_force_test {
 
 using ::testing::HasSubstr;
 
@@ -250,5 +250,5 @@ TEST(VirtualForce, OfOneJointThatTurnsIsATorque) {
   EXPECT_LT((reaction.values - hand).segment(made.first, rows).cwiseAbs().maxCoeff(), kSmoothing);
 }
 
-}  // namespace
+}  // namespace virtual_force_test
 }  // namespace mbk::preprocess

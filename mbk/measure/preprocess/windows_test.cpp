@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace mbk::preprocess {
-namespace {
+namespace windows_test {
 
 using testing::HasSubstr;
 
@@ -298,5 +298,5 @@ TEST_P(BadLimits, AreNamedAsTheUserGaveThem) {
   EXPECT_THAT(plan.error().message, testing::Not(HasSubstr("e+15")));  // a time that nobody gave
 }
 
-}  // namespace
+}  // namespace windows_test
 }  // namespace mbk::preprocess

@@ -10,7 +10,7 @@
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::impedance {
-namespace {
+namespace impedance_width_test {
 
 constexpr double kRounding = 1e-11;  ///< of distances near one, from matrices with a condition up to about 100
 
@@ -144,5 +144,5 @@ TEST(ImpedanceWidth, RefusesWhatIsNotPositiveDefiniteAndSaysWhich) {
   EXPECT_FALSE(impedance_width(kRelaxed, Matrix::Identity(1, 1)));
 }
 
-}  // namespace
+}  // namespace impedance_width_test
 }  // namespace mbk::impedance

@@ -10,7 +10,7 @@
 #include "mbk/model/impedance/passivity_index.h"
 
 namespace mbk::impedance {
-namespace {
+namespace joint_impedance_test {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
@@ -176,5 +176,5 @@ TEST(JointImpedance, WithoutAnEquilibriumHasNoStiffness) {
   EXPECT_TRUE(std::isnan(at.K(0, 0)));
 }
 
-}  // namespace
+}  // namespace joint_impedance_test
 }  // namespace mbk::impedance

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace mbk::perturbation {
-namespace {
+namespace axis_pair_test {
 
 constexpr double kPeriod = 10.0;
 constexpr double kRounding = 1e-12;  // sums of 1000 products of order 10
@@ -71,5 +71,5 @@ TEST(AxisPair, RefusesAxesThatDoNotFit) {
   EXPECT_FALSE(peak_norm({sines(1, {1}), other}));
 }
 
-}  // namespace
+}  // namespace axis_pair_test
 }  // namespace mbk::perturbation

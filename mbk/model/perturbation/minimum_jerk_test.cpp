@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace mbk::perturbation {
-namespace {
+namespace minimum_jerk_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -31,5 +31,5 @@ TEST(MinimumJerk, MeetsBothStates) {
   EXPECT_EQ(path.at(9.0).second, to.second);
 }
 
-}  // namespace
+}  // namespace minimum_jerk_test
 }  // namespace mbk::perturbation

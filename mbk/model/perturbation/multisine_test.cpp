@@ -7,7 +7,7 @@
 #include <numbers>
 
 namespace mbk::perturbation {
-namespace {
+namespace multisine_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kPi = std::numbers::pi;
@@ -55,5 +55,5 @@ TEST(Multisine, RefusesWhatIsNoSumOfHarmonics) {
   EXPECT_FALSE(Multisine::with_random_phases(1.0, {1, 2}, {1.0}, 1));
 }
 
-}  // namespace
+}  // namespace multisine_test
 }  // namespace mbk::perturbation

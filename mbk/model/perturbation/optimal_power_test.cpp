@@ -9,7 +9,7 @@
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::perturbation {
-namespace {
+namespace optimal_power_test {
 
 const std::vector<int> kLaboratory = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
 const NominalImpedance kArm{1.9, 10.6, 125.0};  // y axis of a relaxed arm
@@ -136,5 +136,5 @@ TEST(OptimalPower, RefusesWhatCannotBeDesigned) {
   EXPECT_FALSE(optimal_multisine(10.0, kLaboratory, {}, {SignalLimit::Measure::rms, 0.0}));
 }
 
-}  // namespace
+}  // namespace optimal_power_test
 }  // namespace mbk::perturbation

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace mbk::perturbation {
-namespace {
+namespace phases_test {
 
 const std::vector<int> kOneToTen = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
 const std::vector<int> kLaboratory = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
@@ -90,5 +90,5 @@ TEST(Phases, RefuseNothingToOptimise) {
   EXPECT_FALSE(with_low_crest_phases(Multisine::create(1.0, {{1, 0.0, 0.0}}).value()));
 }
 
-}  // namespace
+}  // namespace phases_test
 }  // namespace mbk::perturbation

@@ -7,7 +7,7 @@
 #include <set>
 
 namespace mbk::perturbation {
-namespace {
+namespace random_binary_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -143,5 +143,5 @@ TEST(RandomBinary, RefusesWhatIsNoSequence) {
   EXPECT_TRUE(refused([](auto&) {}, NAN));
 }
 
-}  // namespace
+}  // namespace random_binary_test
 }  // namespace mbk::perturbation

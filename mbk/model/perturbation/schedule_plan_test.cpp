@@ -7,7 +7,7 @@
 #include <numbers>
 
 namespace mbk::perturbation {
-namespace {
+namespace schedule_plan_test {
 
 Plan sines(const MultisinePlan& plan = {}) {
   return {plan, {}};
@@ -128,5 +128,5 @@ TEST(MakeSchedule, SaysWhichLimitIsBroken) {
   EXPECT_NE(outcome.error().message.find("0.01"), std::string::npos) << outcome.error().message;
 }
 
-}  // namespace
+}  // namespace schedule_plan_test
 }  // namespace mbk::perturbation

@@ -8,7 +8,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::perturbation {
-namespace {
+namespace schedule_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -241,5 +241,5 @@ TEST(Schedule, UnitsFollowQuantityAndSpace) {
   EXPECT_EQ(unit(Quantity::force, Space::joint), "N·m");
 }
 
-}  // namespace
+}  // namespace schedule_test
 }  // namespace mbk::perturbation

@@ -8,7 +8,7 @@
 #include <numbers>
 
 namespace mbk::perturbation {
-namespace {
+namespace underdamped_pulse_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -120,5 +120,5 @@ TEST(PulseSchedule, RefusesAReturnLongerThanThePause) {
             "the way back takes 2.5 s, which is not above 0 and at most the shortest pause 2 s");
 }
 
-}  // namespace
+}  // namespace underdamped_pulse_test
 }  // namespace mbk::perturbation

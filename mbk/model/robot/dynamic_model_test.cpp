@@ -13,7 +13,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::robot {
-namespace {
+namespace dynamic_model_test {
 
 constexpr double kRounding = 1e-14;  // of torques of some N·m
 
@@ -141,5 +141,5 @@ TEST(RegularHandFromJoints, SaysTheSameWithoutWordsAndWithoutTheHeap) {
   EXPECT_EQ(*L, hand_from_joints(planar, Vector2d(0.4, 0.9)).value());
 }
 
-}  // namespace
+}  // namespace dynamic_model_test
 }  // namespace mbk::robot

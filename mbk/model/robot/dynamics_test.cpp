@@ -14,7 +14,7 @@
 #include "mbk/model/robot/test_postures.h"
 
 namespace mbk::robot {
-namespace {
+namespace dynamics_test {
 
 constexpr double kRounding = 1e-14;  // relative: some units in the last place of a double
 const Geometry kGeometry;
@@ -188,5 +188,5 @@ TEST(InertiaAtHand, IsRefusedWhereTheLinksLieOnOneLine) {
   EXPECT_THAT(folded.error().message, testing::HasSubstr("90°"));
 }
 
-}  // namespace
+}  // namespace dynamics_test
 }  // namespace mbk::robot

@@ -11,7 +11,7 @@
 #include "mbk/model/robot/test_postures.h"
 
 namespace mbk::robot {
-namespace {
+namespace kinematics_test {
 
 using testing::HasSubstr;
 
@@ -129,5 +129,5 @@ TEST(JointLimits, AreThePublishedDegrees) {
   EXPECT_DOUBLE_EQ(kGeometry.limits.smallest_opening, 35.0 * degree);
 }
 
-}  // namespace
+}  // namespace kinematics_test
 }  // namespace mbk::robot

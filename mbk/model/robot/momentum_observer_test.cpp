@@ -13,7 +13,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::robot {
-namespace {
+namespace momentum_observer_test {
 
 constexpr double kGain = 60.0, kTick = 1e-3;
 constexpr double kRounding = 1e-12;  // of some N·m, over thousands of ticks
@@ -303,5 +303,5 @@ TEST(EncoderMomentumObserver, BeginsAgainAfterASampleThatIsNoNumber) {
   }
 }
 
-}  // namespace
+}  // namespace momentum_observer_test
 }  // namespace mbk::robot

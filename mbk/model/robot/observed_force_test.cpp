@@ -9,7 +9,7 @@
 #include "mbk/model/robot/test_models.h"
 
 namespace mbk::robot {
-namespace {
+namespace observed_force_test {
 
 using testing::HasSubstr;
 
@@ -81,5 +81,5 @@ TEST(ObserveForce, RefusesWhatIsNotThatOfTheRobotAndSaysWhere) {
   EXPECT_FALSE(observe_force(model, r.position, r.torque, {.gain = -1.0}, kTick));
 }
 
-}  // namespace
+}  // namespace observed_force_test
 }  // namespace mbk::robot

@@ -12,7 +12,7 @@
 #include "mbk/model/robot/test_postures.h"
 
 namespace mbk::robot {
-namespace {
+namespace planar_mechanism_test {
 
 constexpr double kRounding = 1e-14;  // of torques of some N·m
 using Options = PlanarMechanism::Options;
@@ -192,5 +192,5 @@ TEST(PlanarMechanism, RefusesJointsBeyondTheirLimitsAndThoseThatAreNoNumbers) {
   EXPECT_FALSE(mechanism.check_joints(Vector2d(std::numeric_limits<double>::quiet_NaN(), 0.5)));
 }
 
-}  // namespace
+}  // namespace planar_mechanism_test
 }  // namespace mbk::robot

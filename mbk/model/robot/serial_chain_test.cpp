@@ -17,7 +17,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::robot {
-namespace {
+namespace serial_chain_test {
 
 using ::testing::HasSubstr;
 using Axis = SerialChain::Axis;
@@ -482,5 +482,5 @@ TEST(SerialChain, RefusesOptionsThatMakeNoSense) {
   EXPECT_THAT(refusal(pendulum(), options), HasSubstr("zero of a joint is not finite"));
 }
 
-}  // namespace
+}  // namespace serial_chain_test
 }  // namespace mbk::robot

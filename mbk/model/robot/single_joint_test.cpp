@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace mbk::robot {
-namespace {
+namespace single_joint_test {
 
 JointVector one(double value) {
   return JointVector::Constant(1, value);
@@ -56,5 +56,5 @@ TEST(SingleJoint, StandsInTheMiddleOfItsLimits) {
   EXPECT_NEAR(SingleJoint({.slides = true, .low = -0.1, .high = 0.2}).postures(5)[0][0], 0.05, 1e-15);
 }
 
-}  // namespace
+}  // namespace single_joint_test
 }  // namespace mbk::robot

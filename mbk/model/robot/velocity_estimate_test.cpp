@@ -8,7 +8,7 @@
 #include "mbk/model/robot/kinematics.h"
 
 namespace mbk::robot {
-namespace {
+namespace velocity_estimate_test {
 
 constexpr double kTick = 1e-3;
 
@@ -43,5 +43,5 @@ TEST(VelocityEstimate, RefusesTimesAndCutoffsThatAreNone) {
   EXPECT_FALSE(VelocityEstimate::create(0.0, Hertz(50.0)));
 }
 
-}  // namespace
+}  // namespace velocity_estimate_test
 }  // namespace mbk::robot

@@ -13,7 +13,7 @@
 #include "mbk/model/robot/test_postures.h"
 
 namespace mbk::robot {
-namespace {
+namespace workspace_test {
 
 using testing::HasSubstr;
 
@@ -197,5 +197,5 @@ TEST(Posture, PutsEverythingAboutOnePlaceTogether) {
   EXPECT_FALSE(posture(robot, {0.7, 0.0}));
 }
 
-}  // namespace
+}  // namespace workspace_test
 }  // namespace mbk::robot

@@ -16,7 +16,7 @@
 #include "mbk/present/report/text.h"
 
 namespace mbk::report {
-namespace {
+namespace draw_chart_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -240,5 +240,5 @@ TEST(ChartSvg, SaysInWordsWhatItShows) {
   EXPECT_THAT(svg, HasSubstr("aria-labelledby=\"title description\""));
 }
 
-}  // namespace
+}  // namespace draw_chart_test
 }  // namespace mbk::report

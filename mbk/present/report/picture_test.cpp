@@ -9,7 +9,7 @@
 #include <sstream>
 
 namespace mbk::report {
-namespace {
+namespace picture_test {
 
 using testing::HasSubstr;
 
@@ -138,5 +138,5 @@ TEST(Columns, CountsCodePointsAndNotBytes) {
   EXPECT_EQ(columns("±⠿°"), 3u);
 }
 
-}  // namespace
+}  // namespace picture_test
 }  // namespace mbk::report

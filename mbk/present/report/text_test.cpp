@@ -12,7 +12,7 @@
 #include "mbk/present/report/picture.h"
 
 namespace mbk::report {
-namespace {
+namespace text_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -306,5 +306,5 @@ TEST(BySensorText, HasTheSensorsModelAndWhatTheComputedForceMakesOfIt) {
   EXPECT_THAT(line_with(text.substr(less), "stiffness K"), HasSubstr("3.5"));
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace mbk::report

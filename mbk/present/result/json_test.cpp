@@ -15,7 +15,7 @@
 #include "tests/support/schemas.h"
 
 namespace mbk::result {
-namespace {
+namespace json_test {
 
 using Json = nlohmann::json;
 using testing::HasSubstr;
@@ -399,5 +399,5 @@ TEST(ToJson, AChartKeepsItsNumbers) {
   EXPECT_EQ(one.at("identity"), true);
 }
 
-}  // namespace
+}  // namespace json_test
 }  // namespace mbk::result

@@ -8,7 +8,7 @@
 #include "tests/support/schemas.h"
 
 namespace mbk::result {
-namespace {
+namespace report_json_test {
 
 using Json = nlohmann::json;
 
@@ -96,5 +96,5 @@ TEST(ReportJson, WritesMetadataAndPosture) {
   EXPECT_EQ(one["posture"]["note"], "a note");
 }
 
-}  // namespace
+}  // namespace report_json_test
 }  // namespace mbk::result

@@ -12,7 +12,7 @@
 #include "tests/support/schemas.h"
 
 namespace mbk::result {
-namespace {
+namespace robot_json_test {
 
 using Json = nlohmann::json;
 using ::testing::ElementsAre;
@@ -170,5 +170,5 @@ TEST(ForceJson, HasTheSummaryAndOnlyWhatIsKnown) {
   EXPECT_TRUE(json.contains("force_comparison"));
 }
 
-}  // namespace
+}  // namespace robot_json_test
 }  // namespace mbk::result

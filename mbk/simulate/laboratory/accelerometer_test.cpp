@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace mbk::laboratory {
-namespace {
+namespace accelerometer_test {
 
 using Eigen::Vector2d;
 
@@ -58,5 +58,5 @@ TEST(Accelerometer, RefusesWhatHasNoMeaning) {
   EXPECT_FALSE(Accelerometer<2>::create({.bandwidth = Hertz(500.0)}, kTick, 1));
 }
 
-}  // namespace
+}  // namespace accelerometer_test
 }  // namespace mbk::laboratory

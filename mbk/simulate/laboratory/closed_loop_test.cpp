@@ -12,7 +12,7 @@
 #include "mbk/simulate/participant/one_axis_joint.h"
 
 namespace mbk::laboratory {
-namespace {
+namespace closed_loop_test {
 
 const Vector2d kHome(0.30, -0.05);
 constexpr double kTick = 1e-3;
@@ -232,5 +232,5 @@ TEST(ClosedLoopOfOneAxis, RefusesWhatIsNoMachine) {
   EXPECT_EQ(ClosedLoop<1>::create(machine(0.1), nowhere, load).error().message, "the machine's position is not finite");
 }
 
-}  // namespace
+}  // namespace closed_loop_test
 }  // namespace mbk::laboratory

@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace mbk::laboratory {
-namespace {
+namespace load_cell_test {
 
 using Eigen::Vector2d;
 
@@ -90,5 +90,5 @@ TEST(LoadCell, RefusesNegativeNoise) {
   EXPECT_FALSE(LoadCell<2>::create({}, 0.0, 1));
 }
 
-}  // namespace
+}  // namespace load_cell_test
 }  // namespace mbk::laboratory

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace mbk::laboratory {
-namespace {
+namespace noise_test {
 
 using numeric::Random;
 
@@ -107,5 +107,5 @@ TEST(NoiseSources, SwitchedOffAddNothing) {
   EXPECT_EQ(draw(Drift(0.0, 0.0, kTick, Random(1)), 100).back(), 0.0);
 }
 
-}  // namespace
+}  // namespace noise_test
 }  // namespace mbk::laboratory

@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace mbk::laboratory {
-namespace {
+namespace packet_line_test {
 
 constexpr double kTick = 1e-3;
 
@@ -89,5 +89,5 @@ TEST(PacketLine, RefusesWhatIsOutOfRange) {
   EXPECT_FALSE(PacketLine::create({}, 0.0, 1, 0));
 }
 
-}  // namespace
+}  // namespace packet_line_test
 }  // namespace mbk::laboratory

@@ -21,7 +21,7 @@
 /// two states (relaxed, rigid), meets perturbations of different kind and size; nothing in it knows which. Its numbers
 /// were tuned, not fitted, so this shows that the mechanism suffices, not that people work so.
 namespace mbk::laboratory {
-namespace {
+namespace participant_behaviour_test {
 
 using participant::ArmOptions;
 
@@ -208,5 +208,5 @@ TEST_P(ArmBehaviour, DryFrictionOfTheRobotTurnsTheSignOfTheEnergy) {
 
 INSTANTIATE_TEST_SUITE_P(ThreeArms, ArmBehaviour, testing::Values(0, 1, 2));
 
-}  // namespace
+}  // namespace participant_behaviour_test
 }  // namespace mbk::laboratory

@@ -8,7 +8,7 @@
 #include <string>
 
 namespace mbk::laboratory {
-namespace {
+namespace prescribed_motion_test {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr Hertz kRate{1000.0};
@@ -179,5 +179,5 @@ TEST(PrescribedMotion, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(record_prescribed_motion(o, kRate).error().message, "force noise -0.1 is below 0");
 }
 
-}  // namespace
+}  // namespace prescribed_motion_test
 }  // namespace mbk::laboratory

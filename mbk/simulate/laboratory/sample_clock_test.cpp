@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace mbk::laboratory {
-namespace {
+namespace sample_clock_test {
 
 using numeric::Random;
 
@@ -36,5 +36,5 @@ TEST(SampleClock, TimeGoesOnHoweverLargeTheJitter) {
   for (int k = 0; k < 10000; ++k) ASSERT_GE(clock.next_interval(), 0.1 * kTick * (1.0 - 1e-12));
 }
 
-}  // namespace
+}  // namespace sample_clock_test
 }  // namespace mbk::laboratory

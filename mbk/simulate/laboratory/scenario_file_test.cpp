@@ -8,7 +8,7 @@
 #include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::laboratory {
-namespace {
+namespace scenario_file_test {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -536,5 +536,5 @@ TEST(ScenarioFile, MistakesNameFileLineKeyValueAndWhatIsAllowed) {
   }
 }
 
-}  // namespace
+}  // namespace scenario_file_test
 }  // namespace mbk::laboratory

@@ -13,7 +13,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::laboratory {
-namespace {
+namespace sensors_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kTick = 1e-3;
@@ -366,5 +366,5 @@ TEST(SensorSuiteOfOneAxis, RefusesWhatHasNoMeaning) {
   EXPECT_FALSE(SensorSuite<1>::create({}, {}, -1.0, 1));
 }
 
-}  // namespace
+}  // namespace sensors_test
 }  // namespace mbk::laboratory

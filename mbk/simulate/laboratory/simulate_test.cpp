@@ -5,7 +5,7 @@
 #include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::laboratory {
-namespace {
+namespace simulate_test {
 
 std::vector<Scenario> ready(const char* name) {
   const ReadyScenario* found = find_ready_scenario(name);
@@ -111,5 +111,5 @@ TEST(Simulate, ArmsThatAreToldSomethingCarryTheNoteOnTheirGains) {
   }
 }
 
-}  // namespace
+}  // namespace simulate_test
 }  // namespace mbk::laboratory

@@ -5,7 +5,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::laboratory {
-namespace {
+namespace simulated_device_test {
 
 Scenario ready(const char* name, double seconds) {
   Scenario scenario = read_scenarios(find_ready_scenario(name)->text, name)->front();
@@ -72,5 +72,5 @@ TEST(SimulatedDevice, RefusesAOneAxisMachine) {
   EXPECT_FALSE(SimulatedDevice::create(ready("ankle_reflex", 8.0)));
 }
 
-}  // namespace
+}  // namespace simulated_device_test
 }  // namespace mbk::laboratory

@@ -16,7 +16,7 @@
 #include "mbk/simulate/participant/one_axis_joint.h"
 
 namespace mbk::laboratory {
-namespace {
+namespace simulated_experiment_test {
 
 using perturbation::Multisine;
 using perturbation::Quantity;
@@ -387,5 +387,5 @@ TEST(ExperimentOfOneAxis, RefusesWhatIsNoTrialAndTellsOfMotionThatRunsAway) {
   EXPECT_NE(outcome.error().message.find("not finite any more at "), std::string::npos) << outcome.error().line();
 }
 
-}  // namespace
+}  // namespace simulated_experiment_test
 }  // namespace mbk::laboratory

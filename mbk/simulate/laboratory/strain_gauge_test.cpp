@@ -8,7 +8,7 @@
 #include <set>
 
 namespace mbk::laboratory {
-namespace {
+namespace strain_gauge_test {
 
 using Eigen::Vector2d;
 
@@ -157,5 +157,5 @@ TEST(StrainGauge, RefusesWhatHasNoMeaning) {
   EXPECT_NE(message([](auto& o) { o.filter_order = 0; }), "");
 }
 
-}  // namespace
+}  // namespace strain_gauge_test
 }  // namespace mbk::laboratory

@@ -8,7 +8,7 @@
 #include "tests/support/allocations.h"
 
 namespace mbk::participant {
-namespace {
+namespace arm_test {
 
 constexpr double kTick = 1e-3;
 const Vector2d kHome(0.30, -0.05);
@@ -112,5 +112,5 @@ TEST(Participants, HaveThePublishedImpedanceAndAnInertiaNearIt) {
   EXPECT_EQ(participant_options(7).error().message, "participant 7 is not one of the six, 1 to 6");
 }
 
-}  // namespace
+}  // namespace arm_test
 }  // namespace mbk::participant

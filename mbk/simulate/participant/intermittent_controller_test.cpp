@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace mbk::participant {
-namespace {
+namespace intermittent_controller_test {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
@@ -139,5 +139,5 @@ TEST(IntermittentController, RefusesARampLongerThanItsInterval) {
   EXPECT_FALSE(IntermittentController::create({}, 0.0, 1));
 }
 
-}  // namespace
+}  // namespace intermittent_controller_test
 }  // namespace mbk::participant

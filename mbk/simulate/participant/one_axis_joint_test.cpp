@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace mbk::participant {
-namespace {
+namespace one_axis_joint_test {
 
 constexpr double kTick = 1e-3;
 
@@ -88,5 +88,5 @@ TEST(OneAxisJoint, RefusesWhatIsNoJoint) {
   EXPECT_FALSE(OneAxisJoint::create(options, kTick));
 }
 
-}  // namespace
+}  // namespace one_axis_joint_test
 }  // namespace mbk::participant

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace mbk::participant {
-namespace {
+namespace remnant_test {
 
 constexpr double kTick = 1e-3;
 
@@ -56,5 +56,5 @@ TEST(Remnant, RefusesNegativeNoise) {
   EXPECT_FALSE(Remnant<1>::create({.cutoff = Hertz(0.0)}, kTick, 1));
 }
 
-}  // namespace
+}  // namespace remnant_test
 }  // namespace mbk::participant

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace mbk::participant {
-namespace {
+namespace tone_robot_test {
 
 constexpr double kTick = 1e-3;
 const Vector2d kHome(0.30, -0.05);
@@ -104,5 +104,5 @@ TEST(ToneRobot, RefusesWhatIsNoDevice) {
   EXPECT_FALSE(ToneRobot::create(options));
 }
 
-}  // namespace
+}  // namespace tone_robot_test
 }  // namespace mbk::participant

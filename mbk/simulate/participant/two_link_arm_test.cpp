@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace mbk::participant {
-namespace {
+namespace two_link_arm_test {
 
 const Vector2d kHome(0.30, -0.05);
 const Matrix2d kZero = Matrix2d::Zero();
@@ -154,5 +154,5 @@ TEST(TwoLinkArm, RefusesWhatIsNoArm) {
   EXPECT_FALSE(TwoLinkArm::create(options));
 }
 
-}  // namespace
+}  // namespace two_link_arm_test
 }  // namespace mbk::participant

@@ -3,7 +3,7 @@
 #include "mbk/study/validation/study.h"
 
 namespace mbk::validation {
-namespace {
+namespace robot_test {
 
 const ValidationRow& row(const ValidationTable& table, std::string_view what) {
   for (const ValidationRow& one : table.rows) {
@@ -50,5 +50,5 @@ TEST(VirtualSensorStudy, FindsForceStiffnessAndMassWithoutASensorAndWorseWithout
   EXPECT_EQ(table->charts[1].series.front().x.size(), 5u);
 }
 
-}  // namespace
+}  // namespace robot_test
 }  // namespace mbk::validation

@@ -6,7 +6,7 @@
 #include <set>
 
 namespace mbk::validation {
-namespace {
+namespace study_test {
 
 void expect_met(const Result<ValidationTable>& table) {
   ASSERT_TRUE(table) << table.error().line();
@@ -89,5 +89,5 @@ TEST(Participant, ThreeArmsBehaveAsPeopleDid) {
   EXPECT_TRUE(said);
 }
 
-}  // namespace
+}  // namespace study_test
 }  // namespace mbk::validation
