@@ -23,7 +23,7 @@ constexpr double kStep = 1e-6;  // of central differences [rad or m]
 constexpr std::array<const char*, 2> kAxes = {"x", "y"};
 
 /// A posture in the middle of the workspace, in motion.
-const Vector2d kTheta(0.4, 0.9), kRate(1.2, -0.7);
+const Vector2d kTheta(0.4, 0.9), kThetaRate(1.2, -0.7);
 
 /// Column k: the derivative of `function` by its k-th argument, by central differences.
 template <typename Function>
@@ -104,14 +104,14 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Draft& exhibit) {
   exhibit.related = {"erratum-8", "table-A.1"};
   const robot::Inertia inertia;
   const Matrix2d I_rate =
-      (inertia.matrix(kTheta + kStep * kRate) - inertia.matrix(kTheta - kStep * kRate)) / (2.0 * kStep);
+      (inertia.matrix(kTheta + kStep * kThetaRate) - inertia.matrix(kTheta - kStep * kThetaRate)) / (2.0 * kStep);
   ReproducedTable table = computed_table(
       "erratum-9", "C", {{"N₁₁", "N·m·s", 6}, {"N₁₂ + N₂₁", "N·m·s", 6}, {"N₂₂", "N·m·s", 6}, {"½ θ̇ᵀNθ̇", "W", 6}});
-  for (const auto& [name, C] : {std::pair{"as printed", printed_coriolis(inertia, kTheta, kRate)},
-                                {"with −½ α₂ cos(θ₁ − θ₂) θ̇₁", inertia.coriolis(kTheta, kRate)}}) {
+  for (const auto& [name, C] : {std::pair{"as printed", printed_coriolis(inertia, kTheta, kThetaRate)},
+                                {"with −½ α₂ cos(θ₁ − θ₂) θ̇₁", inertia.coriolis(kTheta, kThetaRate)}}) {
     const Matrix2d N = I_rate - 2.0 * C;
     table.rows.push_back(
-        {name, {cell(N(0, 0)), cell(N(0, 1) + N(1, 0)), cell(N(1, 1)), cell(0.5 * kRate.dot(N * kRate))}});
+        {name, {cell(N(0, 0)), cell(N(0, 1) + N(1, 0)), cell(N(1, 1)), cell(0.5 * kThetaRate.dot(N * kThetaRate))}});
   }
   const robot::Geometry geometry;
   constexpr double kPayload = 1.5;  // [kg]

@@ -10,7 +10,7 @@
 #include "mbk/thesis/source.h"
 
 namespace mbk::thesis {
-namespace errata_test {
+namespace {
 
 constexpr double kExact = 1e-9;
 
@@ -282,5 +282,5 @@ TEST(WithdrawnErrata, RelativeDiscrepancyIsLargestForKxx) {
   EXPECT_GT(number(rows, 3, kLargest), 0.0) << "k_s crosses zero";
 }
 
-}  // namespace errata_test
+}  // namespace
 }  // namespace mbk::thesis

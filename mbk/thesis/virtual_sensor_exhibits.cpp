@@ -104,11 +104,11 @@ ReproducedCell error_cell(const Trials& trials, std::string_view rig, Force forc
 }
 
 /// A force and what it is called in a table.
-using Method = std::pair<const char*, Force>;
+using ForceMethod = std::pair<const char*, Force>;
 
 /// One table of errors: the rigs of a letter by the elements of some methods.
 ReproducedTable error_table(const char* id, const Trials& trials, char letter, const std::vector<Element>& elements,
-                            const std::vector<Method>& methods) {
+                            const std::vector<ForceMethod>& methods) {
   ReproducedTable table;
   table.id = id;
   table.provenance = Provenance::simulated;
@@ -215,9 +215,9 @@ Result<void> table_5_4(Workbench& bench, Draft& exhibit) {
   if (auto ok = add_rig_commands(bench, exhibit); !ok) return ok;
   exhibit.related = {"table-5.1", "table-5.3", "table-5.5", "figure-5.4", "erratum-12"};
   const std::vector<Element> stiffness(kStiffnesses.begin(), kStiffnesses.end());
-  const std::vector<Method> published_methods = {{"method 1", kMethod1}, {"method 2", kMethod2}};
-  const std::vector<Method> coulomb = {{"method 1", kMethod1Coulomb}};
-  const std::vector<Method> all = {
+  const std::vector<ForceMethod> published_methods = {{"method 1", kMethod1}, {"method 2", kMethod2}};
+  const std::vector<ForceMethod> coulomb = {{"method 1", kMethod1Coulomb}};
+  const std::vector<ForceMethod> all = {
       {"method 1", kMethod1}, {"method 1 with Coulomb", kMethod1Coulomb}, {"method 2", kMethod2}};
   exhibit.tables = {
       error_table("5.4 stiffness", springs, 'K', stiffness, published_methods),
@@ -368,9 +368,9 @@ Result<void> figure_5_4(Workbench& bench, Draft& exhibit) {
   stiffness.y.label = "identified stiffness";
   mass.x.label = "theoretical mass";
   mass.y.label = "identified mass";
-  for (const auto& [name, force] :
-       {Method{"method 1, virtual sensor", kMethod1}, Method{"method 1 with Coulomb friction", kMethod1Coulomb},
-        Method{"method 2, force sensor", kMethod2}}) {
+  for (const auto& [name, force] : {ForceMethod{"method 1, virtual sensor", kMethod1},
+                                    ForceMethod{"method 1 with Coulomb friction", kMethod1Coulomb},
+                                    ForceMethod{"method 2, force sensor", kMethod2}}) {
     ChartSeries stiffnesses{.name = name}, masses{.name = name};
     const auto add = [&](ChartSeries& series, const std::string& rig, const Element& element) {
       series.x.push_back(mean_of(springs, rig, [&](const ForceTrial& trial) { return element.of(trial.truth); }));
@@ -469,8 +469,9 @@ ReproducedRow arm_row(std::string name, const Trials& trials, std::optional<Forc
   return row;
 }
 
-constexpr std::array kArmMethods = {Method{"method 1", kMethod1}, Method{"method 1 with Coulomb", kMethod1Coulomb},
-                                    Method{"method 2", kMethod2}};
+constexpr std::array kArmMethods = {ForceMethod{"method 1", kMethod1},
+                                    ForceMethod{"method 1 with Coulomb", kMethod1Coulomb},
+                                    ForceMethod{"method 2", kMethod2}};
 
 /// Trace of the mean of a matrix of M, B, K over trials.
 double trace_of(const Trials& trials, Force force, Matrix impedance::Model::*matrix) {

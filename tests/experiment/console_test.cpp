@@ -114,7 +114,7 @@ class ConsoleOfASession : public testing::Test {
 
   /// A page as far as the server can tell.
   struct Page {
-    beast::websocket::stream<tcp::socket> socket;
+    beast::websocket::stream<tcp::socket, false> socket;
     Json you, state, estimate, refused;
     std::size_t frames = 0;
 
@@ -146,7 +146,7 @@ class ConsoleOfASession : public testing::Test {
   };
 
   std::unique_ptr<Page> open(const std::string& token, const std::string& origin) {
-    auto page = std::make_unique<Page>(Page{beast::websocket::stream<tcp::socket>(connected()), {}, {}, {}, {}});
+    auto page = std::make_unique<Page>(Page{beast::websocket::stream<tcp::socket, false>(connected()), {}, {}, {}, {}});
     page->socket.set_option(beast::websocket::stream_base::decorator(
         [&](beast::websocket::request_type& request) { request.set(http::field::origin, origin); }));
     beast::error_code error;

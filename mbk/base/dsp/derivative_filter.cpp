@@ -1,6 +1,6 @@
 #include "mbk/base/dsp/derivative_filter.h"
 
-#include <unsupported/Eigen/MatrixFunctions>
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::dsp {
 
@@ -11,7 +11,7 @@ HeldStep held_step(const Vector& denominator, double step) {
   F.row(n - 1).head(n) = -denominator.transpose();
   F(n - 1, n) = 1.0;
   F(n, n + 1) = 1.0;
-  const Matrix E = (step * F).exp();
+  const Matrix E = numeric::matrix_exponential(step * F);
   const Vector from_next = E.col(n + 1).head(n) / step;
   return {E.topLeftCorner(n, n), E.col(n).head(n) - from_next, from_next};
 }

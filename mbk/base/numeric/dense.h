@@ -32,6 +32,9 @@ struct SymmetricEigen {
 /// A⁻¹ by Gaussian elimination with row pivots; not finite where A is singular.
 [[nodiscard]] Matrix inverse(const Matrix& A);
 
+/// e^A of a square matrix.
+[[nodiscard]] Matrix matrix_exponential(const Matrix& A);
+
 /// R of A = Q R, min(m, n)×n with zeros below the diagonal.
 [[nodiscard]] Matrix householder_triangle(Matrix A);
 /// X with the least |A X − B|, for an A of full column rank.

@@ -43,7 +43,7 @@ bool soon(const Condition& condition, std::chrono::seconds patience = 20s) {
 
 class FloodedServer : public testing::Test {
  protected:
-  using Stream = websocket::stream<tcp::socket>;
+  using Stream = websocket::stream<tcp::socket, false>;
 
   void SetUp() override { open(); }
   void TearDown() override {

@@ -156,7 +156,7 @@ class Server::Implementation::Viewer : public std::enable_shared_from_this<Viewe
 
   Implementation& server_;
   Place place_;
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<beast::tcp_stream, false> socket_;  // uncompressed
   Rights rights_;
   beast::flat_buffer buffer_;
   Outbox outbox_{kMaxFrames};

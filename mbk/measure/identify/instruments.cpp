@@ -4,7 +4,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <utility>
 
 #include "mbk/base/numeric/dense.h"
@@ -70,7 +69,7 @@ Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_ti
   generator.block(n, n, n, n) = by_velocity;
   generator.block(n, 2 * n, n, n) = by_force;
   generator.block(2 * n, 3 * n, n, n).setIdentity();
-  const Matrix step = (generator * sample_time).exp();
+  const Matrix step = numeric::matrix_exponential(generator * sample_time);
   const Matrix state = step.topLeftCorner(2 * n, 2 * n);
   const Matrix slope = step.block(0, 3 * n, 2 * n, n) / sample_time, level = step.block(0, 2 * n, 2 * n, n) - slope;
   Matrix motion = Matrix::Zero(u.rows(), 3 * n);

@@ -55,7 +55,7 @@ struct Run {
   bool right_order = false;
 };
 
-Result<Run> perform(std::uint64_t seed) {
+Result<Run> identified_run(std::uint64_t seed) {
   const std::vector<SignalPair> records = {noisy_record(seed)};
   identify::TransferFunctionOptions options;
   options.threads = 1;
@@ -77,7 +77,7 @@ Result<Run> perform(std::uint64_t seed) {
 }  // namespace
 
 Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
-  const auto ran = seeded_runs(options, 50, perform);
+  const auto ran = seeded_runs(options, 50, identified_run);
   if (!ran) return tl::unexpected(ran.error());
   const std::vector<Run>& runs = *ran;
 

@@ -90,7 +90,7 @@ struct Job {
 };
 
 /// Of one job.
-struct Outcome {
+struct FaultOutcome {
   Truth truth;
   Said said;
   std::int64_t ticks = -1;  ///< from the fault to motors that are off, or told to be; −1: never
@@ -178,7 +178,7 @@ class Runner {
         folder_(std::move(folder)),
         robot_(options.program.parent_path() / "mbk_misbehaving_robot") {}
 
-  [[nodiscard]] Result<Outcome> perform(const Job& job, int number) const {
+  [[nodiscard]] Result<FaultOutcome> perform(const Job& job, int number) const {
     const std::uint64_t seed = 100'000 * options_->study.seed + static_cast<std::uint64_t>(number);
     numeric::Random random(seed);
     const auto file = [&](const char* ending) { return folder_ / fmt::format("{}{}", number, ending); };
@@ -224,7 +224,7 @@ class Runner {
     robot->send(SIGTERM);
     if (!robot->wait(kPatience)) return bad_data("the robot does not end", "", command.front());
 
-    Outcome outcome;
+    FaultOutcome outcome;
     outcome.truth = read_truth(file("-robot.log"));
     if (!outcome.truth.ended) {
       return bad_data("the robot has said no last word: " + text_of(file("-robot.log")), "", command.front());
@@ -240,7 +240,7 @@ class Runner {
   }
 
  private:
-  static void judge_time(Outcome& outcome) {
+  static void judge_time(FaultOutcome& outcome) {
     const Truth& truth = outcome.truth;
     std::int64_t stop = truth.gone ? truth.torque_off : truth.told_off;
     if (truth.torque_off >= 0 && (stop < 0 || truth.torque_off > stop)) stop = truth.torque_off;
@@ -283,7 +283,7 @@ int documented(const UdpFaultKind& kind, TrialKind trial) {
   return kind.detection[static_cast<std::size_t>(trial)] + safety::kRampTicks + kLinkTicks;
 }
 
-Verdict verdict_of(const Job& job, const Outcome& outcome) {
+Verdict verdict_of(const Job& job, const FaultOutcome& outcome) {
   const UdpFaultKind& kind = *job.kind;
   const Said& said = outcome.said;
   const bool tripped = !said.trip.empty();
@@ -309,7 +309,7 @@ Verdict verdict_of(const Job& job, const Outcome& outcome) {
   return Verdict::not_recognised;
 }
 
-Safe safe_state_of(const Outcome& outcome) {
+Safe safe_state_of(const FaultOutcome& outcome) {
   if (outcome.said.unconfirmed) return Safe::loud;
   const bool off = outcome.truth.torque_off >= 0 || outcome.truth.motors_on < 0;
   const bool began = outcome.truth.motors_on >= 0;
@@ -350,7 +350,7 @@ class Summary {
  public:
   explicit Summary(ValidationTable& table) : table_(&table) {}
 
-  void add(const Job& job, const Outcome& outcome) {
+  void add(const Job& job, const FaultOutcome& outcome) {
     job.kind == nullptr ? add_free(job, outcome) : add_fault(job, outcome);
   }
 
@@ -388,7 +388,7 @@ class Summary {
   }
 
  private:
-  void add_fault(const Job& job, const Outcome& outcome) {
+  void add_fault(const Job& job, const FaultOutcome& outcome) {
     const UdpFaultKind& kind = *job.kind;
     const Verdict verdict = verdict_of(job, outcome);
     const Safe safe = safe_state_of(outcome);
@@ -420,7 +420,7 @@ class Summary {
   }
 
   /// One for each kind and trial: the slowest.
-  void add_row(const Job& job, const Outcome& outcome, bool apart) {
+  void add_row(const Job& job, const FaultOutcome& outcome, bool apart) {
     if (job.kind->expected != Expected::trip) return;
     const std::string what = fmt::format("{}, {} trial: off after", job.kind->name, word_of(job.trial));
     auto row = std::ranges::find(table_->rows, what, &ValidationRow::what);
@@ -435,7 +435,7 @@ class Summary {
     row->interval99 = {row->value, row->value};
   }
 
-  void add_free(const Job& job, const Outcome& outcome) {
+  void add_free(const Job& job, const FaultOutcome& outcome) {
     ++free_;
     seconds_ += outcome.said.duration;
     const Safe safe = safe_state_of(outcome);
@@ -488,7 +488,7 @@ Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
     jobs.push_back({nullptr, kTrialKinds[static_cast<std::size_t>(run / 2 % 2)], run});
   }
   const Runner runner(options, folder->path());
-  std::vector<std::vector<Outcome>> outcomes(jobs.size());  // all attempts
+  std::vector<std::vector<FaultOutcome>> outcomes(jobs.size());  // all attempts
   const auto count = static_cast<int>(jobs.size());
   int done = 0;
   const auto ran = numeric::parallel_for(
@@ -517,7 +517,7 @@ Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
   table.seed = options.study.seed;
   Summary summary(table);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    for (const Outcome& outcome : outcomes[i]) summary.add(jobs[i], outcome);
+    for (const FaultOutcome& outcome : outcomes[i]) summary.add(jobs[i], outcome);
   }
   summary.finish();
   table.notes.push_back(
