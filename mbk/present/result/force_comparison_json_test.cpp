@@ -7,7 +7,7 @@
 namespace mbk::result {
 namespace {
 
-using json = Json;
+using nlohmann::json;
 
 Vector of(double x, double y) {
   return Eigen::Vector2d(x, y);
