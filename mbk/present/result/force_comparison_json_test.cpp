@@ -7,7 +7,6 @@
 namespace mbk::result {
 namespace {
 
-
 Vector of(double x, double y) {
   return Eigen::Vector2d(x, y);
 }
