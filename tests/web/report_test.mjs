@@ -215,7 +215,7 @@ test("a result that is not usable says so first, with every warning in plain and
 });
 
 test("every warning that mbk knows has plain words", async () => {
-  const header = readFileSync(new URL("../../mbk/model/trial/warning.h", import.meta.url), "utf8");
+  const header = readFileSync(new URL("../../mbk/model/trial/warning.h", import.meta.url), "utf8").split("former_word_table")[0];
   const codes = [...header.matchAll(/\{\w+, "([\w-]+)"\}/g)].map((match) => match[1]);
   assert.ok(codes.length >= 16, String(codes.length));
   const file = changed(one.file, "all-warnings", (document) => {
