@@ -45,6 +45,7 @@ def ours(document):
                 for cell in row["cells"]:
                     for key in ("printed", "printed_value", "rounding", "difference", "agreement"):
                         del cell[key]
+                    cell.pop("was", None)  # of the agreement
     return kept
 
 
