@@ -82,7 +82,7 @@ endfunction()
 
 # A GoogleTest program whose cases CTest sees one by one. A case skipped for want of MBK_DATA_DIR counts as skipped.
 # WAITS: it waits for a socket, which a busy machine may hold up; only tests with this label have a second chance
-# (.ci/run). OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers.
+# (.ci/run). OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers. ALONE: as above.
 function(mbk_test name)
   cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   set(labels "")
