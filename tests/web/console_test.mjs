@@ -186,7 +186,7 @@ test("the stop button and the space bar trip the gate; a reset takes two steps",
   assert.deepEqual(await violations(page), []);
   await take(page, "console-stopped");
   await click("Reset …");
-  await click("The reason is gone");
+  await click("Confirm: cause cleared, participant OK; reset");
   await click("Repeat this trial");
   await perturbing();
   await page.getByRole("button", { name: "End this trial early" }).focus();  // the space bar does not press it
@@ -390,7 +390,7 @@ test("a stop button that is pressed is shown while nothing runs, and the reset s
   say({ stop_button: false });
   await rests();
   await click("Reset …");
-  await click("The reason is gone");
+  await click("Confirm: cause cleared, participant OK; reset");
   await until(/decided reset/);
   tell("quit");
   assert.equal(await ended(operator, { code }), 0);

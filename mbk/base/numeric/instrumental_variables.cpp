@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
@@ -45,7 +46,6 @@ Result<InstrumentalFit> fit_instrumental_variables(const Matrix& Z, const Matrix
   fit.rank = static_cast<int>(PivotedQr(cross, threshold).rank());
   const Index k = fit.structure.cols();
   if (fit.rank < p) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     fit.coefficients = Matrix::Constant(p, q, kNaN);
     fit.free = Vector::Constant(k, kNaN);
     fit.inverse = Matrix::Constant(k, k, kNaN);

@@ -5,14 +5,12 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
-#include <limits>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::numeric {
 namespace instrumental_variables_test {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// x_t = c x_{t−1} + √(1 − c²) w_t, of variance 1.
 Vector first_order(Random& random, Index rows, double correlation) {

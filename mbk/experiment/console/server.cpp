@@ -18,14 +18,14 @@ namespace {
 constexpr auto kBeat = std::chrono::nanoseconds(1'000'000'000 / 120);
 constexpr auto kNoDescriptor = 100ms;  // until it is tried again
 
-Most max_connections() {
-  Most most;
+Capacity capacity() {
+  Capacity capacity;
   rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return most;
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return capacity;
   const auto descriptors = static_cast<std::size_t>(limit.rlim_cur);
-  most.strangers = std::clamp<std::size_t>(descriptors / 4, 1, kMaxStrangers);
-  most.holders = std::clamp<std::size_t>(descriptors / 8, 2, kMaxHolders);
-  return most;
+  capacity.strangers = std::clamp<std::size_t>(descriptors / 4, 1, kMaxStrangers);
+  capacity.holders = std::clamp<std::size_t>(descriptors / 8, 2, kMaxHolders);
+  return capacity;
 }
 
 /// 128 random bits as hexadecimal digits.
@@ -66,7 +66,7 @@ Result<void> Server::Implementation::open(std::uint16_t port) {
   }
   port_ = acceptor_.local_endpoint().port();
   hosts_ = {fmt::format("127.0.0.1:{}", port_), fmt::format("localhost:{}", port_)};
-  max_ = max_connections();
+  capacity_ = capacity();
   accept();
   next_beat_ = std::chrono::steady_clock::now();
   wait_for_beat();

@@ -159,9 +159,9 @@ class Server::Implementation::Connection : public std::enable_shared_from_this<C
 };
 
 void Server::Implementation::welcome(tcp::socket socket) {
-  if (strangers_.size() >= max_.strangers) {
+  if (strangers_.size() >= capacity_.strangers) {
     strangers_.front()->close();
-    refuse(Refusal::crowd, fmt::format("the oldest of {} connections that have shown no token", max_.strangers));
+    refuse(Refusal::crowd, fmt::format("the oldest of {} connections that have shown no token", capacity_.strangers));
   }
   std::make_shared<Connection>(*this, std::move(socket))->run();
 }
@@ -221,7 +221,7 @@ std::pair<http::status, Page> Server::Implementation::page_for(const Request& re
   static const Page wrong = sentence_page("This address is not right. Open the one that mbk run printed.");
   if (rights == Rights::none) return {http::status::forbidden, wrong};
   if (!placed) {
-    refuse(Refusal::crowd, fmt::format("a page behind {} with the same token", max_.holders));
+    refuse(Refusal::crowd, fmt::format("a page behind {} with the same token", capacity_.holders));
     return {http::status::service_unavailable,
             sentence_page("Too many pages are open. Close one, and load this again.")};
   }

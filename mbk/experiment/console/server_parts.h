@@ -63,7 +63,7 @@ class Spare {
 };
 
 /// How many connections there may be of each sort, so that the recording always finds a descriptor.
-struct Most {
+struct Capacity {
   std::size_t strangers = kMaxStrangers, holders = kMaxHolders;
 };
 
@@ -132,7 +132,7 @@ class Server::Implementation {
   /// Null where none is left.
   [[nodiscard]] Place place(Rights rights) {
     std::size_t& taken = rights == Rights::control ? controlling_ : watching_;
-    if (taken >= max_.holders) return nullptr;
+    if (taken >= capacity_.holders) return nullptr;
     return Place(&++taken);
   }
 
@@ -148,7 +148,7 @@ class Server::Implementation {
   Handlers handlers_;
   std::string token_, viewing_token_;
   // outlive the connections, which end with the context
-  Most max_;
+  Capacity capacity_;
   std::size_t controlling_ = 0, watching_ = 0;  // connections that have shown a token
   std::list<Connection*> strangers_;            // the others, oldest first
   Refusals refusals_;

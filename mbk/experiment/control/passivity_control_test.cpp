@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "mbk/base/core/nan.h"
 #include "tests/support/allocations.h"
 
 namespace mbk::control {
@@ -15,7 +16,6 @@ namespace passivity_control_test {
 
 constexpr double kTick = 1e-3;
 constexpr double kRounding = 1e-12;  // [J], of sums of thousands of terms far below 1 J
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A device that a hand pushes against a virtual wall, moved on exactly over each tick.
 struct Wall {

@@ -2,9 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/model/trial/quantity_channels.h"
@@ -12,7 +12,6 @@
 namespace mbk::journal {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kMaxLost = 100'000, kMaxLostPerTick = 100;  // rows of NaN: a number in a file may claim any
 
 /// The samples of the recording: each a tick, or the place of one that was lost.

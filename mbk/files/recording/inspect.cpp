@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string_view>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::recording {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGap = 1.5;  ///< median intervals
 constexpr Index kRunLength = 5;
 constexpr Index kRuns = 3;

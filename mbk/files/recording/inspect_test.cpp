@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/test_files.h"
 
@@ -45,7 +46,6 @@ TEST(Inspect, ReportsGaps) {
 }
 
 TEST(Inspect, ReportsSamplesThatAreNaNInEveryChannel) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Recording recording = with_channel("force_x", Vector{{1, kNaN, kNaN, 4, kNaN, 6, kNaN}});
   recording.channels.push_back({"force_y", "N", "base", Vector{{kNaN, kNaN, kNaN, 4, 5, 6, kNaN}}});
   const Inspection facts = inspect(recording);
@@ -68,7 +68,7 @@ TEST(Inspect, ReportsDuplicatedAndBackwardTimes) {
 
 TEST(Inspect, ReportsNonFiniteValues) {
   Vector values = Vector::LinSpaced(10, 0, 1);
-  values[3] = std::numeric_limits<double>::quiet_NaN();
+  values[3] = kNaN;
   values[7] = std::numeric_limits<double>::infinity();
   const Inspection facts = inspect(with_channel("hand_x", values));
   ASSERT_EQ(facts.non_finite.size(), 1u);

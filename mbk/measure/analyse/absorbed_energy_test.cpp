@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::analyse {
 namespace absorbed_energy_test {
 
 constexpr double kPi = std::numbers::pi, kRate = 1000.0, kStep = 1.0 / kRate;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Path = std::function<Vector(double)>;
 

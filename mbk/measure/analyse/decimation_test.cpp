@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
-namespace mbk::analyse {
-namespace thinning_test {
+#include "mbk/base/core/nan.h"
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+namespace mbk::analyse {
+namespace decimation_test {
 
 Vector counting(Index samples) {
   return Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
@@ -160,5 +159,5 @@ TEST(DecimationOf, KeepsExtremesWhereEverySoManyRowsWouldMissThem) {
   EXPECT_EQ(decimation_of(trial, rows), Decimation::extremes);
 }
 
-}  // namespace thinning_test
+}  // namespace decimation_test
 }  // namespace mbk::analyse

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/dsp/autocorrelation.h"
 #include "mbk/base/dsp/integral.h"
 #include "mbk/base/numeric/statistics.h"
@@ -19,7 +19,6 @@ namespace {
 
 constexpr double kLongestLag = 2.0;  ///< of the autocorrelation [s]
 constexpr Index kMaxLags = 400;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 bool is_known(const impedance::Model& model, Index axes) {
   return model.M.rows() == axes && stacked(model).allFinite();

@@ -5,19 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::analyse {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kEnoughBlocks = 6;
 constexpr std::size_t kEnoughThatAgree = 5;  ///< 2⁻⁵ = 3 % < 5 %
 

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/passivity_index.h"
@@ -21,7 +22,6 @@ namespace judge_passivity_test {
 using numeric::Random;
 using testing::HasSubstr;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOneSided = 1.6448536269514722;  // Φ⁻¹(0.95)
 const PassivityBand kBand{Hertz(0.3), Hertz(3.0), "as asked"};
 

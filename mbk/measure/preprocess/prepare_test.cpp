@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/measure/preprocess/test_recordings.h"
 #include "mbk/model/impedance/model.h"
 #include "mbk/model/perturbation/multisine.h"
@@ -22,7 +23,6 @@ using testing_support::facts_of;
 using testing_support::values_of;
 
 constexpr double kRate = 1000.0;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Result<PreparedTrial> prepared(const Recording& recording, const Options& options = {}) {
   return prepare(recording, facts_of(recording), options);

@@ -9,13 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/nan.h"
+
 namespace mbk::preprocess {
 namespace windows_test {
 
 using testing::HasSubstr;
 
 constexpr Hertz kRate{1000.0};
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Index kHalf = 50;  // of the published smoothing window, W = 101
 
 /// An even clock.

@@ -2,9 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 
@@ -74,7 +74,6 @@ Sensitive antisymmetry_margin(const Model& model, double omega, int sign) {
   const double determinant = B.determinant();
   const Sensitive a = antisymmetry(model, omega);
   if (!(determinant > 0.0)) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     return {kNaN, Eigen::RowVectorXd::Constant(a.gradient.size(), kNaN)};
   }
   const double root = std::sqrt(determinant);

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/option_limits.h"
 
 namespace mbk::robot {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Delay of y ← a y + (1 − a) u at zero frequency, in ticks.
 double ticks_late(double memory) {

@@ -42,6 +42,12 @@ enum class Agreement {
                                          {differs, "differs"}});
 }
 
+/// Agreements that have another name since mbk.reproduction/1: "was" in JSON, for one version.
+[[nodiscard]] constexpr auto former_word_table(Agreement) {
+  using enum Agreement;
+  return std::to_array<Word<Agreement>>({{erratum, "slip"}, {round_trip, "within rounding"}});
+}
+
 /// One cell of a table: numbers, or words where there is no number.
 struct ReproducedCell {
   std::string printed;                             ///< as it stands in print, every digit; empty: nothing is printed

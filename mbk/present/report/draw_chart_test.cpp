@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 
@@ -21,8 +22,6 @@ namespace draw_chart_test {
 using testing::HasSubstr;
 using testing::Not;
 using Drawn = ChartSeries::Drawn;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Chart chart() {
   Chart c;

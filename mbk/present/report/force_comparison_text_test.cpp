@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
+#include "mbk/base/core/nan.h"
 
 namespace mbk::report {
 namespace {
@@ -13,7 +13,6 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 ForceComparison comparison() {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const auto of = [](double x, double y) -> Vector { return Eigen::Vector2d(x, y); };
   ForceComparison one;
   one.duration = 50.0;

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/present/report/picture.h"
 
 namespace mbk::report {
@@ -16,8 +17,6 @@ namespace text_test {
 
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Identification identification(int axes = 2) {
   Identification id;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include "mbk/base/core/nan.h"
 
 namespace mbk::result {
 namespace {
@@ -12,7 +12,6 @@ Vector of(double x, double y) {
 }
 
 TEST(ForceComparisonJson, HasEveryNumberInSiAndNullForWhatIsUndefined) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   ForceComparison comparison;
   comparison.duration = 12.5;
   comparison.all = {12500, of(0.01, -0.02), of(0.1, 0.2)};

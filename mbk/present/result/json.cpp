@@ -279,15 +279,14 @@ impedance::Model model_from(const Json& json, const char* name, Index n) {
   const auto found = json.find(name);
   if (found == json.end() || !found->is_object()) throw Malformed{fmt::format("'{}' is missing", name)};
   return {matrix_from(*found, "M", n, n), matrix_from(*found, "B", n, n), matrix_from(*found, "K", n, n),
-          found->contains("x0") ? Vector(matrix_from(*found, "x0", n, 1)) : Vector::Constant(n, kUnknown)};
+          found->contains("x0") ? Vector(matrix_from(*found, "x0", n, 1)) : Vector::Constant(n, kNaN)};
 }
 
 Fit fit_from(const Json& json, Index n) {
   Fit fit;
   fit.vaf = list_from(json, "VAF", n);
   fit.rmse = list_from(json, "RMSE", n);
-  fit.vaf_in_sample =
-      json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n) : Vector::Constant(n, kUnknown);
+  fit.vaf_in_sample = json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n) : Vector::Constant(n, kNaN);
   const std::string on = json.value("validated_on", validated_on(true));
   fit.held_out = on == validated_on(true) || on == "held-back";  // so until the version before
   return fit;
@@ -326,9 +325,9 @@ Identification identification_from(const Json& json) {
   id.axes = one_axis ? 1 : 2;
   const Index n = id.axes, count = 3 * n * n + n;
   id.model = model_from(json, "model", n);
-  id.covariance = Matrix::Constant(count, count, kUnknown);
-  const Matrix none = Matrix::Constant(n, n, kUnknown);
-  id.standard_error = {none, none, none, Vector::Constant(n, kUnknown)};
+  id.covariance = Matrix::Constant(count, count, kNaN);
+  const Matrix none = Matrix::Constant(n, n, kNaN);
+  id.standard_error = {none, none, none, Vector::Constant(n, kNaN)};
   if (json.contains("standard_error")) {
     id.standard_error = model_from(json, "standard_error", n);
     id.covariance = impedance::stacked(id.standard_error).cwiseAbs2().asDiagonal();
@@ -342,12 +341,12 @@ Identification identification_from(const Json& json) {
   if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
     for (const Json& input : *inputs) {
       id.sources.push_back({input.value("file", ""), input.value("format", ""), input.value("sha256", "")});
-      id.durations.push_back(input.contains("duration_s") ? number_from(input["duration_s"]) : kUnknown);
-      id.rates.push_back(input.contains("rate_hz") ? number_from(input["rate_hz"]) : kUnknown);
+      id.durations.push_back(input.contains("duration_s") ? number_from(input["duration_s"]) : kNaN);
+      id.rates.push_back(input.contains("rate_hz") ? number_from(input["rate_hz"]) : kNaN);
     }
   }
   id.motion = motion_from(json);
-  const Vector unknown = Vector::Constant(n, kUnknown);
+  const Vector unknown = Vector::Constant(n, kNaN);
   id.fit = json.contains("fit") ? fit_from(json["fit"], n) : Fit{unknown, unknown, unknown, false};
   if (json.contains("warnings")) id.warnings = warnings_from(json["warnings"]);
   if (const auto notes = json.find("notes"); notes != json.end()) id.notes = notes->get<std::vector<std::string>>();

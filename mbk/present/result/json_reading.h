@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <string>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/present/result/json_parts.h"
 
 /// How documents of mbk are read back. For the sources of this module only.
 namespace mbk::result {
-
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// What stands in a document and cannot be; thrown within a reading function only.
 struct Malformed {
@@ -24,7 +22,7 @@ inline bool has_schema(const Json& json, const char* schema) {
 }
 
 inline double number_from(const Json& json) {
-  if (json.is_null()) return kUnknown;
+  if (json.is_null()) return kNaN;
   if (!json.is_number())
     throw Malformed{fmt::format("a number was expected, and a value of type '{}' stands there", json.type_name())};
   return json.get<double>();

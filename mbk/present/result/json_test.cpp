@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "tests/support/schemas.h"
 
 namespace mbk::result {
@@ -19,8 +20,6 @@ namespace json_test {
 
 using Json = nlohmann::json;
 using testing::HasSubstr;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Numbers that need all of their digits.
 Measurement measured(int axes) {

@@ -2,17 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "mbk/base/core/nan.h"
 #include "tests/support/schemas.h"
 
 namespace mbk::result {
 namespace report_json_test {
 
 using Json = nlohmann::json;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Measurement measured() {
   Identification id;

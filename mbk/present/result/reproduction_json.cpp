@@ -9,12 +9,6 @@ Json optional(const std::optional<double>& value) {
   return value ? number(*value) : Json(nullptr);
 }
 
-/// nullptr where it has kept its name.
-const char* agreement_in_schema_1(Agreement agreement) {
-  if (agreement == Agreement::erratum) return "slip";
-  return agreement == Agreement::round_trip ? "within rounding" : nullptr;
-}
-
 Json cell_json(const ReproducedCell& cell) {
   Json json = {{"printed", cell.printed.empty() ? Json(nullptr) : Json(cell.printed)},
                {"printed_value", optional(cell.printed_value)},
@@ -24,7 +18,7 @@ Json cell_json(const ReproducedCell& cell) {
                {"spread", optional(cell.spread)},
                {"range", cell.range ? interval(*cell.range) : Json(nullptr)},
                {"agreement", word_of(cell.agreement)}};
-  if (const char* was = agreement_in_schema_1(cell.agreement)) json["was"] = was;
+  if (const auto was = former_word_of(cell.agreement); !was.empty()) json["was"] = was;
   return json;
 }
 

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/model/robot/single_joint.h"
 #include "tests/support/schemas.h"
 
@@ -17,8 +17,6 @@ namespace robot_json_test {
 using Json = nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A drive with a mass, viscous friction that is known, Stribeck friction and an offset; numbers need all their digits.
 RobotIdentification identified() {
