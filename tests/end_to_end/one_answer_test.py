@@ -2,7 +2,7 @@
 """One recording, one answer: what mbk run says of a trial is what mbk measure says of its recording, missed ticks and
 the handle's mass included."""
 
-from command import BAD_DATA, NOT_USABLE, Case, main, run
+from command import Case, main, run
 
 TICK = 1e-3
 SHORT = """

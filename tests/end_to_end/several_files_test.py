@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
 """Several recordings: a mean is of usable, different trials of one condition; one bad file costs only itself."""
 
-from command import BAD_DATA, FINE, NOT_USABLE, Case, copy, main, make_log, run
+from command import BAD_DATA, NOT_USABLE, Case, copy, main, make_log, run
 
-WITH_CONDITION = """
-[recording]
-condition = "{condition}"
+SCENARIO = """
 [robot]
-handle_mass_kg = {handle}
+handle_mass_kg = 0.194
 [control]
 kind = "position"
 [perturbation]
@@ -79,10 +77,11 @@ class Mean(Case):
         self.assertIn("fewer than two", ran.json["no_summary"])
         self.assertRegex(" ".join(run("measure", "--quiet", log, bad).out.split()), r"no mean: .*fewer than two")
 
-    def simulated(self, name, condition, seed, handle=0.194):
-        scenario = self.file(f"{name}.toml", WITH_CONDITION.format(condition=condition, handle=handle))
-        path = self.folder / f"{name}.h5"
-        self.fine("simulate", scenario, "--seed", seed, "--blind", "--quiet", "--out", path)
+    def simulated(self, name, condition, seed):
+        path = self.folder / f"{name}.csv"
+        self.fine("simulate", self.file("scenario.toml", SCENARIO), "--seed", seed, "--blind", "--quiet", "--out", path)
+        first, rest = path.read_text(encoding="utf-8").split("\n", 1)
+        path.write_text(f"{first}\n# condition: {condition}\n{rest}", encoding="utf-8")
         return path
 
     def test_different_conditions_have_no_mean_and_why_is_said(self):

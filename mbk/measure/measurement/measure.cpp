@@ -93,7 +93,7 @@ std::optional<Hertz> clock_across_missed_ticks(const Recording& recording, const
 
 Result<Source> make_ready(const Recording& recording, const Options& options) {
   Source source{&recording, recording::inspect(recording), {}, options.resample, {}};
-  if (!source.clock && options.preprocess.mode == Mode::improved) {
+  if (!source.clock && options.preprocess.mode == Mode::default_mode) {
     source.clock = clock_across_missed_ticks(recording, source.recorded);
   }
   if (source.clock) {
