@@ -47,10 +47,6 @@ std::string inputs_line(const Identification& id) {
   return text;
 }
 
-const char* long_name(Method method) {
-  return method == Method::least_squares ? "least squares" : "instrumental variables";
-}
-
 std::string how_made(const Identification& id) {
   if (id.preparations.empty()) return "";  // a result that was read back
   const Preparation& how = id.preparations.front();
@@ -63,7 +59,7 @@ std::string how_made(const Identification& id) {
   rows.push_back({"mode", how.mode == Mode::reference
                               ? fmt::format("reference, {} of the published procedure", word_of(how.procedure))
                               : "default"});
-  rows.push_back({"method", fmt::format("{}{}", long_name(id.method),
+  rows.push_back({"method", fmt::format("{}{}", method_name(id.method),
                                         id.method_rule.empty() ? "" : fmt::format(" ({})", id.method_rule))});
   rows.push_back({"protocol", fmt::format("{} ({})", word_of(how.protocol), how.protocol_rule)});
   rows.push_back({"window", how.window_rule});
@@ -238,7 +234,7 @@ std::string alternative_text(const Identification& id, const Identification& alt
   const bool by_instruments = id.method == Method::instrumental_variables;
   const Identification& instrumental = by_instruments ? id : alternative;
   const auto model = [&] {
-    return fmt::format("  by {}, VAF {}\n", long_name(alternative.method), per_axis(alternative.fit.vaf, "%", 1)) +
+    return fmt::format("  by {}, VAF {}\n", method_name(alternative.method), per_axis(alternative.fit.vaf, "%", 1)) +
            model_table(alternative.model, alternative.standard_error, numeric::kNormal95, alternative.motion);
   };
   if (!instrumental.usable || !instrumental.instrument->strong()) {
@@ -276,7 +272,7 @@ std::string alternative_text(const Identification& id, const Identification& alt
                                largest)) +
          (alternative.usable
               ? model()
-              : fmt::format("  {}: not usable, so that no model is shown\n", long_name(alternative.method)));
+              : fmt::format("  {}: not usable, so that no model is shown\n", method_name(alternative.method)));
 }
 
 std::string by_sensor_text(const Identification& computed, const Identification& sensed,
@@ -332,7 +328,7 @@ std::string summary_text(const SeveralTrials& together) {
   const Summary& summary = *together.summary;
   const std::size_t all = static_cast<std::size_t>(summary.trials) + summary.omitted.size();
   std::string text = fmt::format("mean of {}{} trials, by {}\n", summary.trials,
-                                 summary.omitted.empty() ? "" : fmt::format(" of {}", all), long_name(summary.method)) +
+                                 summary.omitted.empty() ? "" : fmt::format(" of {}", all), method_name(summary.method)) +
                      model_table(summary.mean, summary.half_width95, 1.0, summary.motion) +
                      "  (± is the 95 % interval of the mean, by Student's t from how the trials differ)\n";
   for (const OmittedTrial& one : summary.omitted)
