@@ -53,7 +53,7 @@ std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordi
 }
 
 /// Everything that a run of the command found.
-struct Found {
+struct MeasuredTrials {
   std::vector<Recording> recordings;  ///< those that are behind `measured`
   std::vector<Measurement> measured;
   std::vector<std::optional<Diagnostics>> diagnostics;  ///< one for each result
@@ -68,10 +68,10 @@ struct Found {
 };
 
 /// One fit over all of them: what cannot be read is missing in it, so that there is none.
-Result<Found> measure_pooled(const Arguments& arguments, const measurement::Options& options) {
+Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
   auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return tl::unexpected(recordings.error());
-  Found found;
+  MeasuredTrials found;
   found.recordings = std::move(*recordings);
   add_arm(arguments.analyse, found.recordings);
   auto pooled = measure_one(found.recordings, options, arguments.report.file.has_value());
@@ -81,10 +81,10 @@ Result<Found> measure_pooled(const Arguments& arguments, const measurement::Opti
 }
 
 /// One result for each: a recording that cannot be measured costs only itself.
-Result<Found> measure_apart(const Arguments& arguments, const measurement::Options& options) {
+Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
   auto each = read_each_perturbation(arguments.reading, arguments.sensor);
   if (!each) return tl::unexpected(each.error());
-  Found found;
+  MeasuredTrials found;
   found.several = each->size() > 1;
   std::vector<Error>& failed = found.together.failed;
   std::vector<Recording> readable;

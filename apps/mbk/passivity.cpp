@@ -50,16 +50,16 @@ struct Answer {
 };
 
 /// Answers, and what could not be had; each error names its file.
-struct Answers {
+struct PassivityAnswers {
   std::vector<Answer> found;
   std::vector<Error> failed;
 };
 
-Result<Answers> from_recordings(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
+Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
-  Answers answers;
+  PassivityAnswers answers;
   const auto answer = [&](std::span<const Recording> recordings) -> Result<void> {
     auto measured = measurement::measure(recordings, *options);
     if (!measured) return tl::unexpected(measured.error());
@@ -84,8 +84,8 @@ Result<Answers> from_recordings(const PassivityArguments& arguments, const std::
 }
 
 /// A stored result holds the model and not the data, so that only the model can be judged.
-Result<Answers> from_results(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
-  Answers answers;
+Result<PassivityAnswers> from_results(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
+  PassivityAnswers answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
     const auto text = read_text(file);
     if (!text) return tl::unexpected(text.error());

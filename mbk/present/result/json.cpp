@@ -98,7 +98,7 @@ Json instrument_json(const InstrumentCheck& check) {
           {"coherent_residual_fraction", list(check.coherent_residual)}};
 }
 
-Json response_json(const UnmodelledResponse& response) {
+Json unmodelled_json(const UnmodelledResponse& response) {
   Json json = {{"coherent_share", list(response.coherent)}};
   if (response.induced.size() > 0) json["induced_share"] = list(response.induced);
   return json;
@@ -113,7 +113,7 @@ Json alternative_json(const Identification& id) {
                {"usable", id.usable}};
   json["warnings"] = warnings_json(id.warnings);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
-  if (id.response) json["unmodelled_response"] = response_json(*id.response);
+  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
   return json;
 }
 
@@ -203,7 +203,7 @@ Json result_json(const Measurement& measured) {
   }
   if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
-  if (id.response) json["unmodelled_response"] = response_json(*id.response);
+  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
   json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
