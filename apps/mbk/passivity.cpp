@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -48,29 +49,43 @@ struct Answer {
   Motion motion = Motion::translation;
 };
 
-Result<std::vector<Answer>> from_recordings(const PassivityArguments& arguments,
-                                            const std::optional<PassivityBand>& band) {
+/// Answers, and what could not be had; each error names its file.
+struct PassivityAnswers {
+  std::vector<Answer> found;
+  std::vector<Error> failed;
+};
+
+Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
-  const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
-  if (!recordings) return tl::unexpected(recordings.error());
-  std::vector<Answer> answers;
-  const std::span<const Recording> all(*recordings);
-  for (std::size_t k = 0; k < (arguments.pool ? 1 : all.size()); ++k) {
-    auto measured = measurement::measure(arguments.pool ? all : all.subspan(k, 1), *options);
+  PassivityAnswers answers;
+  const auto answer = [&](std::span<const Recording> recordings) -> Result<void> {
+    auto measured = measurement::measure(recordings, *options);
     if (!measured) return tl::unexpected(measured.error());
     const Identification& id = measured->identification;
-    answers.push_back({id.sources, std::move(*measured->passivity), std::move(measured->energies),
-                       std::move(measured->consistent), id.motion});
+    answers.found.push_back({id.sources, std::move(*measured->passivity), std::move(measured->energies),
+                             std::move(measured->consistent), id.motion});
+    return {};
+  };
+  if (arguments.pool) {
+    const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
+    if (!recordings) return tl::unexpected(recordings.error());
+    if (auto ok = answer(*recordings); !ok) return tl::unexpected(ok.error());
+    return answers;
+  }
+  const auto each = read_each_perturbation(arguments.reading, arguments.sensor);
+  if (!each) return tl::unexpected(each.error());
+  for (const Result<Recording>& one : *each) {
+    const Result<void> ok = one ? answer({&*one, 1}) : tl::unexpected(one.error());
+    if (!ok) answers.failed.push_back(ok.error());
   }
   return answers;
 }
 
 /// A stored result holds the model and not the data, so that only the model can be judged.
-Result<std::vector<Answer>> from_results(const PassivityArguments& arguments,
-                                         const std::optional<PassivityBand>& band) {
-  std::vector<Answer> answers;
+Result<PassivityAnswers> from_results(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
+  PassivityAnswers answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
     const auto text = read_text(file);
     if (!text) return tl::unexpected(text.error());
@@ -86,11 +101,11 @@ Result<std::vector<Answer>> from_results(const PassivityArguments& arguments,
       }
       auto model = analyse::model_passivity(id, band ? *band : *stored);
       if (!model) return tl::unexpected(model.error().in(file.string()));
-      answers.push_back({id.sources,
-                         analyse::decide({std::move(*model)}, id.fit.vaf.mean(), std::nullopt),
-                         {},
-                         std::nullopt,
-                         id.motion});
+      answers.found.push_back({id.sources,
+                               analyse::decide({std::move(*model)}, id.fit.vaf.mean(), std::nullopt),
+                               {},
+                               std::nullopt,
+                               id.motion});
     }
   }
   return answers;
@@ -116,18 +131,21 @@ int run(const PassivityArguments& arguments) {
   }
   const auto answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
   if (!answers) return report_error(answers.error());
+  int code = kFine;
+  for (const Error& error : answers->failed) code = std::max(code, report_error(error));
+  if (answers->found.empty()) return code;
   std::string shown;
   if (arguments.output.json) {
     std::vector<std::string> documents;
-    for (const Answer& one : *answers) {
+    for (const Answer& one : answers->found) {
       documents.push_back(result::passivity_to_json(one.sources, one.passivity, one.energies));
     }
     shown = result::one_or_list_json("mbk.passivities/1", documents);
   } else {
-    for (const Answer& one : *answers) shown += (shown.empty() ? "" : "\n") + text_of(one);
+    for (const Answer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }
   if (auto ok = arguments.output.to.write(shown); !ok) return report_error(ok.error());
-  return kFine;
+  return code;
 }
 
 }  // namespace

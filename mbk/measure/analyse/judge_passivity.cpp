@@ -200,7 +200,8 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
 }
 
 bool instruments_speak(const Identification& instrumental, const std::optional<Disagreement>& disagreement) {
-  return instrumental.instrument && instrumental.instrument->strong() && disagreement && disagreement->significant;
+  return instrumental.usable && instrumental.instrument && instrumental.instrument->strong() && disagreement &&
+         disagreement->significant;
 }
 
 Passivity decide(std::vector<ModelPassivity> models, double explained, std::optional<EnergyAccount> energy) {

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mbk/files/recording/inspect.h"
@@ -54,6 +57,7 @@ struct Source {
   const Recording* given = nullptr;
   Inspection recorded;  ///< of `given`
   std::optional<Recording> even;
+  std::optional<Hertz> clock;  ///< of `even`
   std::optional<preprocess::VirtualForce> computed;
 
   [[nodiscard]] const Recording& recording() const {
@@ -66,10 +70,34 @@ struct Source {
   }
 };
 
+/// The even clock of a session that missed ticks, where a line across them is shorter than anything that the limb does.
+std::optional<Hertz> clock_across_missed_ticks(const Recording& recording, const Inspection& inspection) {
+  constexpr double kLongest = 0.1;  // [s], a third of the shortest period that is excited
+  constexpr double kMaxShare = 0.05;    // of the time
+  if (inspection.gaps.empty() || !inspection.missing.empty() || inspection.duplicated_times > 0 ||
+      inspection.backward_times > 0) {
+    return std::nullopt;
+  }
+  const auto rate = recording.metadata.find("rate_hz");
+  if (rate == recording.metadata.end()) return std::nullopt;
+  double hz = 0.0;
+  const std::string& text = rate->second;
+  if (std::from_chars(text.data(), text.data() + text.size(), hz).ec != std::errc() || !(hz > 0.0)) return std::nullopt;
+  double bridged = 0.0;
+  for (const Gap& gap : inspection.gaps) {
+    if (!(gap.length <= kLongest)) return std::nullopt;
+    bridged += gap.length;
+  }
+  return bridged <= kMaxShare * inspection.duration ? std::optional(Hertz(hz)) : std::nullopt;
+}
+
 Result<Source> make_ready(const Recording& recording, const Options& options) {
-  Source source{&recording, recording::inspect(recording), {}, {}};
-  if (options.resample) {
-    auto even = preprocess::resample(recording, *options.resample);
+  Source source{&recording, recording::inspect(recording), {}, options.resample, {}};
+  if (!source.clock && options.preprocess.mode == Mode::default_mode) {
+    source.clock = clock_across_missed_ticks(recording, source.recorded);
+  }
+  if (source.clock) {
+    auto even = preprocess::resample(recording, *source.clock);
     if (!even) return tl::unexpected(even.error());
     source.even = std::move(*even);
   }
@@ -85,7 +113,14 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
 
 Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, const Options& options) {
   std::vector<Source> sources;
+  std::map<std::string, std::string> files;  // by hash
   for (const Recording& recording : recordings) {
+    for (const SourceFile& file : recording.sources) {
+      const auto [twin, fresh] = files.emplace(file.sha256, file.path);
+      if (!fresh && !file.sha256.empty()) {
+        return bad_data(fmt::format("is the same file as {}", twin->second), "pool each trial once", file.path);
+      }
+    }
     auto source = make_ready(recording, options);
     if (!source)
       return tl::unexpected(recording.sources.empty() ? source.error() : source.error().in(recording.sources[0].path));
@@ -101,7 +136,7 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
                                    options.preprocess, source.computed ? &*source.computed : nullptr);
   if (!trial) return trial;
   warn_of_clipping(source.recorded, *trial);
-  if (options.resample) warn_of_resampling(source.recorded, *options.resample, *trial);
+  if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   return trial;
 }
 
@@ -140,7 +175,20 @@ Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& source
   return trials;
 }
 
-/// By the method that was asked for and, where a reference was recorded, by the other one too.
+/// The method that a result is by where none was asked for, and why.
+std::pair<Method, std::string> recommended(const std::vector<PreparedTrial>& trials, const identify::Comparison& both) {
+  const auto by_force = [](const PreparedTrial& trial) { return trial.reference_quantity == ReferenceQuantity::force; };
+  if (trials.front().preparation.mode == Mode::reference) return {Method::least_squares, "the published procedure"};
+  if (!std::ranges::all_of(trials, by_force)) {
+    return {Method::least_squares, "the robot controls the position"};
+  }
+  if (!both.instrumental_variables.usable) {
+    return {Method::least_squares, "the reference is a force, but instrumental variables are not usable"};
+  }
+  return {Method::instrumental_variables, "the reference is a force: the limb and the robot move in a closed loop"};
+}
+
+/// By the method that was asked for or is recommended and, where a reference was recorded, by the other one too.
 Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, const identify::Options& options) {
   const bool by_instruments = options.method == Method::instrumental_variables;
   const bool known =
@@ -148,11 +196,13 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
   if (known || by_instruments) {
     auto both = identify::compare_methods(trials, options);
     if (both) {
-      auto &ls = both->least_squares, &iv = both->instrumental_variables;
-      if (by_instruments) std::swap(ls, iv);
+      auto &first = both->least_squares, &other = both->instrumental_variables;
+      const auto [method, rule] = recommended(trials, *both);
+      if (!options.method) first.method_rule = other.method_rule = rule;
+      if (options.method.value_or(method) == Method::instrumental_variables) std::swap(first, other);
       Measurement measured;
-      measured.identification = std::move(ls);
-      measured.alternative = std::move(iv);
+      measured.identification = std::move(first);
+      measured.alternative = std::move(other);
       measured.disagreement = both->disagreement;
       return measured;
     }

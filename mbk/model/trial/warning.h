@@ -30,6 +30,11 @@ enum class WarningCode {
   input_explains_residual,
   pole_outside_band,
   uneven_clock,
+  closed_loop_bias,
+  unmodelled_response,
+  weak_instruments,
+  invalid_instruments,
+  mixed_conditions,
 };
 
 /// Stable: scripts may test for these words.
@@ -57,6 +62,11 @@ enum class WarningCode {
       {input_explains_residual, "input-explains-residual"},
       {pole_outside_band, "pole-outside-band"},
       {uneven_clock, "uneven-clock"},
+      {closed_loop_bias, "closed-loop-bias"},
+      {unmodelled_response, "unmodelled-response"},
+      {weak_instruments, "weak-instruments"},
+      {invalid_instruments, "invalid-instruments"},
+      {mixed_conditions, "mixed-conditions"},
   });
 }
 

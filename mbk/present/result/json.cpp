@@ -98,6 +98,12 @@ Json instrument_json(const InstrumentCheck& check) {
           {"coherent_residual_fraction", list(check.coherent_residual)}};
 }
 
+Json unmodelled_json(const UnmodelledResponse& response) {
+  Json json = {{"coherent_share", list(response.coherent)}};
+  if (response.induced.size() > 0) json["induced_share"] = list(response.induced);
+  return json;
+}
+
 /// A second method beside the first, without what both have in common.
 Json alternative_json(const Identification& id) {
   Json json = {{"method", word_of(id.method)},
@@ -105,7 +111,9 @@ Json alternative_json(const Identification& id) {
                {"standard_error", model_json(id.standard_error)},
                {"fit", fit_json(id.fit)},
                {"usable", id.usable}};
+  json["warnings"] = warnings_json(id.warnings);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
+  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
   return json;
 }
 
@@ -145,6 +153,7 @@ Json consistent_json(const ConsistentFit& fit) {
 
 Json disagreement_json(const Disagreement& disagreement) {
   return {{"parameter", disagreement.parameter},
+          {"least_squares", number(disagreement.least_squares)},
           {"iv_less_ls", number(disagreement.difference)},
           {"standard_error", number(disagreement.standard_error)},
           {"significant", disagreement.significant}};
@@ -173,6 +182,7 @@ Json result_json(const Measurement& measured) {
     json["protocol"] = word_of(id.preparations.front().protocol);
   }
   json["method"] = word_of(id.method);
+  if (!id.method_rule.empty()) json["method_rule"] = id.method_rule;
   json["axes"] = id.axes;
   json["structure"] = word_of(id.structure);
   if (id.motion != Motion::unknown) {
@@ -193,6 +203,7 @@ Json result_json(const Measurement& measured) {
   }
   if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
+  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
   json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
@@ -208,7 +219,8 @@ Json result_json(const Measurement& measured) {
                         {"samples", id.samples},
                         {"duration_s", id.excitation.duration},
                         {"hac_lag_s", id.hac_lag_s},
-                        {"handle_mass_kg", id.handle_mass}};
+                        {"handle_mass_kg", id.handle_mass},
+                        {"handle_mass_from", word_of(id.handle_mass_from)}};
   json["excitation"] = {{"rank", id.excitation.rank},
                         {"condition", number(id.excitation.condition)},
                         {"motion_ratio", number(id.excitation.motion_ratio)},
@@ -360,14 +372,27 @@ std::string to_json(const Measurement& measured) {
   return dumped(result_json(measured));
 }
 
-std::string to_json(const std::vector<Measurement>& results, const std::optional<Summary>& summary) {
+std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together) {
   Json json = header(kResultsSchema);
   json["results"] = Json::array();
   for (const Measurement& measured : results) json["results"].push_back(result_json(measured));
-  if (summary) {
+  if (const auto& summary = together.summary) {
+    Json omitted = Json::array();
+    for (const OmittedTrial& one : summary->omitted) omitted.push_back({{"file", one.file}, {"why", one.why}});
     json["summary"] = {{"trials", summary->trials},
+                       {"omitted", std::move(omitted)},
+                       {"method", word_of(summary->method)},
                        {"model", model_json(summary->mean)},
-                       {"between_trial_standard_error", model_json(summary->between_trial_standard_error)}};
+                       {"between_trial_standard_error", model_json(summary->between_trial_standard_error)},
+                       {"half_width95", model_json(summary->half_width95)}};
+  } else {
+    json["no_summary"] = together.no_summary;
+  }
+  if (!together.failed.empty()) {
+    json["failed"] = Json::array();
+    for (const Error& error : together.failed) {
+      json["failed"].push_back({{"file", error.where}, {"message", error.message}, {"try", error.remedy}});
+    }
   }
   return dumped(json);
 }

@@ -23,7 +23,7 @@ namespace mbk::result {
 [[nodiscard]] std::string to_json(const Measurement& measured);
 
 /// Schema "mbk.results/1": several results and, where there is one, their summary.
-[[nodiscard]] std::string to_json(const std::vector<Measurement>& results, const std::optional<Summary>& summary);
+[[nodiscard]] std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together);
 
 /// Schema "mbk.ellipse/1": the ellipses and antisymmetry of a result; "mbk.ellipses/1" with `results` for several.
 [[nodiscard]] std::string to_json(const std::vector<Identification>& identifications,

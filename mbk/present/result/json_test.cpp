@@ -192,13 +192,20 @@ TEST(ToJson, SeveralResultsComeBackInTheirOrder) {
 TEST(ToJson, ASummaryHasItsMeanAndError) {
   Summary summary;
   summary.trials = 2;
-  summary.mean = summary.between_trial_standard_error = measured(2).identification.model;
-  const Json json = schemas::parsed(to_json(std::vector<Measurement>{measured(2), measured(2)}, summary));
+  summary.omitted = {{"c.mat", "not usable"}};
+  summary.mean = summary.between_trial_standard_error = summary.half_width95 = measured(2).identification.model;
+  const SeveralTrials together{summary, "", {{ErrorKind::data, "no such file", "check the name", "d.mat"}}};
+  const Json json = schemas::parsed(to_json(std::vector<Measurement>{measured(2), measured(2)}, together));
   EXPECT_EQ(json.at("schema"), "mbk.results/1");
   EXPECT_EQ(json.at("results").size(), 2u);
   EXPECT_EQ(json.at("summary").at("trials"), 2);
   EXPECT_EQ(json.at("summary").at("model").at("K").size(), 2u);
   EXPECT_TRUE(json.at("summary").contains("between_trial_standard_error"));
+  EXPECT_EQ(json.at("summary").at("omitted").at(0).at("file"), "c.mat");
+  EXPECT_EQ(json.at("failed").at(0).at("file"), "d.mat");
+  const Json none = schemas::parsed(to_json(std::vector<Measurement>{measured(2), measured(2)}, {{}, "why", {}}));
+  EXPECT_FALSE(none.contains("summary"));
+  EXPECT_EQ(none.at("no_summary"), "why");
 }
 
 TEST(FromJson, WithoutACovarianceTakesTheStandardErrors) {

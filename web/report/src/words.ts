@@ -1,8 +1,7 @@
 // What is said in plain words: terms, verdicts, and warnings of any system.
-import type { Method } from "@mbk/shared/documents";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
 
-export const methodNames: Record<Method, string> = { ls: "least squares", iv: "instrumental variables" };
+export { methodNames } from "@mbk/shared/result";
 
 /** Those that speak of a limb, said of any system. */
 export const transferFunctionWarnings: PlainWarnings = {

@@ -89,4 +89,24 @@ export const plainWarnings: PlainWarnings = {
     title: "The samples are unevenly spaced",
     meaning: "The model allows for it; the tests of the residual do not.",
   },
+  "closed-loop-bias": {
+    title: "Least squares is biased here",
+    meaning: "The limb and the robot move each other. What follows the known perturbation alone gives another model: that of instrumental variables.",
+  },
+  "unmodelled-response": {
+    title: "The limb responded to the perturbation",
+    meaning: "By will or by reflex. A part of that response looks like mechanics and stands in the numbers.",
+  },
+  "weak-instruments": {
+    title: "The perturbation moved the limb too little for this method",
+    meaning: "The ± intervals of instrumental variables do not hold.",
+  },
+  "invalid-instruments": {
+    title: "This method does not hold here",
+    meaning: "The limb responded to each pulse, and instrumental variables take that for mechanics.",
+  },
+  "mixed-conditions": {
+    title: "Different conditions were measured as one",
+    meaning: "The recordings are of different people, conditions or postures; one model for all of them may be that of none.",
+  },
 };
