@@ -105,7 +105,7 @@ int run(const MeasureCommandArguments& arguments, const std::string& typed, bool
       }
       if (one.joints) text += "\n" + report::joint_domain_text(*one.joints);
       if (one.bootstrap) text += "\n" + report::bootstrap_text(*one.bootstrap);
-      if (one.passivity) text += "\n" + report::passivity_line(*one.passivity);
+      if (one.passivity) text += "\n" + report::passivity_lines(*one.passivity);
     }
     if (summary) text += "\n" + report::summary_text(*summary);
   }
@@ -128,7 +128,7 @@ Action add(CLI::App& app, const char* name, const char* summary, const std::stri
   command->footer(footer);
   add_measure_options(*command, *arguments);
   add_analyse_options(*command, arguments->analyse);
-  add_output_options(*command, arguments->output, "mbk.result/1");
+  add_output_options(*command, arguments->output, "mbk.result/2");
   if (with_findings) add_report_options(*command, arguments->report);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
 }

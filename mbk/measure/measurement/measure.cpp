@@ -181,12 +181,15 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
   return analyse::pooled_energy(recordings, trials);
 }
 
-/// Is the limb passive, by its model and by what it absorbed?
+/// What happened in the trial, and what the model predicts.
 Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                   const Options& options, Measurement& measured) {
   auto energy = account_for_energy(sources, trials, measured);
   if (!energy) return tl::unexpected(energy.error());
-  const PassivityBand band = options.band.value_or(analyse::passivity_band(trials));
+  Passivity passivity;
+  passivity.band = analyse::coherent_band(trials);
+  PassivityBand band = passivity.band.value_or(analyse::excited_band(trials));
+  if (options.band) band = analyse::asked_band(options.band->first, options.band->second, passivity.band);
   const Identification* first = &measured.identification;
   const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
   const bool by_instruments = first->method == Method::instrumental_variables;
@@ -200,17 +203,23 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
     if (!consistent) return tl::unexpected(consistent.error());
     measured.consistent = std::move(*consistent);
   }
-  std::vector<ModelPassivity> models;
   for (const Identification* id : {first, other}) {
     // A model without damping was not asked whether the limb has any.
     if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
     auto model = analyse::model_passivity(*id, band);
     if (!model) return tl::unexpected(model.error());
-    models.push_back(std::move(*model));
+    passivity.models.push_back(std::move(*model));
   }
-  const Identification& least_squares =
-      by_instruments && measured.alternative ? *measured.alternative : measured.identification;
-  return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
+  passivity.trial = analyse::trial_passivity(measured.identification, std::move(*energy));
+  if (!passivity.trial) {
+    for (Energy& one : measured.energies) {
+      one.account.verdict = Verdict::undecided;
+      one.account.reason = "force or motion is not plausible: see the warnings";
+    }
+  }
+  passivity.prediction =
+      analyse::predict_passivity(passivity.models, measured.identification.usable, passivity.band);
+  return passivity;
 }
 
 /// Where a sensor recorded the force that was computed: how far both are apart, and what the sensor's force gives.
