@@ -19,7 +19,7 @@
 namespace mbk::app {
 namespace {
 
-struct Arguments : MeasureArguments {
+struct PassivityArguments : MeasureArguments {
   std::string band;
 };
 
@@ -50,7 +50,7 @@ struct Answer {
   Motion motion = Motion::translation;
 };
 
-Result<std::vector<Answer>> from_recordings(const Arguments& arguments, const Asked& band) {
+Result<std::vector<Answer>> from_recordings(const PassivityArguments& arguments, const Asked& band) {
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
@@ -77,15 +77,15 @@ Result<Answer> from_result(const result::StoredResult& stored, const Asked& aske
   if (stored.passivity.energy) {
     passivity.trial = analyse::trial_passivity(main, *stored.passivity.energy, stored.passivity.lines);
   }
-  if (!asked && !passivity.band) {
-    if (stored.passivity.energy) {
-      passivity.prediction = analyse::predict_passivity({}, main.usable, std::nullopt);
-      return answer;
+  if (!asked && !stored.passivity.judged) {
+    if (!stored.passivity.energy) {
+      return bad_usage("it does not say in which band its model can be judged", "add --band LOW:HIGH in Hz");
     }
-    return bad_usage("it does not say in which band its model can be judged", "add --band LOW:HIGH in Hz");
+    passivity.prediction = analyse::predict_passivity({}, main.usable, std::nullopt);
+    return answer;
   }
   const PassivityBand band =
-      asked ? analyse::asked_band(asked->first, asked->second, passivity.band) : *passivity.band;
+      asked ? analyse::asked_band(asked->first, asked->second, passivity.band) : *stored.passivity.judged;
   const Identification* first = &main;
   const Identification* other = stored.alternative ? &*stored.alternative : nullptr;
   if (other != nullptr && stored.passivity.predicts == other->method) std::swap(first, other);
@@ -99,7 +99,7 @@ Result<Answer> from_result(const result::StoredResult& stored, const Asked& aske
   return answer;
 }
 
-Result<std::vector<Answer>> from_results(const Arguments& arguments, const Asked& band) {
+Result<std::vector<Answer>> from_results(const PassivityArguments& arguments, const Asked& band) {
   std::vector<Answer> answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
     const auto text = read_text(file);
@@ -124,7 +124,7 @@ std::string text_of(const Answer& answer) {
   return text;
 }
 
-int run(const Arguments& arguments) {
+int run(const PassivityArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
   const auto band = band_of(arguments.band);
   if (!band) return report_error(band.error());
@@ -152,7 +152,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Action add_passivity(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PassivityArguments>();
   CLI::App* command = add_command(
       app, "passivity", "what energy the limb absorbed, and what its model predicts of other motions");
   command->footer(

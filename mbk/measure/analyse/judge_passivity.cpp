@@ -322,6 +322,11 @@ std::optional<TrialPassivity> trial_passivity(const Identification& result, Ener
     const auto [low, high] = std::minmax(sign * energy.absorbed95.first, sign * energy.absorbed95.second);
     text += fmt::format(" (95 %: {:.3g} to {:.3g} J)", low, high);
   }
+  std::string delivering;
+  for (const EnergyLine& line : lines) {
+    if (line.absorbed95.second < 0.0) delivering += fmt::format("{}{:.3g}", delivering.empty() ? "" : ", ", line.frequency.value);
+  }
+  if (!delivering.empty()) text += fmt::format("; of the perturbation's lines it delivered energy at {} Hz", delivering);
   if (energy.verdict == Verdict::undecided) text += ", which does not decide whether it absorbs or delivers energy";
   return TrialPassivity{std::move(energy), std::move(lines), std::move(text)};
 }

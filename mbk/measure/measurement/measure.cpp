@@ -14,6 +14,7 @@
 #include "mbk/measure/analyse/compare_forces.h"
 #include "mbk/measure/analyse/diagnose.h"
 #include "mbk/measure/analyse/ellipses.h"
+#include "mbk/measure/analyse/energy_lines.h"
 #include "mbk/measure/analyse/judge_passivity.h"
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/identify/consistent_model.h"
@@ -165,6 +166,12 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
   return measured;
 }
 
+std::vector<const Recording*> recordings_of(const std::vector<Source>& sources) {
+  std::vector<const Recording*> recordings;
+  for (const Source& source : sources) recordings.push_back(&source.recording());
+  return recordings;
+}
+
 /// The energy of each recording, and of all together.
 Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                          Measurement& measured) {
@@ -176,9 +183,7 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
     measured.energies.push_back(std::move(*energy));
   }
   if (sources.size() == 1) return measured.energies.front().account;
-  std::vector<const Recording*> recordings;
-  for (const Source& source : sources) recordings.push_back(&source.recording());
-  return analyse::pooled_energy(recordings, trials);
+  return analyse::pooled_energy(recordings_of(sources), trials);
 }
 
 /// What happened in the trial, and what the model predicts.
@@ -210,7 +215,8 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
     if (!model) return tl::unexpected(model.error());
     passivity.models.push_back(std::move(*model));
   }
-  passivity.trial = analyse::trial_passivity(measured.identification, std::move(*energy));
+  passivity.trial = analyse::trial_passivity(measured.identification, std::move(*energy),
+                                              analyse::energy_lines(recordings_of(sources), trials));
   if (!passivity.trial) {
     for (Energy& one : measured.energies) {
       one.account.verdict = Verdict::undecided;

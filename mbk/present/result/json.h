@@ -60,6 +60,7 @@ namespace mbk::result {
 /// What a stored result says of passivity beside its models.
 struct StoredPassivity {
   std::optional<PassivityBand> band;    ///< in which the data show how the limb answers
+  std::optional<PassivityBand> judged;  ///< in which its models were judged
   std::optional<EnergyAccount> energy;  ///< of the trial; its verdict is made of the interval anew
   std::vector<EnergyLine> lines;
   std::optional<Method> predicts;  ///< whose model makes the prediction

@@ -181,11 +181,14 @@ StoredPassivity stored_passivity_from(const Json& json) {
   // The first version wrote the excited band where there was no other, and only the rule says so.
   const bool coherent = json.contains("prediction") ||
                         (first != nullptr && first->value("band_rule", "").starts_with("the part of the excited band"));
-  const auto band = json.find("band_hz");
-  if (coherent && band != json.end() && band->is_array()) {
-    const auto [low, high] = interval_from(json, "band_hz");
-    stored.band = PassivityBand{Hertz(low), Hertz(high), "as stored with the result", false};
-  }
+  const auto band_of = [](const Json& object, bool extrapolated) -> std::optional<PassivityBand> {
+    const auto band = object.find("band_hz");
+    if (band == object.end() || !band->is_array()) return std::nullopt;
+    const auto [low, high] = interval_from(object, "band_hz");
+    return PassivityBand{Hertz(low), Hertz(high), object.value("band_rule", "as stored with the result"), extrapolated};
+  };
+  if (coherent) stored.band = band_of(json, false);
+  if (first != nullptr) stored.judged = band_of(*first, first->value("extrapolated", !coherent));
   if (const auto energy = json.find("energy"); energy != json.end() && energy->is_object()) {
     stored.energy = account_from(*energy);
     if (json.contains("prediction")) stored.energy->reason = energy->value("reason", "");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "mbk/model/trial/identification.h"
 #include "mbk/present/result/json_reading.h"
@@ -141,8 +142,9 @@ std::string unfit(const Json& json) {
   const auto warnings = json.find("warnings");
   const bool warned = warnings != json.end() && warnings->is_array() &&
                       std::ranges::any_of(*warnings, [](const Json& one) {
-                        if (!one.is_object()) return false;
-                        const auto code = warning_code_from(one.value("code", Json()));
+                        const auto word = one.is_object() ? one.value("code", Json()) : Json();
+                        if (!word.is_string()) return false;
+                        const auto code = value_of<WarningCode>(word.get<std::string>());
                         return code == WarningCode::fit_poor || code == WarningCode::held_out_fit_poor;
                       });
   if (warned || is("/passivity/models/0/fits", false) || is("/passivity/decided_by", "energy")) {
