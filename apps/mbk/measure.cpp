@@ -161,7 +161,7 @@ Action add(CLI::App& app, const char* name, const char* summary, const std::stri
   command->footer(footer);
   add_measure_options(*command, *arguments);
   add_analyse_options(*command, arguments->analyse);
-  add_output_options(*command, arguments->output, "mbk.result/1");
+  add_output_options(*command, arguments->output, "mbk.result/2");
   if (with_findings) add_report_options(*command, arguments->report);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
 }

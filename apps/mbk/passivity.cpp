@@ -24,8 +24,10 @@ struct PassivityArguments : MeasureArguments {
   std::string band;
 };
 
+using Asked = std::optional<std::pair<Hertz, Hertz>>;
+
 /// LOW:HIGH in Hz.
-Result<std::optional<PassivityBand>> band_of(const std::string& text) {
+Result<Asked> band_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   double low = 0.0, high = 0.0;
   const char* end = text.data() + text.size();
@@ -37,7 +39,7 @@ Result<std::optional<PassivityBand>> band_of(const std::string& text) {
     return bad_usage(fmt::format("--band: {} is not LOW:HIGH in Hz with 0 < LOW < HIGH", quoted(text)),
                      "as in --band 0.3:3");
   }
-  return PassivityBand{Hertz(low), Hertz(high), "as asked"};
+  return std::pair{Hertz(low), Hertz(high)};
 }
 
 /// One limb's answer, ready to be written.
@@ -55,7 +57,7 @@ struct PassivityAnswers {
   std::vector<Error> failed;
 };
 
-Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
+Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const Asked& band) {
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
@@ -83,29 +85,48 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   return answers;
 }
 
-/// A stored result holds the model and not the data, so that only the model can be judged.
-Result<PassivityAnswers> from_results(const PassivityArguments& arguments, const std::optional<PassivityBand>& band) {
+/// Both statements from what a result holds: its models, and the energy that it was written with.
+Result<Answer> from_result(const result::StoredResult& stored, const Asked& asked) {
+  const Identification& main = stored.identification;
+  Answer answer{main.sources, {}, {}, std::nullopt, main.motion};
+  Passivity& passivity = answer.passivity;
+  passivity.band = stored.passivity.band;
+  if (stored.passivity.energy) {
+    passivity.trial = analyse::trial_passivity(main, *stored.passivity.energy, stored.passivity.lines);
+  }
+  if (!asked && !stored.passivity.judged) {
+    if (!stored.passivity.energy) {
+      return bad_usage("it does not say in which band its model can be judged", "add --band LOW:HIGH in Hz");
+    }
+    passivity.prediction = analyse::predict_passivity({}, main.usable, std::nullopt);
+    return answer;
+  }
+  const PassivityBand band =
+      asked ? analyse::asked_band(asked->first, asked->second, passivity.band) : *stored.passivity.judged;
+  const Identification* first = &main;
+  const Identification* other = stored.alternative ? &*stored.alternative : nullptr;
+  if (other != nullptr && stored.passivity.predicts == other->method) std::swap(first, other);
+  for (const Identification* id : {first, other}) {
+    if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
+    auto model = analyse::model_passivity(*id, band);
+    if (!model) return tl::unexpected(model.error());
+    passivity.models.push_back(std::move(*model));
+  }
+  passivity.prediction = analyse::predict_passivity(passivity.models, main.usable, passivity.band);
+  return answer;
+}
+
+Result<PassivityAnswers> from_results(const PassivityArguments& arguments, const Asked& band) {
   PassivityAnswers answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
     const auto text = read_text(file);
     if (!text) return tl::unexpected(text.error());
-    auto identifications = result::identifications_from_json(*text);
-    if (!identifications) return tl::unexpected(identifications.error().in(file.string()));
-    const auto stored = result::passivity_band_from_json(*text);
-    for (const Identification& id : *identifications) {
-      if (!band && !stored) {
-        return tl::unexpected(
-            bad_usage(fmt::format("{} does not say in which band its model can be judged", file.string()),
-                      "add --band LOW:HIGH in Hz")
-                .value());
-      }
-      auto model = analyse::model_passivity(id, band ? *band : *stored);
-      if (!model) return tl::unexpected(model.error().in(file.string()));
-      answers.found.push_back({id.sources,
-                               analyse::decide({std::move(*model)}, id.fit.vaf.mean(), std::nullopt),
-                               {},
-                               std::nullopt,
-                               id.motion});
+    const auto results = result::results_from_json(*text);
+    if (!results) return tl::unexpected(results.error().in(file.string()));
+    for (const result::StoredResult& stored : *results) {
+      auto answer = from_result(stored, band);
+      if (!answer) return tl::unexpected(answer.error().in(file.string()));
+      answers.found.push_back(std::move(*answer));
     }
   }
   return answers;
@@ -152,26 +173,29 @@ int run(const PassivityArguments& arguments) {
 
 Action add_passivity(CLI::App& app) {
   auto arguments = std::make_shared<PassivityArguments>();
-  CLI::App* command = add_command(app, "passivity", "is the limb passive? by the model and by the energy it absorbs");
+  CLI::App* command =
+      add_command(app, "passivity", "what energy the limb absorbed, and what its model predicts of other motions");
   command->footer(
       "Examples:\n"
       "  mbk passivity log.mat\n"
-      "      the verdict, every condition of the model with its interval, and the energy over time\n"
+      "      the energy of the trial with its interval, every condition on the model, and the energy over time\n"
       "  mbk passivity log.mat --band 0.5:3\n"
-      "      the model judged in a band of one's own choice: the band decides\n"
+      "      the model's prediction in a band of one's own choice; what lies outside the data is extrapolated\n"
       "  mbk passivity result.json\n"
-      "      the model that 'mbk measure --json' stored; there are no data in it, so no energy\n\n"
-      "passive: every condition holds with 95 % confidence. active: one fails, or energy was generated.\n"
-      "undecided: the data do not say. Where no model explains half of the force the energy decides.");
+      "      of the models and the energy that 'mbk measure --json' stored\n\n"
+      "Two statements. What happened: passive, the limb absorbed energy in this trial; active, it delivered some;\n"
+      "undecided, the 95 % interval holds zero. What the model predicts, in the band in which the perturbation\n"
+      "moves all axes and explains force and motion: passive, active, undecided, or none where no model is usable.\n"
+      "Neither is a promise that a machine is stable with this person.");
   add_measure_options(*command, *arguments);
   command
       ->add_option("--band", arguments->band,
-                   "frequencies at which the model is judged; otherwise those at which "
+                   "frequencies for which the model is asked; otherwise those at which "
                    "the perturbation explains position and force")
       ->type_name("LOW:HIGH")
       ->check(not_empty())
       ->group("Analysed interval");
-  add_output_options(*command, arguments->output, "mbk.passivity/1");
+  add_output_options(*command, arguments->output, "mbk.passivity/2");
   return [arguments] { return run(*arguments); };
 }
 

@@ -286,7 +286,7 @@ class Out(Case):
     def test_overwrite_replaces_it(self):
         path = self.file("result.json", "precious")
         self.fine("measure", "--json", make_log().path, "--out", path, "--overwrite")
-        self.assertIn("mbk.result/1", path.read_text())
+        self.assertIn("mbk.result/2", path.read_text())
         self.assertEqual(self.names(), ["result.json"])
 
     def test_it_never_replaces_what_is_read(self):

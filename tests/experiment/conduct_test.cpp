@@ -173,9 +173,7 @@ TEST_F(Conducted, ARepeatedTrialIsTheSameTrial) {
 }
 
 TEST_F(Conducted, WhatCannotBeMeasuredIsPoor) {
-  const Measure never = [](const Recording&) -> Result<Measurement> {
-    return bad_data("the fit failed");
-  };
+  const Measure never = [](const Recording&) -> Result<Measurement> { return bad_data("the fit failed"); };
   EXPECT_TRUE(run(planned(trials()), session_, script_, never).completed);
   EXPECT_THAT(script_.poor, ElementsAre(true, true));
 }

@@ -17,6 +17,7 @@
 #include "mbk/measure/analyse/compare_forces.h"
 #include "mbk/measure/analyse/diagnose.h"
 #include "mbk/measure/analyse/ellipses.h"
+#include "mbk/measure/analyse/energy_lines.h"
 #include "mbk/measure/analyse/judge_passivity.h"
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/identify/consistent_model.h"
@@ -72,8 +73,8 @@ struct Source {
 
 /// The even clock of a session that missed ticks, where a line across them is shorter than anything that the limb does.
 std::optional<Hertz> clock_across_missed_ticks(const Recording& recording, const Inspection& inspection) {
-  constexpr double kLongest = 0.1;  // [s], a third of the shortest period that is excited
-  constexpr double kMaxShare = 0.05;    // of the time
+  constexpr double kLongest = 0.1;    // [s], a third of the shortest period that is excited
+  constexpr double kMaxShare = 0.05;  // of the time
   if (inspection.gaps.empty() || !inspection.missing.empty() || inspection.duplicated_times > 0 ||
       inspection.backward_times > 0) {
     return std::nullopt;
@@ -215,6 +216,12 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
   return measured;
 }
 
+std::vector<const Recording*> recordings_of(const std::vector<Source>& sources) {
+  std::vector<const Recording*> recordings;
+  for (const Source& source : sources) recordings.push_back(&source.recording());
+  return recordings;
+}
+
 /// The energy of each recording, and of all together.
 Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                          Measurement& measured) {
@@ -226,17 +233,18 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
     measured.energies.push_back(std::move(*energy));
   }
   if (sources.size() == 1) return measured.energies.front().account;
-  std::vector<const Recording*> recordings;
-  for (const Source& source : sources) recordings.push_back(&source.recording());
-  return analyse::pooled_energy(recordings, trials);
+  return analyse::pooled_energy(recordings_of(sources), trials);
 }
 
-/// Is the limb passive, by its model and by what it absorbed?
+/// What happened in the trial, and what the model predicts.
 Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                   const Options& options, Measurement& measured) {
   auto energy = account_for_energy(sources, trials, measured);
   if (!energy) return tl::unexpected(energy.error());
-  const PassivityBand band = options.band.value_or(analyse::passivity_band(trials));
+  Passivity passivity;
+  passivity.band = analyse::coherent_band(trials);
+  PassivityBand band = passivity.band.value_or(analyse::excited_band(trials));
+  if (options.band) band = analyse::asked_band(options.band->first, options.band->second, passivity.band);
   const Identification* first = &measured.identification;
   const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
   const bool by_instruments = first->method == Method::instrumental_variables;
@@ -250,17 +258,23 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
     if (!consistent) return tl::unexpected(consistent.error());
     measured.consistent = std::move(*consistent);
   }
-  std::vector<ModelPassivity> models;
   for (const Identification* id : {first, other}) {
     // A model without damping was not asked whether the limb has any.
     if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
     auto model = analyse::model_passivity(*id, band);
     if (!model) return tl::unexpected(model.error());
-    models.push_back(std::move(*model));
+    passivity.models.push_back(std::move(*model));
   }
-  const Identification& least_squares =
-      by_instruments && measured.alternative ? *measured.alternative : measured.identification;
-  return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
+  passivity.trial = analyse::trial_passivity(measured.identification, std::move(*energy),
+                                             analyse::energy_lines(recordings_of(sources), trials));
+  if (!passivity.trial) {
+    for (Energy& one : measured.energies) {
+      one.account.verdict = Verdict::undecided;
+      one.account.reason = "force or motion is not plausible: see the warnings";
+    }
+  }
+  passivity.prediction = analyse::predict_passivity(passivity.models, measured.identification.usable, passivity.band);
+  return passivity;
 }
 
 /// Where a sensor recorded the force that was computed: how far both are apart, and what the sensor's force gives.

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mbk/base/core/result.h"
@@ -18,10 +19,11 @@ namespace mbk::measurement {
 struct Options {
   preprocess::Options preprocess;
   identify::Options identify;
-  std::optional<Hertz> resample;      ///< put the samples on an even clock first
-  bool passivity = true;              ///< judge it too
-  bool joint_domain = false;          ///< the result at the joints too
-  std::optional<PassivityBand> band;  ///< in which a model is judged; absent: analyse::passivity_band
+  std::optional<Hertz> resample;  ///< put the samples on an even clock first
+  bool passivity = true;          ///< judge it too
+  bool joint_domain = false;      ///< the result at the joints too
+  /// Frequencies for which a model is asked; absent: those at which the data show how the limb answers.
+  std::optional<std::pair<Hertz, Hertz>> band;
 };
 
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.

@@ -54,7 +54,7 @@ inline constexpr double kStrongInstruments = 104.7;
 /// What stands behind instrumental variables, and whether it may.
 struct InstrumentCheck {
   ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
-  Vector strength;  ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; weak below kStrongInstruments
+  Vector strength;           ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; weak below kStrongInstruments
   Vector coherent_residual;  ///< n, perturbation-coherent fraction of the residual: what follows the perturbation
                              ///< linearly within half a second
 

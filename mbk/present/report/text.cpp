@@ -319,7 +319,7 @@ std::string measurement_text(const Measurement& measured) {
     if (measured.joints) text += "\n" + joint_domain_text(*measured.joints);
     if (measured.bootstrap) text += "\n" + bootstrap_text(*measured.bootstrap);
   }
-  if (measured.passivity) text += "\n" + passivity_line(*measured.passivity);
+  if (measured.passivity) text += "\n" + passivity_lines(*measured.passivity);
   return text;
 }
 
@@ -327,10 +327,11 @@ std::string summary_text(const SeveralTrials& together) {
   if (!together.summary) return paragraph("no mean: ", together.no_summary);
   const Summary& summary = *together.summary;
   const std::size_t all = static_cast<std::size_t>(summary.trials) + summary.omitted.size();
-  std::string text = fmt::format("mean of {}{} trials, by {}\n", summary.trials,
-                                 summary.omitted.empty() ? "" : fmt::format(" of {}", all), method_name(summary.method)) +
-                     model_table(summary.mean, summary.half_width95, 1.0, summary.motion) +
-                     "  (± is the 95 % interval of the mean, by Student's t from how the trials differ)\n";
+  std::string text =
+      fmt::format("mean of {}{} trials, by {}\n", summary.trials,
+                  summary.omitted.empty() ? "" : fmt::format(" of {}", all), method_name(summary.method)) +
+      model_table(summary.mean, summary.half_width95, 1.0, summary.motion) +
+      "  (± is the 95 % interval of the mean, by Student's t from how the trials differ)\n";
   for (const OmittedTrial& one : summary.omitted)
     text += paragraph("  omitted  ", fmt::format("{}: {}", one.file, one.why));
   return text;

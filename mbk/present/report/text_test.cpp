@@ -148,9 +148,8 @@ TEST(ResultText, HasNoTrailingBlanks) {
   id.warnings.push_back({WarningCode::fit_poor, "poor", "again"});
   id.notes.push_back("row 9 ignored");
   id.decimation.emplace();
-  for (const std::string& text :
-       {result_text(id, findings()), result_text(identification(1), std::nullopt), ellipses_text(findings()),
-        summary_text(together(id))}) {
+  for (const std::string& text : {result_text(id, findings()), result_text(identification(1), std::nullopt),
+                                  ellipses_text(findings()), summary_text(together(id))}) {
     for (const std::string& line : lines_of(text)) EXPECT_FALSE(line.ends_with(' ')) << '"' << line << '"';
   }
 }

@@ -19,7 +19,8 @@
 namespace mbk::result {
 namespace {
 
-constexpr const char* kResultSchema = "mbk.result/1";
+constexpr const char* kResultSchema = "mbk.result/2";
+constexpr const char* kFirstResultSchema = "mbk.result/1";  ///< still read
 constexpr const char* kResultsSchema = "mbk.results/1";
 
 Json model_json(const impedance::Model& model) {
@@ -110,8 +111,9 @@ Json alternative_json(const Identification& id) {
                {"model", model_json(id.model)},
                {"standard_error", model_json(id.standard_error)},
                {"fit", fit_json(id.fit)},
+               {"covariance", {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}}},
+               {"warnings", warnings_json(id.warnings)},
                {"usable", id.usable}};
-  json["warnings"] = warnings_json(id.warnings);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
   if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
   return json;
@@ -327,16 +329,11 @@ Motion motion_from(const Json& json) {
   return Motion::unknown;
 }
 
-Identification identification_from(const Json& json) {
-  if (!has_schema(json, kResultSchema)) {
-    throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
-  }
+/// What both methods' results have: model, covariance, fit, method, instruments, warnings, usable.
+Identification estimate_from(const Json& json, Index n) {
   Identification id;
-  const auto model = json.find("model");
-  const bool one_axis = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array() &&
-                        (*model)["M"].size() == 1;
-  id.axes = one_axis ? 1 : 2;
-  const Index n = id.axes, count = 3 * n * n + n;
+  id.axes = static_cast<int>(n);
+  const Index count = 3 * n * n + n;
   id.model = model_from(json, "model", n);
   id.covariance = Matrix::Constant(count, count, kUnknown);
   const Matrix none = Matrix::Constant(n, n, kUnknown);
@@ -350,7 +347,34 @@ Identification identification_from(const Json& json) {
     id.parameters = covariance->value("parameters", std::vector<std::string>{});
   }
   id.method = value_of<Method>(json.value("method", "")).value_or(Method::least_squares);
+  id.structure = value_of<Structure>(json.value("structure", "")).value_or(Structure::full);
   id.usable = json.value("usable", true);
+  const Vector unknown = Vector::Constant(n, kUnknown);
+  id.fit = json.contains("fit") ? fit_from(json["fit"], n) : Fit{unknown, unknown, unknown, false};
+  if (json.contains("warnings")) id.warnings = warnings_from(json["warnings"]);
+  if (const auto found = json.find("instrument"); found != json.end() && found->is_object()) {
+    InstrumentCheck check;
+    check.from = value_of<ReferenceQuantity>(found->value("reference", "")).value_or(ReferenceQuantity::unknown);
+    check.strength = list_from(*found, "first_stage_F", 3 * n);
+    const char* const former = "answered_share";  // so until the version before
+    check.coherent_residual = list_from(*found, found->contains(former) ? former : "coherent_residual_fraction", n);
+    id.instrument = std::move(check);
+  }
+  return id;
+}
+
+Index axes_of(const Json& json) {
+  const auto model = json.find("model");
+  const bool one_axis = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array() &&
+                        (*model)["M"].size() == 1;
+  return one_axis ? 1 : 2;
+}
+
+Identification identification_from(const Json& json) {
+  if (!has_schema(json, kResultSchema) && !has_schema(json, kFirstResultSchema)) {
+    throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
+  }
+  Identification id = estimate_from(json, axes_of(json));
   if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
     for (const Json& input : *inputs) {
       id.sources.push_back({input.value("file", ""), input.value("format", ""), input.value("sha256", "")});
@@ -359,9 +383,6 @@ Identification identification_from(const Json& json) {
     }
   }
   id.motion = motion_from(json);
-  const Vector unknown = Vector::Constant(n, kUnknown);
-  id.fit = json.contains("fit") ? fit_from(json["fit"], n) : Fit{unknown, unknown, unknown, false};
-  if (json.contains("warnings")) id.warnings = warnings_from(json["warnings"]);
   if (const auto notes = json.find("notes"); notes != json.end()) id.notes = notes->get<std::vector<std::string>>();
   return id;
 }
@@ -503,32 +524,23 @@ std::string one_or_list_json(const char* schema_of_list, const std::vector<std::
   return one_or_list(schema_of_list, objects);
 }
 
-std::optional<PassivityBand> passivity_band_from_json(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
-  const Json::json_pointer alone("/passivity/band_hz"), first("/results/0/passivity/band_hz");
-  for (const auto& place : {alone, first}) {
-    if (!json.contains(place)) continue;
-    const Json& band = json[place];
-    if (!band.is_array() || band.size() != 2 || !band[0].is_number() || !band[1].is_number()) continue;
-    return PassivityBand{Hertz(band[0].get<double>()), Hertz(band[1].get<double>()), "as stored with the result"};
-  }
-  return std::nullopt;
-}
+namespace {
 
-Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
+/// Every result of a document by itself, read by `read`.
+template <class Read>
+auto each_result(std::string_view text, Read read) -> Result<std::vector<decltype(read(Json()))>> {
   const char* const remedy = "give a file that 'mbk measure --json' or 'mbk identify --json' wrote";
   try {
     const Json json = Json::parse(text);
-    std::vector<Identification> all;
+    std::vector<decltype(read(Json()))> all;
     if (has_schema(json, kResultsSchema)) {
       const auto results = json.find("results");
       if (results == json.end() || !results->is_array() || results->empty()) {
         throw Malformed{"'results' holds no result"};
       }
-      for (const Json& one : *results) all.push_back(identification_from(one));
+      for (const Json& one : *results) all.push_back(read(one));
     } else {
-      all.push_back(identification_from(json));
+      all.push_back(read(json));
     }
     return all;
   } catch (const Malformed& malformed) {
@@ -538,6 +550,26 @@ Result<std::vector<Identification>> identifications_from_json(std::string_view t
   } catch (const nlohmann::json::exception& error) {
     return bad_data(fmt::format("not a result of mbk ({})", error.what()), remedy);
   }
+}
+
+}  // namespace
+
+Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
+  return each_result(text, identification_from);
+}
+
+Result<std::vector<StoredResult>> results_from_json(std::string_view text) {
+  return each_result(text, [](const Json& json) {
+    StoredResult result{identification_from(json), std::nullopt, {}};
+    const auto others = json.find("alternatives");
+    if (others != json.end() && others->is_array() && !others->empty()) {
+      result.alternative = estimate_from(others->front(), axes_of(json));
+    }
+    if (const auto found = json.find("passivity"); found != json.end() && found->is_object()) {
+      result.passivity = stored_passivity_from(*found);
+    }
+    return result;
+  });
 }
 
 }  // namespace mbk::result

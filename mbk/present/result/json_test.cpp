@@ -99,7 +99,7 @@ TEST_P(BothAxes, ModelCovarianceFitWarningsAndInputsComeBackToTheLastBit) {
 TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   const std::size_t n = static_cast<std::size_t>(GetParam());
   const Json json = schemas::parsed(to_json(measured(GetParam())));
-  EXPECT_EQ(json.at("schema"), "mbk.result/1");
+  EXPECT_EQ(json.at("schema"), "mbk.result/2");
   EXPECT_THAT(json.at("software").get<std::string>(), testing::StartsWith("mbk "));
   EXPECT_EQ(json.at("inputs").at(0).at("file"), "a.mat");
   EXPECT_EQ(json.at("inputs").at(0).at("sha256"), "abc");

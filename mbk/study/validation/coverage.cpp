@@ -84,8 +84,8 @@ Result<Held> held_by(const CoverageOptions& options, int run) {
 
 /// The band in which the arms below are judged: from the second line of the perturbation to the last. At the first, 0.1
 /// Hz, one trial with this noise cannot tell any arm passive, and what is never said is never wrong.
-PassivityBand judged_band() {
-  return {Hertz(0.4), Hertz(2.9), "as the study asks"};
+std::pair<Hertz, Hertz> judged_band() {
+  return {Hertz(0.4), Hertz(2.9)};
 }
 
 constexpr double kBarelyActive = 1.0001, kWellPassive = 0.25;
@@ -93,8 +93,8 @@ constexpr double kBarelyActive = 1.0001, kWellPassive = 0.25;
 /// An arm whose stiffness, inertia or both are antisymmetric, with opposite signs, so that |ω m_a − k_a/ω| is `share`
 /// of √det B at one end of the band, and less elsewhere.
 impedance::Model antisymmetric_arm(impedance::Model arm, int kind, double share) {
-  const double low = 2.0 * std::numbers::pi * judged_band().low.value;
-  const double high = 2.0 * std::numbers::pi * judged_band().high.value;
+  const double low = 2.0 * std::numbers::pi * judged_band().first.value;
+  const double high = 2.0 * std::numbers::pi * judged_band().second.value;
   const double edge = share * std::sqrt(impedance::symmetric_part(arm.B).determinant());
   double k_a = edge * low, m_a = 0.0;
   if (kind == 1) std::tie(k_a, m_a) = std::pair{0.0, edge / high};
@@ -128,7 +128,7 @@ Result<bool> called_passive(const CoverageOptions& options, int run, double shar
   how.band = judged_band();
   const auto measured = measured_of(lab, how);
   if (!measured) return tl::unexpected(measured.error());
-  return measured->passivity->models.front().verdict == Verdict::passive;
+  return measured->passivity->prediction.verdict == Verdict::passive;
 }
 
 }  // namespace

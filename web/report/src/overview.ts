@@ -1,5 +1,5 @@
 // Several recordings side by side.
-import type { Value } from "@mbk/shared/documents";
+import type { Passivity, Prediction, Value } from "@mbk/shared/documents";
 import { h, heading, table } from "@mbk/shared/dom";
 import { ellipsesSideBySide } from "@mbk/shared/ellipses";
 import { data, decimalsFor, fixed, normal95, significant, withInterval } from "@mbk/shared/format";
@@ -44,6 +44,13 @@ function matrix(values: Value[][], halves: Value[][], name: string): HTMLElement
 
 const scaled = (values: Value[][], factor: number): Value[][] => values.map((row) => row.map((value) => (value === null ? null : factor * value)));
 
+/** What happened in the trial, and what its model predicts. */
+function verdicts(passivity: Passivity | undefined): HTMLElement[] {
+  if (!passivity) return [];
+  const badge = (what: string, verdict: Prediction): HTMLElement => h("span", { "data-statement": what }, `${what} `, verdictBadge(verdict));
+  return [badge("trial", passivity.trial?.verdict ?? "none"), badge("prediction", passivity.prediction.verdict)];
+}
+
 export function overviewSection(report: Report): HTMLElement {
   const { trials, summary, noSummary, failed } = report;
   const rows = inOrder(trials);
@@ -55,7 +62,7 @@ export function overviewSection(report: Report): HTMLElement {
     { name: "condition", of: conditionOf },
   ].filter(({ of }) => trials.some((trial) => of(trial) !== undefined));
   const judged = trials.some((trial) => trial.result.passivity);
-  const head = ["recording", ...told.map(({ name }) => name), judged ? "usable, passive" : "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
+  const head = ["recording", ...told.map(({ name }) => name), judged ? "usable; trial, prediction" : "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
   const body: (Node | string)[][] = rows.map(({ trial, id }) => {
     const { result } = trial;
     const said = verdict(trial);
@@ -64,7 +71,7 @@ export function overviewSection(report: Report): HTMLElement {
       ...told.map(({ of }) => of(trial) ?? "–"),
       h("div", { class: "badges" },
         h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "usable") : "not usable"}`),
-        result.passivity && verdictBadge(result.passivity.verdict)),
+        ...verdicts(result.passivity)),
       ...matrices.map(({ symbol }) => result.usable ? h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol)) : "–"),
       h("div", {}, ...result.fit.VAF.map((vaf, axis) =>
         h("div", { class: "number" }, result.axes === 1 ? "" : `${"xy"[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
