@@ -327,7 +327,7 @@ std::optional<TrialPassivity> trial_passivity(const Identification& result, Ener
                   result.sources.size() > 1 ? fmt::format("these {} trials", result.sources.size()) : "this trial",
                   result.axes == 1 ? "limb" : "hand", delivered ? "delivered" : "absorbed", sign * energy.absorbed);
   if (std::isfinite(energy.absorbed95.first) && std::isfinite(energy.absorbed95.second)) {
-    const auto [low, high] = std::minmax(sign * energy.absorbed95.first, sign * energy.absorbed95.second);
+    const auto [low, high] = std::minmax({sign * energy.absorbed95.first, sign * energy.absorbed95.second});
     text += fmt::format(" (95 %: {:.3g} to {:.3g} J)", low, high);
   }
   std::string delivering;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/layout.h"
 #include "mbk/present/report/text.h"
@@ -47,9 +48,9 @@ std::string model_text(const ModelPassivity& model) {
   std::string text =
       fmt::format("  model of {}, {:.3g} to {:.3g} Hz{}\n", long_name(model.method), model.band.low.value,
                   model.band.high.value, model.band.extrapolated ? ", extrapolated" : "");
-  std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "± s.e.", "unit", ""}};
+  std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "unit", ""}};
   for (const PassivityCondition& c : model.conditions) {
-    rows.push_back({c.name, fmt::format("{:.3g}", c.value), fmt::format("{:.2g}", c.standard_error), c.unit,
+    rows.push_back({c.name, with_interval(c.value, numeric::kNormal95 * c.standard_error), c.unit,
                     c.verdict == Verdict::passive  ? "holds"
                     : c.verdict == Verdict::active ? "fails"
                                                    : "open"});
