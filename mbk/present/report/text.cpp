@@ -128,6 +128,24 @@ int decimals_of(const ValidationRow& row) {
   return std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 2, 9);
 }
 
+/// An interval of which an end may be infinite.
+std::string validation_range(const Interval& interval, int decimals) {
+  const auto end = [&](double value) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : value < 0.0 ? "-inf" : "inf";
+  };
+  return fmt::format("[{}, {}]", end(interval.first), end(interval.second));
+}
+
+/// "rows: 20 met, 1 falls short, 3 not shown, 4 informative".
+std::string counted(const std::vector<ValidationRow>& rows) {
+  std::vector<std::string> parts;
+  for (const auto& [verdict, word] : word_table(RowVerdict{})) {
+    const auto count = std::ranges::count(rows, verdict, &ValidationRow::verdict);
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, word));
+  }
+  return fmt::format("rows: {}", fmt::join(parts, ", "));
+}
+
 std::string expected_text(const Interval& expected) {
   if (!std::isfinite(expected.second)) return fmt::format("at least {:g}", expected.first);
   if (!std::isfinite(expected.first)) return fmt::format("at most {:g}", expected.second);
@@ -436,24 +454,6 @@ std::string workspace_text(const robot::Workspace& workspace, const std::optiona
                     fmt::format("{:.2f}°", degrees * margin.value), fmt::format("{:.2f}°", degrees * margin.left())});
   }
   return text + table(rows);
-}
-
-/// An interval of which an end may be infinite.
-std::string validation_range(const Interval& interval, int decimals) {
-  const auto end = [&](double value) {
-    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : value < 0.0 ? "-inf" : "inf";
-  };
-  return fmt::format("[{}, {}]", end(interval.first), end(interval.second));
-}
-
-/// "20 rows met, 1 falls short, 3 not shown, 4 informative".
-std::string counted(const std::vector<ValidationRow>& rows) {
-  std::vector<std::string> parts;
-  for (const auto& [verdict, word] : word_table(RowVerdict{})) {
-    const auto count = std::ranges::count(rows, verdict, &ValidationRow::verdict);
-    if (count > 0) parts.push_back(fmt::format("{} {}", count, word));
-  }
-  return fmt::format("rows: {}", fmt::join(parts, ", "));
 }
 
 std::string validation_text(const ValidationTable& validation) {
