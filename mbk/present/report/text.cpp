@@ -128,11 +128,30 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
 /// Two, or as many as show four digits of what is smaller than ten.
 int decimals_of(const ValidationRow& row) {
   double largest = 0.0;
-  for (const double value : {row.value, row.interval99.first, row.interval99.second}) {
+  const auto [low, high] = row.interval95.value_or(Interval(row.value, row.value));
+  for (const double value : {row.value, low, high}) {
     if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
   }
   if (!(largest > 0.0)) return 2;
   return std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 2, 9);
+}
+
+/// An interval of which an end may be infinite.
+std::string validation_range(const Interval& interval, int decimals) {
+  const auto end = [&](double value) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : value < 0.0 ? "-inf" : "inf";
+  };
+  return fmt::format("[{}, {}]", end(interval.first), end(interval.second));
+}
+
+/// "rows: 20 met, 1 falls short, 3 not shown, 4 informative".
+std::string counted(const std::vector<ValidationRow>& rows) {
+  std::vector<std::string> parts;
+  for (const auto& [verdict, word] : word_table(RowVerdict{})) {
+    const auto count = std::ranges::count(rows, verdict, &ValidationRow::verdict);
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, word));
+  }
+  return fmt::format("rows: {}", fmt::join(parts, ", "));
 }
 
 std::string expected_text(const Interval& expected) {
@@ -501,26 +520,25 @@ std::string validation_text(const ValidationTable& validation) {
   const auto any = [&](auto member) {
     return std::ranges::any_of(validation.rows, [&](const ValidationRow& row) { return (row.*member).has_value(); });
   };
-  const bool spread = any(&ValidationRow::spread), coverage = any(&ValidationRow::coverage);
+  const bool spread = any(&ValidationRow::spread);
   std::vector<std::vector<std::string>> rows(1);
-  rows[0] = {"", validation.unit, "99 % interval"};
+  rows[0] = {"", validation.unit, "95 % interval"};
   if (spread) rows[0].emplace_back("spread of runs");
-  if (coverage) rows[0].emplace_back("95 % intervals hold");
-  rows[0].insert(rows[0].end(), {"expected: overlaps", ""});
+  rows[0].insert(rows[0].end(), {"expected", ""});
   for (const ValidationRow& row : validation.rows) {
     const int decimals = decimals_of(row);
     std::vector<std::string> cells = {row.what, fmt::format("{:.{}f}", row.value, decimals),
-                                      range(row.interval99, decimals)};
+                                      row.interval95 ? validation_range(*row.interval95, decimals) : ""};
     if (!std::isfinite(row.value)) cells[1] = "undefined";
     if (row.unit && !row.unit->empty()) cells[1] += " " + *row.unit;
     if (spread) cells.push_back(row.spread ? fmt::format("{:.{}f}", *row.spread, decimals) : "");
-    if (coverage) cells.push_back(row.coverage ? fmt::format("{:.1f} %", 100.0 * *row.coverage) : "");
     cells.push_back(row.expected ? expected_text(*row.expected) : "");
-    cells.emplace_back(!row.judged() ? "reported" : row.met() ? "ok" : "FALLS SHORT");
+    cells.emplace_back(row.verdict() == RowVerdict::falls_short ? "FALLS SHORT" : word_of(row.verdict()));
     rows.push_back(std::move(cells));
   }
   std::string text = paragraph(validation.study + ": ", validation.question) +
-                     fmt::format("{} runs, seed {}\n", validation.runs, validation.seed) + table(rows);
+                     fmt::format("{} runs, seed {}\n", validation.runs, validation.seed) + table(rows) +
+                     counted(validation.rows) + "\n";
   for (const std::string& note : validation.notes) text += paragraph("  ", note);
   for (const Chart& chart : validation.charts) text += "\n" + chart_text(chart);
   return text;

@@ -467,14 +467,16 @@ std::string to_json(const ValidationTable& table) {
   for (const ValidationRow& row : table.rows) {
     Json one = {{"what", row.what},
                 {"value", number(row.value)},
-                {"interval99", interval(row.interval99)},
+                {"interval95", row.interval95 ? interval(*row.interval95) : Json(nullptr)},
                 {"expected", row.expected ? interval(*row.expected) : Json(nullptr)},
+                {"verdict", word_of(row.verdict())},
                 {"met", row.judged() ? Json(row.met()) : Json(nullptr)}};
     if (row.unit) one["unit"] = *row.unit;
     if (row.spread) one["spread"] = number(*row.spread);
-    if (row.coverage) one["coverage"] = number(*row.coverage);
+    if (row.trials) one["trials"] = *row.trials;
     json["rows"].push_back(std::move(one));
   }
+  json["verdict"] = word_of(table.verdict());
   json["met"] = table.met();
   if (!table.notes.empty()) json["notes"] = table.notes;
   for (const Chart& chart : table.charts) json["charts"].push_back(chart_json(chart));

@@ -371,18 +371,25 @@ TEST(ToJson, AValidationKeepsItsRowsAndAddsWhatTheyHave) {
   ValidationTable table;
   table.study = "springs";
   table.unit = "N/m";
-  table.rows.push_back({"k_xx", 431.5, {429.0, 434.0}, std::pair{420.0, 440.0}});
-  table.rows.push_back({"m_xx", 1.3, {1.2, 1.4}, std::nullopt, "kg", 0.01, 0.95});
+  table.rows.push_back({"k_xx", 431.5, std::pair{429.0, 434.0}, std::pair{420.0, 440.0}});
+  table.rows.push_back({"m_xx", 1.3, {}, {}, "kg", 0.01});
+  table.rows.push_back({"held", 90.0, std::pair{55.5, 99.7}, std::pair{92.0, 98.0}, "%", {}, 10});
   Json json = schemas::parsed(to_json(table));
   const Json plain = {
-      {"what", "k_xx"}, {"value", 431.5}, {"interval99", {429.0, 434.0}}, {"expected", {420.0, 440.0}}, {"met", true}};
+      {"what", "k_xx"},   {"value", 431.5}, {"interval95", {429.0, 434.0}}, {"expected", {420.0, 440.0}},
+      {"verdict", "met"}, {"met", true}};
   EXPECT_EQ(json.at("rows").at(0), plain);
   const Json& reported = json.at("rows").at(1);
-  EXPECT_TRUE(reported.at("expected").is_null() && reported.at("met").is_null());
+  EXPECT_TRUE(reported.at("interval95").is_null() && reported.at("expected").is_null() && reported.at("met").is_null());
+  EXPECT_EQ(reported.at("verdict"), "informative");
   EXPECT_EQ(reported.at("unit"), "kg");
   EXPECT_EQ(reported.at("spread"), 0.01);
-  EXPECT_EQ(reported.at("coverage"), 0.95);
-  EXPECT_EQ(json.at("met"), true);
+  const Json& too_few = json.at("rows").at(2);
+  EXPECT_EQ(too_few.at("verdict"), "not shown");
+  EXPECT_EQ(too_few.at("trials"), 10);
+  EXPECT_EQ(too_few.at("met"), false);
+  EXPECT_EQ(json.at("verdict"), "not shown");
+  EXPECT_EQ(json.at("met"), false);
   EXPECT_FALSE(json.contains("notes") || json.contains("charts"));
 }
 
