@@ -64,10 +64,6 @@ std::string warnings_text(const std::vector<Warning>& warnings) {
   return text;
 }
 
-const char* method_name(Method method) {
-  return method == Method::least_squares ? "least squares" : "instrumental variables";
-}
-
 std::string filters_text(const Preparation& how) {
   std::string filters = fmt::format("Savitzky–Golay N {} W {}", how.smoothing_order, how.smoothing_window);
   filters += how.cutoff ? fmt::format(", then zero-phase Butterworth {:.3g} Hz: {}", how.cutoff->value, how.cutoff_rule)

@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/warning.h"
 
@@ -23,9 +22,6 @@ namespace mbk::report {
 
 /// Every warning with what to try.
 [[nodiscard]] std::string warnings_text(const std::vector<Warning>& warnings);
-
-/// "least squares", "instrumental variables".
-[[nodiscard]] const char* method_name(Method method);
 
 /// The filters of a preparation in one line.
 [[nodiscard]] std::string filters_text(const Preparation& how);

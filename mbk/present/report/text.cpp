@@ -167,6 +167,10 @@ std::string source_line(const SourceFile& source) {
 
 }  // namespace
 
+const char* method_name(Method method) {
+  return method == Method::least_squares ? "least squares" : "instrumental variables";
+}
+
 std::string wrapped(std::string_view text, std::size_t width) {
   std::string lines;
   std::size_t used = 0;
