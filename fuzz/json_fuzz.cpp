@@ -29,7 +29,7 @@ Measurement measured(int axes) {
 
 std::vector<std::string> seeds() {
   return {result::to_json(measured(1)), result::to_json(measured(2)),
-          result::to_json(std::vector{measured(1), measured(2)}, std::nullopt),
+          result::to_json(std::vector{measured(1), measured(2)}, SeveralTrials{}),
           R"({"schema": "mbk.result/1", "axes": 1, "model": {"M": [[1]], "B": [[2]], "K": [[3]], "x0": [0]}})",
           R"({"schema": "mbk.result/2", "model": {"M": [[1]], "B": [[2]], "K": [[3]]}, "alternatives": [{"method": "iv",
           "model": {"M": [[1]], "B": [[2]], "K": [[3]]}, "warnings": []}], "passivity": {"prediction": {}, "band_hz":

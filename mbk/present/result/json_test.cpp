@@ -182,7 +182,7 @@ TEST(ToJson, BytesThatAreNoTextDoNotStopIt) {
 
 TEST(ToJson, SeveralResultsComeBackInTheirOrder) {
   const std::vector<Measurement> both = {measured(1), measured(2)};
-  const auto back = identifications_from_json(to_json(both, std::nullopt));
+  const auto back = identifications_from_json(to_json(both, SeveralTrials{}));
   ASSERT_TRUE(back) << back.error().line();
   ASSERT_EQ(back->size(), 2u);
   EXPECT_EQ(back->at(0).axes, 1);
@@ -328,7 +328,7 @@ TEST(FromJson, RefusesEveryTruncation) {
 }
 
 TEST(FromJson, NeverThrowsOnMutatedDocuments) {
-  const std::string good = to_json(std::vector<Measurement>{measured(1), measured(2)}, std::nullopt);
+  const std::string good = to_json(std::vector<Measurement>{measured(1), measured(2)}, SeveralTrials{});
   const std::vector<std::string> tokens = {"null", "[]", "{}", "1e999", "\"\"",    "-",
                                            "]",    "}",  ",",  "\"",    "\\u0000", "true"};
   std::mt19937 random(11);

@@ -19,8 +19,9 @@ TEST(Coverage, NominalNinetyFivePercentIntervalsHoldTheTruthThatOften) {
       EXPECT_GT(row.value, 40.0) << row.what;
     }
     EXPECT_EQ(row.judged(), !row.what.starts_with("passive")) << row.what;
-    if (row.expected == kNominal)
+    if (row.expected == kNominal) {
       EXPECT_NE(row.verdict(), RowVerdict::met) << row.what << ": 160 runs show no coverage";
+    }
   }
   expect_nothing_refuted(*table);
 }
