@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -116,17 +117,29 @@ Result<Answer> from_result(const result::StoredResult& stored, const Asked& aske
   return answer;
 }
 
-Result<PassivityAnswers> from_results(const PassivityArguments& arguments, const Asked& band) {
+/// All results of a file.
+Result<std::vector<Answer>> from_file(const std::filesystem::path& file, const Asked& band) {
+  const auto text = read_text(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto results = result::results_from_json(*text);
+  if (!results) return tl::unexpected(results.error().in(file.string()));
+  std::vector<Answer> answers;
+  for (const result::StoredResult& stored : *results) {
+    auto answer = from_result(stored, band);
+    if (!answer) return tl::unexpected(answer.error().in(file.string()));
+    answers.push_back(std::move(*answer));
+  }
+  return answers;
+}
+
+PassivityAnswers from_results(const PassivityArguments& arguments, const Asked& band) {
   PassivityAnswers answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
-    const auto text = read_text(file);
-    if (!text) return tl::unexpected(text.error());
-    const auto results = result::results_from_json(*text);
-    if (!results) return tl::unexpected(results.error().in(file.string()));
-    for (const result::StoredResult& stored : *results) {
-      auto answer = from_result(stored, band);
-      if (!answer) return tl::unexpected(answer.error().in(file.string()));
-      answers.found.push_back(std::move(*answer));
+    auto found = from_file(file, band);
+    if (found) {
+      std::ranges::move(*found, std::back_inserter(answers.found));
+    } else {
+      answers.failed.push_back(found.error());
     }
   }
   return answers;
@@ -150,7 +163,8 @@ int run(const PassivityArguments& arguments) {
     return report_error({ErrorKind::usage, "--sensor needs the voltages of a recording, and a stored result has none",
                          "leave it out, or name the recording", ""});
   }
-  const auto answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
+  const Result<PassivityAnswers> answers =
+      stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
   if (!answers) return report_error(answers.error());
   int code = kFine;
   for (const Error& error : answers->failed) code = std::max(code, report_error(error));

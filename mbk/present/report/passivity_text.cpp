@@ -19,10 +19,6 @@ std::string between(const Interval& interval) {
   return fmt::format("[{:.3g}, {:.3g}]", interval.first, interval.second);
 }
 
-const char* long_name(Method method) {
-  return method == Method::least_squares ? "least squares" : "instrumental variables";
-}
-
 std::string word_or_none(const std::optional<Verdict>& verdict) {
   return std::string(verdict ? word_of(*verdict) : "none");
 }
@@ -33,7 +29,7 @@ std::string models_table(const std::vector<ModelPassivity>& models) {
   for (const ModelPassivity& model : models) {
     std::vector<std::string> vaf;
     for (const double one : model.vaf) vaf.push_back(fmt::format("{:.1f}", one));
-    rows.push_back({long_name(model.method), fmt::format("{} %", fmt::join(vaf, ", ")), word_or_none(model.symmetric),
+    rows.push_back({method_name(model.method), fmt::format("{} %", fmt::join(vaf, ", ")), word_or_none(model.symmetric),
                     word_or_none(model.antisymmetric), model.usable ? model.fits ? "" : "fits poorly" : "not usable"});
   }
   return table(rows);
@@ -46,7 +42,7 @@ std::string circular_text(const Interval& between) {
 
 std::string model_text(const ModelPassivity& model) {
   std::string text =
-      fmt::format("  model of {}, {:.3g} to {:.3g} Hz{}\n", long_name(model.method), model.band.low.value,
+      fmt::format("  model of {}, {:.3g} to {:.3g} Hz{}\n", method_name(model.method), model.band.low.value,
                   model.band.high.value, model.band.extrapolated ? ", extrapolated" : "");
   std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "unit", ""}};
   for (const PassivityCondition& c : model.conditions) {
