@@ -86,7 +86,7 @@ const ModelPassivity* passivity_by(const Run& run, Method method) {
 }
 
 /// How often something is so.
-ValidationRow row_of(std::string what, const Runs& runs, const std::function<bool(const Run&)>& holds, bool judged) {
+ValidationRow how_often(std::string what, const Runs& runs, const std::function<bool(const Run&)>& holds, bool judged) {
   return share_row(std::move(what), static_cast<int>(std::ranges::count_if(runs, holds)), static_cast<int>(runs.size()),
                    judged ? std::optional(kNearlyAlways) : std::nullopt);
 }
@@ -135,7 +135,7 @@ void add_coverage(const Runs& runs, ValidationTable& table) {
 void add_multisine(const Runs& runs, ValidationTable& table) {
   constexpr auto kLs = Method::least_squares, kIv = Method::instrumental_variables;
   const auto add = [&](const char* what, bool judged, const std::function<bool(const Run&)>& holds) {
-    table.rows.push_back(row_of(fmt::format("6 N multisine: {}", what), runs, holds, judged));
+    table.rows.push_back(how_often(fmt::format("6 N multisine: {}", what), runs, holds, judged));
   };
   const auto model_says = [](Method method, const std::function<bool(const ModelPassivity&)>& says) {
     return [method, says](const Run& run) {
@@ -163,7 +163,7 @@ void add_multisine(const Runs& runs, ValidationTable& table) {
 
 void add_pulses(const Runs& runs, ValidationTable& table) {
   const auto add = [&](const char* what, const std::function<bool(const Run&)>& holds) {
-    table.rows.push_back(row_of(fmt::format("2 N pulses: {}", what), runs, holds, true));
+    table.rows.push_back(how_often(fmt::format("2 N pulses: {}", what), runs, holds, true));
   };
   add("no model explains half of the force",
       [](const Run& run) { return by(run, Method::least_squares).fit.vaf.mean() < 50.0; });

@@ -9,7 +9,7 @@
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::validation {
-namespace {
+namespace rows_test {
 
 using enum RowVerdict;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -163,5 +163,5 @@ TEST(Runs, AreAsManyAsTheIntervalNeeds) {
   EXPECT_NEAR(chance_to_be_met(kNominal, 95.0, 400), 0.5, 0.1);
 }
 
-}  // namespace
+}  // namespace rows_test
 }  // namespace mbk::validation
