@@ -28,7 +28,9 @@ constexpr Index kCurvePoints = 200;
 constexpr double kSegmentsAcross = 4.0;  ///< of the coherence, end to end; seven with the overlap
 
 /// With these force or motion is not what it says it is, and neither is their product.
-constexpr std::array kImplausible = {WarningCode::force_sign_reversed, WarningCode::torque_unit};
+constexpr std::array kImplausible = {WarningCode::force_sign_reversed,     WarningCode::torque_unit,
+                                     WarningCode::implausible_scale,       WarningCode::axes_mismatched,
+                                     WarningCode::axes_scaled_differently, WarningCode::same_column};
 /// With these the model explains too little of the force to predict any.
 constexpr std::array kPoorFit = {WarningCode::fit_poor, WarningCode::held_out_fit_poor};
 

@@ -11,6 +11,7 @@
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/trial/filtered_band.h"
 
 namespace mbk::identify {
 namespace {
@@ -21,7 +22,6 @@ constexpr double kSmallestMotionRatio = 0.05;  // across the line of motion the 
 constexpr double kVafDrop = 10.0;              // points between in-sample and held-out
 constexpr double kPoorVaf = 70.0;              // relaxed arms give 92 % and more, ankles under tonic contraction 87
 constexpr double kShortestDuration = 12.0;     // s; a dozen reaches of the residual's correlation
-constexpr double kCutIntoBand = 0.5;           // a filter below half of the excited band hides the inertia
 constexpr double kDecimationChange = 0.05;
 /// Share of the force's variance that follows the perturbation and is no M, B, K: a response with a third of the
 /// force's amplitude, and a part of it stands in M, B and K.
@@ -94,16 +94,13 @@ class Checker {
 
   void check_band() {
     // Of pooled trials, the one whose filter leaves least of its band.
-    const auto passed = [](const Preparation& how) {
-      return how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
-    };
     const Preparation& how =
-        *std::ranges::min_element(id_.preparations, [&](const Preparation& a, const Preparation& b) {
-          return passed(a) * b.band_high.value < passed(b) * a.band_high.value;
+        *std::ranges::min_element(id_.preparations, [](const Preparation& a, const Preparation& b) {
+          return passed_band(a) * b.band_high.value < passed_band(b) * a.band_high.value;
         });
-    const double top = passed(how);
+    const double top = passed_band(how);
     const Eigenvalues inertia = eigenvalues(id_.model.M, 0);
-    if (top < kCutIntoBand * how.band_high.value) {
+    if (cuts_into_band(how)) {
       warn(WarningCode::band_too_narrow,
            fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left may not "
                        "show the inertia",

@@ -19,6 +19,8 @@
 #include "mbk/measure/analyse/ellipses.h"
 #include "mbk/measure/analyse/energy_lines.h"
 #include "mbk/measure/analyse/judge_passivity.h"
+#include "mbk/measure/analyse/plausibility.h"
+#include "mbk/measure/analyse/plausible_scale.h"
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/resample.h"
@@ -135,7 +137,10 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
   const bool same = &recording == source.given;
   auto trial = preprocess::prepare(recording, same ? source.recorded : recording::inspect(recording),
                                    options.preprocess, source.computed ? &*source.computed : nullptr);
-  if (!trial) return trial;
+  if (!trial) {
+    return tl::unexpected<Error>(
+        analyse::explain_clock(trial.error(), recording, source.recorded, options.preprocess.axes));
+  }
   warn_of_clipping(source.recorded, *trial);
   if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   return trial;
@@ -350,6 +355,7 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     return sources.size() == 1 ? sources[0].in_file(identified.error()) : tl::unexpected(identified.error());
   }
   Measurement measured = std::move(*identified);
+  analyse::judge_plausibility(recordings_of(sources), trials, options.ignored_ranges, measured);
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());

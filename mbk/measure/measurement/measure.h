@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "mbk/measure/preprocess/prepare.h"
 #include "mbk/model/trial/diagnostics.h"
 #include "mbk/model/trial/measurement.h"
+#include "mbk/model/trial/plausible_ranges.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::measurement {
@@ -24,6 +26,7 @@ struct Options {
   bool joint_domain = false;      ///< the result at the joints too
   /// Frequencies for which a model is asked; absent: those at which the data show how the limb answers.
   std::optional<std::pair<Hertz, Hertz>> band;
+  std::set<PlausibleQuantity> ignored_ranges;  ///< plausible ranges that are not checked
 };
 
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.

@@ -35,6 +35,12 @@ enum class WarningCode {
   weak_instruments,
   invalid_instruments,
   mixed_conditions,
+  implausible_scale,
+  axes_scaled_differently,
+  axes_mismatched,
+  same_column,
+  other_column,
+  handle_mass_too_large,
 };
 
 /// Stable: scripts may test for these words.
@@ -67,6 +73,12 @@ enum class WarningCode {
       {weak_instruments, "weak-instruments"},
       {invalid_instruments, "invalid-instruments"},
       {mixed_conditions, "mixed-conditions"},
+      {implausible_scale, "implausible-scale"},
+      {axes_scaled_differently, "axes-scaled-differently"},
+      {axes_mismatched, "axes-mismatched"},
+      {same_column, "same-column"},
+      {other_column, "other-column"},
+      {handle_mass_too_large, "handle-mass-too-large"},
   });
 }
 
@@ -83,7 +95,8 @@ enum class WarningCode {
 struct Warning {
   WarningCode code;
   std::string message;
-  std::string remedy;  ///< what to try next; "try" in JSON
+  std::string remedy;    ///< what to try next; "try" in JSON
+  std::string was = {};  ///< code by which the last version said it, where that is another
 };
 
 }  // namespace mbk

@@ -314,7 +314,7 @@ std::vector<Warning> warnings_from(const Json& json) {
     const std::string code = one.value("code", "");
     const auto known = value_of<WarningCode>(code);
     if (!known) throw Malformed{fmt::format("there is no warning '{}'", code)};
-    warnings.push_back({*known, one.value("message", ""), one.value("try", "")});
+    warnings.push_back({*known, one.value("message", ""), one.value("try", ""), one.value("was", "")});
   }
   return warnings;
 }
