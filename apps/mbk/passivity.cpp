@@ -163,8 +163,7 @@ int run(const PassivityArguments& arguments) {
     return report_error({ErrorKind::usage, "--sensor needs the voltages of a recording, and a stored result has none",
                          "leave it out, or name the recording", ""});
   }
-  const Result<PassivityAnswers> answers =
-      stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
+  const Result<PassivityAnswers> answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
   if (!answers) return report_error(answers.error());
   int code = kFine;
   for (const Error& error : answers->failed) code = std::max(code, report_error(error));

@@ -43,7 +43,7 @@ Result<Eigen::Vector2d> force_rmse(const PreparedTrial& trial, const PreparedTri
 }
 
 Result<ForceOutcome> measured(const Recording& recording, Force force, const Robots& robots, const PreparedTrial& truth,
-                         const measurement::Options& options) {
+                              const measurement::Options& options) {
   preprocess::Options signals = options.preprocess;
   signals.cutoff = truth.preparation.cutoff;
   signals.every = truth.preparation.every;
