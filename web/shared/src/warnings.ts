@@ -9,6 +9,30 @@ export const plainWarnings: PlainWarnings = {
     title: "The force was recorded with the opposite sign",
     meaning: "Everything comes out negative, which no limb can be. The recording itself is probably fine.",
   },
+  "implausible-scale": {
+    title: "Motion, force or model have a size that no limb has",
+    meaning: "A channel was probably read in the wrong unit, such as millimetres as metres. The numbers are not those of this limb.",
+  },
+  "axes-scaled-differently": {
+    title: "One axis seems to have another unit or gain than the other",
+    meaning: "The two directions answer each other very unequally, which no limb does. The numbers are not those of this limb.",
+  },
+  "axes-mismatched": {
+    title: "Force and motion do not belong to the same axes",
+    meaning: "An axis was probably flipped or two columns swapped: with another order or sign the model is that of a limb, as given it is not.",
+  },
+  "same-column": {
+    title: "Two channels are one column",
+    meaning: "The same data stand for two quantities. The numbers are not those of this limb.",
+  },
+  "other-column": {
+    title: "A channel was read from a column with another name",
+    meaning: "Check that the columns were named as the file means them.",
+  },
+  "handle-mass-too-large": {
+    title: "More handle mass was subtracted than was measured",
+    meaning: "The inertia that is left is not that of a limb.",
+  },
   "inertia-not-positive": {
     title: "The inertia is impossible",
     meaning: "In some direction the limb would have no mass or less than none. The numbers are not those of a limb.",
