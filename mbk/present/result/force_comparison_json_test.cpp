@@ -7,7 +7,6 @@
 namespace mbk::result {
 namespace {
 
-using nlohmann::json;
 
 Vector of(double x, double y) {
   return Eigen::Vector2d(x, y);
@@ -32,17 +31,17 @@ TEST(ForceComparisonJson, HasEveryNumberInSiAndNullForWhatIsUndefined) {
   comparison.longest_lag = 0.1;
   const Json read = force_comparison_json(comparison);
   EXPECT_EQ(read["duration_s"], 12.5);
-  EXPECT_EQ(read["all"], (json{{"rows", 12500}, {"bias", {0.01, -0.02}}, {"RMSE", {0.1, 0.2}}}));
+  EXPECT_EQ(read["all"], (Json{{"rows", 12500}, {"bias", {0.01, -0.02}}, {"RMSE", {0.1, 0.2}}}));
   EXPECT_EQ(read["rest"]["rows"], 0);
-  EXPECT_EQ(read["rest"]["bias"], json({nullptr, nullptr}));
-  EXPECT_EQ(read["reversals"]["RMSE"], json({0.5, 0.6}));
-  EXPECT_EQ(read["motion"]["bias"], json({0.03, 0.04}));
-  EXPECT_EQ(read["measured_rms"], json({4.0, 5.0}));
-  EXPECT_EQ(read["VAF"], json({99.5, -2.0}));
-  EXPECT_EQ(read["gain"], json({1.01, 0.97}));
-  EXPECT_EQ(read["correlation"], json({0.99, 0.5}));
-  EXPECT_EQ(read["lag_s"], json({0.0167, nullptr}));
-  EXPECT_EQ(read["correlation_at_lag"], json({0.999, nullptr}));
+  EXPECT_EQ(read["rest"]["bias"], Json({nullptr, nullptr}));
+  EXPECT_EQ(read["reversals"]["RMSE"], Json({0.5, 0.6}));
+  EXPECT_EQ(read["motion"]["bias"], Json({0.03, 0.04}));
+  EXPECT_EQ(read["measured_rms"], Json({4.0, 5.0}));
+  EXPECT_EQ(read["VAF"], Json({99.5, -2.0}));
+  EXPECT_EQ(read["gain"], Json({1.01, 0.97}));
+  EXPECT_EQ(read["correlation"], Json({0.99, 0.5}));
+  EXPECT_EQ(read["lag_s"], Json({0.0167, nullptr}));
+  EXPECT_EQ(read["correlation_at_lag"], Json({0.999, nullptr}));
   EXPECT_EQ(read["rest_speed"], 0.02);
   EXPECT_EQ(read["reversal_window_s"], 0.05);
   EXPECT_EQ(read["longest_lag_s"], 0.1);
