@@ -33,7 +33,7 @@ std::vector<std::string> seeds() {
           R"({"schema": "mbk.result/1", "axes": 1, "model": {"M": [[1]], "B": [[2]], "K": [[3]], "x0": [0]}})",
           R"({"schema": "mbk.result/2", "model": {"M": [[1]], "B": [[2]], "K": [[3]]}, "alternatives": [{"method": "iv",
           "model": {"M": [[1]], "B": [[2]], "K": [[3]]}, "warnings": []}], "passivity": {"prediction": {}, "band_hz":
-          [0.1, 3], "models": [{"method": "iv"}], "trial": {"lines": [{"frequency_hz": 1, "absorbed_J": 1, "interval95":
+          [0.1, 3], "models": [{"method": "iv"}], "trial": {"lines": [{"frequency_hz": 1, "duration_s": 9, "absorbed_J": 1, "interval95":
           [0, 2]}]}, "energy": {"absorbed_J": 1, "interval95": [0.5, 2], "mean_power_interval95": [0, 1], "shortage":
           {"at_end_interval95": [0, 1], "largest_interval95": [null, 1]}, "blocks": 8}}})"};
 }

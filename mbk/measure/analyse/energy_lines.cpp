@@ -14,13 +14,13 @@
 namespace mbk::analyse {
 namespace {
 
-constexpr double kSearchRate = 100.0;    ///< [Hz] at which the period is looked for first
-constexpr double kNearlyRepeats = 0.05;  ///< of the reference's variance, at that rate
-constexpr double kRepeats = 0.01;        ///< and at the rate of the recording
-constexpr double kUnlike = 0.5;          ///< that far a signal has to go from itself before it can come back
-constexpr Index kMinPeriods = 3;         ///< with fewer, nothing shows how they differ
-constexpr double kHighestLine = 50.0;    ///< [Hz]
-constexpr double kShareOfLine = 0.005;   ///< of the variance of an axis
+constexpr double kSearchRate = 100.0;   ///< [Hz] at which the period is looked for first
+constexpr double kNearlyRepeats = 0.1;  ///< of the reference's variance, over the whole window
+constexpr double kRepeats = 0.01;       ///< and at the rate of the recording
+constexpr double kUnlike = 0.5;         ///< that far a signal has to go from itself before it can come back
+constexpr Index kMinPeriods = 3;        ///< with fewer, nothing shows how they differ
+constexpr double kHighestLine = 50.0;   ///< [Hz]
+constexpr double kShareOfLine = 0.005;  ///< of the variance of an axis
 
 /// The window of a recording, sample by sample.
 struct Window {
@@ -63,23 +63,43 @@ double unlike_itself(const Matrix& signal, Index lag, Index step, double varianc
   return sum / (2.0 * variance * static_cast<double>(count));
 }
 
-/// [samples]; absent where the signal does not repeat itself kMinPeriods times.
-std::optional<Index> period_of(const Matrix& reference, double rate) {
+/// Whole periods of a signal, one after another.
+struct Periods {
+  Index begin = 0, length = 0, count = 0;  ///< [samples], [samples]
+};
+
+/// The periods of that length, counted from the end of the signal, in which it repeats itself; what comes before, as
+/// where the perturbation grows from rest, is left out.
+Periods periods_of(const Matrix& signal, Index length, double variance) {
+  Periods periods{signal.rows() - length, length, 1};
+  while (periods.begin >= length) {
+    const Matrix two = signal.middleRows(periods.begin - length, 2 * length);
+    if (unlike_itself(two, length, 1, variance) > kRepeats) break;
+    periods.begin -= length;
+    ++periods.count;
+  }
+  return periods;
+}
+
+/// Absent where the signal does not repeat itself kMinPeriods times.
+std::optional<Periods> periods_of(const Matrix& reference, double rate) {
   const double variance = total_variance(reference);
   if (!(variance > 0.0)) return std::nullopt;
   const Index step = std::max<Index>(1, static_cast<Index>(rate / kSearchRate));
+  const Index longest = reference.rows() / kMinPeriods;
   bool went_away = false;
-  for (Index lag = step; lag <= reference.rows() / kMinPeriods; lag += step) {
+  for (Index lag = step; lag <= longest; lag += step) {
     const double unlike = unlike_itself(reference, lag, step, variance);
     went_away = went_away || unlike > kUnlike;
     if (!went_away || unlike > kNearlyRepeats) continue;
     Index best = lag;
     double least = unlike;
-    for (Index near = lag - step; near <= std::min(lag + 2 * step, reference.rows() / kMinPeriods); ++near) {
+    for (Index near = lag - step; near <= std::min(lag + 2 * step, longest); ++near) {
       const double here = unlike_itself(reference, near, step, variance);
       if (here < least) std::tie(best, least) = std::pair{near, here};
     }
-    if (least < kRepeats) return best;
+    const Periods found = periods_of(reference, best, variance);
+    if (found.count >= kMinPeriods) return found;
   }
   return std::nullopt;
 }
@@ -101,9 +121,11 @@ Eigen::RowVectorXcd amplitude(const Matrix& signal, Index harmonic, const Eigen:
   return sum * (2.0 / static_cast<double>(period));
 }
 
-std::vector<Index> harmonics_of(const Matrix& reference, Index period, double rate) {
+std::vector<Index> harmonics_of(const Matrix& whole, const Periods& periods, double rate) {
+  const Index period = periods.length;
+  const Matrix reference = whole.middleRows(periods.begin, period);
   const Eigen::VectorXcd circle = unit_circle(period);
-  const Matrix one = reference.topRows(period).rowwise() - reference.topRows(period).colwise().mean();
+  const Matrix one = reference.rowwise() - reference.colwise().mean();
   const double highest = std::min(kHighestLine, 0.25 * rate);
   std::vector<Index> harmonics;
   for (Index h = 1; static_cast<double>(h) * rate / static_cast<double>(period) <= highest; ++h) {
@@ -130,30 +152,32 @@ double absorbed_at(const Matrix& position, const Matrix& force, Index harmonic, 
 
 std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recordings,
                                      std::span<const PreparedTrial> trials) {
-  std::optional<Index> period;
   std::vector<Index> harmonics;
   std::vector<std::vector<double>> absorbed;  // of each period, line by line
+  Index length = 0;
   double rate = 0.0;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     const auto window = window_of(*recordings[k], trials[k]);
     if (!window) return {};
-    const auto found = period_of(window->reference, window->rate);
-    if (!found || (period && (*found != *period || window->rate != rate))) return {};
-    period = found;
+    const auto found = periods_of(window->reference, window->rate);
+    if (!found) return {};
+    auto own = harmonics_of(window->reference, *found, window->rate);
+    if (own.empty() || (k > 0 && (found->length != length || window->rate != rate || own != harmonics))) return {};
+    length = found->length;
     rate = window->rate;
-    const auto lines = harmonics_of(window->reference, *period, rate);
-    if (lines.empty() || (k > 0 && lines != harmonics)) return {};
-    harmonics = lines;
-    const Eigen::VectorXcd circle = unit_circle(*period);
-    for (Index begin = 0; begin + *period <= window->position.rows(); begin += *period) {
-      const Matrix x = window->position.middleRows(begin, *period), F = window->force.middleRows(begin, *period);
-      std::vector<double> one;
-      for (const Index h : harmonics) one.push_back(absorbed_at(x, F, h, circle));
-      absorbed.push_back(std::move(one));
+    harmonics = std::move(own);
+    const Eigen::VectorXcd circle = unit_circle(length);
+    for (Index one = 0; one < found->count; ++one) {
+      const Matrix x = window->position.middleRows(found->begin + one * length, length),
+                   F = window->force.middleRows(found->begin + one * length, length);
+      std::vector<double> of_period;
+      for (const Index h : harmonics) of_period.push_back(absorbed_at(x, F, h, circle));
+      absorbed.push_back(std::move(of_period));
     }
   }
   const auto periods = static_cast<Index>(absorbed.size());
   if (periods < kMinPeriods) return {};
+  const double period_s = static_cast<double>(length) / rate;
   const double quantile =
       numeric::student_quantile(1.0 - 0.025 / static_cast<double>(harmonics.size()), static_cast<int>(periods) - 1);
   std::vector<EnergyLine> lines;
@@ -161,7 +185,8 @@ std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recording
     Vector each(periods);
     for (Index b = 0; b < periods; ++b) each[b] = absorbed[static_cast<std::size_t>(b)][line];
     const double half = quantile * std::sqrt(static_cast<double>(periods) * numeric::variance(each)), sum = each.sum();
-    lines.push_back({Hertz(static_cast<double>(harmonics[line]) * rate / static_cast<double>(*period)),
+    lines.push_back({Hertz(static_cast<double>(harmonics[line]) / period_s),
+                     static_cast<double>(periods) * period_s,
                      sum,
                      {sum - half, sum + half}});
   }

@@ -78,6 +78,21 @@ TEST(EnergyLines, AreThoseOfTheDamperAtEachFrequency) {
   }
 }
 
+// The first period is not one where the perturbation grows from rest.
+TEST(EnergyLines, LeaveOutWhereThePerturbationGrowsFromRest) {
+  Recording growing = recording_of(1);
+  for (Channel& channel : growing.channels) {
+    for (Index i = 0; i < 1500; ++i) channel.values[i] *= static_cast<double>(i) / 1500.0;
+  }
+  const std::vector<EnergyLine> lines = lines_of(growing), all = lines_of(recording_of(1));
+  ASSERT_EQ(lines.size(), all.size());
+  EXPECT_DOUBLE_EQ(all[0].duration, 5.0 * kPeriod);
+  EXPECT_DOUBLE_EQ(lines[0].duration, 4.0 * kPeriod);
+  const double w = omega_of(2), truth = 4.0 * kPeriod * kDampers[2] * kAmplitude * kAmplitude * w * w;
+  EXPECT_LT(lines[2].absorbed95.first, truth);
+  EXPECT_GT(lines[2].absorbed95.second, truth);
+}
+
 TEST(EnergyLines, HaveIntervalsThatHoldAllOfThemTogetherAsOftenAsTheySay) {
   int held = 0;
   constexpr int kRuns = 300;

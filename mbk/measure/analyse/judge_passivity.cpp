@@ -163,13 +163,13 @@ std::string conditions_with(const ModelPassivity& model, Verdict verdict) {
   return text;
 }
 
-/// "below 0.16 Hz", "above 40 Hz", both or "at any frequency"
+/// "below 0.16 Hz", "above 2.1 Hz", both or "at any frequency": the ends that lie within the band.
 std::string where_circles_generate(const ModelPassivity& model) {
   if (!model.circular_hz) return "at any frequency";
   const auto [low, high] = *model.circular_hz;
-  std::string text = low > 0.0 ? fmt::format("below {:.2g} Hz", low) : "";
-  if (std::isfinite(high)) text += fmt::format("{}above {:.3g} Hz", text.empty() ? "" : " and ", high);
-  return text;
+  std::string text = low > model.band.low.value ? fmt::format("below {:.2g} Hz", low) : "";
+  if (high < model.band.high.value) text += fmt::format("{}above {:.2g} Hz", text.empty() ? "" : " and ", high);
+  return text.empty() ? "at any frequency" : text;
 }
 
 std::string in_straight_motion(Verdict verdict) {

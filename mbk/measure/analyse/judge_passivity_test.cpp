@@ -236,9 +236,10 @@ TEST(Trial, IsNotSaidWhereTheSignalsAreNotPlausible) {
 }
 
 TEST(Trial, NamesTheLinesAtWhichEnergyWasDelivered) {
-  const auto trial = trial_passivity(
-      arm(), energy_of(1.0, 0.9, 1.1),
-      {{Hertz(0.1), -0.1, {-0.2, -0.05}}, {Hertz(0.4), 0.5, {0.4, 0.6}}, {Hertz(0.7), -0.1, {-0.3, 0.1}}});
+  const auto trial = trial_passivity(arm(), energy_of(1.0, 0.9, 1.1),
+                                     {{Hertz(0.1), 50.0, -0.1, {-0.2, -0.05}},
+                                      {Hertz(0.4), 50.0, 0.5, {0.4, 0.6}},
+                                      {Hertz(0.7), 50.0, -0.1, {-0.3, 0.1}}});
   EXPECT_THAT(trial->statement, HasSubstr("delivered energy at 0.1 Hz"));
 }
 

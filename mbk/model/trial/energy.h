@@ -68,6 +68,7 @@ struct EnergyAccount {
 /// whole periods. The lines add up to the energy of those periods, but for noise and what is not periodic.
 struct EnergyLine {
   Hertz frequency;
+  double duration = 0;  ///< of those periods [s]
   double absorbed = 0;  ///< [J]
   Interval absorbed95;  ///< 95 % for all lines at once, from how the periods differ
 };

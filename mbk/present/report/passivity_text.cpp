@@ -35,9 +35,14 @@ std::string models_table(const std::vector<ModelPassivity>& models) {
   return table(rows);
 }
 
-std::string circular_text(const Interval& between) {
-  return std::isfinite(between.second) ? fmt::format("{:.2g} to {:.3g} Hz", between.first, between.second)
-                                       : fmt::format("above {:.2g} Hz", between.first);
+/// Where a model absorbs in circular motion; empty where that is throughout the band and a decade to either side.
+std::string circular_text(const ModelPassivity& model) {
+  constexpr double kDecade = 10.0;
+  if (!model.circular_hz) return "";
+  const auto [low, high] = *model.circular_hz;
+  const bool above = low > model.band.low.value / kDecade, below = high < model.band.high.value * kDecade;
+  if (above && below) return fmt::format("{:.2g} to {:.2g} Hz", low, high);
+  return above ? fmt::format("above {:.2g} Hz", low) : below ? fmt::format("below {:.2g} Hz", high) : "";
 }
 
 std::string model_text(const ModelPassivity& model) {
@@ -56,13 +61,12 @@ std::string model_text(const ModelPassivity& model) {
            fmt::format("at {:.3g} Hz", model.smallest_at.value)}};
   if (model.excess) {
     rows.push_back({"excess of passivity", fmt::format("{:.3g}", model.excess->corrected),
-                    between(model.excess->corrected95), "of the symmetric part: smallest eigenvalue of B"});
+                    between(model.excess->corrected95), "smallest eigenvalue of B"});
     rows.push_back({"  by the published formula", fmt::format("{:.3g}", model.excess->published),
-                    between(model.excess->published95), "half of the largest eigenvalue of B"});
+                    between(model.excess->published95), "half of the largest"});
   }
-  if (model.circular_hz) {
-    rows.push_back({"absorbs in circular motion", circular_text(*model.circular_hz), "",
-                    "as estimated; beyond, the antisymmetric part outweighs the damping"});
+  if (const std::string circular = circular_text(model); !circular.empty()) {
+    rows.push_back({"absorbs in circles", circular, "", "as estimated"});
   }
   return text + table(rows);
 }

@@ -82,6 +82,7 @@ Json trial_json(const TrialPassivity& trial) {
                {"reason", trial.energy.reason}};
   for (const EnergyLine& line : trial.lines) {
     json["lines"].push_back({{"frequency_hz", line.frequency.value},
+                             {"duration_s", number(line.duration)},
                              {"absorbed_J", number(line.absorbed)},
                              {"interval95", interval(line.absorbed95)}});
   }
@@ -196,8 +197,8 @@ StoredPassivity stored_passivity_from(const Json& json) {
   const Json::json_pointer lines("/trial/lines");
   if (json.contains(lines) && json[lines].is_array()) {
     for (const Json& line : json[lines]) {
-      stored.lines.push_back({Hertz(number_from(line.at("frequency_hz"))), number_from(line.at("absorbed_J")),
-                              interval_from(line, "interval95")});
+      stored.lines.push_back({Hertz(number_from(line.at("frequency_hz"))), number_from(line.at("duration_s")),
+                              number_from(line.at("absorbed_J")), interval_from(line, "interval95")});
     }
   }
   return stored;

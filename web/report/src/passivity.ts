@@ -197,8 +197,8 @@ export function passivityDetails(trial: Trial, id: string, level: HeadingLevel):
     ...models.map(conditionsTable),
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "A condition holds where it is above zero with 97.5 % confidence, and fails where it is below zero with 97.5 % confidence for all conditions at once. Between the two it is open. All must hold for “passive”; one that fails makes “active”."),
     excessTable(models, unit),
-    circular ? h("p", {}, "In circular motion the model of ", methodNames[first.method], ", as estimated, absorbs energy ", circular[1] === null ? "above " : "between ",
-      data(circular[0], significant(circular[0], 2), "circular-low"), circular[1] === null ? "" : [" and ", significant(circular[1], 3)].join(""),
-      " Hz. Beyond, its antisymmetric part outweighs its damping; what lies outside the band is extrapolated.") : "",
+    first.antisymmetric !== "passive" && circular ? h("p", {}, "In circular motion the model of ", methodNames[first.method], ", as estimated, absorbs energy above ", data(circular[0], significant(circular[0], 2), "circular-low"), " Hz",
+      circular[1] !== null && circular[1] < 10 * first.band_hz[1] ? [" and below ", significant(circular[1], 2), " Hz"].join("") : "",
+      ". Beyond, its antisymmetric part outweighs its damping; what lies outside the band is extrapolated.") : "",
     ...charts.map(figure));
 }
