@@ -188,11 +188,11 @@ TEST(Instruments, SpeakOnlyWhereTheyAreStrongAndDiffer) {
   Identification id = arm();
   const Disagreement yes{"k_xx", 10.0, 1.0, true}, no{"k_xx", 1.0, 1.0, false};
   EXPECT_FALSE(instruments_speak(id, yes));
-  id.instrument = InstrumentCheck{ReferenceQuantity::force, Vector::Constant(6, 10.1), {}};
+  id.instrument = InstrumentCheck{ReferenceQuantity::force, Vector::Constant(6, kStrongInstruments + 0.1), {}};
   EXPECT_TRUE(instruments_speak(id, yes));
   EXPECT_FALSE(instruments_speak(id, no));
   EXPECT_FALSE(instruments_speak(id, std::nullopt));
-  id.instrument->strength[4] = 9.9;
+  id.instrument->strength[4] = kStrongInstruments - 0.1;
   EXPECT_FALSE(instruments_speak(id, yes));
   id.instrument->strength[4] = kNaN;
   EXPECT_FALSE(instruments_speak(id, yes));

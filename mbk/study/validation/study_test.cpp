@@ -25,7 +25,7 @@ void expect_enough_by_default(std::string_view name, const ValidationTable& tabl
 
 void expect_nothing_refuted(const Result<ValidationTable>& table) {
   ASSERT_TRUE(table) << table.error().line();
-  expect_nothing_refuted(*table);
+  validation::expect_nothing_refuted(*table);
   expect_enough_by_default(table->study, *table);
 }
 
