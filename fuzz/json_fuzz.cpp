@@ -29,8 +29,13 @@ Measurement measured(int axes) {
 
 std::vector<std::string> seeds() {
   return {result::to_json(measured(1)), result::to_json(measured(2)),
-          result::to_json(std::vector{measured(1), measured(2)}, std::nullopt),
-          R"({"schema": "mbk.result/1", "axes": 1, "model": {"M": [[1]], "B": [[2]], "K": [[3]], "x0": [0]}})"};
+          result::to_json(std::vector{measured(1), measured(2)}, SeveralTrials{}),
+          R"({"schema": "mbk.result/1", "axes": 1, "model": {"M": [[1]], "B": [[2]], "K": [[3]], "x0": [0]}})",
+          R"({"schema": "mbk.result/2", "model": {"M": [[1]], "B": [[2]], "K": [[3]]}, "alternatives": [{"method": "iv",
+          "model": {"M": [[1]], "B": [[2]], "K": [[3]]}, "warnings": []}], "passivity": {"prediction": {}, "band_hz":
+          [0.1, 3], "models": [{"method": "iv"}], "trial": {"lines": [{"frequency_hz": 1, "duration_s": 9, "absorbed_J": 1, "interval95":
+          [0, 2]}]}, "energy": {"absorbed_J": 1, "interval95": [0.5, 2], "mean_power_interval95": [0, 1], "shortage":
+          {"at_end_interval95": [0, 1], "largest_interval95": [null, 1]}, "blocks": 8}}})"};
 }
 
 }  // namespace mbk::fuzz
@@ -43,6 +48,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   fuzz::require(!read->empty(), "a file holds a result");
+  const auto stored = result::results_from_json(fuzz::text_of(data, size));  // may say that its passivity is none
+  if (!stored) fuzz::require_error(stored.error());
+  if (stored) fuzz::require(stored->size() == read->size(), "both readers find the same results");
   for (const Identification& one : *read) {
     fuzz::require(one.axes == 1 || one.axes == 2, "a result has one or two axes");
     fuzz::require(one.model.M.rows() == one.axes && one.model.K.cols() == one.axes, "matrices fit the axes");

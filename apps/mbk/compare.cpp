@@ -8,6 +8,7 @@
 #include "apps/mbk/measure_options.h"
 #include "mbk/measure/analyse/analyse_width.h"
 #include "mbk/measure/measurement/measure.h"
+#include "mbk/present/report/text.h"
 #include "mbk/present/report/width_text.h"
 #include "mbk/present/result/json.h"
 #include "mbk/present/result/width_json.h"
@@ -42,6 +43,7 @@ Result<Identification> measured(MeasureArguments arguments, const std::filesyste
 std::string source_line(const Identification& id, const char* which) {
   std::string text;
   for (const SourceFile& source : id.sources) text += fmt::format("{:<7} {}\n", which, source.path);
+  text += fmt::format("        by {}\n", report::method_name(id.method));
   if (!id.usable) text += fmt::format("  ! the {} result is not usable: 'mbk measure' says why\n", which);
   return text;
 }
@@ -56,11 +58,14 @@ int run(const MeasureArguments& arguments) {
   }
   const auto widths = analyse::analyse_width(both[0], both[1]);
   if (!widths) return report_error(widths.error());
-  const std::string shown = arguments.output.json ? result::width_to_json(both[0].sources, both[1].sources, *widths)
-                                                  : source_line(both[0], "first") + source_line(both[1], "second") +
-                                                        report::width_text(*widths);
+  const bool usable = both[0].usable && both[1].usable;
+  std::string shown = result::width_to_json(both[0].sources, both[1].sources, *widths);
+  if (!arguments.output.json) {
+    shown = source_line(both[0], "first") + source_line(both[1], "second");
+    shown += usable ? report::width_text(*widths) : "  no width is shown; --json holds the numbers\n";
+  }
   if (auto ok = arguments.output.to.write(shown); !ok) return report_error(ok.error());
-  return widths->complete() && both[0].usable && both[1].usable ? kFine : kNotUsable;
+  return widths->complete() && usable ? kFine : kNotUsable;
 }
 
 }  // namespace

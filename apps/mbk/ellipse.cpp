@@ -25,17 +25,24 @@ int run(const EllipseArguments& arguments) {
   if (!identifications) return report_error(identifications.error().in(arguments.file.string()));
   std::vector<Findings> all;
   std::string shown;
+  int code = kFine;
   for (const Identification& identification : *identifications) {
     const auto findings = analyse::analyse_ellipses(identification);
     if (!findings) return report_error(findings.error().in(arguments.file.string()));
     all.push_back(*findings);
     if (!shown.empty()) shown += "\n";
     for (const SourceFile& source : identification.sources) shown += source.path + "\n";
-    shown += report::ellipses_text(*findings);
+    shown += fmt::format("  by {}\n", report::method_name(identification.method));
+    if (identification.usable) {
+      shown += report::ellipses_text(*findings);
+    } else {
+      shown += "  NOT USABLE: no ellipse is shown; 'mbk measure' says why. --json holds the numbers.\n";
+      code = kNotUsable;
+    }
   }
   if (arguments.json) shown = result::to_json(*identifications, all);
   if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
-  return kFine;
+  return code;
 }
 
 }  // namespace

@@ -8,7 +8,8 @@ namespace mbk::app {
 void add_identify_options(CLI::App& command, identify::Options& options) {
   const char* const model = "Model";
   add_choice(command, "--method", options.method,
-             "ls: least squares; iv: instrumental variables, which need the reference and hold in closed loop too")
+             "ls: least squares; iv: instrumental variables, which need the reference and hold in closed loop too; "
+             "otherwise iv where the reference is a force and they hold, else ls")
       ->group(model);
   add_choice(command, "--structure", options.structure,
              "full; symmetric: M and K symmetric; mass-spring: M = m I, no damping, K symmetric")
@@ -17,7 +18,9 @@ void add_identify_options(CLI::App& command, identify::Options& options) {
              "all: parameters from every window, fit judged on the held-out half (default for underdamped)")
       ->group(model);
   command
-      .add_option("--handle-mass", options.handle_mass, "mass between sensor and hand, subtracted from the inertia (0)")
+      .add_option("--handle-mass", options.handle_mass,
+                  "mass between sensor and hand, subtracted from the inertia; otherwise what the recording says, and "
+                  "none in reference mode")
       ->type_name("KG")
       ->check(not_negative())
       ->group(model);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "apps/mbk/commands.h"
@@ -32,35 +33,46 @@ int list_unrecognised(const InfoArguments& arguments, const Error& error) {
 }
 
 /// What a journal holds so far, as the recording that it would become.
-Result<std::vector<Recording>> read_journal(const std::filesystem::path& file) {
+Result<std::vector<Result<Recording>>> read_journal(const std::filesystem::path& file) {
   const auto journal = journal::read(file);
   if (!journal) return tl::unexpected(journal.error());
   auto recording = journal::to_recording(*journal);
   if (!recording) return tl::unexpected(recording.error().in(file.string()));
   recording->sources.push_back({file.string(), "journal of a session", ""});
   recording->notes.emplace_back("'mbk recover' makes a recording of it");
-  return std::vector<Recording>{std::move(*recording)};
+  std::vector<Result<Recording>> one;
+  one.push_back(std::move(*recording));
+  return one;
 }
 
 int run(const InfoArguments& arguments) {
   if (auto ok = arguments.output.to.check(arguments.reading.files); !ok) return report_error(ok.error());
   const bool journal = arguments.reading.files.size() == 1 && journal::is_journal(arguments.reading.files.front());
-  const auto recordings =
-      journal ? read_journal(arguments.reading.files.front()) : read_recordings(arguments.reading, arguments.sensor);
-  if (!recordings && journal) return report_error(recordings.error());
-  if (!recordings) return list_unrecognised(arguments, recordings.error());
+  auto each = journal ? read_journal(arguments.reading.files.front()) : read_each(arguments.reading, arguments.sensor);
+  if (!each) return report_error(each.error());
+  if (each->size() == 1 && !each->front() && !journal) return list_unrecognised(arguments, each->front().error());
+  int code = kFine;
+  std::vector<Recording> recordings;
   std::vector<Inspection> inspections;
-  for (const Recording& recording : *recordings) inspections.push_back(recording::inspect(recording));
+  for (Result<Recording>& one : *each) {
+    if (!one) {
+      code = std::max(code, report_error(one.error()));
+      continue;
+    }
+    inspections.push_back(recording::inspect(*one));
+    recordings.push_back(std::move(*one));
+  }
+  if (recordings.empty()) return code;
   std::string text;
   if (arguments.output.json) {
-    text = result::to_json(*recordings, inspections);
+    text = result::to_json(recordings, inspections);
   } else {
     for (std::size_t i = 0; i < inspections.size(); ++i) {
-      text += (i > 0 ? "\n" : "") + report::info_text((*recordings)[i], inspections[i]);
+      text += (i > 0 ? "\n" : "") + report::info_text(recordings[i], inspections[i]);
     }
   }
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
-  return kFine;
+  return code;
 }
 
 }  // namespace

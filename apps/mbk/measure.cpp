@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <tuple>
 
@@ -7,8 +8,6 @@
 #include "apps/mbk/report_file.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/measure/analyse/summarise.h"
-#include "mbk/present/report/joint_domain_text.h"
-#include "mbk/present/report/passivity_text.h"
 #include "mbk/present/report/text.h"
 #include "mbk/present/result/json.h"
 
@@ -53,72 +52,106 @@ std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordi
   return results;
 }
 
+/// Everything that a run of the command found.
+struct MeasuredTrials {
+  std::vector<Recording> recordings;  ///< those that are behind `measured`
+  std::vector<Measurement> measured;
+  std::vector<std::optional<Diagnostics>> diagnostics;  ///< one for each result
+  bool several = false;                                 ///< more than one result was asked for
+  SeveralTrials together;
+
+  void add(Examined one) {
+    measured.push_back(std::move(one.measured));
+    diagnostics.emplace_back();
+    if (!one.diagnostics.empty()) diagnostics.back() = std::move(one.diagnostics.front());
+  }
+};
+
+/// One fit over all of them: what cannot be read is missing in it, so that there is none.
+Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
+  auto recordings = read_perturbations(arguments.reading, arguments.sensor);
+  if (!recordings) return tl::unexpected(recordings.error());
+  MeasuredTrials found;
+  found.recordings = std::move(*recordings);
+  add_arm(arguments.analyse, found.recordings);
+  auto pooled = measure_one(found.recordings, options, arguments.report.file.has_value());
+  if (!pooled) return tl::unexpected(pooled.error());
+  found.add(std::move(*pooled));
+  return found;
+}
+
+/// One result for each: a recording that cannot be measured costs only itself.
+Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
+  auto each = read_each_perturbation(arguments.reading, arguments.sensor);
+  if (!each) return tl::unexpected(each.error());
+  MeasuredTrials found;
+  found.several = each->size() > 1;
+  std::vector<Error>& failed = found.together.failed;
+  std::vector<Recording> readable;
+  for (Result<Recording>& one : *each) {
+    if (one) {
+      readable.push_back(std::move(*one));
+    } else {
+      failed.push_back(one.error());
+    }
+  }
+  add_arm(arguments.analyse, readable);
+  std::vector<Result<Examined>> results = measure_each(readable, options, arguments);
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    if (!results[k]) {
+      failed.push_back(results[k].error());
+      continue;
+    }
+    found.recordings.push_back(std::move(readable[k]));
+    found.add(std::move(*results[k]));
+  }
+  if (!found.several || found.measured.empty()) return found;
+  std::vector<Identification> identifications;
+  for (const Measurement& one : found.measured) identifications.push_back(one.identification);
+  auto mean = analyse::summarise(identifications);
+  if (mean) {
+    found.together.summary = std::move(*mean);
+  } else {
+    found.together.no_summary = mean.error().message;
+  }
+  return found;
+}
+
 /// The work of `measure` and `identify`, which differ only in whether the ellipses are shown.
 int run(const MeasureCommandArguments& arguments, const std::string& typed, bool with_findings) {
   const auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
   if (!options) return report_error(options.error());
   if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok)
     return report_error(ok.error());
-  auto recordings = read_perturbations(arguments.reading, arguments.sensor);
-  if (!recordings) return report_error(recordings.error());
-  add_arm(arguments.analyse, *recordings);
-
-  std::vector<Result<Examined>> results;
-  if (arguments.pool) {
-    results.push_back(measure_one(*recordings, *options, arguments.report.file.has_value()));
-  } else {
-    results = measure_each(*recordings, *options, arguments);
-  }
-  std::vector<Measurement> measured;
-  std::vector<std::optional<Diagnostics>> diagnostics;
-  for (Result<Examined>& one : results) {
-    if (!one) return report_error(one.error());
+  auto found = arguments.pool ? measure_pooled(arguments, *options) : measure_apart(arguments, *options);
+  if (!found) return report_error(found.error());
+  int code = kFine;
+  for (const Error& error : found->together.failed) code = std::max(code, report_error(error));
+  if (found->measured.empty()) return code;
+  for (Measurement& one : found->measured) {
     if (!with_findings) {
-      one->measured.findings.reset();
-      one->measured.passivity.reset();
+      one.findings.reset();
+      one.passivity.reset();
     }
-    measured.push_back(std::move(one->measured));
-    diagnostics.emplace_back();
-    if (!one->diagnostics.empty()) diagnostics.back() = std::move(one->diagnostics.front());
-  }
-  std::optional<Summary> summary;
-  if (measured.size() > 1) {
-    std::vector<Identification> identifications;
-    for (const Measurement& one : measured) identifications.push_back(one.identification);
-    auto mean = analyse::summarise(identifications);
-    if (!mean) return report_error(mean.error());
-    summary = std::move(*mean);
+    if (code == kFine && !one.identification.usable) code = kNotUsable;
   }
 
   std::string text;
   if (arguments.output.json) {
-    text = summary ? result::to_json(measured, summary) : result::to_json(measured.front());
+    text =
+        found->several ? result::to_json(found->measured, found->together) : result::to_json(found->measured.front());
   } else {
-    for (const Measurement& one : measured) {
-      if (!text.empty()) text += "\n";
-      text += report::result_text(one.identification, one.findings);
-      if (one.alternative && one.disagreement) {
-        text += "\n" + report::alternative_text(one.identification, *one.alternative, *one.disagreement);
-      }
-      if (one.force_comparison && one.by_sensor) {
-        text += "\n" + report::by_sensor_text(one.identification, *one.by_sensor, *one.force_comparison);
-      }
-      if (one.joints) text += "\n" + report::joint_domain_text(*one.joints);
-      if (one.bootstrap) text += "\n" + report::bootstrap_text(*one.bootstrap);
-      if (one.passivity) text += "\n" + report::passivity_line(*one.passivity);
-    }
-    if (summary) text += "\n" + report::summary_text(*summary);
+    for (const Measurement& one : found->measured) text += (text.empty() ? "" : "\n") + report::measurement_text(one);
+    if (found->several) text += "\n" + report::summary_text(found->together);
   }
   if (arguments.report.file) {
-    const std::string document = report_json(typed, arguments.report.note, *recordings, measured, diagnostics, summary);
+    const std::string document = report_json(typed, arguments.report.note, found->recordings, found->measured,
+                                             found->diagnostics, found->several ? &found->together : nullptr);
     if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document); !ok)
       return report_error(ok.error());
   }
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
-  for (const Measurement& one : measured) {
-    if (!one.identification.usable) return kNotUsable;
-  }
-  return kFine;
+  return code;
 }
 
 Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
@@ -128,7 +161,7 @@ Action add(CLI::App& app, const char* name, const char* summary, const std::stri
   command->footer(footer);
   add_measure_options(*command, *arguments);
   add_analyse_options(*command, arguments->analyse);
-  add_output_options(*command, arguments->output, "mbk.result/1");
+  add_output_options(*command, arguments->output, "mbk.result/2");
   if (with_findings) add_report_options(*command, arguments->report);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
 }
@@ -145,7 +178,7 @@ Action add_measure(CLI::App& app, const std::string& typed) {
              "  mbk measure --axes 1 --channels x=position_rad,F=torque_Nm --split 40 ankle.csv\n"
              "      one joint from a CSV file, the first 40 s to identify, the rest held out\n"
              "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
-             "      several trials: one result each, their mean and the standard error between them\n"
+             "      several trials: one result each, and the mean of the usable ones with its 95 % interval\n"
              "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"
              "      at shoulder and elbow too; shoulder at (0.30, -0.57) m, upper arm 0.31 m, forearm 0.34 m\n"
              "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"

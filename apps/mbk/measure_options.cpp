@@ -3,11 +3,40 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
+#include "mbk/present/report/ranges_text.h"
 
 namespace mbk::app {
+
+namespace {
+
+void add_range_options(CLI::App& command, std::set<PlausibleQuantity>& ignored) {
+  const char* const group = "Plausibility";
+  const std::vector<std::string> names(kWordList<PlausibleQuantity>.begin(), kWordList<PlausibleQuantity>.end());
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--ignore-range",
+          [&ignored](const std::vector<std::string>& given) {
+            for (const std::string& name : given) ignored.insert(*value_of<PlausibleQuantity>(name));
+          },
+          "plausible ranges that are not checked, by name, as in --ignore-range stiffness,motion")
+      ->type_name("NAMES")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of(names))
+      ->group(group);
+  command
+      .add_flag_callback(
+          "--ranges", [] { throw CLI::CallForVersion(report::ranges_text(), 0); },
+          "print the ranges that a hand or a joint must keep to, with where they come from")
+      ->group(group);
+}
+
+}  // namespace
 
 void add_measure_options(CLI::App& command, MeasureArguments& arguments) {
   add_reading_options(command, arguments.reading);
@@ -17,6 +46,7 @@ void add_measure_options(CLI::App& command, MeasureArguments& arguments) {
       ->group("Analysed interval");
   add_signal_options(command, arguments.preprocess);
   add_identify_options(command, arguments.identify);
+  add_range_options(command, arguments.ignored_ranges);
   command.add_option("--threads", arguments.threads, "files measured at a time (as many as there are cores)")
       ->type_name("N")
       ->check(whole_number(1, 1024))
@@ -53,6 +83,7 @@ Result<measurement::Options> measurement_options(const MeasureArguments& argumen
     return bad_usage("--robot belongs to --force-source virtual or observer", "add that, or leave --robot out");
   }
   options.identify = arguments.identify;
+  options.ignored_ranges = arguments.ignored_ranges;
   if (a.filters.resample_hz) options.resample = Hertz(*a.filters.resample_hz);
   return options;
 }

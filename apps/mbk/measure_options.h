@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <set>
 
 #include "apps/mbk/analyse_options.h"
 #include "apps/mbk/identify_options.h"
@@ -17,6 +18,7 @@ struct MeasureArguments {
   SensorArguments sensor;
   PreprocessArguments preprocess;
   identify::Options identify;
+  std::set<PlausibleQuantity> ignored_ranges;
   bool pool = false;
   unsigned threads = 0;
   OutputArguments output;

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,8 +25,10 @@ struct PassivityArguments : MeasureArguments {
   std::string band;
 };
 
+using Asked = std::optional<std::pair<Hertz, Hertz>>;
+
 /// LOW:HIGH in Hz.
-Result<std::optional<PassivityBand>> band_of(const std::string& text) {
+Result<Asked> band_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   double low = 0.0, high = 0.0;
   const char* end = text.data() + text.size();
@@ -36,7 +40,7 @@ Result<std::optional<PassivityBand>> band_of(const std::string& text) {
     return bad_usage(fmt::format("--band: {} is not LOW:HIGH in Hz with 0 < LOW < HIGH", quoted(text)),
                      "as in --band 0.3:3");
   }
-  return PassivityBand{Hertz(low), Hertz(high), "as asked"};
+  return std::pair{Hertz(low), Hertz(high)};
 }
 
 /// One limb's answer, ready to be written.
@@ -48,49 +52,94 @@ struct Answer {
   Motion motion = Motion::translation;
 };
 
-Result<std::vector<Answer>> from_recordings(const PassivityArguments& arguments,
-                                            const std::optional<PassivityBand>& band) {
+/// Answers, and what could not be had; each error names its file.
+struct PassivityAnswers {
+  std::vector<Answer> found;
+  std::vector<Error> failed;
+};
+
+Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const Asked& band) {
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
-  const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
-  if (!recordings) return tl::unexpected(recordings.error());
-  std::vector<Answer> answers;
-  const std::span<const Recording> all(*recordings);
-  for (std::size_t k = 0; k < (arguments.pool ? 1 : all.size()); ++k) {
-    auto measured = measurement::measure(arguments.pool ? all : all.subspan(k, 1), *options);
+  PassivityAnswers answers;
+  const auto answer = [&](std::span<const Recording> recordings) -> Result<void> {
+    auto measured = measurement::measure(recordings, *options);
     if (!measured) return tl::unexpected(measured.error());
     const Identification& id = measured->identification;
-    answers.push_back({id.sources, std::move(*measured->passivity), std::move(measured->energies),
-                       std::move(measured->consistent), id.motion});
+    answers.found.push_back({id.sources, std::move(*measured->passivity), std::move(measured->energies),
+                             std::move(measured->consistent), id.motion});
+    return {};
+  };
+  if (arguments.pool) {
+    const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
+    if (!recordings) return tl::unexpected(recordings.error());
+    if (auto ok = answer(*recordings); !ok) return tl::unexpected(ok.error());
+    return answers;
+  }
+  const auto each = read_each_perturbation(arguments.reading, arguments.sensor);
+  if (!each) return tl::unexpected(each.error());
+  for (const Result<Recording>& one : *each) {
+    const Result<void> ok = one ? answer({&*one, 1}) : tl::unexpected(one.error());
+    if (!ok) answers.failed.push_back(ok.error());
   }
   return answers;
 }
 
-/// A stored result holds the model and not the data, so that only the model can be judged.
-Result<std::vector<Answer>> from_results(const PassivityArguments& arguments,
-                                         const std::optional<PassivityBand>& band) {
+/// Both statements from what a result holds: its models, and the energy that it was written with.
+Result<Answer> from_result(const result::StoredResult& stored, const Asked& asked) {
+  const Identification& main = stored.identification;
+  Answer answer{main.sources, {}, {}, std::nullopt, main.motion};
+  Passivity& passivity = answer.passivity;
+  passivity.band = stored.passivity.band;
+  if (stored.passivity.energy) {
+    passivity.trial = analyse::trial_passivity(main, *stored.passivity.energy, stored.passivity.lines);
+  }
+  if (!asked && !stored.passivity.judged) {
+    if (!stored.passivity.energy) {
+      return bad_usage("it does not say in which band its model can be judged", "add --band LOW:HIGH in Hz");
+    }
+    passivity.prediction = analyse::predict_passivity({}, main.usable, std::nullopt);
+    return answer;
+  }
+  const PassivityBand band =
+      asked ? analyse::asked_band(asked->first, asked->second, passivity.band) : *stored.passivity.judged;
+  const Identification* first = &main;
+  const Identification* other = stored.alternative ? &*stored.alternative : nullptr;
+  if (other != nullptr && stored.passivity.predicts == other->method) std::swap(first, other);
+  for (const Identification* id : {first, other}) {
+    if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
+    auto model = analyse::model_passivity(*id, band);
+    if (!model) return tl::unexpected(model.error());
+    passivity.models.push_back(std::move(*model));
+  }
+  passivity.prediction = analyse::predict_passivity(passivity.models, main.usable, passivity.band);
+  return answer;
+}
+
+/// All results of a file.
+Result<std::vector<Answer>> from_file(const std::filesystem::path& file, const Asked& band) {
+  const auto text = read_text(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto results = result::results_from_json(*text);
+  if (!results) return tl::unexpected(results.error().in(file.string()));
   std::vector<Answer> answers;
+  for (const result::StoredResult& stored : *results) {
+    auto answer = from_result(stored, band);
+    if (!answer) return tl::unexpected(answer.error().in(file.string()));
+    answers.push_back(std::move(*answer));
+  }
+  return answers;
+}
+
+PassivityAnswers from_results(const PassivityArguments& arguments, const Asked& band) {
+  PassivityAnswers answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
-    const auto text = read_text(file);
-    if (!text) return tl::unexpected(text.error());
-    auto identifications = result::identifications_from_json(*text);
-    if (!identifications) return tl::unexpected(identifications.error().in(file.string()));
-    const auto stored = result::passivity_band_from_json(*text);
-    for (const Identification& id : *identifications) {
-      if (!band && !stored) {
-        return tl::unexpected(
-            bad_usage(fmt::format("{} does not say in which band its model can be judged", file.string()),
-                      "add --band LOW:HIGH in Hz")
-                .value());
-      }
-      auto model = analyse::model_passivity(id, band ? *band : *stored);
-      if (!model) return tl::unexpected(model.error().in(file.string()));
-      answers.push_back({id.sources,
-                         analyse::decide({std::move(*model)}, id.fit.vaf.mean(), std::nullopt),
-                         {},
-                         std::nullopt,
-                         id.motion});
+    auto found = from_file(file, band);
+    if (found) {
+      std::ranges::move(*found, std::back_inserter(answers.found));
+    } else {
+      answers.failed.push_back(found.error());
     }
   }
   return answers;
@@ -114,46 +163,52 @@ int run(const PassivityArguments& arguments) {
     return report_error({ErrorKind::usage, "--sensor needs the voltages of a recording, and a stored result has none",
                          "leave it out, or name the recording", ""});
   }
-  const auto answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
+  const Result<PassivityAnswers> answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
   if (!answers) return report_error(answers.error());
+  int code = kFine;
+  for (const Error& error : answers->failed) code = std::max(code, report_error(error));
+  if (answers->found.empty()) return code;
   std::string shown;
   if (arguments.output.json) {
     std::vector<std::string> documents;
-    for (const Answer& one : *answers) {
+    for (const Answer& one : answers->found) {
       documents.push_back(result::passivity_to_json(one.sources, one.passivity, one.energies));
     }
     shown = result::one_or_list_json("mbk.passivities/1", documents);
   } else {
-    for (const Answer& one : *answers) shown += (shown.empty() ? "" : "\n") + text_of(one);
+    for (const Answer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }
   if (auto ok = arguments.output.to.write(shown); !ok) return report_error(ok.error());
-  return kFine;
+  return code;
 }
 
 }  // namespace
 
 Action add_passivity(CLI::App& app) {
   auto arguments = std::make_shared<PassivityArguments>();
-  CLI::App* command = add_command(app, "passivity", "is the limb passive? by the model and by the energy it absorbs");
+  CLI::App* command =
+      add_command(app, "passivity", "what energy the limb absorbed, and what its model predicts of other motions");
   command->footer(
       "Examples:\n"
       "  mbk passivity log.mat\n"
-      "      the verdict, every condition of the model with its interval, and the energy over time\n"
+      "      the energy of the trial with its interval, every condition on the model, and the energy over time\n"
       "  mbk passivity log.mat --band 0.5:3\n"
-      "      the model judged in a band of one's own choice: the band decides\n"
+      "      the model's prediction in a band of one's own choice; what lies outside the data is extrapolated\n"
       "  mbk passivity result.json\n"
-      "      the model that 'mbk measure --json' stored; there are no data in it, so no energy\n\n"
-      "passive: every condition holds with 95 % confidence. active: one fails, or energy was generated.\n"
-      "undecided: the data do not say. Where no model explains half of the force the energy decides.");
+      "      of the models and the energy that 'mbk measure --json' stored\n\n"
+      "Two statements. What happened: passive, the limb absorbed energy in this trial; active, it delivered some;\n"
+      "undecided, the 95 % interval holds zero. What the model predicts, in the band in which the perturbation\n"
+      "moves all axes and explains force and motion: passive, active, undecided, or none where no model is usable.\n"
+      "Neither is a promise that a machine is stable with this person.");
   add_measure_options(*command, *arguments);
   command
       ->add_option("--band", arguments->band,
-                   "frequencies at which the model is judged; otherwise those at which "
+                   "frequencies for which the model is asked; otherwise those at which "
                    "the perturbation explains position and force")
       ->type_name("LOW:HIGH")
       ->check(not_empty())
       ->group("Analysed interval");
-  add_output_options(*command, arguments->output, "mbk.passivity/1");
+  add_output_options(*command, arguments->output, "mbk.passivity/2");
   return [arguments] { return run(*arguments); };
 }
 

@@ -52,50 +52,70 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
   command.add_flag("--parts", arguments.parts, "the FILEs are numbered parts of one record: join them");
 }
 
-Result<std::vector<Recording>> read_recordings(const ReadingArguments& arguments, const SensorArguments& with_sensor) {
+Result<std::vector<Result<Recording>>> read_each(const ReadingArguments& arguments,
+                                                 const SensorArguments& with_sensor) {
   const auto options = read_options(arguments);
   if (!options) return tl::unexpected(options.error());
   const auto sensor = sensor_use(with_sensor);
   if (!sensor) return tl::unexpected(sensor.error());
-  std::vector<Recording> recordings;
-  const auto add = [&](Result<Recording> one, const std::filesystem::path& file) -> Result<void> {
-    if (!one) return tl::unexpected(one.error());
-    if (*sensor) {
+  std::vector<Result<Recording>> recordings;
+  const auto add = [&](Result<Recording> one, const std::filesystem::path& file) {
+    if (one && *sensor) {
       one = calibration::force_from_voltage(std::move(*one), **sensor);
-      if (!one) return tl::unexpected(one.error().in(file.string()));
+      if (!one) one = tl::unexpected(one.error().in(file.string()));
     }
-    recordings.push_back(std::move(*one));
-    return {};
+    recordings.push_back(std::move(one));
   };
   if (arguments.parts) {
-    if (auto ok = add(recording::read_parts(arguments.files, *options), arguments.files.front()); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    add(recording::read_parts(arguments.files, *options), arguments.files.front());
     return recordings;
   }
   for (const std::filesystem::path& file : arguments.files) {
     if (journal::is_journal(file)) {
-      return bad_data("is the journal of a session that was cut off, or still runs",
-                      fmt::format("'mbk recover {}' makes a recording of it", file.string()), file.string());
+      add(bad_data("is the journal of a session that was cut off, or still runs",
+                   fmt::format("'mbk recover {}' makes a recording of it", file.string()), file.string()),
+          file);
+    } else {
+      add(recording::read(file, *options), file);
     }
-    if (auto ok = add(recording::read(file, *options), file); !ok) return tl::unexpected(ok.error());
   }
   return recordings;
 }
 
-Result<std::vector<Recording>> read_perturbations(const ReadingArguments& arguments,
-                                                  const SensorArguments& with_sensor) {
-  auto recordings = read_recordings(arguments, with_sensor);
+Result<std::vector<Result<Recording>>> read_each_perturbation(const ReadingArguments& arguments,
+                                                              const SensorArguments& with_sensor) {
+  auto recordings = read_each(arguments, with_sensor);
   if (!recordings) return recordings;
-  for (Recording& recording : *recordings) {
-    const auto withdrawn = recording.metadata.find("withdrawn");
-    if (withdrawn != recording.metadata.end() && withdrawn->second == "yes") {
-      return bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
-                      recording.sources.empty() ? "" : recording.sources.front().path);
+  for (Result<Recording>& recording : *recordings) {
+    if (!recording) continue;
+    const auto withdrawn = recording->metadata.find("withdrawn");
+    if (withdrawn != recording->metadata.end() && withdrawn->second == "yes") {
+      recording = bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
+                           recording->sources.empty() ? "" : recording->sources.front().path);
+    } else {
+      recording = preprocess::perturbation_only(std::move(*recording));
     }
-    recording = preprocess::perturbation_only(std::move(recording));
   }
   return recordings;
+}
+
+Result<std::vector<Recording>> all_of(Result<std::vector<Result<Recording>>> each) {
+  if (!each) return tl::unexpected(each.error());
+  std::vector<Recording> recordings;
+  for (Result<Recording>& one : *each) {
+    if (!one) return tl::unexpected(one.error());
+    recordings.push_back(std::move(*one));
+  }
+  return recordings;
+}
+
+Result<std::vector<Recording>> read_recordings(const ReadingArguments& arguments, const SensorArguments& with_sensor) {
+  return all_of(read_each(arguments, with_sensor));
+}
+
+Result<std::vector<Recording>> read_perturbations(const ReadingArguments& arguments,
+                                                  const SensorArguments& with_sensor) {
+  return all_of(read_each_perturbation(arguments, with_sensor));
 }
 
 }  // namespace mbk::app

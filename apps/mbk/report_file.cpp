@@ -32,9 +32,8 @@ std::string command_line(int argc, char** argv) {
 
 std::string report_json(const std::string& typed, const std::string& note, const std::vector<Recording>& recordings,
                         const std::vector<Measurement>& measured,
-                        const std::vector<std::optional<Diagnostics>>& diagnostics,
-                        const std::optional<Summary>& summary) {
-  result::Report report{{}, summary, typed, note};
+                        const std::vector<std::optional<Diagnostics>>& diagnostics, const SeveralTrials* together) {
+  result::Report report{{}, together == nullptr ? std::nullopt : std::optional(*together), typed, note};
   auto recording = recordings.begin();
   for (std::size_t k = 0; k < measured.size(); ++k) {
     const Measurement& one = measured[k];

@@ -18,11 +18,12 @@ namespace mbk::app {
 /// @param recordings  one for each result, or all of one pooled result    @param diagnostics  one for each result
 /// @param typed       the command line
 /// @param note        of whoever made it
+/// @param together    of several recordings; null where one result was asked for
 [[nodiscard]] std::string report_json(const std::string& typed, const std::string& note,
                                       const std::vector<Recording>& recordings,
                                       const std::vector<Measurement>& measured,
                                       const std::vector<std::optional<Diagnostics>>& diagnostics,
-                                      const std::optional<Summary>& summary);
+                                      const SeveralTrials* together);
 
 /// Writes --report: the page with that document.
 [[nodiscard]] Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json);

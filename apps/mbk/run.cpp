@@ -226,7 +226,7 @@ class TerminalOperator : public conduct::Operator {
 
   Result<void> judged(const conduct::Performed& performed) override {
     if (const auto& measured = performed.measured) {
-      text_ += *measured ? report::result_text((*measured)->identification, std::nullopt)
+      text_ += *measured ? report::measurement_text(**measured)
                          : fmt::format("not measured: {}\n", measured->error().line());
     }
     const auto written = Output().write(text_);
@@ -277,9 +277,7 @@ int perform(Session& session, const conduct::Experiment& experiment, const sessi
   TerminalOperator conductor(*console, session.flags(), pace, arguments.quiet);
   conduct::Measure measure;
   if (arguments.measure) {
-    measure = [&](const Recording& recording, const measurement::Options& options) {
-      return console->measured(recording, options);
-    };
+    measure = [&](const Recording& recording) { return console->measured(recording); };
   }
   const int code = code_of(conduct::run(experiment, session, conductor, measure));
   if (auto ok = console->end(); !ok) {

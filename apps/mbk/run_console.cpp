@@ -62,9 +62,9 @@ std::string RunConsole::times_text() const {
   return text;
 }
 
-Result<Measurement> RunConsole::measured(const Recording& recording, const measurement::Options& options) const {
-  if (!console_) return conduct::measure_recording(recording, options);
-  auto examined = measurement::examine({&recording, 1}, options);
+Result<Measurement> RunConsole::measured(const Recording& recording) const {
+  if (!console_) return conduct::measure_recording(recording);
+  auto examined = measurement::examine({&recording, 1}, {});
   if (!examined) {
     console_->show_report("", examined.error().line());
     return tl::unexpected(examined.error());
@@ -72,7 +72,7 @@ Result<Measurement> RunConsole::measured(const Recording& recording, const measu
   std::optional<Diagnostics> diagnostics;
   if (!examined->diagnostics.empty()) diagnostics = std::move(examined->diagnostics.front());
   const std::string typed = fmt::format("mbk measure {}", page_->recording().string());
-  auto html = report::page(report_json(typed, "", {recording}, {examined->measured}, {diagnostics}, std::nullopt));
+  auto html = report::page(report_json(typed, "", {recording}, {examined->measured}, {diagnostics}, nullptr));
   console_->show_report(html ? std::move(*html) : "", html ? "" : html.error().line());
   return std::move(examined->measured);
 }

@@ -36,7 +36,7 @@ class RunConsole {
   [[nodiscard]] std::string times_text() const;
 
   /// Measures, and where there is a page that could open it makes the report too.   @fails  as measurement::measure
-  [[nodiscard]] Result<Measurement> measured(const Recording& recording, const measurement::Options& options) const;
+  [[nodiscard]] Result<Measurement> measured(const Recording& recording) const;
 
   /// Stays while somebody looks.   @fails  as session::annotate
   [[nodiscard]] Result<void> end() const;

@@ -129,7 +129,8 @@ Action add_teleop(CLI::App& app) {
       "  mbk teleop design.toml\n"
       "      Llewellyn's conditions, where they are violated, and how much an operator may lack\n"
       "  mbk teleop design.toml --operator result.json\n"
-      "      the modified criterion, with the excess of passivity that 'mbk measure --json' found\n"
+      "      the modified criterion, with the passivity index that 'mbk measure --json' found; a result that is\n"
+      "      not usable is refused\n"
       "  mbk teleop design.toml --parameter slave.k=0:1000\n"
       "      every value of the slave's stiffness in N/m that is stable, as intervals\n"
       "  mbk teleop design.toml --parameter slave.k=0:1000 --excess 0:10 --operator result.json\n"
@@ -140,7 +141,7 @@ Action add_teleop(CLI::App& app) {
   command->add_option("DESIGN.toml", arguments->design, "an [architecture] or a [two_port]")->required();
   command
       ->add_option("--operator", arguments->operator_result,
-                   "result of the operator's arm: a is minus the lower bound of its excess of passivity")
+                   "result of the operator's arm: a is minus the lower bound of its smallest passivity index")
       ->type_name("RESULT.json")
       ->check(not_empty());
   command

@@ -23,6 +23,13 @@
 namespace mbk::app {
 namespace {
 
+constexpr int kFallsShort = 1, kNotShown = 6;
+
+int exit_code(RowVerdict verdict) {
+  if (verdict == RowVerdict::falls_short) return kFallsShort;
+  return verdict == RowVerdict::met ? kFine : kNotShown;
+}
+
 /// Over what the faulty robots of a study are driven.
 enum class Link { function, udp };
 
@@ -65,7 +72,8 @@ std::vector<std::string> study_names() {
 std::string study_lines() {
   std::string lines;
   for (const validation::Study& study : validation::studies()) {
-    lines += fmt::format("  {:<15} {}; {} runs\n", study.name, study.what, study.runs);
+    lines += fmt::format("  {:<17}  {}; {} runs, {} or more to meet every row\n", study.name, study.what,
+                         validation::default_runs(study), validation::min_runs(study));
   }
   return lines;
 }
@@ -106,7 +114,7 @@ int run(const ValidateArguments& arguments) {
   }
   Progress progress(arguments.quiet, arguments.study + ": ");
   validation::StudyOptions options;
-  options.runs = arguments.runs.value_or(study.runs);
+  options.runs = arguments.runs.value_or(validation::default_runs(study));
   options.seed = arguments.seed;
   options.threads = arguments.threads;
   options.progress = [&](int done, int of) { progress.count(done, of); };
@@ -117,7 +125,7 @@ int run(const ValidateArguments& arguments) {
   if (arguments.charts) {
     if (auto ok = write_charts(*table, *arguments.charts, arguments.overwrite); !ok) return report_error(ok.error());
   }
-  return table->met() ? kFine : kFallsShort;
+  return exit_code(table->verdict());
 }
 
 }  // namespace
@@ -125,21 +133,27 @@ int run(const ValidateArguments& arguments) {
 Action add_validate(CLI::App& app) {
   auto arguments = std::make_shared<ValidateArguments>();
   CLI::App* command = add_command(app, "validate", "a method against known truth, as a table");
-  command->footer("Studies:\n" + study_lines() +
-                  "\nExamples:\n"
-                  "  mbk validate coverage --runs 2000 --seed 7 --json\n"
-                  "  mbk validate participant --charts charts\n"
-                  "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
-                  "  mbk validate faults --link udp --runs 2\n"
-                  "      robots that misbehave, as processes behind UDP, in real time; four trials side by side\n\n"
-                  "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage.");
+  // Made where it is asked for: the numbers of runs are computed.
+  command->footer([] {
+    return "Studies:\n" + study_lines() +
+           "\nExamples:\n"
+           "  mbk validate coverage --runs 2000 --seed 7 --json\n"
+           "  mbk validate participant --charts charts\n"
+           "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
+           "  mbk validate faults --link udp --runs 2\n"
+           "      robots that misbehave, as processes behind UDP, in real time; four trials side by side\n\n"
+           "A row is met where its 95 % interval lies inside what is expected. It falls short where its value lies "
+           "outside. It is not shown where the value lies inside and the interval does not: that takes more runs.\n\n"
+           "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage, 3 bad or unreadable data, "
+           "6 not shown by this many runs.";
+  });
   const std::string names = fmt::format("{}", fmt::join(study_names(), ", "));
   command->add_option("STUDY", arguments->study, names)
       ->check([names](const std::string& study) {
         return find_study(study) != nullptr ? "" : fmt::format("'{}' is no study; there are: {}", study, names);
       })
       ->check(suggests(study_names()));
-  command->add_option("--runs", arguments->runs, "how many seeds (see the studies)")
+  command->add_option("--runs", arguments->runs, "how many seeds (as many as the study needs)")
       ->type_name("N")
       ->check(whole_number(1, 1'000'000));
   command->add_option("--seed", arguments->seed, "the same seed gives the same table (1)")

@@ -21,7 +21,7 @@ sed -i 's/^number = 1$/number = 4/' "$out/mine.toml"
 # 5. The truth lies in the recording's metadata. Nothing that measures reads it.
 "$mbk" info "$out/trial_seed1.h5" | grep truth_
 
-# 6. Each trial by itself, with mean and standard error between trials; then both in one fit, which is surer.
+# 6. Each trial by itself, and their mean; then both in one fit, which is surer.
 "$mbk" measure --handle-mass 0.194 "$out/trial_seed1.h5" "$out/trial_seed2.h5" | grep -E '^ *(inertia M|damping B|stiffness K) '
 echo "both in one fit, in kg, N·s/m and N/m:"
 "$mbk" measure --handle-mass 0.194 --pool "$out/trial_seed1.h5" "$out/trial_seed2.h5" |

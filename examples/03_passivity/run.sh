@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Is a limb passive? Its model says so where it explains the force, its energy where no model does.
+# What energy a limb absorbed in a trial, and what its model predicts of other motions.
 #   usage: run.sh [FOLDER]    where the files go; without it a new temporary folder
 set -euo pipefail
 mbk=${MBK:-mbk}                            # the program: from PATH, or named by MBK
@@ -7,20 +7,20 @@ out=${1:-$(mktemp --directory)}
 mkdir -p "$out"
 
 # 1. A relaxed arm. Every condition on the symmetric parts of M, B and K, and on their antisymmetric parts over the
-#    band, is tested with its error; "passive" is said where all hold with 95 % confidence.
+#    band, is tested with its error; "passive" is predicted where all hold with 97.5 % confidence.
 "$mbk" simulate relaxed_sinusoidal --overwrite --quiet --out "$out/relaxed.h5"
 "$mbk" passivity --handle-mass 0.194 "$out/relaxed.h5" | sed '/energy that the limb absorbed/,$d'
 
-# 2. A rigid arm that corrects its position 150 ms late, under pulses of 2 N. No model explains half of its force, so
-#    that the energy decides: E(t) = −∫ F·v dt [J] falls, which means that the limb puts energy into the robot.
+# 2. A rigid arm that corrects its position 150 ms late, under pulses of 2 N. No model explains half of its force,
+#    and none predicts anything. The energy says what happened: E(t) = −∫ F·v dt [J] falls, the hand delivered some.
 "$mbk" simulate rigid_underdamped_2N --overwrite --quiet --out "$out/small.h5"
 "$mbk" passivity --handle-mass 0.194 "$out/small.h5" | sed '/energy that the limb absorbed/,$d'
 
-# 3. The same arm under pulses of 8 N stiffens and takes energy in. What decides is the amplitude, not the limb alone.
+# 3. The same arm under pulses of 8 N stiffens and takes energy in. What differs is the amplitude alone.
 "$mbk" simulate rigid_underdamped_8N --overwrite --quiet --out "$out/large.h5"
 "$mbk" passivity --handle-mass 0.194 "$out/large.h5" | sed '/energy that the limb absorbed/,$d'
 
-# 4. For machines: verdict, what decided it, energy [J], excess or shortage of passivity [N·s/m].
+# 4. For machines: both verdicts, energy [J], excess or shortage of passivity [N·s/m].
 for name in relaxed small large; do
   "$mbk" passivity --handle-mass 0.194 --json --overwrite --quiet --out "$out/$name.json" "$out/$name.h5"
 done

@@ -85,7 +85,7 @@ Result<void> teleoperation(Workbench& bench, Draft& exhibit) {
        {std::pair{"passive, nothing else known", 0.0},
         std::pair{"P1 relaxed: lower end of the 95 % interval", models.front().excess->corrected95.first},
         std::pair{"P1 rigid under pulses: upper end of the shortage",
-                  -(*rigid)->pooled.passivity->energy->shortage_largest95.second}}) {
+                  -(*rigid)->pooled.passivity->trial->energy.shortage_largest95.second}}) {
     auto stable = admissible_stiffness(-excess);
     if (!stable) return tl::unexpected(stable.error());
     table.rows.push_back({name, {cell(excess), std::move(*stable)}});

@@ -24,7 +24,7 @@ struct Outcome {
   int people = 0, trials = 0;
   int passive_by_theorem = 0;             ///< trials, by the published rule and procedure
   int absorbing = 0;                      ///< trials whose energy ended above zero
-  std::array<int, 3> verdicts{};          ///< of people, pooled: passive, active, undecided
+  std::array<int, 3> verdicts{};          ///< of people, pooled, by the energy: passive, active, undecided
   double min_energy = 0, max_energy = 0;  ///< of a trial [J]
   double mean_vaf = 0;                    ///< [%], of the published procedure
 };
@@ -37,7 +37,7 @@ Result<Outcome> outcome_of(Workbench& bench, Task task) {
   outcome.max_energy = -outcome.min_energy;
   for (const TaskResult& result : **results) {
     ++outcome.people;
-    const Verdict verdict = result.pooled.passivity->verdict;
+    const Verdict verdict = result.pooled.passivity->trial->energy.verdict;
     ++outcome.verdicts[verdict == Verdict::passive ? 0 : verdict == Verdict::active ? 1 : 2];
     for (const TaskTrial& trial : result.trials) {
       const double energy = trial.energy.account.absorbed;
@@ -76,20 +76,23 @@ Result<void> with_dynamics(Workbench& bench, Draft& exhibit) {
                                            {"its lower 95 %", "N·s/m", 2},
                                            {"band", "", 0},
                                            {"energy of all trials", "J", 2},
-                                           {"verdict", "", 0}});
-  int passive = 0, people = 0, by_theorem = 0, trials = 0;
+                                           {"prediction", "", 0}});
+  int passive = 0, absorbing = 0, people = 0, by_theorem = 0, trials = 0;
   for (const Task task : {Task::relaxed_sinusoidal, Task::relaxed_underdamped}) {
     const auto results = bench.results(task);
     if (!results) return tl::unexpected(results.error());
     for (const TaskResult& result : **results) {
       const Passivity& passivity = *result.pooled.passivity;
       const ModelPassivity& model = passivity.models.front();
-      table.rows.push_back({fmt::format("{}, {}", person(result.participant), text(task)),
-                            {cell(model.smallest_index), cell(model.smallest_index95.first),
-                             words(fmt::format("{:.2f} to {:.2f} Hz", model.band.low.value, model.band.high.value)),
-                             cell(passivity.energy->absorbed), words(std::string(word_of(passivity.verdict)))}});
+      const auto& predicted = passivity.prediction.verdict;
+      table.rows.push_back(
+          {fmt::format("{}, {}", person(result.participant), text(task)),
+           {cell(model.smallest_index), cell(model.smallest_index95.first),
+            words(fmt::format("{:.2f} to {:.2f} Hz", model.band.low.value, model.band.high.value)),
+            cell(passivity.trial->energy.absorbed), words(predicted ? std::string(word_of(*predicted)) : "none")}});
       ++people;
-      passive += passivity.verdict == Verdict::passive ? 1 : 0;
+      passive += predicted == Verdict::passive ? 1 : 0;
+      absorbing += passivity.trial->energy.verdict == Verdict::passive ? 1 : 0;
       for (const TaskTrial& trial : result.trials) {
         ++trials;
         by_theorem += trial.passive_by_model ? 1 : 0;
@@ -100,11 +103,9 @@ Result<void> with_dynamics(Workbench& bench, Draft& exhibit) {
   const double k_a = antisymmetric_stiffness(bench.given());
   p1.K(0, 1) += k_a;
   p1.K(1, 0) -= k_a;
-  exhibit.values = {{"passive", passive},
-                    {"people", people},
-                    {"by_theorem", by_theorem},
-                    {"trials", trials},
-                    {"passive_above", impedance::nonpassive_below(p1).value_or(0.0)}};
+  exhibit.values = {{"passive", passive}, {"absorbing", absorbing},
+                    {"people", people},   {"by_theorem", by_theorem},
+                    {"trials", trials},   {"passive_above", impedance::nonpassive_below(p1).value_or(0.0)}};
   exhibit.commands = {simulate_command(bench, Task::relaxed_sinusoidal)};
   exhibit.related = {"table-3.2", "table-3.4", "erratum-2", "erratum-4", "question-3"};
   exhibit.tables = {std::move(table)};
@@ -120,22 +121,24 @@ Result<void> with_a_task(Workbench& bench, Draft& exhibit) {
                                            {"high", "J", 2},
                                            {"largest shortage", "N·s/m", 1},
                                            {"VAF, published procedure", "%", 1},
-                                           {"decided by", "", 0},
+                                           {"prediction", "", 0},
                                            {"verdict", "", 0}});
   int active = 0;
   double explained = 0.0;
   for (const TaskResult& result : **results) {
     const Passivity& passivity = *result.pooled.passivity;
-    const EnergyAccount& energy = *passivity.energy;
-    active += passivity.verdict == Verdict::active ? 1 : 0;
+    const EnergyAccount& energy = passivity.trial->energy;
+    const auto& predicted = passivity.prediction.verdict;
+    active += energy.verdict == Verdict::active ? 1 : 0;
     const ReproducedCell vaf =
         cell(of_trials(result, [](const TaskTrial& trial) { return trial.identification.fit.vaf.mean(); }),
              Spread::standard_error);
     explained += vaf.ours.value_or(0.0);
-    table.rows.push_back({person(result.participant),
-                          {cell(energy.absorbed), cell(energy.absorbed95.first), cell(energy.absorbed95.second),
-                           cell(energy.shortage_largest), vaf, words(passivity.by_model ? "model" : "energy"),
-                           words(std::string(word_of(passivity.verdict)))}});
+    table.rows.push_back(
+        {person(result.participant),
+         {cell(energy.absorbed), cell(energy.absorbed95.first), cell(energy.absorbed95.second),
+          cell(energy.shortage_largest), vaf, words(predicted ? std::string(word_of(*predicted)) : "none"),
+          words(std::string(word_of(energy.verdict)))}});
   }
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
   const auto people = static_cast<int>((*results)->size());
@@ -251,7 +254,7 @@ Result<ReproducedTable> measured_excess(Workbench& bench) {
                                excess ? excess->corrected95.second : kNone}) {
       row.cells.push_back(std::isfinite(value) ? cell(value) : words("none"));
     }
-    const EnergyAccount& energy = *(**rigid)[i].pooled.passivity->energy;
+    const EnergyAccount& energy = (**rigid)[i].pooled.passivity->trial->energy;
     for (const double value :
          {energy.shortage_largest, energy.shortage_largest95.first, energy.shortage_largest95.second}) {
       row.cells.push_back(cell(value));

@@ -82,8 +82,8 @@ void add_bias_rows(const TaskResult& result, ReproducedTable& table) {
   add("instrumental variables", result.by(Method::instrumental_variables).model,
       published(Method::instrumental_variables));
   ReproducedRow energy{person(result.participant) + ", energy", std::vector<ReproducedCell>(6)};
-  energy.cells.push_back(words(fmt::format("{}, {:+.2f} J", word_of(result.pooled.passivity->energy->verdict),
-                                           result.pooled.passivity->energy->absorbed)));
+  energy.cells.push_back(words(fmt::format("{}, {:+.2f} J", word_of(result.pooled.passivity->trial->energy.verdict),
+                                           result.pooled.passivity->trial->energy.absorbed)));
   table.rows.push_back(std::move(energy));
 }
 
@@ -135,14 +135,17 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
                     {"energy absorbed", "J", 2},
                     {"95 %, low", "J", 2},
                     {"95 %, high", "J", 2},
-                    {"verdict of mbk", "", 0}};
+                    {"the trial", "", 0},
+                    {"the model predicts", "", 0}};
   for (const TaskResult& result : **rigid_pulses) {
     const Passivity& passivity = *result.pooled.passivity;
+    const EnergyAccount& energy = passivity.trial->energy;
+    const auto& predicted = passivity.prediction.verdict;
     pulses.rows.push_back(
         {person(result.participant),
-         {cell(passivity.explained), cell(passivity.energy->absorbed), cell(passivity.energy->absorbed95.first),
-          cell(passivity.energy->absorbed95.second),
-          words(fmt::format("{}, by the {}", word_of(passivity.verdict), passivity.by_model ? "model" : "energy"))}});
+         {cell(result.by(Method::least_squares).fit.vaf.mean()), cell(energy.absorbed), cell(energy.absorbed95.first),
+          cell(energy.absorbed95.second), words(std::string(word_of(energy.verdict))),
+          words(predicted ? std::string(word_of(*predicted)) : "nothing")}});
   }
   exhibit.tables = {std::move(verdicts), std::move(bias), std::move(pulses)};
   return {};

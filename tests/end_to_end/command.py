@@ -19,7 +19,7 @@ import mat_file
 import schemas
 
 SKIPPED = 77  # exit code of a file whose tests were all skipped; CTest reports it as such
-FINE, WRONG_USAGE, BAD_DATA, NOT_USABLE = 0, 2, 3, 4
+FINE, FALLS_SHORT, WRONG_USAGE, BAD_DATA, NOT_USABLE, NOT_SHOWN = 0, 1, 2, 3, 4, 6
 LONGEST_LINE = 100  # columns of a terminal window
 COLUMNS = ("time", "x", "y", "Fx", "Fy", "xr", "yr")
 LOGS_ROWS = (0, 1, 2, 9, 10, 11, 12)  # where these stand in a logs matrix

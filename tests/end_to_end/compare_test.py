@@ -10,11 +10,12 @@ MATRICES = ("inertia", "damping", "stiffness")
 
 
 class Width(Case):
-    def stored(self, name="result.json", **changed):
+    def stored(self, name="result.json", usable=True, **changed):
         """A stored result, with some of its matrices changed."""
         path = self.folder / name
         result = json.loads(run("measure", "--json", "--quiet", make_log().path).out)
         result["model"] |= changed
+        result["usable"] = usable
         path.write_text(json.dumps(result), encoding="utf-8")
         return path
 
@@ -51,7 +52,7 @@ class Width(Case):
 
     def test_the_text_has_each_matrix_and_both_files(self):
         text = self.fine("compare", self.stored(), self.stored("other.json")).out
-        for word in (*MATRICES, f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not distinct"):
+        for word in (*MATRICES, "by least squares", f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not distinct"):
             self.assertIn(word, text)
         self.assert_lines_fit(text)
 
@@ -63,6 +64,11 @@ class Width(Case):
         self.assertIsNone(found["width"]["stiffness"])
         self.assertIn("eigenvalue is -40", found["refused"]["stiffness"])
         self.assertIsNotNone(found["width"]["inertia"])
+
+    def test_a_result_that_is_not_usable_shows_no_width(self):
+        ran = self.mbk("compare", self.stored(), self.stored("wrong.json", usable=False), code=NOT_USABLE)
+        self.assertIn("second result is not usable", ran.out)
+        self.assertNotIn("stiffness", ran.out)
 
     def test_what_cannot_be_compared_is_refused(self):
         one = self.folder / "one.json"

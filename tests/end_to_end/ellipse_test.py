@@ -3,7 +3,7 @@
 
 import json
 
-from command import Case, main, make_log, run
+from command import NOT_USABLE, Case, main, make_log, run
 
 
 class Identify(Case):
@@ -38,7 +38,8 @@ class Ellipse(Case):
         log = make_log().path
         alone = self.fine("ellipse", self.result(log)).out
         self.assertEqual(alone.splitlines()[0], str(log))
-        self.assertIn("\n".join(alone.splitlines()[1:]), run("measure", log).out)
+        self.assertEqual(alone.splitlines()[1], "  by least squares")
+        self.assertIn("\n".join(alone.splitlines()[2:]), run("measure", log).out)
 
     def test_several_results_give_one_document(self):
         logs = [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2)]
@@ -50,6 +51,14 @@ class Ellipse(Case):
         text = self.fine("ellipse", self.result(*logs)).out
         for log in logs:
             self.assertIn(f"{log}\n", text)
+
+    def test_a_result_that_is_not_usable_shows_none(self):
+        path = self.folder / "unusable.json"
+        self.mbk("measure", "--json", "--handle-mass", 5, make_log().path, "--out", path, code=NOT_USABLE)
+        ran = self.mbk("ellipse", path, code=NOT_USABLE)
+        self.assertIn("NOT USABLE", ran.out)
+        self.assertNotIn("stiffness", ran.out)
+        self.assertIn("ellipses", self.mbk("ellipse", "--json", path, code=NOT_USABLE).json)
 
     def test_one_axis_has_none(self):
         path = self.result(make_log("sinusoidal", "--one-axis").path)
@@ -70,10 +79,10 @@ class Ellipse(Case):
                 ("broken", json.dumps(good)[:400], "byte 401"),
                 ("empty", "", "empty"),
                 ("text", "M = 3 kg", "byte 1"),
-                ("list", "[]", "mbk.result/1"),
-                ("other schema", json.dumps({**good, "schema": "mbk.validation/1"}), "mbk.result/1"),
-                ("later schema", json.dumps({**good, "schema": "mbk.result/2"}), "mbk.result/1"),
-                ("number as schema", '{"schema": 3}', "mbk.result/1"),
+                ("list", "[]", "mbk.result/2"),
+                ("other schema", json.dumps({**good, "schema": "mbk.validation/1"}), "mbk.result/2"),
+                ("later schema", json.dumps({**good, "schema": "mbk.result/3"}), "mbk.result/2"),
+                ("number as schema", '{"schema": 3}', "mbk.result/2"),
                 ("no model", json.dumps(no_model), "'model'"),
                 ("wrong shape", json.dumps(wrong_shape), "'K'"),
                 ("wrong kind", json.dumps(wrong_kind), "string"),

@@ -79,7 +79,9 @@ class Manual(Case):
         self.assertIn(".SH STUDIES\n.TP\n\\fBcoverage\\fR\n", self.fine("manual", "validate").out)
 
     def test_exit_codes_are_those_of_the_command(self):
-        self.assertIn("\\fB1\\fR\none falls short\n", self.fine("manual", "validate").out)
+        validate = self.fine("manual", "validate").out
+        self.assertIn("\\fB1\\fR\none falls short\n", validate)
+        self.assertIn("\\fB6\\fR\nnot shown by this many runs\n", validate)
         self.assertIn("\\fB4\\fR\ncomputed but not usable\n", self.fine("manual", "measure").out)
 
     def test_a_line_of_text_is_never_taken_for_a_request(self):

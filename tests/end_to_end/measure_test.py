@@ -28,7 +28,7 @@ class Json(Case):
             self.assert_shape(item, *shape[1:])
 
     def assert_result(self, result, log, axes, protocol, mode):
-        self.assertEqual(result["schema"], "mbk.result/1")
+        self.assertEqual(result["schema"], "mbk.result/2")
         self.assertRegex(result["software"], r"\Ambk \d+\.\d+\.\d+")
         (source,) = result["inputs"]
         self.assertEqual(source["file"], str(log.path))
@@ -164,7 +164,7 @@ class SeveralFiles(Case):
 
     def test_pool_makes_one_fit_over_all(self):
         pooled = self.fine("measure", "--json", "--pool", *self.logs()).json
-        self.assertEqual(pooled["schema"], "mbk.result/1")
+        self.assertEqual(pooled["schema"], "mbk.result/2")
         self.assertEqual([source["file"] for source in pooled["inputs"]], [str(log) for log in self.logs()])
         one = results_of(self.logs()[0])
         self.assertEqual(pooled["estimation"]["samples"], 3 * one["estimation"]["samples"])

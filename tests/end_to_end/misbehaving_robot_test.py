@@ -6,7 +6,7 @@ import pathlib
 import subprocess
 
 import schemas
-from command import WRONG_USAGE, Case, main, program
+from command import FALLS_SHORT, NOT_SHOWN, WRONG_USAGE, Case, main, program, run
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 KINDS = ("latched-frozen-answer", "answer-frozen", "stays-on", "states-lost", "fault-code", "foreign-robot")
@@ -44,14 +44,15 @@ class MisbehavingRobot(Case):
 class Study(Case):
     def test_a_few_kinds_in_real_time(self):
         faults = [word for kind in KINDS for word in ("--fault", kind)]
-        # One moment shows no share of 99 %: exit code 1 is right, whatever came out.
-        ran = self.mbk("validate", "faults", "--link", "udp", "--runs", "1", "--quiet", "--json", *faults, code=1)
+        # One moment shows no share of 99 %: it may fall short where a process was late, and is never met.
+        ran = run("validate", "faults", "--link", "udp", "--runs", "1", "--quiet", "--json", *faults)
+        self.assertIn(ran.code, (FALLS_SHORT, NOT_SHOWN), ran)
         rows = {row["what"]: row for row in ran.json["rows"]}
         self.assertEqual(rows["silently wrong about the motors"]["value"], 0, ran.out)
         self.assertEqual(rows["not recognised"]["value"], 0, ran.out)
         shares = [what for what in rows if what.startswith("recognised within the documented ticks")]
         self.assertEqual(len(shares), 1, ran.out)
-        self.assertFalse(rows[shares[0]]["met"])
+        self.assertIn(rows[shares[0]]["verdict"], ("falls short", "not shown"))
 
     def test_belongs_to_faults_alone(self):
         self.refused(WRONG_USAGE, "validate", "springs", "--link", "udp", says="--link")

@@ -7,7 +7,7 @@ import re
 import stat
 import unittest
 
-from command import (BAD_DATA, FINE, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
+from command import (BAD_DATA, FINE, NOT_SHOWN, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
                      write_csv)
 
 COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
@@ -286,7 +286,7 @@ class Out(Case):
     def test_overwrite_replaces_it(self):
         path = self.file("result.json", "precious")
         self.fine("measure", "--json", make_log().path, "--out", path, "--overwrite")
-        self.assertIn("mbk.result/1", path.read_text())
+        self.assertIn("mbk.result/2", path.read_text())
         self.assertEqual(self.names(), ["result.json"])
 
     def test_it_never_replaces_what_is_read(self):
@@ -384,17 +384,30 @@ class Console(Case):
 
 class Validate(Case):
     def test_coverage(self):
-        ran = self.fine("validate", "coverage", "--runs", "4", "--json", "--quiet")
+        ran = self.mbk("validate", "coverage", "--runs", "4", "--json", "--quiet", code=NOT_SHOWN)
         table = ran.json
         self.assertEqual((table["schema"], table["study"], table["runs"], table["seed"]),
                          ("mbk.validation/1", "coverage", 4, 1))
         self.assertEqual([row["what"] for row in table["rows"]][:14],
                          ["m_xx", "m_xy", "m_yx", "m_yy", "b_xx", "b_xy", "b_yx", "b_yy", "k_xx", "k_xy", "k_yx",
                           "k_yy", "x0", "y0"])
-        self.assertIs(table["met"], all(row["met"] is not False for row in table["rows"]))
+        self.assertEqual((table["verdict"], table["met"]), ("not shown", False))
         for row in table["rows"]:
-            low, high = row["interval99"]
+            low, high = row["interval95"]
             self.assertTrue(0.0 <= low <= row["value"] <= high <= 100.0, row)
+            # Four runs show nothing, whatever came out.
+            self.assertIn((row["verdict"], row["met"]), [("not shown", False), ("informative", None)], row)
+            self.assertEqual(row["verdict"] == "informative", row["what"].startswith("passive"), row)
+
+    def test_too_few_runs_are_never_fine(self):
+        ran = self.mbk("validate", "coverage", "--runs", "2", "--quiet", code=NOT_SHOWN)
+        self.assertIn("not shown", ran.out)
+        self.assertNotRegex(ran.out, r"(?m) met$")
+
+    def test_the_help_says_how_many_runs_a_study_needs(self):
+        text = self.fine("validate", "--help").out
+        self.assertRegex(text, r"coverage +how often .*; 2000 runs, 226 or more to meet every row")
+        self.assertIn("6 not shown by this many runs", text)
 
     def test_the_seed_decides_and_the_threads_do_not(self):
         def coverage(*options):
@@ -405,7 +418,7 @@ class Validate(Case):
         self.assertIn(b'"seed": 5', coverage("--seed", "5"))
 
     def test_more_threads_than_runs(self):
-        self.fine("validate", "--runs", "1", "--threads", "1024", "--quiet")
+        self.mbk("validate", "--runs", "1", "--threads", "1024", "--quiet", code=NOT_SHOWN)
 
     def test_a_study_without_charts_says_so(self):
         ran = self.mbk("validate", "--runs", "1", "--quiet", "--charts", self.folder / "charts", code=WRONG_USAGE)
@@ -413,7 +426,7 @@ class Validate(Case):
         self.assertEqual(self.names(), [])
 
     def test_the_text_is_a_table_of_rows(self):
-        text = self.fine("validate", "--runs", "2", "--quiet").out
+        text = self.mbk("validate", "--runs", "2", "--quiet", code=NOT_SHOWN).out
         self.assert_lines_fit(text)
         self.assertEqual(text.count("[92, 98]"), 26)
 

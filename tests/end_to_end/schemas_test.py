@@ -54,7 +54,7 @@ class Schemas(Case):
         result = self.fine("measure", "--json", make_log().path).json
         schemas.check(result)
         for change in (lambda one: one.pop("model"), lambda one: one["model"].pop("K"),
-                       lambda one: one.update(of_my_own=1), lambda one: one["passivity"].update(verdict="maybe"),
+                       lambda one: one.update(of_my_own=1), lambda one: one["passivity"]["trial"].update(verdict="maybe"),
                        lambda one: one["model"]["M"].append("1"), lambda one: one.update(usable=None)):
             wrong = copy.deepcopy(result)
             change(wrong)

@@ -5,7 +5,7 @@ import json
 import pathlib
 import re
 
-from command import BAD_DATA, WRONG_USAGE, Case, main, make_log
+from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main, make_log, run
 
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/teleop"
 DESIGN = """[architecture]
@@ -30,13 +30,13 @@ form = "{form}"
 """
 
 
-def result(eop=None, index=None):
-    passivity = {"models": []}
-    if eop:
-        passivity["eop"] = {"corrected": sum(eop) / 2, "interval95": eop}
-    if index:
-        passivity["models"] = [{"min_index_interval95": index, "band_hz": [0.5, 3.0]}]
-    return json.dumps({"schema": "mbk.result/1", "passivity": passivity})
+def result(index=(4.0, 6.0), band=(0.5, 3.0), schema="mbk.result/2", **changed):
+    """What 'mbk measure --json' says of an operator whose smallest index has that interval."""
+    low, high = index
+    model = {"method": "ls", "VAF": [98.0, 97.0], "usable": True, "fits": True, "band_hz": band, "extrapolated": False,
+             "index": {"frequency_hz": list(band), "lower95": [low, low + 1], "upper95": [high + 1, high]}}
+    return json.dumps({"schema": schema, "usable": True, "warnings": [], "passivity": {
+        "prediction": {"verdict": "passive"}, "band_hz": band, "models": [model]}, **changed})
 
 
 class Teleop(Case):
@@ -106,22 +106,47 @@ class Teleop(Case):
         (only,) = found["admissible"]["intervals"]
         self.assertEqual((only["low"]["value"], only["high"]["value"]), (0, 0))
 
-    def test_the_operator_counts_with_the_lower_bound_of_the_excess(self):
+    def test_the_operator_counts_with_the_lower_bound_of_the_index_in_its_band(self):
         design = self.design("[operator]\nport = 2\n")
         for interval, verdict in (([4.0, 6.0], "stable"), ([-6.3, 1.0], "stable"), ([-6.4, 1.0], "unstable")):
-            found = self.fine("teleop", design, "--operator", self.file("r.json", result(eop=interval)), "--json").json
+            found = self.fine("teleop", design, "--operator", self.file("r.json", result(interval)), "--json").json
             self.assertEqual(found["operator"]["a"], -interval[0])
             self.assertEqual(found["modified_llewellyn"]["verdict"], verdict, interval)
-        text = self.fine("teleop", design, "--operator", self.file("r.json", result(index=[-7.0, -1.0]))).out
-        self.assertIn("over 0.5 to 3 Hz only", " ".join(text.split()))
+        text = self.fine("teleop", design, "--operator", self.file("r.json", result([-7.0, -1.0]))).out
+        self.assertIn("from 0.5 to 3 Hz, antisymmetric part included", " ".join(text.split()))
         self.assertIn("shortage", text)
 
-    def test_a_measured_operator_is_taken(self):
+    def test_a_result_that_is_not_usable_is_refused(self):
+        good = json.loads(result())
+        none, poor, bare = (json.loads(result()) for _ in range(3))
+        none["passivity"]["prediction"]["verdict"] = "none"
+        poor["passivity"]["models"][0]["fits"] = False
+        bare["passivity"]["band_hz"] = None
+        for name, document, says in (
+                ("flag", {**good, "usable": False}, "not usable"), ("none", none, "not usable"),
+                ("first", {**good, "schema": "mbk.result/1", "usable": False}, "not usable"),
+                ("poor", poor, "too little of the force"), ("band", bare, "at no two frequencies"),
+                ("warned", {**good, "warnings": [{"code": "fit-poor"}]}, "too little of the force"),
+                ("former word", {**good, "warnings": [{"code": "held-back-fit-poor"}]}, "too little of the force")):
+            with self.subTest(name):
+                self.refused(NOT_USABLE, "teleop", self.design(), "--operator",
+                             self.file(f"{name}.json", json.dumps(document)), says=[f"{name}.json", says])
+
+    def test_a_measured_result_that_is_not_usable_is_refused(self):
+        recording, measured = self.folder / "rigid.mat", self.folder / "rigid.json"
+        self.fine("simulate", "rigid_underdamped_2N", "--out", recording, "--quiet")
+        self.assertFalse(run("measure", recording, "--json", "--quiet").json["usable"])
+        run("measure", recording, "--json", "--quiet", "--out", measured)
+        self.refused(NOT_USABLE, "teleop", self.design(), "--operator", measured, says=[str(measured), "not usable"])
+
+    def test_a_measured_operator_is_taken_with_its_antisymmetric_part(self):
         measured = self.folder / "measured.json"
         self.fine("measure", make_log().path, "--json", "--out", measured)
-        eop = json.loads(measured.read_text())["passivity"]["eop"]["interval95"]
+        passivity = json.loads(measured.read_text())["passivity"]
+        lowest = min(passivity["models"][0]["index"]["lower95"])
         found = self.fine("teleop", self.design(), "--operator", measured, "--json").json
-        self.assertEqual(found["operator"]["a"], -eop[0])
+        self.assertEqual(found["operator"]["a"], -lowest)
+        self.assertLess(lowest, passivity["eop"]["interval95"][0])  # of the symmetric part alone
         self.assertEqual(found["operator"]["port"], 1)
 
     def test_exact_delay_names_its_grid(self):
@@ -133,13 +158,13 @@ class Teleop(Case):
         self.refused(WRONG_USAGE, "teleop", self.design(delay), "--parameter", "slave.k=0:1", says="pade")
 
     def test_an_operator_of_a_joint_that_turns_is_refused(self):
-        turning = json.loads(result(eop=[1.0, 2.0]))
+        turning = json.loads(result([1.0, 2.0]))
         turning["units"] = {"B": "N·m·s/rad"}
         self.refused(BAD_DATA, "teleop", self.design(), "--operator", self.file("r.json", json.dumps(turning)),
                      says=["r.json", "N·m·s/rad"])
 
     def test_an_excess_buys_stiffness(self):
-        design, measured = self.design(b_m=1, b_s=1), self.file("r.json", result(eop=[4.0, 6.0]))
+        design, measured = self.design(b_m=1, b_s=1), self.file("r.json", result([4.0, 6.0]))
         ran = self.fine("teleop", design, "--parameter", "slave.k=0:5000", "--excess", "0:8:3", "--operator", measured,
                         "--charts", self.folder / "c", "--json").json["excess"]
         self.assertEqual([step["excess"] for step in ran["steps"]], [0, 4, 8])
@@ -234,7 +259,7 @@ class Teleop(Case):
             path = self.file("r.json", content)
             self.refused(BAD_DATA, "teleop", self.design(), "--operator", path, says=["r.json", says])
         twice = self.design("[operator]\nshortage_N_s_per_m = 1\n")
-        self.refused(WRONG_USAGE, "teleop", twice, "--operator", self.file("r.json", result(eop=[1, 2])),
+        self.refused(WRONG_USAGE, "teleop", twice, "--operator", self.file("r.json", result([1, 2])),
                      says="shortage_N_s_per_m")
         none = self.file("none.toml", TWO_PORT.format(form="z", n11="[0]", n12="[0]", n21="[0]", n22="[0]"))
         self.fine("teleop", none)

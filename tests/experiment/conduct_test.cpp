@@ -173,16 +173,14 @@ TEST_F(Conducted, ARepeatedTrialIsTheSameTrial) {
 }
 
 TEST_F(Conducted, WhatCannotBeMeasuredIsPoor) {
-  const Measure never = [](const Recording&, const measurement::Options&) -> Result<Measurement> {
-    return bad_data("the fit failed");
-  };
+  const Measure never = [](const Recording&) -> Result<Measurement> { return bad_data("the fit failed"); };
   EXPECT_TRUE(run(planned(trials()), session_, script_, never).completed);
   EXPECT_THAT(script_.poor, ElementsAre(true, true));
 }
 
-TEST_F(Conducted, WhoeverMeasuresGetsThePerturbationAndTheTrialsOptions) {
-  const Measure looking = [](const Recording& recording, const measurement::Options& options) -> Result<Measurement> {
-    EXPECT_EQ(options.identify.handle_mass, 0.194);
+TEST_F(Conducted, WhoeverMeasuresGetsThePerturbationAndWhatTheTrialSaysOfItself) {
+  const Measure looking = [](const Recording& recording) -> Result<Measurement> {
+    EXPECT_EQ(recording.metadata.at("handle_mass_kg"), "0.194");
     EXPECT_NEAR(recording.time[recording.samples() - 1] - recording.time[0], 10.0, 0.01);  // of the trial's 11.3 s
     return bad_data("only looked at");
   };
@@ -337,14 +335,6 @@ TEST_F(Conducted, ATrialIsRecordedUnderTheNameThatWasGivenOrTheProtocols) {
   EXPECT_EQ(next_free(folder_ / "a.b.h5"), folder_ / "a.b.h5");
   for (const char* name : {"a.b.h5", "a.b_2.h5"}) std::ofstream(folder_ / name) << "a recording";
   EXPECT_EQ(next_free(folder_ / "a.b.h5"), folder_ / "a.b_3.h5");
-}
-
-TEST(TrialMeasurement, AForceThatThePersonAnswersIsMeasuredByInstruments) {
-  Trial trial;
-  trial.control = control::PositionMode{};
-  EXPECT_EQ(measurement_options(trial).identify.method, Method::least_squares);
-  trial.control = control::ForceMode{};
-  EXPECT_EQ(measurement_options(trial).identify.method, Method::instrumental_variables);
 }
 
 TEST(TrialMeasurement, AModelIsPoorWhereAnAxisIsExplainedByLessThanHalf) {

@@ -50,7 +50,7 @@ Vector errors(const Identification& id, const impedance::Model& truth, Index cou
       .head(count);
 }
 
-/// The arm of a simulated trial, with the handle that the fit sees too.
+/// The arm of a simulated trial; the handle that the recording names is subtracted.
 impedance::Model truth_of(const Recording& recording) {
   const auto matrix = [&](const char* name) {
     const auto rows = nlohmann::json::parse(recording.metadata.at(name));
@@ -58,7 +58,6 @@ impedance::Model truth_of(const Recording& recording) {
                   {rows[1][0].get<double>(), rows[1][1].get<double>()}};
   };
   impedance::Model model{matrix("truth_M"), matrix("truth_B"), matrix("truth_K"), Vector::Zero(2)};
-  model.M += std::stod(recording.metadata.at("handle_mass_kg")) * Matrix::Identity(2, 2);
   return model;
 }
 

@@ -76,7 +76,9 @@ TEST(ASchema, RefusesADocumentWithoutAFieldThatEveryOneHas) {
       {"/model", {"M", "B", "K", "x0"}},
       {"/fit", {"VAF", "RMSE", "validated_on", "VAF_in_sample"}},
       {"/inputs/0", {"file", "sha256", "format", "duration_s", "rate_hz"}},
-      {"/passivity", {"verdict", "decided_by", "reason", "explained_percent"}},
+      {"/passivity", {"prediction", "band_hz"}},
+      {"/passivity/trial", {"verdict", "absorbed_J", "interval95", "statement", "reason"}},
+      {"/passivity/prediction", {"verdict", "symmetric", "antisymmetric", "extrapolated", "statement"}},
       {"/ellipses/stiffness", {"area", "shape", "orientation_deg", "eigenvalues", "symmetric_part", "interval95"}}};
   for (const auto& [place, names] : of) {
     for (const std::string& name : names) {
@@ -88,7 +90,8 @@ TEST(ASchema, RefusesADocumentWithoutAFieldThatEveryOneHas) {
 }
 
 TEST(ASchema, RefusesAnotherWordThanThoseItKnows) {
-  for (const char* place : {"/schema", "/method", "/structure", "/fit/validated_on", "/passivity/verdict"}) {
+  for (const char* place : {"/schema", "/method", "/structure", "/fit/validated_on", "/passivity/trial/verdict",
+                            "/passivity/prediction/verdict"}) {
     Json document = result_document();
     document.at(Json::json_pointer(place)) = "of my own";
     EXPECT_FALSE(fits_its_schema(document.dump())) << place;

@@ -37,21 +37,31 @@ function assertInterval(read, name, value, [low, high]) {
 const assertAllShown = (read) => Object.entries(read).forEach(([name, number]) => assertShown(number, name));
 
 for (const [name, { json, file }] of Object.entries(all)) {
-  test(`the verdict is a word, a sign and the reason of the JSON: ${name}`, () => onPage(file, async (page) => {
+  test(`both statements are a word, a sign and the sentence of the JSON: ${name}`, () => onPage(file, async (page) => {
     const { passivity } = json;
-    const card = page.locator("#trial-1-passivity .verdict");
-    assert.equal(await card.getAttribute("data-passivity"), passivity.verdict);
-    const words = { passive: /Passive\./, active: /Active\./, undecided: /Undecided\./ };
-    const signs = { passive: "✓", active: "✕", undecided: "?" };
-    assert.match(await card.textContent(), words[passivity.verdict]);
-    assert.equal(await card.locator(".sign").textContent(), signs[passivity.verdict]);
-    assert.equal(await card.locator("[data-name=reason]").textContent(), passivity.reason);
-    assert.match(await card.textContent(), passivity.decided_by === "energy" ? /Decided by the energy/ : /Decided by the model of .* Hz: the /);
+    const signs = { passive: "✓", active: "✕", undecided: "?", none: "–" };
+    for (const what of ["trial", "prediction"]) {
+      const card = page.locator(`#trial-1-passivity .verdict[data-statement=${what}]`);
+      const { verdict, statement } = passivity[what];
+      assert.equal(await card.getAttribute("data-verdict"), verdict);
+      assert.equal(await card.locator("strong").textContent(), verdict);
+      assert.equal(await card.locator(".sign").textContent(), signs[verdict]);
+      const said = await card.locator(`[data-name=${what}-statement]`).textContent();
+      assert.equal(said.toLowerCase(), `${statement}.`.toLowerCase());
+    }
+    const text = await page.textContent("#trial-1-passivity");
+    assert.match(text, /Neither is a promise that a machine is stable with this person/);
+    assert.doesNotMatch(await page.textContent("main"), /reasonable doubt|made unstable by|always stable/);
     const badges = await page.$$eval("#trial-1-passivity .ways tbody tr", (rows) => rows.map((row) => [...row.querySelectorAll("[data-verdict]")].map((b) => b.dataset.verdict)));
-    assert.deepEqual(badges, [...passivity.models.map((m) => [m.verdict, m.symmetric_part, m.published_rule]), [passivity.energy.verdict]]);
+    assert.deepEqual(badges, passivity.models.map((m) => [m.symmetric, m.antisymmetric, m.published_rule]));
     const read = await numbers(page, "#trial-1-passivity");
-    for (const model of passivity.models) assertInterval(read, `${model.method}-min-index`, model.min_index, model.min_index_interval95);
-    assertInterval(read, "account-absorbed", passivity.energy.absorbed_J, passivity.energy.interval95);
+    for (const model of passivity.models) {
+      assertInterval(read, `${model.method}-min-index`, model.min_index, model.min_index_interval95);
+      model.VAF.forEach((value, axis) => close(read[`${model.method}-vaf${axis}`].value, value, "VAF"));
+    }
+    const lines = passivity.trial.lines ?? [];
+    lines.forEach((line, k) => assertInterval(read, `line${k}`, line.absorbed_J, line.interval95));
+    assert.equal(await page.locator("#trial-1-passivity .lines tbody tr").count(), lines.length);
     assertAllShown(read);
   }));
 
@@ -64,7 +74,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
     for (const { method, conditions, eop } of models) {
       conditions.forEach((c, k) => {
         close(read[`${method}-condition${k}`].value, c.value, c.name);
-        close(read[`${method}-condition${k}-lower`].value, c.lower95, c.name);
+        close(read[`${method}-condition${k}-lower`].value, c.lower, c.name);
         close(read[`${method}-condition${k}-upper`].value, c.upper, c.name);
       });
       if (!eop) continue;
@@ -128,9 +138,10 @@ for (const [name, { json, file }] of Object.entries(all)) {
 }
 
 test("the cases are what they are taken for", () => {
-  assert.deepEqual([undecided, active, oneAxis].map(({ json }) => json.passivity.verdict), ["undecided", "active", "passive"]);
+  assert.deepEqual([undecided, active, oneAxis].map(({ json }) => json.passivity.trial.verdict), ["passive", "active", "passive"]);
+  assert.deepEqual([undecided, active, oneAxis].map(({ json }) => json.passivity.prediction.verdict), ["none", "none", "passive"]);
   assert.equal(undecided.json.disagreement.significant, true);
-  assert.equal(active.json.passivity.decided_by, "energy");
+  assert.ok(undecided.json.passivity.trial.lines.length > 5);
 });
 
 test("bootstrap intervals stand beside those of the delta method, angles in degrees", () => onPage(undecided.file, async (page) => {
@@ -218,7 +229,7 @@ test("several recordings are in one chart of energy, and the overview names each
   const figure = page.locator("#overview figure.chart-figure");
   assert.equal(await figure.locator(".legend line").count(), 2);
   const badges = await page.$$eval("#overview [data-verdict]", (all) => all.map((badge) => badge.dataset.verdict));
-  assert.deepEqual(badges.sort(), several.json.results.map((result) => result.passivity.verdict).sort());
+  assert.deepEqual(badges.sort(), several.json.results.flatMap(({ passivity }) => [passivity.trial.verdict, passivity.prediction.verdict]).sort());
 }));
 
 test("what a document does not hold is left out", async () => {
@@ -237,13 +248,14 @@ test("what a document does not hold is left out", async () => {
     const empty = changed(file, `${name}-undefined`, (document) => {
       const { result } = document;
       for (const model of result.passivity.models) {
-        for (const key of ["min_index", "min_index_interval95", "nonpassive_below_hz", "conditions", "index", "eop"]) if (model[key] !== undefined) model[key] = none(model[key]);
+        for (const key of ["VAF", "min_index", "min_index_interval95", "circular_hz", "conditions", "index", "eop"]) if (model[key] !== undefined) model[key] = none(model[key]);
       }
       for (const key of ["model", "standard_error", "covariance", "alternatives", "disagreement"]) if (result[key]) result[key] = none(result[key]);
       if (result.bootstrap) result.bootstrap.quantities = none(result.bootstrap.quantities);
       const account = (one) => ({ ...none(one), blocks: one.blocks });
       result.passivity.energy = account(result.passivity.energy);
-      result.passivity.explained_percent = null;
+      const { trial } = result.passivity;
+      for (const key of ["absorbed_J", "interval95"]) trial[key] = none(trial[key]);
       for (const energy of document.trials[0].energy) {
         energy.account = account(energy.account);
         for (const key of ["absorbed_J", "curl"]) if (energy[key]) energy[key] = none(energy[key]);

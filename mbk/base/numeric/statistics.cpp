@@ -1,6 +1,7 @@
 #include "mbk/base/numeric/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
@@ -59,6 +60,10 @@ double normal_quantile(double p) {
 
 double student_quantile(double p, int degrees_of_freedom) {
   return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
+}
+
+double chi_square_quantile(double p, int degrees_of_freedom) {
+  return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
 }
 
 double quantile(const Eigen::Ref<const Vector>& sorted, double p) {

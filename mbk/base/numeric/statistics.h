@@ -37,6 +37,10 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 /// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
 [[nodiscard]] double student_quantile(double p, int degrees_of_freedom);
 
+/// x with P(X ≤ x) = p for χ² of so many degrees of freedom.
+/// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
+[[nodiscard]] double chi_square_quantile(double p, int degrees_of_freedom);
+
 /// The value below which a share p of sorted values lies, by straight lines between them; NaN where there are none.
 /// @param sorted rising    @param p in [0, 1]
 [[nodiscard]] double quantile(const Eigen::Ref<const Vector>& sorted, double p);

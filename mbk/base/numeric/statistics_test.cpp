@@ -35,6 +35,13 @@ TEST(Statistics, StudentQuantileIsThatOfTheTables) {
   EXPECT_NEAR(student_quantile(0.5, 3), 0.0, 1e-15);
 }
 
+TEST(Statistics, ChiSquareQuantileIsThatOfTheTables) {
+  EXPECT_NEAR(chi_square_quantile(0.95, 1), std::pow(kNormal95, 2), 1e-12);   // of one normal, squared
+  EXPECT_NEAR(chi_square_quantile(0.975, 2), -2.0 * std::log(0.025), 1e-12);  // exponential
+  EXPECT_NEAR(chi_square_quantile(0.025, 2), -2.0 * std::log(0.975), 1e-12);
+  EXPECT_NEAR(chi_square_quantile(0.975, 10), 20.4831773507, 1e-9);
+}
+
 TEST(Statistics, StudentQuantileTendsToTheNormal) {
   EXPECT_NEAR(normal_probability(student_quantile(0.975, 1000000)), 0.975, 1e-6);  // they differ by about z³/4ν
   EXPECT_NEAR(normal_probability(kNormal95), 0.975, 1e-15);

@@ -77,7 +77,7 @@ class Run {
     operator_.recorded(*outcome);
     Performed performed{attempt, std::move(*outcome), std::nullopt};
     if (!performed.stopped() && measure_ && !asked_to_end()) {
-      performed.measured = measure_trial(performed.outcome.recording, plan.trial, measure_);
+      performed.measured = measure_trial(performed.outcome.recording, measure_);
     }
     if (auto ok = operator_.judged(performed); !ok) return fail(ok.error());
     if (performed.outcome.incomplete) {

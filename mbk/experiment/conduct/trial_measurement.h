@@ -4,31 +4,21 @@
 #include <functional>
 
 #include "mbk/base/core/result.h"
-#include "mbk/experiment/protocol/experiment.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/model/trial/measurement.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::conduct {
 
-/// How a trial is measured, while it runs and after it. With a force that the person answers (any control but that of
-/// positions) by instrumental variables: least squares takes the answer for noise.
-[[nodiscard]] measurement::Options measurement_options(const protocol::Trial& trial);
-
-/// The options for what a session recorded: where ticks were missed it is put on the even clock of `rate`, which the
-/// result then warns of (Warning resampled), with the number and length of what a line bridges.
-[[nodiscard]] measurement::Options across_missed_ticks(const Recording& recording, Hertz rate,
-                                                       measurement::Options options);
-
 /// What makes a measurement of what was recorded while the trial perturbed.
-using Measure = std::function<Result<Measurement>(const Recording&, const measurement::Options&)>;
+using Measure = std::function<Result<Measurement>(const Recording&)>;
 
-/// measurement::measure, and nothing besides.   @fails  as that
-[[nodiscard]] Result<Measurement> measure_recording(const Recording& recording, const measurement::Options& options);
+/// measurement::measure with no option: everything follows from the recording.   @fails  as that
+[[nodiscard]] Result<Measurement> measure_recording(const Recording& recording);
 
-/// Measures the perturbation in the recording of a trial, across missed ticks.
+/// Measures the perturbation in the recording of a trial, as `mbk measure` does.
 /// @fails  as recording::read and `measure`
-[[nodiscard]] Result<Measurement> measure_trial(const std::filesystem::path& recording, const protocol::Trial& trial,
+[[nodiscard]] Result<Measurement> measure_trial(const std::filesystem::path& recording,
                                                 const Measure& measure = measure_recording);
 
 /// Share of the force's variance that a model has to explain on every axis [%].

@@ -123,9 +123,9 @@ std::string Console::participant_address() const {
   return fmt::format("http://127.0.0.1:{}/participant?token={}", server_->port(), server_->viewing_token());
 }
 
-void Console::begin(std::size_t index, const journal::Header& header, const measurement::Options& options,
-                    const std::filesystem::path& target, double duration) {
-  live_->begin(header, options);
+void Console::begin(std::size_t index, const journal::Header& header, const std::filesystem::path& target,
+                    double duration) {
+  live_->begin(header, {});
   const std::scoped_lock lock(mutex_);
   current_ = index;
   geometry_ = header.geometry;

@@ -75,8 +75,7 @@ class Console {
   [[nodiscard]] Server::Status status() const { return server_->status(); }
 
   /// A trial is about to begin.   @param index  in the list
-  void begin(std::size_t index, const journal::Header& header, const measurement::Options& options,
-             const std::filesystem::path& target, double duration);
+  void begin(std::size_t index, const journal::Header& header, const std::filesystem::path& target, double duration);
 
   /// What the recorder is to call (session::Watch).
   void watch(std::span<const journal::Tick> ticks) noexcept;

@@ -10,7 +10,6 @@
 #include <iterator>
 
 #include "mbk/base/realtime/signal_stack.h"
-#include "mbk/experiment/conduct/trial_measurement.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/model/trial/recording.h"
 
@@ -45,7 +44,7 @@ Result<Measurement> estimate(const journal::Journal& journal, const measurement:
   if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
   if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
   const Recording window = preprocess::perturbation_only(std::move(*recording));
-  return measurement::measure({&window, 1}, conduct::across_missed_ticks(window, Hertz(journal.header.rate), options));
+  return measurement::measure({&window, 1}, options);
 }
 
 LiveEstimate::LiveEstimate(std::function<void(const Estimate&)> done)

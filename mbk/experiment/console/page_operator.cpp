@@ -45,8 +45,8 @@ bool PageOperator::may_begin(session::Session& session, const conduct::Experimen
 }
 
 std::unique_ptr<conduct::Watcher> PageOperator::begin(const conduct::Attempt& attempt) {
-  console_.begin(attempt.index, session::header_of(attempt.plan, attempt.robot.facts()),
-                 conduct::measurement_options(attempt.plan.trial), attempt.target, attempt.plan.sequence.duration(0.0));
+  console_.begin(attempt.index, session::header_of(attempt.plan, attempt.robot.facts()), attempt.target,
+                 attempt.plan.sequence.duration(0.0));
   return std::make_unique<PageWatcher>(console_);
 }
 

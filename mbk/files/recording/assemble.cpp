@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -43,11 +44,25 @@ struct Signal {
   const Unit* unit = nullptr;  ///< of the file; nullptr: SI, or unknown where the kind measures several things
   bool negate = false;
   std::string source;  ///< for messages
+  std::string entry;   ///< the same as --channels would say it
   double gain = 1.0;
   double offset = 0.0;  ///< in `unit`
 
   [[nodiscard]] bool is_plain() const { return gain == 1.0 && offset == 0.0; }
 };
+
+/// Channels whose names begin alike measure the same.
+constexpr auto kQuantities = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"time", "time"},
+    {"hand_", "position"},
+    {"position", "position"},
+    {"joint_", "angle"},
+    {"force_", "force"},
+    {"reaction", "force"},
+    {"torque_", "torque"},
+    {"reference", "reference"},
+    {"acceleration", "acceleration"},
+});
 
 bool same_rate(double a_hz, double b_hz) {
   return std::abs(a_hz - b_hz) <= kRateTolerance * b_hz;
@@ -230,7 +245,8 @@ class Assembler {
       if (kind.name != "time" && not_recorded(logs.values.row(line.index))) {
         absent.emplace_back(kind.name);
       } else {
-        signals_.push_back({&kind, line, nullptr, false, fmt::format("row {}", kind.logs_row)});
+        signals_.push_back(
+            {&kind, line, nullptr, false, fmt::format("row {}", kind.logs_row), fmt::format("{}", kind.logs_row)});
       }
     }
     recording_.notes.push_back(fmt::format(
@@ -277,7 +293,8 @@ class Assembler {
       } else if (is_requested(*kind)) {
         const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
         if (!unit) return tl::unexpected(unit.error());
-        signals_.push_back({kind, vector_of(*candidate.array), *unit, false, candidate.array->name});
+        signals_.push_back(
+            {kind, vector_of(*candidate.array), *unit, false, candidate.array->name, candidate.array->name});
       }
     }
     std::erase(aside, "");
@@ -318,7 +335,9 @@ class Assembler {
       const auto found = resolve(entry);
       if (!found) return tl::unexpected(found.error());
       const Line* const line = &found->line;
-      Signal signal{kind, *line, nullptr, entry.negate, entry.source, found->gain, found->offset};
+      Signal signal{kind,         *line,        nullptr,
+                    entry.negate, entry.source, (entry.negate ? "-" : "") + entry.source,
+                    found->gain,  found->offset};
       if (!entry.unit.empty()) {
         signal.unit = find_unit(entry.unit);
         if (signal.unit == nullptr || !kind->accepts(*signal.unit)) {
@@ -389,7 +408,7 @@ class Assembler {
     const ChannelKind* const time = kinds_called("time").front();
     const Line& first = signals_.front().line;
     if (!contents_.table && first.row && first.array->values.rows() == kLogsRows) {
-      signals_.push_back({time, {first.array, time->logs_row - 1, true}, nullptr, false, "row 1"});
+      signals_.push_back({time, {first.array, time->logs_row - 1, true}, nullptr, false, "row 1", "1"});
       recording_.notes.push_back("time is row 1, as in a logs matrix");
       return {};
     }
@@ -399,7 +418,7 @@ class Assembler {
       if (std::ranges::none_of(name.kinds, is_time) || is_matrix(array) || line.size() != first.size()) continue;
       const auto unit = unit_said(*time, array, name.unit);
       if (!unit) return tl::unexpected(unit.error());
-      signals_.push_back({time, line, *unit, false, array.name});
+      signals_.push_back({time, line, *unit, false, array.name, array.name});
       recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
       return {};
     }
@@ -592,14 +611,52 @@ class Assembler {
       }
       if (signal.kind->name == "time") {
         recording_.time = std::move(channel);
+        recording_.time_origin = origin_of(signal);
         continue;
       }
       const auto unit = signal.unit != nullptr          ? si_unit(signal.unit->dimension)
                         : signal.kind->measures.empty() ? std::string_view(signal.line.array->unit)
                                                         : signal.kind->default_unit();
-      recording_.channels.push_back(
-          {std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame), std::move(channel)});
+      recording_.channels.push_back({std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame),
+                                     std::move(channel), origin_of(signal)});
     }
+  }
+
+  static ChannelOrigin origin_of(const Signal& signal) {
+    const std::string_view unit = signal.unit != nullptr ? signal.unit->name : std::string_view();
+    return {std::string(signal.kind->alias), signal.entry, std::string(unit), called_otherwise(signal)};
+  }
+
+  /// The channel that the file calls this line, by a name or by its row in a logs matrix, where that measures another
+  /// quantity than the channel which it is read as. A swap within a quantity, as Fx=force_y, is no contradiction.
+  static std::string called_otherwise(const Signal& signal) {
+    std::vector<const ChannelKind*> kinds;
+    if (is_matrix(*signal.line.array)) {
+      if (signal.line.row && signal.line.array->values.rows() == kLogsRows) {
+        for (const ChannelKind& kind : channel_kinds()) {
+          if (kind.logs_row == signal.line.index + 1) kinds.push_back(&kind);
+        }
+      }
+    } else {
+      kinds = parse_column_name(leaf(signal.line.array->name)).kinds;
+    }
+    const std::string_view read_as = quantity_of(*signal.kind);
+    const bool fits = read_as.empty() || std::ranges::any_of(kinds, [&](const ChannelKind* kind) {
+                        const std::string_view called = quantity_of(*kind);
+                        // The one axis may be a joint.
+                        const bool joint = signal.kind->axes == 1 && ((read_as == "position" && called == "angle") ||
+                                                                      (read_as == "force" && called == "torque"));
+                        return called.empty() || called == read_as || joint;
+                      });
+    return kinds.empty() || fits ? std::string() : std::string(kinds.front()->name);
+  }
+
+  /// What a kind measures, whatever the axis and the number of axes; "" for one that may be anything.
+  static std::string_view quantity_of(const ChannelKind& kind) {
+    for (const auto& [prefix, quantity] : kQuantities) {
+      if (kind.name.starts_with(prefix)) return quantity;
+    }
+    return {};
   }
 
   Result<void> settle_time() {

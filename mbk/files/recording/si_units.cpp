@@ -60,6 +60,10 @@ std::string_view si_unit(Dimension dimension) {
   return std::ranges::find(kUnits, dimension, &Unit::dimension)->name;
 }
 
+std::span<const Unit> units() {
+  return kUnits;
+}
+
 std::string unit_names(std::span<const Dimension> dimensions) {
   std::string names;
   for (const Unit& unit : kUnits) {

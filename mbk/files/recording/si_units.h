@@ -26,6 +26,9 @@ struct Unit {
 /// The SI unit of a dimension, as Channel::unit writes it.
 [[nodiscard]] std::string_view si_unit(Dimension dimension);
 
+/// All of them.
+[[nodiscard]] std::span<const Unit> units();
+
 /// "m, cm, mm, um, in": every unit that measures one of the dimensions, for messages.
 [[nodiscard]] std::string unit_names(std::span<const Dimension> dimensions);
 

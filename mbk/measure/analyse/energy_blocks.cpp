@@ -17,8 +17,7 @@
 namespace mbk::analyse {
 namespace {
 
-constexpr std::size_t kEnoughBlocks = 6;
-constexpr std::size_t kEnoughThatAgree = 5;  ///< 2⁻⁵ = 3 % < 5 %
+constexpr std::size_t kEnoughBlocks = 6;  ///< that they agree in sign by chance: 2⁻⁶ = 1.6 % < 2.5 %
 
 /// b does not stand above the line from a to c, as points (S, −E).
 bool below_line(const EnergySums& a, const EnergySums& b, const EnergySums& c) {
@@ -104,32 +103,18 @@ void add_intervals(const std::vector<EnergyBlock>& blocks, double first_share, i
   account.shortage_largest95 = percentiles.interval95(sorted[3]);
 }
 
-bool agree_in_sign(const std::vector<EnergyBlock>& blocks) {
-  const auto rises = [](const EnergyBlock& block) { return block.sums.back().absorbed > 0.0; };
-  const auto falls = [](const EnergyBlock& block) { return block.sums.back().absorbed < 0.0; };
-  return std::ranges::all_of(blocks, rises) || std::ranges::all_of(blocks, falls);
-}
-
-void decide(const std::vector<EnergyBlock>& blocks, bool perturbations, EnergyAccount& account) {
-  const std::size_t count = blocks.size();
-  const char* what = perturbations ? "perturbation" : "block";
-  const bool enough = count >= kEnoughBlocks || (count == kEnoughThatAgree && agree_in_sign(blocks));
-  if (!enough) {
-    account.reason =
-        fmt::format("{} {}{} cannot tell how E varies; {} can", count, what, count == 1 ? "" : "s", kEnoughBlocks);
+void decide(bool perturbations, EnergyAccount& account) {
+  const char* const what = perturbations ? "perturbation" : "block";
+  if (account.blocks < static_cast<Index>(kEnoughBlocks)) {
+    account.reason = fmt::format("{} {}{} cannot show how the energy varies; {} can", account.blocks, what,
+                                 account.blocks == 1 ? "" : "s", kEnoughBlocks);
     return;
   }
-  const std::string over = fmt::format("with 95 % confidence, over {} {}s", count, what);
-  if (account.lower95 > 0.0) {
-    account.verdict = Verdict::passive;
-    account.reason = fmt::format("the limb absorbed at least {:.3g} J {}", account.lower95, over);
-  } else if (account.upper95 < 0.0) {
-    account.verdict = Verdict::active;
-    account.reason = fmt::format("the limb generated at least {:.3g} J {}", -account.upper95, over);
-  } else {
-    account.reason = fmt::format("the limb absorbed between {:.3g} and {:.3g} J {} on either side", account.lower95,
-                                 account.upper95, over);
-  }
+  account.verdict = verdict_of(account.absorbed95);
+  account.reason = fmt::format("the 95 % interval over {} {}s {}", account.blocks, what,
+                               account.verdict == Verdict::passive  ? "is above zero"
+                               : account.verdict == Verdict::active ? "is below zero"
+                                                                    : "holds zero");
 }
 
 }  // namespace
@@ -182,8 +167,8 @@ EnergyAccount account_of(const std::vector<EnergyBlock>& blocks, bool perturbati
   account.blocks = static_cast<Index>(blocks.size());
   account.absorbed95 = account.mean_power95 = account.shortage_at_end95 = account.shortage_largest95 = {kNaN, kNaN};
   account.lower95 = account.upper95 = kNaN;
-  if (blocks.size() >= kEnoughThatAgree) add_intervals(blocks, first_share, replicates, seed, account);
-  decide(blocks, perturbations, account);
+  if (blocks.size() >= kEnoughBlocks) add_intervals(blocks, first_share, replicates, seed, account);
+  decide(perturbations, account);
   return account;
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "mbk/base/dsp/cross_spectrum.h"
@@ -18,12 +20,24 @@ namespace mbk::analyse {
 namespace {
 
 constexpr double kCoherent = 0.8;          ///< above it the band holds
-constexpr double kExplained = 50.0;        ///< [%] of the force: below it no model describes the limb
 constexpr double kCoherentResidual = 0.2;  ///< share of the residual: above it the model is not all that there is
-constexpr double kOneSided95 = 1.6448536269514722;
-constexpr double kOneSidedOfSeven = 2.4499976606;  ///< Φ⁻¹(1 − 0.05/7)
+constexpr double kAsPrinted = 0.01;        ///< a band, relative
+constexpr double kOneSidedOfSeven = 2.6901095272;  ///< Φ⁻¹(1 − 0.025/7)
+constexpr std::size_t kSymmetricConditions = 3;    ///< M_s, B_s, K_s; then come the antisymmetric ones
 constexpr Index kCurvePoints = 200;
 constexpr double kSegmentsAcross = 4.0;  ///< of the coherence, end to end; seven with the overlap
+
+/// With these force or motion is not what it says it is, and neither is their product.
+constexpr std::array kImplausible = {WarningCode::force_sign_reversed,     WarningCode::torque_unit,
+                                     WarningCode::implausible_scale,       WarningCode::axes_mismatched,
+                                     WarningCode::axes_scaled_differently, WarningCode::same_column};
+/// With these the model explains too little of the force to predict any.
+constexpr std::array kPoorFit = {WarningCode::fit_poor, WarningCode::held_out_fit_poor};
+
+template <std::size_t n>
+bool warns_of(const Identification& id, const std::array<WarningCode, n>& codes) {
+  return std::ranges::any_of(id.warnings, [&](const Warning& one) { return std::ranges::count(codes, one.code) > 0; });
+}
 
 double omega_of(Hertz frequency) {
   return 2.0 * std::numbers::pi * frequency.value;
@@ -37,15 +51,14 @@ PassivityCondition condition(std::string name, std::string source, std::string u
   c.unit = std::move(unit);
   c.value = quantity.value;
   c.standard_error = impedance::standard_error(quantity, covariance);
-  c.lower95 = c.value - kOneSided95 * c.standard_error;
+  c.lower = c.value - numeric::kNormal95 * c.standard_error;
   c.upper = c.value + kOneSidedOfSeven * c.standard_error;
-  c.verdict = c.lower95 > 0.0 ? Verdict::passive : (c.upper < 0.0 ? Verdict::active : Verdict::undecided);
+  c.verdict = c.lower > 0.0 ? Verdict::passive : (c.upper < 0.0 ? Verdict::active : Verdict::undecided);
   return c;
 }
 
 /// Passive where all are, active where any is.
-template <class Range>
-Verdict common_verdict(const Range& conditions) {
+Verdict common_verdict(std::span<const PassivityCondition> conditions) {
   bool all = true;
   for (const PassivityCondition& c : conditions) {
     if (c.verdict == Verdict::active) return Verdict::active;
@@ -69,6 +82,13 @@ PassivityIndexCurve curve_of(const Identification& id, const PassivityBand& band
   return curve;
 }
 
+/// [Hz]
+std::optional<Interval> circular_band(const impedance::Model& model) {
+  const auto range = impedance::absorbing_in_circles(model);
+  if (!range) return std::nullopt;
+  return Interval{range->first / (2.0 * std::numbers::pi), range->second / (2.0 * std::numbers::pi)};
+}
+
 std::optional<ExcessOfPassivity> excess_of(const Identification& id) {
   const auto corrected = impedance::excess_of_passivity(id.model);
   if (!corrected) return std::nullopt;
@@ -78,24 +98,26 @@ std::optional<ExcessOfPassivity> excess_of(const Identification& id) {
       published.value, numeric::interval95(published.value, impedance::standard_error(published, id.covariance))};
 }
 
-/// Smallest multiple coherence of position and force with the reference, line by line; empty where it cannot be had.
+/// Smallest multiple coherence of all outputs, line by line; empty where it cannot be had.
 struct Coherence {
   Vector frequency, value;
 };
 
-Coherence reference_coherence(const std::vector<PreparedTrial>& trials) {
+/// Of position and force with the reference; of the force with the position, where no reference was recorded.
+Coherence smallest_coherence(const std::vector<PreparedTrial>& trials) {
+  const Index n = trials.front().axes;
+  const bool known =
+      std::ranges::all_of(trials, [](const PreparedTrial& one) { return one.reference_motion.size() > 0; });
   std::vector<Matrix> pieces;
   Index total = 0, longest = 0;
   double lowest = std::numeric_limits<double>::infinity();
   for (const PreparedTrial& trial : trials) {
-    const Index n = trial.axes;
-    if (trial.reference_motion.size() == 0) return {};
     lowest = std::min(lowest, trial.preparation.band_low.value);
     for (const Rows& rows : rows_of(trial)) {
-      Matrix piece(rows.size(), 3 * n);
-      piece << trial.reference_motion.middleRows(rows.begin, rows.size()).rightCols(n),
-          trial.position.middleRows(rows.begin, rows.size()),
+      Matrix piece(rows.size(), known ? 3 * n : 2 * n);
+      piece.rightCols(2 * n) << trial.position.middleRows(rows.begin, rows.size()),
           trial.force_hand_on_robot.middleRows(rows.begin, rows.size());
+      if (known) piece.leftCols(n) = trial.reference_motion.middleRows(rows.begin, rows.size()).rightCols(n);
       total += rows.size();
       longest = std::max(longest, rows.size());
       pieces.push_back(std::move(piece));
@@ -107,7 +129,7 @@ Coherence reference_coherence(const std::vector<PreparedTrial>& trials) {
   const Index segment = dsp::segment_length(rate, Hertz(std::max(finest, lowest)), longest);
   const auto spectra = dsp::cross_spectra(pieces, rate, segment);
   if (!spectra) return {};
-  const Matrix coherence = dsp::multiple_coherence(*spectra, trials.front().axes);
+  const Matrix coherence = dsp::multiple_coherence(*spectra, n);
   Coherence result{spectra->frequency, Vector(coherence.rows())};
   for (Index k = 0; k < coherence.rows(); ++k) {
     result.value[k] = coherence.row(k).allFinite() ? coherence.row(k).minCoeff() : 0.0;
@@ -115,15 +137,94 @@ Coherence reference_coherence(const std::vector<PreparedTrial>& trials) {
   return result;
 }
 
+std::string words(const PassivityBand& band) {
+  return fmt::format("from {:.3g} to {:.3g} Hz", band.low.value, band.high.value);
+}
+
+/// "the model (least squares, VAF 97 and 98 %)"
+std::string words(const ModelPassivity& model) {
+  std::string text =
+      model.method == Method::least_squares ? "the model (least squares" : "the model (instrumental variables";
+  for (Index axis = 0; axis < model.vaf.size(); ++axis) {
+    text += fmt::format("{}{:.0f}", axis == 0 ? ", VAF " : " and ", model.vaf[axis]);
+  }
+  return text + (model.vaf.size() > 0 ? " %)" : ")");
+}
+
+/// The conditions with that verdict, with 95 % intervals.
+std::string conditions_with(const ModelPassivity& model, Verdict verdict) {
+  std::string text;
+  for (const PassivityCondition& c : model.conditions) {
+    if (c.verdict != verdict) continue;
+    text += fmt::format("{}{} is {:.3g} {}", text.empty() ? "" : "; ", c.name, c.value, c.unit);
+    const auto [low, high] = numeric::interval95(c.value, c.standard_error);
+    if (std::isfinite(low)) text += fmt::format(" (95 %: {:.3g} to {:.3g})", low, high);
+  }
+  return text;
+}
+
+/// "below 0.16 Hz", "above 2.1 Hz", both or "at any frequency": the ends that lie within the band.
+std::string where_circles_generate(const ModelPassivity& model) {
+  if (!model.circular_hz) return "at any frequency";
+  const auto [low, high] = *model.circular_hz;
+  std::string text = low > model.band.low.value ? fmt::format("below {:.2g} Hz", low) : "";
+  if (high < model.band.high.value) text += fmt::format("{}above {:.2g} Hz", text.empty() ? "" : " and ", high);
+  return text.empty() ? "at any frequency" : text;
+}
+
+std::string in_straight_motion(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::passive:
+      return "absorbs energy in straight motion";
+    case Verdict::active:
+      return "can generate energy in straight motion";
+    case Verdict::undecided:
+      break;
+  }
+  return "is not known well enough in straight motion";
+}
+
+/// What a model that may predict says in its band.
+std::string predicted(const ModelPassivity& model, const PassivityPrediction& prediction) {
+  const std::string band = words(model.band), subject = words(model);
+  switch (*prediction.verdict) {
+    case Verdict::passive:
+      return fmt::format("{} {} absorbs energy{}", band, subject,
+                         model.antisymmetric ? " in straight and in circular motion" : "");
+    case Verdict::active:
+      if (prediction.antisymmetric != Verdict::active) {
+        return fmt::format("{} {} can generate energy: {}", band, subject, conditions_with(model, Verdict::active));
+      }
+      return fmt::format("{} {} can generate energy in circular motion, {}; it {}", band, subject,
+                         where_circles_generate(model), in_straight_motion(model.symmetric));
+    case Verdict::undecided:
+      break;
+  }
+  if (model.antisymmetric == Verdict::active) {
+    return fmt::format(
+        "{} {} {}; its antisymmetric part would generate energy in circular motion, but {:.0f} % of "
+        "the residual follows the perturbation too: a voluntary or reflex response is part of this "
+        "model, and its intervals know noise only",
+        band, subject, in_straight_motion(model.symmetric), 100.0 * model.coherent_residual);
+  }
+  return fmt::format("{} {} {}: {}", band, subject,
+                     model.symmetric == Verdict::passive
+                         ? "absorbs energy in straight motion; in circular motion it is not known well enough"
+                         : "is not known well enough",
+                     conditions_with(model, Verdict::undecided));
+}
+
 }  // namespace
 
-PassivityBand passivity_band(const std::vector<PreparedTrial>& trials) {
-  PassivityBand band{trials.front().preparation.band_low, trials.front().preparation.band_high, {}};
+PassivityBand excited_band(const std::vector<PreparedTrial>& trials) {
+  PassivityBand band{trials.front().preparation.band_low, trials.front().preparation.band_high,
+                     "the excited band; at no frequency in it does the perturbation explain 0.8 of position and force",
+                     true};
   for (const PreparedTrial& trial : trials) {
     band.low = Hertz(std::max(band.low.value, trial.preparation.band_low.value));
     band.high = Hertz(std::min(band.high.value, trial.preparation.band_high.value));
   }
-  // Below one period in the longest stretch nothing is seen.
+  // Below one period in the longest segment nothing is seen.
   double longest = 0.0;
   for (const PreparedTrial& trial : trials) {
     for (const Rows& rows : rows_of(trial)) {
@@ -131,26 +232,36 @@ PassivityBand passivity_band(const std::vector<PreparedTrial>& trials) {
     }
   }
   if (longest > 0.0) band.low = Hertz(std::clamp(1.0 / longest, band.low.value, band.high.value));
-  band.rule = "the excited band";
-  const Coherence coherence = reference_coherence(trials);
-  if (coherence.frequency.size() < 2) return band;
+  return band;
+}
+
+std::optional<PassivityBand> coherent_band(const std::vector<PreparedTrial>& trials) {
+  const PassivityBand excited = excited_band(trials);
+  const Coherence coherence = smallest_coherence(trials);
+  if (coherence.frequency.size() < 2) return std::nullopt;
   const double spacing = coherence.frequency[1];
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (Index k = 1; k < coherence.frequency.size(); ++k) {
     const double f = coherence.frequency[k];
-    if (f < band.low.value - spacing / 2.0 || f > band.high.value + spacing / 2.0) continue;
+    if (f < excited.low.value - spacing / 2.0 || f > excited.high.value + spacing / 2.0) continue;
     if (!(coherence.value[k] > kCoherent)) continue;
     low = std::min(low, f);
     high = std::max(high, f);
   }
-  if (!(low < high)) {
-    band.rule = "the excited band; nowhere in it does the perturbation explain 0.8 of position and force";
-    return band;
-  }
-  band.low = Hertz(std::max(low, band.low.value));
-  band.high = Hertz(std::min(high, band.high.value));
-  band.rule = "the part of the excited band in which the perturbation explains 0.8 of position and force";
-  return band;
+  if (!(low < high)) return std::nullopt;
+  const bool known = trials.front().reference_motion.size() > 0;
+  return PassivityBand{Hertz(std::max(low, excited.low.value)), Hertz(std::min(high, excited.high.value)),
+                       known
+                           ? "the part of the excited band in which the perturbation explains 0.8 of position and force"
+                           : "the part of the excited band in which the motion explains 0.8 of the force; no reference "
+                             "was recorded",
+                       false};
+}
+
+PassivityBand asked_band(Hertz low, Hertz high, const std::optional<PassivityBand>& coherent) {
+  const bool within = coherent && low.value >= (1.0 - kAsPrinted) * coherent->low.value &&
+                      high.value <= (1.0 + kAsPrinted) * coherent->high.value;
+  return {low, high, "as asked", !within};
 }
 
 Result<ModelPassivity> model_passivity(const Identification& id, const PassivityBand& band) {
@@ -164,6 +275,9 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   const Units units = units_of(id.motion);
   ModelPassivity result;
   result.method = id.method;
+  result.vaf = id.fit.vaf;
+  result.usable = id.usable;
+  result.fits = !warns_of(id, kPoorFit);
   result.band = band;
   const auto add = [&](std::string name, std::string source, const char* unit, const impedance::Sensitive& quantity) {
     result.conditions.push_back(condition(std::move(name), std::move(source), unit, quantity, id.covariance));
@@ -172,7 +286,7 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   add(fmt::format("{}M", smallest), "(3.22), (3.23)", units.inertia, impedance::smallest_eigenvalue(id.model, 0));
   add(fmt::format("{}B", smallest), "(3.24), (3.25)", units.damping, impedance::smallest_eigenvalue(id.model, 1));
   add(fmt::format("{}K", smallest), "(3.19), (3.20)", units.stiffness, impedance::smallest_eigenvalue(id.model, 2));
-  result.symmetric_verdict = common_verdict(result.conditions);
+  result.symmetric = common_verdict(std::span(result.conditions));
   if (id.instrument) {
     for (const double share : id.instrument->coherent_residual)
       result.coherent_residual = std::max(result.coherent_residual, share);
@@ -186,81 +300,81 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
             units.damping, impedance::antisymmetry_margin(id.model, omega_of(end), sign));
       }
     }
+    result.antisymmetric = common_verdict(std::span(result.conditions).subspan(kSymmetricConditions));
+    result.circular_hz = circular_band(id.model);
   }
-  result.verdict = common_verdict(result.conditions);
   result.curve = curve_of(id, band);
   const bool at_low = result.curve.index[0] <= result.curve.index[kCurvePoints - 1];
   const Index at = at_low ? 0 : kCurvePoints - 1;
   result.smallest_at = at_low ? band.low : band.high;
   result.smallest_index = result.curve.index[at];
-  result.smallest_index95 = {result.curve.lower95[at], result.curve.upper95[at]};
-  result.nonpassive_below_hz = impedance::nonpassive_below(id.model);
+  result.smallest_index95 = {result.curve.lower95.minCoeff<Eigen::PropagateNaN>(),
+                             result.curve.upper95.minCoeff<Eigen::PropagateNaN>()};
   result.excess = excess_of(id);
   return result;
 }
 
 bool instruments_speak(const Identification& instrumental, const std::optional<Disagreement>& disagreement) {
-  return instrumental.instrument && instrumental.instrument->strong() && disagreement && disagreement->significant;
+  return instrumental.usable && instrumental.instrument && instrumental.instrument->strong() && disagreement &&
+         disagreement->significant;
 }
 
-Passivity decide(std::vector<ModelPassivity> models, double explained, std::optional<EnergyAccount> energy) {
-  Passivity result;
-  result.models = std::move(models);
-  result.explained = explained;
-  result.energy = std::move(energy);
-  const ModelPassivity* model = result.models.empty() ? nullptr : &result.models.front();
-  const bool speaks = model != nullptr && explained >= kExplained;
-  if (!speaks && result.energy) {
-    result.verdict = result.energy->verdict;
-    result.reason =
-        model == nullptr
-            ? "there is no model; what the limb absorbed decides"
-            : fmt::format(
-                  "no inertia, damping and stiffness explains more than {:.0f} % of the force, so that no model "
-                  "describes the limb; what it absorbed decides",
-                  std::max(0.0, explained));
-    if (model != nullptr && model->verdict != result.verdict && model->verdict != Verdict::undecided) {
-      result.reason += fmt::format(
-          ". The model would say {}: it fits what answers the perturbation as if it were "
-          "mechanics",
-          word_of(model->verdict));
-    }
-    return result;
+std::optional<TrialPassivity> trial_passivity(const Identification& result, EnergyAccount energy,
+                                              std::vector<EnergyLine> lines) {
+  if (warns_of(result, kImplausible) || !std::isfinite(energy.absorbed)) return std::nullopt;
+  const bool delivered = energy.absorbed < 0.0;
+  const double sign = delivered ? -1.0 : 1.0;
+  std::string text =
+      fmt::format("in {} the {} {} {:.3g} J",
+                  result.sources.size() > 1 ? fmt::format("these {} trials", result.sources.size()) : "this trial",
+                  result.axes == 1 ? "limb" : "hand", delivered ? "delivered" : "absorbed", sign * energy.absorbed);
+  if (std::isfinite(energy.absorbed95.first) && std::isfinite(energy.absorbed95.second)) {
+    const auto [low, high] = std::minmax({sign * energy.absorbed95.first, sign * energy.absorbed95.second});
+    text += fmt::format(" (95 %: {:.3g} to {:.3g} J)", low, high);
   }
-  if (model == nullptr) {
-    result.reason = "there is neither a model nor an account of the energy";
-    return result;
+  std::string delivering;
+  for (const EnergyLine& line : lines) {
+    if (line.absorbed95.second < 0.0)
+      delivering += fmt::format("{}{:.3g}", delivering.empty() ? "" : ", ", line.frequency.value);
   }
-  result.by_model = true;
-  result.verdict = speaks ? model->verdict : Verdict::undecided;
-  if (result.verdict == Verdict::active && model->symmetric_verdict != Verdict::active &&
-      model->coherent_residual > kCoherentResidual) {
-    result.verdict = Verdict::undecided;
-    result.reason = fmt::format(
-        "the antisymmetric part would make it active, but {:.0f} % of what inertia, damping and stiffness leave of the "
-        "force answers the perturbation too: a voluntary or reflex response is part of this model, and its intervals "
-        "know noise only",
-        100.0 * model->coherent_residual);
-    return result;
+  if (!delivering.empty())
+    text += fmt::format("; of the perturbation's lines it delivered energy at {} Hz", delivering);
+  if (energy.verdict == Verdict::undecided) text += ", which does not decide whether it absorbs or delivers energy";
+  return TrialPassivity{std::move(energy), std::move(lines), std::move(text)};
+}
+
+PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models, bool usable,
+                                      const std::optional<PassivityBand>& coherent) {
+  PassivityPrediction prediction;
+  if (models.empty()) {
+    prediction.statement = "no prediction: there is no model";
+    return prediction;
   }
-  if (!speaks) {
-    result.reason =
-        fmt::format("the model explains only {:.0f} % of the force, and there is no account of the energy", explained);
-    return result;
+  const ModelPassivity& model = models.front();
+  prediction.extrapolated = model.band.extrapolated;
+  if (!usable || !model.usable) {
+    prediction.statement = "no prediction: the model is not usable";
+    return prediction;
   }
-  for (const PassivityCondition& c : model->conditions) {
-    if (c.verdict != model->verdict || model->verdict == Verdict::passive) continue;
-    result.reason += (result.reason.empty() ? "" : "; ") +
-                     fmt::format("{} is {:.3g} ± {:.2g} {}", c.name, c.value, kOneSided95 * c.standard_error, c.unit);
+  if (!model.fits || !coherent) {
+    prediction.verdict = prediction.symmetric = Verdict::undecided;
+    if (model.antisymmetric) prediction.antisymmetric = Verdict::undecided;
+    prediction.statement =
+        model.fits ? "nothing is predicted: at no two frequencies are all axes excited with a coherence above 0.8"
+                   : fmt::format("nothing is predicted: {} explains too little of the force", words(model));
+    return prediction;
   }
-  if (model->verdict == Verdict::passive) {
-    result.reason = "every condition is positive with 95 % confidence";
-  } else if (model->verdict == Verdict::active) {
-    result.reason = "negative beyond chance: " + result.reason;
-  } else {
-    result.reason = "not known well enough: " + result.reason;
+  prediction.symmetric = model.symmetric;
+  prediction.antisymmetric = model.antisymmetric;
+  if (model.antisymmetric == Verdict::active && model.coherent_residual > kCoherentResidual)
+    prediction.antisymmetric = Verdict::undecided;
+  prediction.verdict = verdict_of(model.symmetric, prediction.antisymmetric);
+  prediction.statement = predicted(model, prediction);
+  if (prediction.extrapolated) {
+    prediction.statement = fmt::format("extrapolated beyond the coherent band, {:.3g} to {:.3g} Hz: {}",
+                                       coherent->low.value, coherent->high.value, prediction.statement);
   }
-  return result;
+  return prediction;
 }
 
 }  // namespace mbk::analyse

@@ -13,8 +13,17 @@ namespace mbk::analyse {
 
 /// The band in which a model can be judged: from the lowest to the highest frequency of the excited band at which the
 /// known perturbation explains more than 0.8 of position and of force (multiple coherence, the smallest of all axes).
-/// Where no reference was recorded, or the coherence never reaches that, the excited band itself; `rule` says which.
-[[nodiscard]] PassivityBand passivity_band(const std::vector<PreparedTrial>& trials);
+/// Where no reference was recorded, at which the motion explains more than 0.8 of the force.
+/// @returns absent where there is no such frequency, or where the axes were not moved independently
+[[nodiscard]] std::optional<PassivityBand> coherent_band(const std::vector<PreparedTrial>& trials);
+
+/// The excited band of all trials, not below one period of the longest segment: what is left to look at where
+/// coherent_band() has nothing to say. It is extrapolated.
+[[nodiscard]] PassivityBand excited_band(const std::vector<PreparedTrial>& trials);
+
+/// A band that was asked for, and whether it reaches beyond the coherent one, by more than the 1 % to which it is
+/// printed.
+[[nodiscard]] PassivityBand asked_band(Hertz low, Hertz high, const std::optional<PassivityBand>& coherent);
 
 /// Passivity of a model in a band, from its parameters and their covariance by the delta method
 /// (impedance/passivity_index.h). Conditions, as theorem 3.2 of Dyck (2013) has them after correction: M_s, B_s and K_s
@@ -23,18 +32,24 @@ namespace mbk::analyse {
 /// @fails  the model is not there (NaN); the band is empty or not positive.
 [[nodiscard]] Result<ModelPassivity> model_passivity(const Identification& identification, const PassivityBand& band);
 
-/// Which of two methods' models describes the limb: that of instrumental variables where its instruments are strong
+/// Which of two methods' models makes the prediction: that of instrumental variables where its instruments are strong
 /// and it differs from least squares by more than chance, otherwise that of least squares.
 [[nodiscard]] bool instruments_speak(const Identification& instrumental,
                                      const std::optional<Disagreement>& disagreement);
 
-/// The verdict on a limb. The model decides where it explains at least half of the force (least squares explains most
-/// of what any M, B and K can, so its held-out VAF is the measure) and is itself decided or the energy is not known;
-/// where it does not, the energy decides. A model that leaves much of the limb's answer to the perturbation
-/// unexplained is not called active by its antisymmetric part alone: its intervals know noise, and that answer is none.
-/// @param models  of both methods, or of the only one; the first describes the limb
-/// @param explained  [%] held-out VAF of least squares, mean of the axes
-[[nodiscard]] Passivity decide(std::vector<ModelPassivity> models, double explained,
-                               std::optional<EnergyAccount> energy);
+/// What happened in the trial. The signals must be plausible: with a force of the other sign it is the opposite.
+/// @param result  whose warnings say whether they are
+/// @returns absent where they are not
+[[nodiscard]] std::optional<TrialPassivity> trial_passivity(const Identification& result, EnergyAccount energy,
+                                                            std::vector<EnergyLine> lines = {});
+
+/// What the first model predicts. There is no prediction where the result or that model is not usable. It is undecided
+/// at most where the model fits poorly or the data show at no frequency how the limb answers; and not active by the
+/// antisymmetric part alone where much of what the model leaves of the force answers the perturbation too, for the
+/// intervals know noise, and that answer is none.
+/// @param usable  the result
+/// @param coherent  coherent_band()
+[[nodiscard]] PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models, bool usable,
+                                                    const std::optional<PassivityBand>& coherent);
 
 }  // namespace mbk::analyse

@@ -11,6 +11,7 @@
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/trial/filtered_band.h"
 
 namespace mbk::identify {
 namespace {
@@ -21,8 +22,10 @@ constexpr double kSmallestMotionRatio = 0.05;  // across the line of motion the 
 constexpr double kVafDrop = 10.0;              // points between in-sample and held-out
 constexpr double kPoorVaf = 70.0;              // relaxed arms give 92 % and more, ankles under tonic contraction 87
 constexpr double kShortestDuration = 12.0;     // s; a dozen reaches of the residual's correlation
-constexpr double kCutIntoBand = 0.5;           // a filter below half of the excited band hides the inertia
 constexpr double kDecimationChange = 0.05;
+/// Share of the force's variance that follows the perturbation and is no M, B, K: a response with a third of the
+/// force's amplitude, and a part of it stands in M, B and K.
+constexpr double kUnmodelled = 0.1;
 
 /// Collects the warnings of one identification, subject by subject.
 class Checker {
@@ -91,16 +94,13 @@ class Checker {
 
   void check_band() {
     // Of pooled trials, the one whose filter leaves least of its band.
-    const auto passed = [](const Preparation& how) {
-      return how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
-    };
     const Preparation& how =
-        *std::ranges::min_element(id_.preparations, [&](const Preparation& a, const Preparation& b) {
-          return passed(a) * b.band_high.value < passed(b) * a.band_high.value;
+        *std::ranges::min_element(id_.preparations, [](const Preparation& a, const Preparation& b) {
+          return passed_band(a) * b.band_high.value < passed_band(b) * a.band_high.value;
         });
-    const double top = passed(how);
+    const double top = passed_band(how);
     const Eigenvalues inertia = eigenvalues(id_.model.M, 0);
-    if (top < kCutIntoBand * how.band_high.value) {
+    if (cuts_into_band(how)) {
       warn(WarningCode::band_too_narrow,
            fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left may not "
                        "show the inertia",
@@ -137,6 +137,59 @@ class Checker {
            "the limb may have acted or reflexes may be strong; do not read M, B and K as a passive limb's");
       if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;
     }
+  }
+
+  /// Pooled trials are of one limb in one condition.
+  void check_conditions() {
+    for (const auto& [name, part] : {std::pair{"participant", &TrialConditions::participant},
+                                     {"condition", &TrialConditions::condition},
+                                     {"posture", &TrialConditions::posture}}) {
+      std::string first;
+      for (const TrialConditions& one : id_.conditions) {
+        const std::string& said = one.*part;
+        if (first.empty()) first = said;
+        if (said.empty() || said == first) continue;
+        warn(WarningCode::mixed_conditions,
+             fmt::format("the pooled recordings differ in {}: '{}' and '{}'; one model is found for all", name, first,
+                         said),
+             "pool only what belongs together");
+        break;
+      }
+    }
+  }
+
+  /// Instruments know what the reference moves. A limb that responds to each pulse after a delay of its own does what
+  /// the reference made it do, too: then they take that response for mechanics, and nothing in the data tells it apart.
+  void check_response() {
+    const bool by_instruments = id_.method == Method::instrumental_variables;
+    if (by_instruments && id_.instrument && !id_.instrument->strong()) {
+      warn(WarningCode::weak_instruments,
+           fmt::format("what the reference alone moves is too little beside the rest: first-stage F {:.3g}, and below "
+                       "{:g} the intervals of instrumental variables do not hold",
+                       id_.instrument->weakest(), kStrongInstruments),
+           "perturb more or for longer, pool several trials with --pool, or use --method ls and read its warnings");
+      id_.usable = false;
+    }
+    if (!id_.response || !(id_.response->largest() > kUnmodelled)) return;
+    const auto largest = [](const Vector& shares) {
+      double most = 0.0;
+      for (const double share : shares) most = std::max(most, std::isnan(share) ? 0.0 : share);
+      return most;
+    };
+    const double induced = largest(id_.response->induced);
+    const bool pulses = induced > kUnmodelled;
+    warn(WarningCode::unmodelled_response,
+         fmt::format("{:.0f} % of the force follows the perturbation and is neither inertia nor damping nor stiffness: "
+                     "the limb responds by will or reflex, and M, B and K are biased by the part that looks like them",
+                     100.0 * id_.response->largest()),
+         "ask for no response, perturb less or less predictably, and do not read M, B and K as a passive limb's");
+    if (!by_instruments || !pulses) return;
+    warn(WarningCode::invalid_instruments,
+         fmt::format("the residual has {:.0f} % of the force's variance more than at rest between the pulses: it is no "
+                     "noise but the limb's response to each of them, which instrumental variables take for mechanics",
+                     100.0 * induced),
+         "use --method ls and read its warnings, or perturb with a multisine");
+    id_.usable = false;
   }
 
   void check_decimation() {
@@ -218,7 +271,25 @@ void add_warnings(Identification& identification) {
     checker.check_band();
   }
   checker.check_fit();
+  checker.check_response();
+  checker.check_conditions();
   checker.check_decimation();
+}
+
+void warn_of_closed_loop(const Identification& instrumental, const Disagreement& disagreement,
+                         Identification& least_squares) {
+  if (!instrumental.usable || !disagreement.significant) return;
+  const Units units = units_of(least_squares.motion);
+  const char part = disagreement.parameter.front();
+  const char* const unit = part == 'm' ? units.inertia : (part == 'b' ? units.damping : units.stiffness);
+  least_squares.warnings.push_back(
+      {WarningCode::closed_loop_bias,
+       fmt::format(
+           "least squares is biased towards the negative robot impedance: {} is {:.3g} {}, and {:.3g} ± {:.2g} {} "
+           "more by instrumental variables",
+           disagreement.parameter, disagreement.least_squares, unit, disagreement.difference,
+           numeric::kNormal95 * disagreement.standard_error, unit),
+       "use --method iv"});
 }
 
 }  // namespace mbk::identify

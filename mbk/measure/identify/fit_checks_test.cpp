@@ -51,6 +51,91 @@ TEST(Warnings, EveryOneSaysWhatToTry) {
   }
 }
 
+/// A good model of instrumental variables, found from a force.
+Identification by_instruments(double strength) {
+  Identification id = identified(trial(arm(), {.noise = 0.3}));
+  id.method = Method::instrumental_variables;
+  id.instrument = InstrumentCheck{ReferenceQuantity::force, Vector::Constant(6, strength), Vector::Zero(2)};
+  return id;
+}
+
+Identification judged(Identification id) {
+  add_warnings(id);
+  return id;
+}
+
+TEST(Warnings, InstrumentsWhoseIntervalsDoNotHoldAreNotUsable) {
+  EXPECT_THAT(codes(judged(by_instruments(105.0))), IsEmpty());
+  const Identification weak = judged(by_instruments(61.0));
+  EXPECT_THAT(codes(weak), ElementsAre("weak-instruments"));
+  EXPECT_FALSE(weak.usable);
+  EXPECT_FALSE(judged(by_instruments(std::nan(""))).usable);
+}
+
+TEST(Warnings, AResponseToEachPulseMakesInstrumentsUnusableAndBiasesLeastSquares) {
+  Identification id = by_instruments(500.0);
+  const Vector none = Vector::Zero(2), much = Eigen::Vector2d(0.02, 0.4);
+  id.response = UnmodelledResponse{none, none};
+  EXPECT_THAT(codes(judged(id)), IsEmpty());
+  id.response = UnmodelledResponse{none, much};
+  EXPECT_THAT(codes(judged(id)), ElementsAre("unmodelled-response", "invalid-instruments"));
+  EXPECT_FALSE(judged(id).usable);
+  id.response = UnmodelledResponse{much, Vector()};  // what is linear in a multisine is found apart from mechanics
+  EXPECT_THAT(codes(judged(id)), ElementsAre("unmodelled-response"));
+  EXPECT_TRUE(judged(id).usable);
+  id.method = Method::least_squares;
+  id.instrument.reset();
+  id.response = UnmodelledResponse{none, much};
+  EXPECT_THAT(codes(judged(id)), ElementsAre("unmodelled-response"));
+  EXPECT_TRUE(judged(id).usable);
+}
+
+TEST(Warnings, LeastSquaresIsCalledBiasedOnlyByInstrumentsThatHold) {
+  const Identification iv = by_instruments(500.0);
+  const Disagreement differs{"m_yy", 1.4, 0.3, 0.55, true};
+  Identification ls = identified(trial(arm(), {.noise = 0.3}));
+  warn_of_closed_loop(iv, differs, ls);
+  EXPECT_THAT(codes(ls), ElementsAre("closed-loop-bias"));
+  ls.warnings.clear();
+  Disagreement same = differs;
+  same.significant = false;
+  warn_of_closed_loop(iv, same, ls);
+  Identification weak = iv;
+  weak.usable = false;
+  warn_of_closed_loop(weak, differs, ls);
+  EXPECT_THAT(codes(ls), IsEmpty());
+}
+
+TEST(Warnings, PooledTrialsOfDifferentConditionsAreNamed) {
+  PreparedTrial relaxed = trial(arm()), rigid = trial(arm(), {.seed = 2}), silent = trial(arm(), {.seed = 3});
+  relaxed.conditions.condition = "relaxed";
+  rigid.conditions.condition = "rigid";
+  EXPECT_THAT(codes(identify_impedance({relaxed, silent, rigid}, {}).value()), ElementsAre("mixed-conditions"));
+  rigid.conditions.condition = "relaxed";
+  EXPECT_THAT(codes(identify_impedance({relaxed, silent, rigid}, {}).value()), IsEmpty());
+}
+
+TEST(HandleMass, IsWhatTheRecordingSaysInDefaultModeUnlessAnotherIsGiven) {
+  PreparedTrial prepared = trial(arm(), {.noise = 0.3});
+  const double whole = identified(prepared).model.M(0, 0);
+  prepared.recorded_handle_mass = 0.194;
+  const Identification recorded = identified(prepared);
+  EXPECT_NEAR(recorded.model.M(0, 0), whole - 0.194, 1e-12);
+  EXPECT_EQ(recorded.handle_mass_from, HandleMassSource::recording);
+  EXPECT_EQ(identified(prepared, {.handle_mass = 0.5}).handle_mass, 0.5);
+  EXPECT_EQ(identified(prepared, {.handle_mass = 0.0}).model.M(0, 0), whole);
+  PreparedTrial published = prepared;
+  published.preparation.mode = Mode::reference;
+  EXPECT_EQ(identified(published).handle_mass, 0.0);
+  EXPECT_EQ(identified(published).handle_mass_from, HandleMassSource::none);
+  PreparedTrial other = prepared;
+  other.recorded_handle_mass = 0.2;
+  EXPECT_FALSE(identify_impedance({prepared, other}, {}));
+  EXPECT_TRUE(identify_impedance({prepared, other}, {.handle_mass = 0.2}));
+  prepared.recorded_handle_mass = std::nan("");
+  EXPECT_FALSE(identify_impedance({prepared}, {}));
+}
+
 TEST(Warnings, InertiaNotPositiveMakesItUnusable) {
   impedance::Model model = arm();
   model.M = (Matrix(2, 2) << 1.0, 1.2, 1.2, 1.0).finished();  // eigenvalues 2.2 and −0.2

@@ -44,6 +44,7 @@ class Fitter {
       : trials_(trials), options_(options), r_(stack(trials)) {}
 
   Result<void> prepare();
+  Result<void> find_instruments();
   Result<Identification> identify(Method method);
   [[nodiscard]] Disagreement compare() const;
 
@@ -59,16 +60,21 @@ class Fitter {
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
   void describe(Identification& result) const;
 
+  [[nodiscard]] Result<void> choose_handle_mass();
+  [[nodiscard]] UnmodelledResponse response_in(const Estimate& estimate) const;
+
   const std::vector<PreparedTrial>& trials_;
   const Options& options_;
   Regression r_;
   Matrix S_;
   std::vector<RowRange> ranges_;  ///< behind the parameters
   Index samples_ = 0, lags_ = 0;
-  double widening_ = 1.0;
+  double widening_ = 1.0, handle_mass_ = 0.0;
+  HandleMassSource handle_mass_from_ = HandleMassSource::none;
   bool all_ = false;
   std::optional<Instruments> instruments_;
   std::array<std::optional<Estimate>, 2> estimates_;  ///< by method
+  std::array<Vector, 2> errors_;                      ///< standard errors of their coefficients, stacked
 };
 
 Result<void> check_options(const std::vector<PreparedTrial>& trials, const Options& options) {
@@ -77,8 +83,8 @@ Result<void> check_options(const std::vector<PreparedTrial>& trials, const Optio
     return bad_usage(
         fmt::format("a reach of the residual's correlation of {:g} s is not 0 or more", options.hac_lag_s));
   }
-  if (!std::isfinite(options.handle_mass)) {
-    return bad_usage(fmt::format("a handle mass of {:g} kg is none", options.handle_mass));
+  if (options.handle_mass && !std::isfinite(*options.handle_mass)) {
+    return bad_usage(fmt::format("a handle mass of {:g} kg is none", *options.handle_mass));
   }
   const PreparedTrial& first = trials.front();
   for (const PreparedTrial& trial : trials) {
@@ -95,8 +101,36 @@ Result<void> check_options(const std::vector<PreparedTrial>& trials, const Optio
   return {};
 }
 
+Result<void> Fitter::choose_handle_mass() {
+  if (options_.handle_mass) {
+    handle_mass_ = *options_.handle_mass;
+    handle_mass_from_ = handle_mass_ == 0.0 ? HandleMassSource::none : HandleMassSource::option;
+    return {};
+  }
+  if (trials_.front().preparation.mode == Mode::reference) return {};
+  constexpr double kSame = 1e-9;  // of what was written with twelve digits
+  const std::optional<double>& first = trials_.front().recorded_handle_mass;
+  for (const PreparedTrial& trial : trials_) {
+    const std::optional<double>& mass = trial.recorded_handle_mass;
+    const std::string file = trial.sources.empty() ? "" : trial.sources.front().path;
+    if (mass && !(*mass >= 0.0 && std::isfinite(*mass))) {
+      return bad_data("its 'handle_mass_kg' is not a mass", "give it with --handle-mass KG", file);
+    }
+    if (mass.has_value() != first.has_value() || (mass && std::abs(*mass - *first) > kSame)) {
+      return bad_data(fmt::format("its handle mass ({}) is not that of the first file ({})",
+                                  mass ? fmt::format("{:g} kg", *mass) : "not recorded",
+                                  first ? fmt::format("{:g} kg", *first) : "not recorded"),
+                      "give one for all with --handle-mass KG, or measure it alone", file);
+    }
+  }
+  handle_mass_ = first.value_or(0.0);
+  if (handle_mass_ > 0.0) handle_mass_from_ = HandleMassSource::recording;
+  return {};
+}
+
 Result<void> Fitter::prepare() {
   if (r_.identification.empty()) return bad_data("no data to identify from", "move --split to a later time");
+  if (auto ok = choose_handle_mass(); !ok) return ok;
   S_ = structure_matrix(options_.structure, r_.axes());
   const Preparation& how = trials_.front().preparation;
   const bool pulses_by_default = how.mode == Mode::default_mode && how.protocol == Protocol::underdamped;
@@ -135,7 +169,7 @@ Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ra
 impedance::Model Fitter::model_from(const Estimate& estimate) const {
   const Index n = r_.axes();
   const Vector undefined = Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN());
-  return is_full(estimate) ? model_of(estimate.coefficients, r_.centre, options_.handle_mass)
+  return is_full(estimate) ? model_of(estimate.coefficients, r_.centre, handle_mass_)
                            : impedance::unstacked(undefined, n);
 }
 
@@ -171,13 +205,15 @@ void Fitter::describe(Identification& result) const {
   result.axes = first.axes;
   result.motion = first.motion;
   result.structure = options_.structure;
-  result.handle_mass = options_.handle_mass;
+  result.handle_mass = handle_mass_;
+  result.handle_mass_from = handle_mass_from_;
   result.parameters_from = all_ ? ParametersFrom::all : ParametersFrom::identification;
   result.parameters = parameter_names(first.axes);
   result.samples = samples_;
   result.hac_lag_s = static_cast<double>(lags_) * r_.sample_time;
   for (const PreparedTrial& trial : trials_) {
     result.preparations.push_back(trial.preparation);
+    result.conditions.push_back(trial.conditions);
     result.sources.insert(result.sources.end(), trial.sources.begin(), trial.sources.end());
     result.durations.insert(result.durations.end(), trial.sources.size(), trial.recording_duration);
     result.rates.insert(result.rates.end(), trial.sources.size(), trial.recording_rate);
@@ -186,12 +222,18 @@ void Fitter::describe(Identification& result) const {
   }
 }
 
+Result<void> Fitter::find_instruments() {
+  if (instruments_) return {};
+  auto made = make_instruments(r_, trials_.front().reference_quantity, ranges_, lags_);
+  if (!made) return tl::unexpected(made.error());
+  instruments_ = std::move(*made);
+  return {};
+}
+
 Result<Identification> Fitter::identify(Method method) {
   const Index n = r_.axes();
-  if (method == Method::instrumental_variables && !instruments_) {
-    auto made = make_instruments(r_, trials_.front().reference_quantity, ranges_, lags_);
-    if (!made) return tl::unexpected(made.error());
-    instruments_ = std::move(*made);
+  if (method == Method::instrumental_variables) {
+    if (auto ok = find_instruments(); !ok) return tl::unexpected(ok.error());
   }
   const auto check = estimate(method, r_.identification);
   if (!check) return tl::unexpected(check.error());
@@ -214,6 +256,8 @@ Result<Identification> Fitter::identify(Method method) {
     const Matrix V = numeric::long_run_covariance(fit->bread.rows(), ranges_, lags_,
                                                   [&](const RowRange& range) { return scores(method, *fit, range); });
     result.covariance = model_covariance(fit->structure, widening_ * widening_ * V, result.model, r_.centre);
+    errors_[static_cast<std::size_t>(method)] =
+        widening_ * (fit->structure * V * fit->structure.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
     if (r_.robot_covariance.size() > 0) {
       const Matrix of_robot =
           model_covariance(fit->structure, covariance_of_robot(method, *fit), result.model, r_.centre);
@@ -229,6 +273,7 @@ Result<Identification> Fitter::identify(Method method) {
           coherent_residual_fraction(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
     }
   }
+  if (instruments_ && is_full(*fit)) result.response = response_in(*fit);
   if (options_.bootstrap > 0 && is_full(*fit)) {
     auto replicates = resample(method);
     if (!replicates) return tl::unexpected(replicates.error());
@@ -244,7 +289,7 @@ Result<Identification> Fitter::identify(Method method) {
     if (!coarse) return tl::unexpected(coarse.error());
     DecimationCheck decimation;
     decimation.rate_hz = 1.0 / (static_cast<double>(step) * r_.sample_time);
-    decimation.model = model_of(coarse->coefficients, r_.centre, options_.handle_mass);
+    decimation.model = model_of(coarse->coefficients, r_.centre, handle_mass_);
     decimation.largest_change = largest_relative_change(result.model, decimation.model);
     result.decimation = decimation;
   }
@@ -264,7 +309,31 @@ Result<Replicates> Fitter::resample(Method method) const {
   Replicates result{Matrix(3 * n * n + n, drawn->coefficients.cols()), options_.block_s, drawn->blocks, how.seed};
   for (Index k = 0; k < drawn->coefficients.cols(); ++k) {
     const Matrix coefficients = Vector(S_ * drawn->coefficients.col(k)).reshaped(p, n);
-    result.models.col(k) = impedance::stacked(model_of(coefficients, r_.centre, options_.handle_mass));
+    result.models.col(k) = impedance::stacked(model_of(coefficients, r_.centre, handle_mass_));
+  }
+  return result;
+}
+
+UnmodelledResponse Fitter::response_in(const Estimate& estimate) const {
+  const Index n = r_.axes();
+  const Matrix residual = r_.Y - r_.Z * estimate.coefficients;
+  const Matrix left = rows_of(residual, ranges_), force = rows_of(r_.Y, ranges_);
+  const Vector fraction = coherent_residual_fraction(r_, *instruments_, residual, ranges_);
+  Vector at_rest = Vector::Zero(n);
+  double weight = 0.0;
+  for (const PreparedTrial& trial : trials_) {
+    if (trial.force_variance_at_rest.size() != n) continue;
+    at_rest += trial.force_variance_at_rest;
+    weight += 1.0;
+  }
+  UnmodelledResponse result;
+  result.coherent.resize(n);
+  if (weight > 0.0) result.induced.resize(n);
+  for (Index j = 0; j < n; ++j) {
+    const double all = numeric::variance(force.col(j)), unexplained = numeric::variance(left.col(j));
+    result.coherent[j] = all > 0.0 ? fraction[j] * unexplained / all : std::nan("");
+    if (weight > 0.0)
+      result.induced[j] = all > 0.0 ? std::max(0.0, unexplained - at_rest[j] / weight) / all : std::nan("");
   }
   return result;
 }
@@ -280,17 +349,19 @@ Disagreement Fitter::compare() const {
   });
   const Vector variance = (iv->structure * V * iv->structure.transpose()).diagonal();
   const std::vector<std::string> names = parameter_names(static_cast<int>(n));
-  double largest = 0.0;
+  double largest = -std::numeric_limits<double>::infinity();
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < 3 * n; ++i) {
       const double difference = iv->coefficients(i, j) - ls->coefficients(i, j);
       const double error = widening_ * std::sqrt(std::max(0.0, variance[j * p + i]));
-      if (!(error > 0.0) || !(std::abs(difference) / error > largest)) continue;
-      largest = std::abs(difference) / error;
+      const double beyond = (std::abs(difference) - errors_[0][j * p + i]) / error;
+      if (!(error > 0.0) || !(beyond > largest)) continue;
+      largest = beyond;
       const Index part = i / n, column = i % n;
       result.parameter = names[static_cast<std::size_t>(part * n * n + j * n + column)];
       result.difference = difference;
       result.standard_error = error;
+      result.least_squares = ls->coefficients(i, j) - (part == 0 && column == j ? handle_mass_ : 0.0);
     }
   }
   // Bonferroni: 1 % over 3n² parameters.
@@ -315,18 +386,21 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
   Fitter fitter(trials, options);
   if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
-  return fitter.identify(options.method);
+  return fitter.identify(options.method.value_or(Method::least_squares));
 }
 
 Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, const Options& options) {
   if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
   Fitter fitter(trials, options);
   if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
+  if (auto ok = fitter.find_instruments(); !ok) return tl::unexpected(ok.error());
   auto ls = fitter.identify(Method::least_squares);
   if (!ls) return tl::unexpected(ls.error());
   auto iv = fitter.identify(Method::instrumental_variables);
   if (!iv) return tl::unexpected(iv.error());
-  return Comparison{std::move(*ls), std::move(*iv), fitter.compare()};
+  Comparison both{std::move(*ls), std::move(*iv), fitter.compare()};
+  warn_of_closed_loop(both.instrumental_variables, both.disagreement, both.least_squares);
+  return both;
 }
 
 }  // namespace mbk::identify

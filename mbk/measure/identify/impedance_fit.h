@@ -12,10 +12,12 @@
 namespace mbk::identify {
 
 struct Options {
-  Method method = Method::least_squares;
+  std::optional<Method> method;  ///< absent: least squares; measurement::measure chooses by what perturbed the limb
   Structure structure = Structure::full;
   std::optional<ParametersFrom> parameters_from;  ///< absent: all for underdamped in default mode, else identification
-  double handle_mass = 0.0;                       ///< Λ [kg], subtracted from the diagonal of M (eq. 3.7)
+  /// Λ [kg], subtracted from the diagonal of M (eq. 3.7); absent: in default mode what the recording says, in reference
+  /// mode none.
+  std::optional<double> handle_mass;
   double hac_lag_s = 1.0;  ///< reach of the residual's autocovariance in the standard errors [s], ≥ 0
   bool decimate_check = false;
   int bootstrap = 0;       ///< replicates; 0: none
@@ -36,7 +38,8 @@ struct Options {
 /// same rows are solved by θ = (RᵀZ)⁻¹RᵀY, R from the known perturbation (instruments.h): what the limb does on its own
 /// account, and noise of the position, are then no bias but noise.
 /// @fails trials differ in axes, units or rate; nothing to identify from; fewer samples than parameters; a value is not
-/// finite; no reference for instrumental variables; the lag is negative or not finite; the handle's mass is not finite.
+/// finite; no reference for instrumental variables; the lag is negative or not finite; the handle's mass is not finite,
+/// not recorded as a number, or not the same in all trials.
 [[nodiscard]] Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials,
                                                         const Options& options);
 

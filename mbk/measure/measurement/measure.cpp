@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mbk/files/recording/inspect.h"
@@ -14,7 +17,10 @@
 #include "mbk/measure/analyse/compare_forces.h"
 #include "mbk/measure/analyse/diagnose.h"
 #include "mbk/measure/analyse/ellipses.h"
+#include "mbk/measure/analyse/energy_lines.h"
 #include "mbk/measure/analyse/judge_passivity.h"
+#include "mbk/measure/analyse/plausibility.h"
+#include "mbk/measure/analyse/plausible_scale.h"
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/resample.h"
@@ -54,6 +60,7 @@ struct Source {
   const Recording* given = nullptr;
   Inspection recorded;  ///< of `given`
   std::optional<Recording> even;
+  std::optional<Hertz> clock;  ///< of `even`
   std::optional<preprocess::VirtualForce> computed;
 
   [[nodiscard]] const Recording& recording() const {
@@ -66,10 +73,34 @@ struct Source {
   }
 };
 
+/// The even clock of a session that missed ticks, where a line across them is shorter than anything that the limb does.
+std::optional<Hertz> clock_across_missed_ticks(const Recording& recording, const Inspection& inspection) {
+  constexpr double kLongest = 0.1;    // [s], a third of the shortest period that is excited
+  constexpr double kMaxShare = 0.05;  // of the time
+  if (inspection.gaps.empty() || !inspection.missing.empty() || inspection.duplicated_times > 0 ||
+      inspection.backward_times > 0) {
+    return std::nullopt;
+  }
+  const auto rate = recording.metadata.find("rate_hz");
+  if (rate == recording.metadata.end()) return std::nullopt;
+  double hz = 0.0;
+  const std::string& text = rate->second;
+  if (std::from_chars(text.data(), text.data() + text.size(), hz).ec != std::errc() || !(hz > 0.0)) return std::nullopt;
+  double bridged = 0.0;
+  for (const Gap& gap : inspection.gaps) {
+    if (!(gap.length <= kLongest)) return std::nullopt;
+    bridged += gap.length;
+  }
+  return bridged <= kMaxShare * inspection.duration ? std::optional(Hertz(hz)) : std::nullopt;
+}
+
 Result<Source> make_ready(const Recording& recording, const Options& options) {
-  Source source{&recording, recording::inspect(recording), {}, {}};
-  if (options.resample) {
-    auto even = preprocess::resample(recording, *options.resample);
+  Source source{&recording, recording::inspect(recording), {}, options.resample, {}};
+  if (!source.clock && options.preprocess.mode == Mode::default_mode) {
+    source.clock = clock_across_missed_ticks(recording, source.recorded);
+  }
+  if (source.clock) {
+    auto even = preprocess::resample(recording, *source.clock);
     if (!even) return tl::unexpected(even.error());
     source.even = std::move(*even);
   }
@@ -85,7 +116,14 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
 
 Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, const Options& options) {
   std::vector<Source> sources;
+  std::map<std::string, std::string> files;  // by hash
   for (const Recording& recording : recordings) {
+    for (const SourceFile& file : recording.sources) {
+      const auto [twin, fresh] = files.emplace(file.sha256, file.path);
+      if (!fresh && !file.sha256.empty()) {
+        return bad_data(fmt::format("is the same file as {}", twin->second), "pool each trial once", file.path);
+      }
+    }
     auto source = make_ready(recording, options);
     if (!source)
       return tl::unexpected(recording.sources.empty() ? source.error() : source.error().in(recording.sources[0].path));
@@ -99,9 +137,12 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
   const bool same = &recording == source.given;
   auto trial = preprocess::prepare(recording, same ? source.recorded : recording::inspect(recording),
                                    options.preprocess, source.computed ? &*source.computed : nullptr);
-  if (!trial) return trial;
+  if (!trial) {
+    return tl::unexpected<Error>(
+        analyse::explain_clock(trial.error(), recording, source.recorded, options.preprocess.axes));
+  }
   warn_of_clipping(source.recorded, *trial);
-  if (options.resample) warn_of_resampling(source.recorded, *options.resample, *trial);
+  if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   return trial;
 }
 
@@ -140,7 +181,20 @@ Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& source
   return trials;
 }
 
-/// By the method that was asked for and, where a reference was recorded, by the other one too.
+/// The method that a result is by where none was asked for, and why.
+std::pair<Method, std::string> recommended(const std::vector<PreparedTrial>& trials, const identify::Comparison& both) {
+  const auto by_force = [](const PreparedTrial& trial) { return trial.reference_quantity == ReferenceQuantity::force; };
+  if (trials.front().preparation.mode == Mode::reference) return {Method::least_squares, "the published procedure"};
+  if (!std::ranges::all_of(trials, by_force)) {
+    return {Method::least_squares, "the robot controls the position"};
+  }
+  if (!both.instrumental_variables.usable) {
+    return {Method::least_squares, "the reference is a force, but instrumental variables are not usable"};
+  }
+  return {Method::instrumental_variables, "the reference is a force: the limb and the robot move in a closed loop"};
+}
+
+/// By the method that was asked for or is recommended and, where a reference was recorded, by the other one too.
 Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, const identify::Options& options) {
   const bool by_instruments = options.method == Method::instrumental_variables;
   const bool known =
@@ -148,11 +202,13 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
   if (known || by_instruments) {
     auto both = identify::compare_methods(trials, options);
     if (both) {
-      auto &ls = both->least_squares, &iv = both->instrumental_variables;
-      if (by_instruments) std::swap(ls, iv);
+      auto &first = both->least_squares, &other = both->instrumental_variables;
+      const auto [method, rule] = recommended(trials, *both);
+      if (!options.method) first.method_rule = other.method_rule = rule;
+      if (options.method.value_or(method) == Method::instrumental_variables) std::swap(first, other);
       Measurement measured;
-      measured.identification = std::move(ls);
-      measured.alternative = std::move(iv);
+      measured.identification = std::move(first);
+      measured.alternative = std::move(other);
       measured.disagreement = both->disagreement;
       return measured;
     }
@@ -163,6 +219,12 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
   Measurement measured;
   measured.identification = std::move(*alone);
   return measured;
+}
+
+std::vector<const Recording*> recordings_of(const std::vector<Source>& sources) {
+  std::vector<const Recording*> recordings;
+  for (const Source& source : sources) recordings.push_back(&source.recording());
+  return recordings;
 }
 
 /// The energy of each recording, and of all together.
@@ -176,17 +238,18 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
     measured.energies.push_back(std::move(*energy));
   }
   if (sources.size() == 1) return measured.energies.front().account;
-  std::vector<const Recording*> recordings;
-  for (const Source& source : sources) recordings.push_back(&source.recording());
-  return analyse::pooled_energy(recordings, trials);
+  return analyse::pooled_energy(recordings_of(sources), trials);
 }
 
-/// Is the limb passive, by its model and by what it absorbed?
+/// What happened in the trial, and what the model predicts.
 Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                   const Options& options, Measurement& measured) {
   auto energy = account_for_energy(sources, trials, measured);
   if (!energy) return tl::unexpected(energy.error());
-  const PassivityBand band = options.band.value_or(analyse::passivity_band(trials));
+  Passivity passivity;
+  passivity.band = analyse::coherent_band(trials);
+  PassivityBand band = passivity.band.value_or(analyse::excited_band(trials));
+  if (options.band) band = analyse::asked_band(options.band->first, options.band->second, passivity.band);
   const Identification* first = &measured.identification;
   const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
   const bool by_instruments = first->method == Method::instrumental_variables;
@@ -200,17 +263,23 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
     if (!consistent) return tl::unexpected(consistent.error());
     measured.consistent = std::move(*consistent);
   }
-  std::vector<ModelPassivity> models;
   for (const Identification* id : {first, other}) {
     // A model without damping was not asked whether the limb has any.
     if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
     auto model = analyse::model_passivity(*id, band);
     if (!model) return tl::unexpected(model.error());
-    models.push_back(std::move(*model));
+    passivity.models.push_back(std::move(*model));
   }
-  const Identification& least_squares =
-      by_instruments && measured.alternative ? *measured.alternative : measured.identification;
-  return analyse::decide(std::move(models), least_squares.fit.vaf.mean(), std::move(*energy));
+  passivity.trial = analyse::trial_passivity(measured.identification, std::move(*energy),
+                                             analyse::energy_lines(recordings_of(sources), trials));
+  if (!passivity.trial) {
+    for (Energy& one : measured.energies) {
+      one.account.verdict = Verdict::undecided;
+      one.account.reason = "force or motion is not plausible: see the warnings";
+    }
+  }
+  passivity.prediction = analyse::predict_passivity(passivity.models, measured.identification.usable, passivity.band);
+  return passivity;
 }
 
 /// Where a sensor recorded the force that was computed: how far both are apart, and what the sensor's force gives.
@@ -286,6 +355,7 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     return sources.size() == 1 ? sources[0].in_file(identified.error()) : tl::unexpected(identified.error());
   }
   Measurement measured = std::move(*identified);
+  analyse::judge_plausibility(recordings_of(sources), trials, options.ignored_ranges, measured);
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mbk/base/core/result.h"
@@ -10,6 +12,7 @@
 #include "mbk/measure/preprocess/prepare.h"
 #include "mbk/model/trial/diagnostics.h"
 #include "mbk/model/trial/measurement.h"
+#include "mbk/model/trial/plausible_ranges.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::measurement {
@@ -18,14 +21,24 @@ namespace mbk::measurement {
 struct Options {
   preprocess::Options preprocess;
   identify::Options identify;
-  std::optional<Hertz> resample;      ///< put the samples on an even clock first
-  bool passivity = true;              ///< judge it too
-  bool joint_domain = false;          ///< the result at the joints too
-  std::optional<PassivityBand> band;  ///< in which a model is judged; absent: analyse::passivity_band
+  std::optional<Hertz> resample;  ///< put the samples on an even clock first
+  bool passivity = true;          ///< judge it too
+  bool joint_domain = false;      ///< the result at the joints too
+  /// Frequencies for which a model is asked; absent: those at which the data show how the limb answers.
+  std::optional<std::pair<Hertz, Hertz>> band;
+  std::set<PlausibleQuantity> ignored_ranges;  ///< plausible ranges that are not checked
 };
 
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
-/// @fails as its steps; where the joint domain is asked for and pooled recordings were made in different postures;
+///
+/// What is not asked for follows from the recording, so that whoever measures it gets one answer:
+/// - the method, in default mode: instrumental variables where the reference is a force (the limb then decides on the
+///   motion too, and least squares is biased) and they hold, else least squares; least squares in reference mode;
+/// - the handle's mass, as identify::Options says;
+/// - a clock: where a session missed ticks (gaps of at most 0.1 s, at most 5 % of the time), the samples are put on the
+///   even clock that the recording names (`rate_hz`), in default mode; the result warns of it.
+/// @fails as its steps; where the same file is pooled twice;
+/// where the joint domain is asked for and pooled recordings were made in different postures;
 /// where a recording has a source, the message names its file.
 [[nodiscard]] Result<Measurement> measure(std::span<const Recording> recordings, const Options& options);
 

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "mbk/measure/preprocess/band.h"
@@ -14,6 +18,54 @@
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
+namespace {
+
+std::string metadata_of(const Recording& recording, const char* key) {
+  const auto found = recording.metadata.find(key);
+  return found == recording.metadata.end() ? "" : found->second;
+}
+
+/// As the recording says it; NaN where that is no number.
+std::optional<double> recorded_handle_mass(const Recording& recording) {
+  const std::string text = metadata_of(recording, "handle_mass_kg");
+  if (text.empty()) return std::nullopt;
+  double mass = 0.0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), mass);
+  const bool number = error == std::errc() && stop == text.data() + text.size();
+  return number ? mass : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// PreparedTrial::force_variance_at_rest, from as long before each displacement as that lasts, at most half of the way
+/// back to the one before, by which the limb has come to rest.
+Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const FilterPlan& filters, Hertz rate,
+                        const dsp::Padding& padding) {
+  const Index n = signals.axes;
+  std::vector<Matrix> pieces;
+  Index rows = 0, last_end = 0;
+  for (const Cut& cut : plan.cuts) {
+    for (const Segment& displaced : cut.keep) {
+      const Index length = std::min(displaced.size(), (displaced.begin - last_end) / 2);
+      last_end = displaced.end;
+      if (length <= 0) continue;
+      const Cut rest{displaced.begin - length, displaced.begin, {}};
+      if (!signals.force_hand_on_robot.middleRows(rest.begin, length).allFinite()) continue;
+      const auto filtered = filter_cut(signals, rest, filters, plan.trim, rate, padding, false);
+      if (!filtered || filtered->rows() == 0) continue;  // too short for the filters
+      pieces.emplace_back(filtered->middleCols(3 * n, n));
+      rows += filtered->rows();
+    }
+  }
+  if (rows == 0) return {};
+  Matrix all(rows, n);
+  Index row = 0;
+  for (const Matrix& piece : pieces) {
+    all.middleRows(row, piece.rows()) = piece;
+    row += piece.rows();
+  }
+  return (all.rowwise() - all.colwise().mean()).colwise().squaredNorm().transpose() / static_cast<double>(rows);
+}
+
+}  // namespace
 
 Result<PreparedTrial> prepare(const Recording& recording, const Inspection& inspection, const Options& options,
                               const VirtualForce* computed) {
@@ -31,6 +83,9 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   PreparedTrial trial;
   trial.sources = recording.sources;
   trial.notes = recording.notes;
+  trial.recorded_handle_mass = recorded_handle_mass(recording);
+  trial.conditions = {metadata_of(recording, "participant"), metadata_of(recording, "condition"),
+                      metadata_of(recording, "posture")};
   trial.recording_duration = inspection.duration + inspection.interval_median;
   Preparation& how = trial.preparation;
   how.mode = options.mode;
@@ -127,6 +182,9 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     row += rows;
   }
   if (trial.segments.empty()) return bad_data("no sample is left after filtering", "record longer");
+  if (how.protocol == Protocol::underdamped) {
+    trial.force_variance_at_rest = variance_at_rest(*signals, *plan, filters, rate, options.padding);
+  }
 
   how.window_rule = plan->rule;
   how.from_s = trial.time[trial.segments.front().begin];

@@ -92,6 +92,17 @@ std::optional<double> nonpassive_below(const Model& model) {
   return std::abs(antisymmetric_part(model.K)) / (2.0 * std::numbers::pi * std::sqrt(B.determinant()));
 }
 
+std::optional<std::pair<double, double>> absorbing_in_circles(const Model& model) {
+  if (model.axes() == 1) return std::nullopt;
+  const Matrix B = symmetric_part(model.B);
+  const double m_a = antisymmetric_part(model.M), k_a = antisymmetric_part(model.K);
+  const double discriminant = B.determinant() + 4.0 * m_a * k_a;
+  if (!(B.determinant() > 0.0 && B.trace() > 0.0 && discriminant > 0.0)) return std::nullopt;
+  const double sum = std::sqrt(B.determinant()) + std::sqrt(discriminant);
+  const double high = m_a != 0.0 ? sum / (2.0 * std::abs(m_a)) : std::numeric_limits<double>::infinity();
+  return std::pair{2.0 * std::abs(k_a) / sum, high};
+}
+
 std::optional<Sensitive> excess_of_passivity(const Model& model) {
   if (!(smallest_eigenvalue(model, 0).value >= 0.0 && smallest_eigenvalue(model, 2).value >= 0.0)) return std::nullopt;
   return smallest_eigenvalue(model, 1);

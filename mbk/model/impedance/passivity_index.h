@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <utility>
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/model/impedance/model.h"
@@ -39,6 +40,13 @@ struct Sensitive {
 /// Below this frequency [Hz] the antisymmetric stiffness makes a limb without inertial antisymmetry active:
 /// |k_a|/(2π √det B_s). Absent where B_s is not positive definite. 0 with one axis.
 [[nodiscard]] std::optional<double> nonpassive_below(const Model& model);
+
+/// Where the index of a model of two axes whose B_s is positive definite is positive, ω from first to second [rad/s]:
+/// |ω m_a − k_a/ω| < √det B_s. With m_a = 0 above |k_a|/√det B_s; with k_a = 0 below √det B_s/|m_a|; with
+/// D = det B_s + 4 m_a k_a from 2|k_a|/(√det B_s + √D) to (√det B_s + √D)/(2|m_a|). Beyond, motion that circles can
+/// draw energy from the model. The second is infinite where m_a = 0.
+/// @returns absent with one axis, where B_s is not positive definite, or D ≤ 0: then there is no such frequency
+[[nodiscard]] std::optional<std::pair<double, double>> absorbing_in_circles(const Model& model);
 
 /// Excess of passivity of the symmetric part: the largest δ for which Z − δI is still positive real, λ_min(B_s)
 /// [N·s/m]. Absent unless the symmetric parts of M and K are positive semidefinite.

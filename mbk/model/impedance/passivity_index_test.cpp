@@ -270,5 +270,35 @@ TEST(Table36, IsNotTheExcessOfPassivityInAnyCell) {
   EXPECT_NEAR(smaller(pulses.area + kHalfDigit, pulses.shape - kHalfDigit), 8.63, 0.01);
 }
 
+TEST(AbsorbingInCircles, EndsWhereTheIndexIsZero) {
+  std::mt19937 random(7);
+  int bounded = 0, none = 0;
+  for (int i = 0; i < 400; ++i) {
+    Model model = participant1(uniform(random, -20.0, 20.0));
+    const double m_a = i % 4 == 0 ? 0.0 : uniform(random, -1.5, 1.5);
+    model.M(0, 1) += m_a;
+    model.M(1, 0) -= m_a;
+    const auto range = absorbing_in_circles(model);
+    if (!range) {  // nowhere positive
+      ++none;
+      for (double omega = 0.01; omega < 1000.0; omega *= 1.1) EXPECT_LT(passivity_index(model, omega).value, 1e-9);
+      continue;
+    }
+    EXPECT_NEAR(passivity_index(model, range->first).value, 0.0, 1e-9);
+    EXPECT_GT(passivity_index(model, 1.001 * range->first).value, 0.0);
+    if (m_a == 0.0) {
+      EXPECT_TRUE(std::isinf(range->second));
+      EXPECT_NEAR(range->first, 2.0 * kPi * nonpassive_below(model).value(), 1e-12);
+      continue;
+    }
+    ++bounded;
+    EXPECT_NEAR(passivity_index(model, range->second).value, 0.0, 1e-9);
+    EXPECT_GT(passivity_index(model, 0.999 * range->second).value, 0.0);
+  }
+  EXPECT_GT(bounded, 100);
+  EXPECT_GT(none, 3);
+  EXPECT_FALSE(absorbing_in_circles(unstacked((Vector(4) << 0.4, 1.5, 20.0, 0.0).finished(), 1)));
+}
+
 }  // namespace
 }  // namespace mbk::impedance

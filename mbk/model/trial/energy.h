@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/units.h"
 #include "mbk/model/trial/findings.h"
 #include "mbk/model/trial/verdict.h"
 
@@ -14,6 +15,12 @@ namespace mbk {
 /// What a shortage of passivity is called: below 0 it is an excess of as much.
 [[nodiscard]] constexpr std::string_view shortage_name(double shortage) {
   return shortage < 0.0 ? "excess" : "shortage";
+}
+
+/// What an interval of absorbed energy says; one that is not known says nothing.
+[[nodiscard]] constexpr Verdict verdict_of(const Interval& absorbed95) {
+  if (absorbed95.first > 0.0) return Verdict::passive;
+  return absorbed95.second < 0.0 ? Verdict::active : Verdict::undecided;
 }
 
 /// Energy that the limb absorbed up to each instant of the whole recording. Where the clock has a gap or a value is no
@@ -55,6 +62,15 @@ struct EnergyAccount {
   Index blocks = 0;  ///< that the intervals rest on
   Verdict verdict = Verdict::undecided;
   std::string reason;  ///< of the verdict, in words
+};
+
+/// Energy at one line of a periodic perturbation, −∫ F_h·v dt of the parts of force and motion at its frequency, over
+/// whole periods. The lines add up to the energy of those periods, but for noise and what is not periodic.
+struct EnergyLine {
+  Hertz frequency;
+  double duration = 0;  ///< of those periods [s]
+  double absorbed = 0;  ///< [J]
+  Interval absorbed95;  ///< 95 % for all lines at once, from how the periods differ
 };
 
 /// Work of the antisymmetric stiffness k_a = (k_xy − k_yx)/2 along the path of the hand; absorbed energy is positive.

@@ -47,16 +47,45 @@ enum class ParametersFrom {
   return std::to_array<Word<ParametersFrom>>({{identification, "identification"}, {all, "all"}});
 }
 
+/// Smallest first-stage F at which ±1.96 standard errors of instrumental variables are a 95 % interval (Lee, McCrary,
+/// Moreira & Porter 2022, Am. Econ. Rev. 112: 104.7).
+inline constexpr double kStrongInstruments = 104.7;
+
 /// What stands behind instrumental variables, and whether it may.
 struct InstrumentCheck {
   ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
-  Vector strength;  ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; below 10 the instrument is weak
+  Vector strength;           ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; weak below kStrongInstruments
   Vector coherent_residual;  ///< n, perturbation-coherent fraction of the residual: what follows the perturbation
                              ///< linearly within half a second
 
   [[nodiscard]] double weakest() const { return strength.minCoeff<Eigen::PropagateNaN>(); }
-  [[nodiscard]] bool strong() const { return weakest() > 10.0; }
+  [[nodiscard]] bool strong() const { return weakest() > kStrongInstruments; }
 };
+
+/// How much of the force follows the perturbation and is neither inertia nor damping nor stiffness: what the limb does
+/// in response. A part of that response looks like mechanics and stands in M, B and K, whatever the method.
+struct UnmodelledResponse {
+  Vector coherent;  ///< n, share of the force's variance in the residual that is linear in the past of the reference
+  Vector induced;   ///< n, share of the force's variance in the residual beyond that at rest; empty: never at rest
+
+  [[nodiscard]] double largest() const {
+    double share = 0.0;
+    for (const Vector* one : {&coherent, &induced}) {
+      for (const double value : *one) {
+        if (value > share) share = value;
+      }
+    }
+    return share;
+  }
+};
+
+/// Where the handle's mass that was subtracted comes from.
+enum class HandleMassSource { none, option, recording };
+
+[[nodiscard]] constexpr auto word_table(HandleMassSource) {
+  using enum HandleMassSource;
+  return std::to_array<Word<HandleMassSource>>({{none, "none"}, {option, "option"}, {recording, "recording"}});
+}
 
 /// How well the model explains the force, axis by axis.
 struct Fit {
@@ -100,13 +129,18 @@ struct Units {
   return {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad", "m or rad", "N or N·m"};
 }
 
-/// Where two methods find different models in the same rows: the parameter whose difference is largest in terms of its
-/// own standard error, which counts that both methods saw the same noise.
+/// Where two methods find different models in the same rows: the parameter whose difference exceeds the standard error
+/// of least squares most clearly, in terms of the difference's own standard error, which counts that both methods saw
+/// the same noise. A difference that is certain but small beside the interval of least squares changes nothing; in a
+/// stiff loop there is always one.
 struct Disagreement {
   std::string parameter;      ///< as in Identification::parameters
   double difference = 0;      ///< instrumental variables less least squares
   double standard_error = 0;  ///< of that difference
-  bool significant = false;   ///< more than chance gives in 1 % of cases to any of M, B and K
+  double least_squares = 0;   ///< the parameter itself, by least squares
+  /// Least squares is off by more than its own standard error says, with 99 % confidence for all of M, B and K
+  /// together.
+  bool significant = false;
 };
 
 /// The same fit on data drawn again and again from blocks of the rows: how the numbers would have come out in other
@@ -128,17 +162,21 @@ struct Identification {
   /// The part of it that the robot's coefficients have, where the force rests on a model of the robot.
   std::optional<impedance::Model> standard_error_of_robot;
   Method method = Method::least_squares;
-  std::optional<InstrumentCheck> instrument;  ///< with instrumental variables only
-  std::optional<Replicates> replicates;       ///< where a bootstrap was asked for
+  std::string method_rule;                     ///< why that method, in words; empty: it was asked for
+  std::optional<InstrumentCheck> instrument;   ///< with instrumental variables only
+  std::optional<UnmodelledResponse> response;  ///< where the reference is known
+  std::optional<Replicates> replicates;        ///< where a bootstrap was asked for
   Structure structure = Structure::full;
-  double hac_lag_s = 0;                           ///< reach of the autocovariance in the standard errors [s]
-  double handle_mass = 0;                         ///< [kg] subtracted from the diagonal of M
+  double hac_lag_s = 0;    ///< reach of the autocovariance in the standard errors [s]
+  double handle_mass = 0;  ///< [kg] subtracted from the diagonal of M
+  HandleMassSource handle_mass_from = HandleMassSource::none;
   std::optional<ParametersFrom> parameters_from;  ///< absent: a stored result does not say
   Fit fit;
   Excitation excitation;
   std::optional<DecimationCheck> decimation;
-  Index samples = 0;                      ///< behind the parameters
-  std::vector<Preparation> preparations;  ///< one per pooled trial
+  Index samples = 0;                        ///< behind the parameters
+  std::vector<Preparation> preparations;    ///< one per pooled trial
+  std::vector<TrialConditions> conditions;  ///< one per pooled trial
   std::vector<SourceFile> sources;
   std::vector<double> durations, rates;  ///< per source: [s] and [Hz]
   int axes = 2;

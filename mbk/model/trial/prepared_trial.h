@@ -83,6 +83,12 @@ enum class ReferenceQuantity { position, force, unknown };
   return std::to_array<Word<ReferenceQuantity>>({{position, "position"}, {force, "force"}, {unknown, "unknown"}});
 }
 
+/// Who was measured, and how, as the recording says it; empty where it does not. What recordings share that are
+/// averaged or pooled.
+struct TrialConditions {
+  std::string participant, condition, posture;
+};
+
 /// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame. Where the low-pass leaves
 /// nothing between them, only every so many samples of the recording are here.
 struct PreparedTrial {
@@ -102,7 +108,12 @@ struct PreparedTrial {
   Matrix reference_motion;  ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
   std::vector<Segment> segments;  ///< in order of time; rows outside them do not count
+  /// n, variance of F_h [N²] while the reference rests before its displacements, filtered alike; empty where it is
+  /// never seen at rest. What the limb adds on its own account is no less while it is perturbed.
+  Vector force_variance_at_rest;
   Preparation preparation;
+  std::optional<double> recorded_handle_mass;  ///< [kg] beyond the force sensor, as the recording says it
+  TrialConditions conditions;
   std::vector<SourceFile> sources;
   double recording_duration = 0;   ///< [s]
   std::vector<std::string> notes;  ///< what the reader said of the recording

@@ -9,12 +9,21 @@
 
 namespace mbk {
 
+/// Where a channel stands in its file, in the words of --channels, so that a message can say how to read it otherwise.
+struct ChannelOrigin {
+  std::string alias;   ///< the channel's short name: "x", "Fx", "xr", "time"
+  std::string source;  ///< "10", "-10", "force_x*8.1"; "" where the channel was not read from a file
+  std::string unit;    ///< in which the file was taken to be: "mm"; "" where nothing said it and SI was assumed
+  std::string called;  ///< channel that the file itself calls this column, where that is another one: "reference_x"
+};
+
 /// One measured signal, as recorded, in SI units and radians.
 struct Channel {
   std::string name;   ///< as in the channel table of the documentation: hand_x, force_y, joint_1, reaction, …
   std::string unit;   ///< SI: "m", "N", "rad", "N.m", "m/s2"; "" where the file does not say
   std::string frame;  ///< "base" for hand_*, force_*, reference_*, acceleration_*; "joint" for joint_*, torque_*
   Vector values;      ///< one value per sample of Recording::time
+  ChannelOrigin origin = {};
 };
 
 /// Something that happened at an instant: the onset of a perturbation, its offset, its direction.
@@ -35,6 +44,7 @@ struct SourceFile {
 /// Gaps, jitter, backward time and non-finite values stay in it; recording::inspect reports them.
 struct Recording {
   Vector time;                  ///< [s], as recorded; not necessarily even or increasing
+  ChannelOrigin time_origin;    ///< of `time`
   bool time_from_rate = false;  ///< true where the file holds no time, but it or the user gave the rate
   bool untimed = false;  ///< true where the rows are no samples but loads or places by themselves: `time` counts them
   std::vector<Channel> channels;  ///< each as long as `time`

@@ -30,6 +30,17 @@ enum class WarningCode {
   input_explains_residual,
   pole_outside_band,
   uneven_clock,
+  closed_loop_bias,
+  unmodelled_response,
+  weak_instruments,
+  invalid_instruments,
+  mixed_conditions,
+  implausible_scale,
+  axes_scaled_differently,
+  axes_mismatched,
+  same_column,
+  other_column,
+  handle_mass_too_large,
 };
 
 /// Stable: scripts may test for these words.
@@ -57,6 +68,17 @@ enum class WarningCode {
       {input_explains_residual, "input-explains-residual"},
       {pole_outside_band, "pole-outside-band"},
       {uneven_clock, "uneven-clock"},
+      {closed_loop_bias, "closed-loop-bias"},
+      {unmodelled_response, "unmodelled-response"},
+      {weak_instruments, "weak-instruments"},
+      {invalid_instruments, "invalid-instruments"},
+      {mixed_conditions, "mixed-conditions"},
+      {implausible_scale, "implausible-scale"},
+      {axes_scaled_differently, "axes-scaled-differently"},
+      {axes_mismatched, "axes-mismatched"},
+      {same_column, "same-column"},
+      {other_column, "other-column"},
+      {handle_mass_too_large, "handle-mass-too-large"},
   });
 }
 
@@ -73,7 +95,8 @@ enum class WarningCode {
 struct Warning {
   WarningCode code;
   std::string message;
-  std::string remedy;  ///< what to try next; "try" in JSON
+  std::string remedy;    ///< what to try next; "try" in JSON
+  std::string was = {};  ///< code by which the last version said it, where that is another
 };
 
 }  // namespace mbk

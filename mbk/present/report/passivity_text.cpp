@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/layout.h"
 #include "mbk/present/report/text.h"
@@ -18,16 +19,39 @@ std::string between(const Interval& interval) {
   return fmt::format("[{:.3g}, {:.3g}]", interval.first, interval.second);
 }
 
-const char* long_name(Method method) {
-  return method == Method::least_squares ? "least squares" : "instrumental variables";
+std::string word_or_none(const std::optional<Verdict>& verdict) {
+  return std::string(verdict ? word_of(*verdict) : "none");
+}
+
+/// What one method's model says of straight and of circular motion, beside how much it explains.
+std::string models_table(const std::vector<ModelPassivity>& models) {
+  std::vector<std::vector<std::string>> rows = {{"model of", "VAF", "straight motion", "circular motion", ""}};
+  for (const ModelPassivity& model : models) {
+    std::vector<std::string> vaf;
+    for (const double one : model.vaf) vaf.push_back(fmt::format("{:.1f}", one));
+    rows.push_back({method_name(model.method), fmt::format("{} %", fmt::join(vaf, ", ")), word_or_none(model.symmetric),
+                    word_or_none(model.antisymmetric), model.usable ? model.fits ? "" : "fits poorly" : "not usable"});
+  }
+  return table(rows);
+}
+
+/// Where a model absorbs in circular motion; empty where that is throughout the band and a decade to either side.
+std::string circular_text(const ModelPassivity& model) {
+  constexpr double kDecade = 10.0;
+  if (!model.circular_hz) return "";
+  const auto [low, high] = *model.circular_hz;
+  const bool above = low > model.band.low.value / kDecade, below = high < model.band.high.value * kDecade;
+  if (above && below) return fmt::format("{:.2g} to {:.2g} Hz", low, high);
+  return above ? fmt::format("above {:.2g} Hz", low) : below ? fmt::format("below {:.2g} Hz", high) : "";
 }
 
 std::string model_text(const ModelPassivity& model) {
-  std::string text = fmt::format("  model of {}: {} from {:.3g} to {:.3g} Hz\n", long_name(model.method),
-                                 word_of(model.verdict), model.band.low.value, model.band.high.value);
-  std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "± s.e.", "unit", ""}};
+  std::string text =
+      fmt::format("  model of {}, {:.3g} to {:.3g} Hz{}\n", method_name(model.method), model.band.low.value,
+                  model.band.high.value, model.band.extrapolated ? ", extrapolated" : "");
+  std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "unit", ""}};
   for (const PassivityCondition& c : model.conditions) {
-    rows.push_back({c.name, fmt::format("{:.3g}", c.value), fmt::format("{:.2g}", c.standard_error), c.unit,
+    rows.push_back({c.name, with_interval(c.value, numeric::kNormal95 * c.standard_error), c.unit,
                     c.verdict == Verdict::passive  ? "holds"
                     : c.verdict == Verdict::active ? "fails"
                                                    : "open"});
@@ -37,13 +61,12 @@ std::string model_text(const ModelPassivity& model) {
            fmt::format("at {:.3g} Hz", model.smallest_at.value)}};
   if (model.excess) {
     rows.push_back({"excess of passivity", fmt::format("{:.3g}", model.excess->corrected),
-                    between(model.excess->corrected95), "of the symmetric part: smallest eigenvalue of B"});
+                    between(model.excess->corrected95), "smallest eigenvalue of B"});
     rows.push_back({"  by the published formula", fmt::format("{:.3g}", model.excess->published),
-                    between(model.excess->published95), "half of the largest eigenvalue of B"});
+                    between(model.excess->published95), "half of the largest"});
   }
-  if (model.nonpassive_below_hz && *model.nonpassive_below_hz > 0.0) {
-    rows.push_back({"active below", fmt::format("{:.2g} Hz", *model.nonpassive_below_hz), "",
-                    "where the antisymmetric stiffness outweighs the damping"});
+  if (const std::string circular = circular_text(model); !circular.empty()) {
+    rows.push_back({"absorbs in circles", circular, "", "as estimated"});
   }
   return text + table(rows);
 }
@@ -56,24 +79,46 @@ std::string energy_text(const EnergyAccount& account, const char* unit) {
   };
   const auto [end, end95] = shortage(account.shortage_at_end, account.shortage_at_end95);
   const auto [most, most95] = shortage(account.shortage_largest, account.shortage_largest95);
-  return fmt::format("  energy: {}\n", word_of(account.verdict)) +
-         table({{"absorbed", fmt::format("{:.3g} J", account.absorbed), between(account.absorbed95),
+  return table({{"absorbed", fmt::format("{:.3g} J", account.absorbed), between(account.absorbed95),
                  fmt::format("in {:.1f} s", account.duration)},
                 {what, fmt::format("{:.3g} {}", end, unit), between(end95), "eq. (4.3)"},
-                {largest, fmt::format("{:.3g} {}", most, unit), between(most95), "over time"}}) +
-         paragraph("    ", account.reason);
+                {largest, fmt::format("{:.3g} {}", most, unit), between(most95), "over time"}});
 }
+
+std::string lines_text(const std::vector<EnergyLine>& lines) {
+  if (lines.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {{"line [Hz]", "absorbed [J]", "95 % for all lines at once"}};
+  for (const EnergyLine& line : lines) {
+    rows.push_back(
+        {fmt::format("{:.3g}", line.frequency.value), fmt::format("{:.3g}", line.absorbed), between(line.absorbed95)});
+  }
+  return table(rows);
+}
+
+std::string trial_line(const std::optional<TrialPassivity>& trial) {
+  if (!trial) return "no statement on the trial: force or motion is not plausible";
+  return fmt::format("{}: {}", word_of(trial->energy.verdict), trial->statement);
+}
+
+std::string prediction_line(const PassivityPrediction& prediction) {
+  return fmt::format("{}: {}", word_or_none(prediction.verdict), prediction.statement);
+}
+
+constexpr const char* kNoPromise = "Neither is a promise that a machine is stable with this person.";
 
 }  // namespace
 
 std::string passivity_text(const Passivity& passivity, Motion motion) {
-  std::string text =
-      fmt::format("passivity: {}, by the {}\n", word_of(passivity.verdict), passivity.by_model ? "model" : "energy");
-  text += paragraph("  ", passivity.reason);
+  std::string text = "passivity, what happened\n" + paragraph("  ", trial_line(passivity.trial));
+  if (passivity.trial) {
+    text += paragraph("  ", passivity.trial->energy.reason) +
+            energy_text(passivity.trial->energy, units_of(motion).damping) + lines_text(passivity.trial->lines);
+  }
+  text += "\npassivity, what the model predicts\n" + paragraph("  ", prediction_line(passivity.prediction));
+  if (!passivity.models.empty()) text += models_table(passivity.models);
   text += "\n";
   for (const ModelPassivity& model : passivity.models) text += model_text(model) + "\n";
-  if (passivity.energy) text += energy_text(*passivity.energy, units_of(motion).damping) + "\n";
-  return text + "  (brackets are 95 % intervals)\n";
+  return text + paragraph("  ", fmt::format("Brackets are 95 % intervals. {}", kNoPromise));
 }
 
 std::string consistent_text(const ConsistentFit& fit, Motion motion) {
@@ -99,9 +144,10 @@ std::string consistent_text(const ConsistentFit& fit, Motion motion) {
                 row("K", fit.stiffness, units.stiffness)});
 }
 
-std::string passivity_line(const Passivity& passivity) {
-  return paragraph("  ", fmt::format("passivity: {}, by the {}: {}", word_of(passivity.verdict),
-                                     passivity.by_model ? "model" : "energy", passivity.reason));
+std::string passivity_lines(const Passivity& passivity) {
+  return paragraph("  ", "passivity, what happened: " + trial_line(passivity.trial)) +
+         paragraph("  ", "passivity, what the model predicts: " + prediction_line(passivity.prediction)) +
+         paragraph("  ", kNoPromise);
 }
 
 Chart energy_chart(const Energy& energy) {

@@ -8,14 +8,14 @@
 
 namespace mbk::report {
 
-/// A verdict in full for the terminal: why, every condition of each model, excess and shortage, energy.
+/// Both statements in full for the terminal: the energy of the trial; what each model says, every condition of it.
 [[nodiscard]] std::string passivity_text(const Passivity& passivity, Motion motion);
 
 /// The nearest model that a passive limb can have, and what it costs.
 [[nodiscard]] std::string consistent_text(const ConsistentFit& fit, Motion motion);
 
-/// The verdict and its reason in a few words.
-[[nodiscard]] std::string passivity_line(const Passivity& passivity);
+/// Both statements, each in a sentence.
+[[nodiscard]] std::string passivity_lines(const Passivity& passivity);
 
 /// Energy over time (Dyck 2013, figs 3.15, 3.17, 4.3, 4.4).
 [[nodiscard]] Chart energy_chart(const Energy& energy);

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {
@@ -14,6 +16,17 @@ constexpr double kMilli = 1000.0;
 constexpr double kPublishedLoad = 20.0;  ///< [N]: in which Dyck (2013, appendix E) gives the crosstalk
 
 using Row = std::vector<std::string>;
+
+/// Standard errors in half a 95 % interval, of lines with a slope for every axis that is fitted together.
+double reach95(const SensorCalibration& c, Index slopes) {
+  if (c.continuous) return numeric::kNormal95;
+  const Index freedom = static_cast<Index>(c.rows) - slopes - 1;
+  return numeric::student_quantile(0.975, static_cast<int>(std::max<Index>(freedom, 1)));
+}
+
+double reach95(const SensorCalibration& c) {
+  return reach95(c, c.crosstalk.size() > 0 ? c.slope.cols() : 1);
+}
 
 /// A row of one cell for each axis.
 template <class Cell>
@@ -38,7 +51,7 @@ std::string slopes(const SensorCalibration& c) {
     Row cells{fmt::format("F{} by", c.axes[static_cast<std::size_t>(i)].name)};
     for (Index j = 0; j < c.slope.cols(); ++j) {
       const bool fitted = i == j || c.crosstalk.size() > 0;
-      cells.push_back(fitted ? with_interval(c.slope(i, j), c.slope_error(i, j)) : "0");
+      cells.push_back(fitted ? with_interval(c.slope(i, j), reach95(c) * c.slope_error(i, j)) : "0");
     }
     cells.emplace_back("N/V");
     rows.push_back(std::move(cells));
@@ -54,9 +67,9 @@ std::string qualities(const SensorCalibration& c) {
   std::vector<Row> rows{
       heading,
       row("zero V0", c, "V",
-          [](const SensorAxis& a, Index) { return with_interval(a.zero_voltage, a.zero_voltage_error); }),
+          [&](const SensorAxis& a, Index) { return with_interval(a.zero_voltage, reach95(c) * a.zero_voltage_error); }),
       row("force at 0 V", c, "N",
-          [](const SensorAxis& a, Index) { return with_interval(a.intercept, a.intercept_error); }),
+          [&](const SensorAxis& a, Index) { return with_interval(a.intercept, reach95(c) * a.intercept_error); }),
       row("R²", c, "", [](const SensorAxis& a, Index) { return fmt::format("{:.6f}", a.r_squared); }),
       row("RMSE", c, "N", [](const SensorAxis& a, Index) { return fmt::format("{:.3g}", a.rmse); }),
       row("largest load", c, "N", [](const SensorAxis& a, Index) { return fmt::format("{:.4g}", a.full_scale); }),
@@ -90,12 +103,12 @@ std::string crosstalk(const SensorCalibration& c) {
       if (i == j) continue;
       const std::string &on = c.axes[static_cast<std::size_t>(i)].name,
                         &felt = c.axes[static_cast<std::size_t>(j)].name;
-      text +=
-          paragraph("  crosstalk    ",
-                    fmt::format("{} feels {} % of a load on {}: {:.3g} N where {} goes from 0 to {:g} N; the slopes "
-                                "above take it out",
-                                felt, with_interval(100.0 * c.crosstalk(j, i), 100.0 * c.crosstalk_error(j, i)), on,
-                                kPublishedLoad * c.crosstalk(j, i), on, kPublishedLoad));
+      text += paragraph(
+          "  crosstalk    ",
+          fmt::format("{} feels {} % of a load on {}: {:.3g} N where {} goes from 0 to {:g} N; the slopes "
+                      "above take it out",
+                      felt, with_interval(100.0 * c.crosstalk(j, i), 100.0 * reach95(c) * c.crosstalk_error(j, i)), on,
+                      kPublishedLoad * c.crosstalk(j, i), on, kPublishedLoad));
     }
   }
   if (text.empty() && c.axes.size() > 1) text = paragraph("  crosstalk    ", "not fitted: each axis separately");
@@ -106,10 +119,10 @@ std::string published(const SensorCalibration& c) {
   std::string text;
   for (const SensorAxis& axis : c.axes) {
     const ForceOnVoltage& line = axis.published;
-    text +=
-        paragraph("  as published ", fmt::format("F{0} = ({1}) V{0} + ({2}), R² = {3:.4f}", axis.name,
-                                                 with_interval(line.slope, line.slope_error),
-                                                 with_interval(line.intercept, line.intercept_error), line.r_squared));
+    text += paragraph("  as published ",
+                      fmt::format("F{0} = ({1}) V{0} + ({2}), R² = {3:.4f}", axis.name,
+                                  with_interval(line.slope, reach95(c, 1) * line.slope_error),
+                                  with_interval(line.intercept, reach95(c, 1) * line.intercept_error), line.r_squared));
   }
   return text;
 }
@@ -135,7 +148,7 @@ std::string sensor_text(const SensorCalibration& c) {
     text += paragraph("  ! ", fmt::format("{}: {}", word_of(warning.code), warning.message));
     if (!warning.remedy.empty()) text += paragraph("    try: ", warning.remedy);
   }
-  return text + "\n(± is the standard error; the slope of V on F, inverted, is the answer, and F on V stands beside)\n";
+  return text + "\n(± is the 95 % interval; the slope of V on F, inverted, is the answer, and F on V stands beside)\n";
 }
 
 }  // namespace mbk::report

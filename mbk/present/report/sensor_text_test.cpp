@@ -31,11 +31,12 @@ SensorCalibration calibration() {
 
 TEST(SensorText, SaysSlopesCrosstalkResolutionAndThePublishedForm) {
   const std::string text = sensor_text(calibration());
-  for (const char* words : {"132 rows, each an independent load", "-8.560 ± 0.030", "0.25 (0.5 %)", "4.883 (0.0418)",
-                            "0.012", "x feels 2.50 ± 0.10 % of a load on y: 0.5 N where y goes from 0 to 20 N",
-                            "Fx = (-8.560 ± 0.030) Vx + (0.540 ± 0.060), R² = 0.9996", "not said; --lever-arm-mm"}) {
+  for (const char* words : {"132 rows, each an independent load", "-8.560 ± 0.059", "0.25 (0.5 %)", "4.883 (0.0418)",
+                            "0.012", "x feels 2.50 ± 0.20 % of a load on y: 0.5 N where y goes from 0 to 20 N",
+                            "Fx = (-8.560 ± 0.059) Vx + (0.54 ± 0.12), R² = 0.9996", "not said; --lever-arm-mm"}) {
     EXPECT_THAT(text, HasSubstr(words));
   }
+  EXPECT_THAT(text, HasSubstr("± is the 95 % interval"));
   EXPECT_THAT(text, Not(HasSubstr("delay")));
 }
 

@@ -13,7 +13,9 @@
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/force_comparison_text.h"
+#include "mbk/present/report/joint_domain_text.h"
 #include "mbk/present/report/layout.h"
+#include "mbk/present/report/passivity_text.h"
 #include "mbk/present/report/picture.h"
 
 namespace mbk::report {
@@ -57,6 +59,8 @@ std::string how_made(const Identification& id) {
   rows.push_back({"mode", how.mode == Mode::reference
                               ? fmt::format("reference, {} of the published procedure", word_of(how.procedure))
                               : "default"});
+  rows.push_back({"method", fmt::format("{}{}", method_name(id.method),
+                                        id.method_rule.empty() ? "" : fmt::format(" ({})", id.method_rule))});
   rows.push_back({"protocol", fmt::format("{} ({})", word_of(how.protocol), how.protocol_rule)});
   rows.push_back({"window", how.window_rule});
   rows.push_back({"filters", filters_text(how)});
@@ -78,9 +82,13 @@ std::string how_made(const Identification& id) {
   if (id.axes == 2) motion += fmt::format(", {:.0f} % of it across the main direction", 100.0 * e.motion_ratio);
   rows.push_back({"motion", motion + fmt::format("; condition of the regressors {:.2g}", e.condition)});
   if (id.handle_mass > 0.0) {
-    rows.push_back({"handle", fmt::format("{:g} kg subtracted from the inertia", id.handle_mass)});
+    const bool recorded = id.handle_mass_from == HandleMassSource::recording;
+    rows.push_back({"handle mass", fmt::format("{:g} kg subtracted from the inertia, {}", id.handle_mass,
+                                               recorded ? "as the recording says" : "as given")});
   } else if (how.mode == Mode::reference && how.procedure == Procedure::chapter5) {
-    rows.push_back({"handle", "no mass subtracted (the published handle of 0.135 kg: --handle-mass 0.135)"});
+    rows.push_back({"handle mass", "none subtracted (the published handle of 0.135 kg: --handle-mass 0.135)"});
+  } else {
+    rows.push_back({"handle mass", "none subtracted"});
   }
   if (id.structure != Structure::full) rows.push_back({"structure", std::string(word_of(id.structure))});
   return table(rows);
@@ -120,11 +128,30 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
 /// Two, or as many as show four digits of what is smaller than ten.
 int decimals_of(const ValidationRow& row) {
   double largest = 0.0;
-  for (const double value : {row.value, row.interval99.first, row.interval99.second}) {
+  const auto [low, high] = row.interval95.value_or(Interval(row.value, row.value));
+  for (const double value : {row.value, low, high}) {
     if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
   }
   if (!(largest > 0.0)) return 2;
   return std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 2, 9);
+}
+
+/// An interval of which an end may be infinite.
+std::string validation_range(const Interval& interval, int decimals) {
+  const auto end = [&](double value) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : value < 0.0 ? "-inf" : "inf";
+  };
+  return fmt::format("[{}, {}]", end(interval.first), end(interval.second));
+}
+
+/// "rows: 20 met, 1 falls short, 3 not shown, 4 informative".
+std::string counted(const std::vector<ValidationRow>& rows) {
+  std::vector<std::string> parts;
+  for (const auto& [verdict, word] : word_table(RowVerdict{})) {
+    const auto count = std::ranges::count(rows, verdict, &ValidationRow::verdict);
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, word));
+  }
+  return fmt::format("rows: {}", fmt::join(parts, ", "));
 }
 
 std::string expected_text(const Interval& expected) {
@@ -139,6 +166,10 @@ std::string source_line(const SourceFile& source) {
 }
 
 }  // namespace
+
+const char* method_name(Method method) {
+  return method == Method::least_squares ? "least squares" : "instrumental variables";
+}
 
 std::string wrapped(std::string_view text, std::size_t width) {
   std::string lines;
@@ -193,12 +224,14 @@ std::string ellipses_text(const Findings& findings) {
 
 std::string result_text(const Identification& id, const std::optional<Findings>& findings) {
   std::string text = inputs_line(id) + how_made(id) + "\n";
-  text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
-  text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n\n";
+  if (id.usable) {
+    text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
+    text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n\n";
+  }
   text += table({{id.fit.held_out ? "fit on held-out data" : "fit on the same data",
                   "VAF " + per_axis(id.fit.vaf, "%", 2), "RMSE " + per_axis(id.fit.rmse, units_of(id.motion).force, 3)},
                  {"fit in sample", "VAF " + per_axis(id.fit.vaf_in_sample, "%", 2)}});
-  if (id.standard_error_of_robot) {
+  if (id.standard_error_of_robot && id.usable) {
     const impedance::Model& of_robot = *id.standard_error_of_robot;
     const Units units = units_of(id.motion);
     text += table({{"of ±, the robot's dynamics",
@@ -211,9 +244,11 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
                     fmt::format("the model differs by {:.2g} % of each matrix's largest element",
                                 100.0 * id.decimation->largest_change)}});
   }
-  if (findings) text += "\n" + ellipses_text(*findings);
+  if (findings && id.usable) text += "\n" + ellipses_text(*findings);
   if (!id.warnings.empty()) text += "\n" + warnings_text(id.warnings);
-  if (!id.usable) text += "\n  NOT USABLE: do not report this model; see the warnings above.\n";
+  if (!id.usable) {
+    text += "\n  NOT USABLE: no model is shown; see the warnings above. --json holds its numbers.\n";
+  }
   return text;
 }
 
@@ -221,23 +256,46 @@ std::string alternative_text(const Identification& id, const Identification& alt
                              const Disagreement& disagreement) {
   const bool by_instruments = id.method == Method::instrumental_variables;
   const Identification& instrumental = by_instruments ? id : alternative;
-  const std::string other = by_instruments ? "least squares" : "instrumental variables";
-  if (!instrumental.instrument->strong()) {
-    return paragraph("  ",
-                     fmt::format("instrumental variables cannot check this: what the reference alone moves is too "
-                                 "little beside the rest (first-stage F {:.2g}, expected above 10)",
-                                 instrumental.instrument->weakest()));
+  const auto model = [&] {
+    return fmt::format("  by {}, VAF {}\n", method_name(alternative.method), per_axis(alternative.fit.vaf, "%", 1)) +
+           model_table(alternative.model, alternative.standard_error, numeric::kNormal95, alternative.motion);
+  };
+  if (!instrumental.usable || !instrumental.instrument->strong()) {
+    std::string why = "they are not usable";
+    for (const Warning& warning : instrumental.warnings) {
+      if (warning.code == WarningCode::weak_instruments || warning.code == WarningCode::invalid_instruments) {
+        why = warning.message;
+      }
+    }
+    const std::string said =
+        paragraph("  ", "instrumental variables do not hold here, and cannot check least squares: " + why);
+    return by_instruments && alternative.usable
+               ? said + model() + (alternative.warnings.empty() ? "" : "\n" + warnings_text(alternative.warnings))
+               : said;
   }
-  const std::string largest = fmt::format("largest difference {} = {:.3g} ± {:.2g}", disagreement.parameter,
-                                          disagreement.difference, numeric::kNormal95 * disagreement.standard_error);
-  if (!disagreement.significant) return paragraph("  ", fmt::format("{} agree ({})", other, largest));
+  const Units units = units_of(id.motion);
+  const char part = disagreement.parameter.empty() ? ' ' : disagreement.parameter.front();
+  const char* const unit = part == 'm' ? units.inertia : (part == 'b' ? units.damping : units.stiffness);
+  const std::string largest =
+      fmt::format("{}: {:.3g} {} by least squares, {:.3g} ± {:.2g} {} ({:.2g} %) {} by instrumental variables",
+                  disagreement.parameter, disagreement.least_squares, unit, std::abs(disagreement.difference),
+                  numeric::kNormal95 * disagreement.standard_error, unit,
+                  100.0 * std::abs(disagreement.difference / disagreement.least_squares),
+                  disagreement.difference > 0.0 ? "more" : "less");
+  if (!disagreement.significant) {
+    return paragraph("  ", fmt::format("no parameter differs significantly by more than the standard error of least "
+                                       "squares; largest difference, {}",
+                                       largest));
+  }
   return paragraph("  ",
-                   fmt::format("least squares and instrumental variables DIFFER by more than chance ({}). The limb or "
-                               "noise acts back on the motion: least squares takes that for mechanics and is drawn "
-                               "towards minus the robot. What follows the known reference alone is not",
+                   fmt::format("least squares and instrumental variables DIFFER significantly (99 %); largest "
+                               "difference, {}. The limb or noise acts back on the motion: least squares takes that "
+                               "for mechanics and is biased towards the negative robot impedance. What follows the "
+                               "known reference alone is not",
                                largest)) +
-         fmt::format("  by {}, VAF {}\n", other, per_axis(alternative.fit.vaf, "%", 1)) +
-         model_table(alternative.model, alternative.standard_error, numeric::kNormal95, alternative.motion);
+         (alternative.usable
+              ? model()
+              : fmt::format("  {}: not usable, so that no model is shown\n", method_name(alternative.method)));
 }
 
 std::string by_sensor_text(const Identification& computed, const Identification& sensed,
@@ -271,10 +329,35 @@ std::string bootstrap_text(const BootstrapFindings& bootstrap) {
                                    bootstrap.replicates, bootstrap.block_s, bootstrap.blocks, bootstrap.seed);
 }
 
-std::string summary_text(const Summary& summary) {
-  return fmt::format("mean of {} trials\n", summary.trials) +
-         model_table(summary.mean, summary.between_trial_standard_error, 1.0, summary.motion) +
-         "  (± is the standard error between trials)\n";
+std::string measurement_text(const Measurement& measured) {
+  const Identification& id = measured.identification;
+  std::string text = result_text(id, measured.findings);
+  if (measured.alternative && measured.disagreement) {
+    text += "\n" + alternative_text(id, *measured.alternative, *measured.disagreement);
+  }
+  if (id.usable) {
+    if (measured.force_comparison && measured.by_sensor) {
+      text += "\n" + by_sensor_text(id, *measured.by_sensor, *measured.force_comparison);
+    }
+    if (measured.joints) text += "\n" + joint_domain_text(*measured.joints);
+    if (measured.bootstrap) text += "\n" + bootstrap_text(*measured.bootstrap);
+  }
+  if (measured.passivity) text += "\n" + passivity_lines(*measured.passivity);
+  return text;
+}
+
+std::string summary_text(const SeveralTrials& together) {
+  if (!together.summary) return paragraph("no mean: ", together.no_summary);
+  const Summary& summary = *together.summary;
+  const std::size_t all = static_cast<std::size_t>(summary.trials) + summary.omitted.size();
+  std::string text =
+      fmt::format("mean of {}{} trials, by {}\n", summary.trials,
+                  summary.omitted.empty() ? "" : fmt::format(" of {}", all), method_name(summary.method)) +
+      model_table(summary.mean, summary.half_width95, 1.0, summary.motion) +
+      "  (± is the 95 % interval of the mean, by Student's t from how the trials differ)\n";
+  for (const OmittedTrial& one : summary.omitted)
+    text += paragraph("  omitted  ", fmt::format("{}: {}", one.file, one.why));
+  return text;
 }
 
 std::string info_text(const Recording& recording, const Inspection& inspection) {
@@ -441,26 +524,25 @@ std::string validation_text(const ValidationTable& validation) {
   const auto any = [&](auto member) {
     return std::ranges::any_of(validation.rows, [&](const ValidationRow& row) { return (row.*member).has_value(); });
   };
-  const bool spread = any(&ValidationRow::spread), coverage = any(&ValidationRow::coverage);
+  const bool spread = any(&ValidationRow::spread);
   std::vector<std::vector<std::string>> rows(1);
-  rows[0] = {"", validation.unit, "99 % interval"};
+  rows[0] = {"", validation.unit, "95 % interval"};
   if (spread) rows[0].emplace_back("spread of runs");
-  if (coverage) rows[0].emplace_back("95 % intervals hold");
-  rows[0].insert(rows[0].end(), {"expected: overlaps", ""});
+  rows[0].insert(rows[0].end(), {"expected", ""});
   for (const ValidationRow& row : validation.rows) {
     const int decimals = decimals_of(row);
     std::vector<std::string> cells = {row.what, fmt::format("{:.{}f}", row.value, decimals),
-                                      range(row.interval99, decimals)};
+                                      row.interval95 ? validation_range(*row.interval95, decimals) : ""};
     if (!std::isfinite(row.value)) cells[1] = "undefined";
     if (row.unit && !row.unit->empty()) cells[1] += " " + *row.unit;
     if (spread) cells.push_back(row.spread ? fmt::format("{:.{}f}", *row.spread, decimals) : "");
-    if (coverage) cells.push_back(row.coverage ? fmt::format("{:.1f} %", 100.0 * *row.coverage) : "");
     cells.push_back(row.expected ? expected_text(*row.expected) : "");
-    cells.emplace_back(!row.judged() ? "reported" : row.met() ? "ok" : "FALLS SHORT");
+    cells.emplace_back(row.verdict() == RowVerdict::falls_short ? "FALLS SHORT" : word_of(row.verdict()));
     rows.push_back(std::move(cells));
   }
   std::string text = paragraph(validation.study + ": ", validation.question) +
-                     fmt::format("{} runs, seed {}\n", validation.runs, validation.seed) + table(rows);
+                     fmt::format("{} runs, seed {}\n", validation.runs, validation.seed) + table(rows) +
+                     counted(validation.rows) + "\n";
   for (const std::string& note : validation.notes) text += paragraph("  ", note);
   for (const Chart& chart : validation.charts) text += "\n" + chart_text(chart);
   return text;

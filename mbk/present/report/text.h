@@ -14,6 +14,7 @@
 #include "mbk/model/trial/force_comparison.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/inspection.h"
+#include "mbk/model/trial/measurement.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/summary.h"
 #include "mbk/model/trial/validation_table.h"
@@ -26,11 +27,15 @@ inline constexpr std::size_t kLineColumns = 100;
 /// The words of `text` on lines of at most `width` columns, as far as words are short enough.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width);
 
+/// "least squares", "instrumental variables".
+[[nodiscard]] const char* method_name(Method method);
+
 /// A result for the terminal: what was measured and how, the model with 95 % intervals and units, the fit, the
-/// ellipses with a picture where there are findings, and every warning with what to try.
+/// ellipses with a picture where there are findings, and every warning with what to try. Of a model that is not usable
+/// no number is shown.
 [[nodiscard]] std::string result_text(const Identification& identification, const std::optional<Findings>& findings);
 
-/// The other method beside the first: that both agree, or its model and why they differ.
+/// The other method beside the first: how large their difference is, and where it matters the other model and why.
 [[nodiscard]] std::string alternative_text(const Identification& identification, const Identification& alternative,
                                            const Disagreement& disagreement);
 
@@ -41,8 +46,11 @@ inline constexpr std::size_t kLineColumns = 100;
 /// Every quantity with its interval by the bootstrap and by the delta method.
 [[nodiscard]] std::string bootstrap_text(const BootstrapFindings& bootstrap);
 
-/// Mean and between-trial standard error of several results.
-[[nodiscard]] std::string summary_text(const Summary& summary);
+/// All that a measurement found, as `measure` and `run` print it.
+[[nodiscard]] std::string measurement_text(const Measurement& measured);
+
+/// The mean of several results with its 95 % interval, and what is no part of it; or why there is none.
+[[nodiscard]] std::string summary_text(const SeveralTrials& together);
 
 /// The ellipse table and picture alone.
 [[nodiscard]] std::string ellipses_text(const Findings& findings);

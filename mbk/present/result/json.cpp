@@ -19,7 +19,8 @@
 namespace mbk::result {
 namespace {
 
-constexpr const char* kResultSchema = "mbk.result/1";
+constexpr const char* kResultSchema = "mbk.result/2";
+constexpr const char* kFirstResultSchema = "mbk.result/1";  ///< still read
 constexpr const char* kResultsSchema = "mbk.results/1";
 
 Json model_json(const impedance::Model& model) {
@@ -98,14 +99,23 @@ Json instrument_json(const InstrumentCheck& check) {
           {"coherent_residual_fraction", list(check.coherent_residual)}};
 }
 
+Json unmodelled_json(const UnmodelledResponse& response) {
+  Json json = {{"coherent_share", list(response.coherent)}};
+  if (response.induced.size() > 0) json["induced_share"] = list(response.induced);
+  return json;
+}
+
 /// A second method beside the first, without what both have in common.
 Json alternative_json(const Identification& id) {
   Json json = {{"method", word_of(id.method)},
                {"model", model_json(id.model)},
                {"standard_error", model_json(id.standard_error)},
                {"fit", fit_json(id.fit)},
+               {"covariance", {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}}},
+               {"warnings", warnings_json(id.warnings)},
                {"usable", id.usable}};
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
+  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
   return json;
 }
 
@@ -145,6 +155,7 @@ Json consistent_json(const ConsistentFit& fit) {
 
 Json disagreement_json(const Disagreement& disagreement) {
   return {{"parameter", disagreement.parameter},
+          {"least_squares", number(disagreement.least_squares)},
           {"iv_less_ls", number(disagreement.difference)},
           {"standard_error", number(disagreement.standard_error)},
           {"significant", disagreement.significant}};
@@ -173,6 +184,7 @@ Json result_json(const Measurement& measured) {
     json["protocol"] = word_of(id.preparations.front().protocol);
   }
   json["method"] = word_of(id.method);
+  if (!id.method_rule.empty()) json["method_rule"] = id.method_rule;
   json["axes"] = id.axes;
   json["structure"] = word_of(id.structure);
   if (id.motion != Motion::unknown) {
@@ -193,6 +205,7 @@ Json result_json(const Measurement& measured) {
   }
   if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
+  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
   json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
@@ -208,7 +221,8 @@ Json result_json(const Measurement& measured) {
                         {"samples", id.samples},
                         {"duration_s", id.excitation.duration},
                         {"hac_lag_s", id.hac_lag_s},
-                        {"handle_mass_kg", id.handle_mass}};
+                        {"handle_mass_kg", id.handle_mass},
+                        {"handle_mass_from", word_of(id.handle_mass_from)}};
   json["excitation"] = {{"rank", id.excitation.rank},
                         {"condition", number(id.excitation.condition)},
                         {"motion_ratio", number(id.excitation.motion_ratio)},
@@ -299,7 +313,7 @@ std::vector<Warning> warnings_from(const Json& json) {
     const std::string code = one.value("code", "");
     const auto known = value_of<WarningCode>(code);
     if (!known) throw Malformed{fmt::format("there is no warning '{}'", code)};
-    warnings.push_back({*known, one.value("message", ""), one.value("try", "")});
+    warnings.push_back({*known, one.value("message", ""), one.value("try", ""), one.value("was", "")});
   }
   return warnings;
 }
@@ -314,16 +328,11 @@ Motion motion_from(const Json& json) {
   return Motion::unknown;
 }
 
-Identification identification_from(const Json& json) {
-  if (!has_schema(json, kResultSchema)) {
-    throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
-  }
+/// What both methods' results have: model, covariance, fit, method, instruments, warnings, usable.
+Identification estimate_from(const Json& json, Index n) {
   Identification id;
-  const auto model = json.find("model");
-  const bool one_axis = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array() &&
-                        (*model)["M"].size() == 1;
-  id.axes = one_axis ? 1 : 2;
-  const Index n = id.axes, count = 3 * n * n + n;
+  id.axes = static_cast<int>(n);
+  const Index count = 3 * n * n + n;
   id.model = model_from(json, "model", n);
   id.covariance = Matrix::Constant(count, count, kNaN);
   const Matrix none = Matrix::Constant(n, n, kNaN);
@@ -337,7 +346,34 @@ Identification identification_from(const Json& json) {
     id.parameters = covariance->value("parameters", std::vector<std::string>{});
   }
   id.method = value_of<Method>(json.value("method", "")).value_or(Method::least_squares);
+  id.structure = value_of<Structure>(json.value("structure", "")).value_or(Structure::full);
   id.usable = json.value("usable", true);
+  const Vector unknown = Vector::Constant(n, kNaN);
+  id.fit = json.contains("fit") ? fit_from(json["fit"], n) : Fit{unknown, unknown, unknown, false};
+  if (json.contains("warnings")) id.warnings = warnings_from(json["warnings"]);
+  if (const auto found = json.find("instrument"); found != json.end() && found->is_object()) {
+    InstrumentCheck check;
+    check.from = value_of<ReferenceQuantity>(found->value("reference", "")).value_or(ReferenceQuantity::unknown);
+    check.strength = list_from(*found, "first_stage_F", 3 * n);
+    const char* const former = "answered_share";  // so until the version before
+    check.coherent_residual = list_from(*found, found->contains(former) ? former : "coherent_residual_fraction", n);
+    id.instrument = std::move(check);
+  }
+  return id;
+}
+
+Index axes_of(const Json& json) {
+  const auto model = json.find("model");
+  const bool one_axis = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array() &&
+                        (*model)["M"].size() == 1;
+  return one_axis ? 1 : 2;
+}
+
+Identification identification_from(const Json& json) {
+  if (!has_schema(json, kResultSchema) && !has_schema(json, kFirstResultSchema)) {
+    throw Malformed{fmt::format("this is not a result of mbk (schema '{}' was expected)", kResultSchema)};
+  }
+  Identification id = estimate_from(json, axes_of(json));
   if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
     for (const Json& input : *inputs) {
       id.sources.push_back({input.value("file", ""), input.value("format", ""), input.value("sha256", "")});
@@ -346,9 +382,6 @@ Identification identification_from(const Json& json) {
     }
   }
   id.motion = motion_from(json);
-  const Vector unknown = Vector::Constant(n, kNaN);
-  id.fit = json.contains("fit") ? fit_from(json["fit"], n) : Fit{unknown, unknown, unknown, false};
-  if (json.contains("warnings")) id.warnings = warnings_from(json["warnings"]);
   if (const auto notes = json.find("notes"); notes != json.end()) id.notes = notes->get<std::vector<std::string>>();
   return id;
 }
@@ -359,14 +392,27 @@ std::string to_json(const Measurement& measured) {
   return dumped(result_json(measured));
 }
 
-std::string to_json(const std::vector<Measurement>& results, const std::optional<Summary>& summary) {
+std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together) {
   Json json = header(kResultsSchema);
   json["results"] = Json::array();
   for (const Measurement& measured : results) json["results"].push_back(result_json(measured));
-  if (summary) {
+  if (const auto& summary = together.summary) {
+    Json omitted = Json::array();
+    for (const OmittedTrial& one : summary->omitted) omitted.push_back({{"file", one.file}, {"why", one.why}});
     json["summary"] = {{"trials", summary->trials},
+                       {"omitted", std::move(omitted)},
+                       {"method", word_of(summary->method)},
                        {"model", model_json(summary->mean)},
-                       {"between_trial_standard_error", model_json(summary->between_trial_standard_error)}};
+                       {"between_trial_standard_error", model_json(summary->between_trial_standard_error)},
+                       {"half_width95", model_json(summary->half_width95)}};
+  } else {
+    json["no_summary"] = together.no_summary;
+  }
+  if (!together.failed.empty()) {
+    json["failed"] = Json::array();
+    for (const Error& error : together.failed) {
+      json["failed"].push_back({{"file", error.where}, {"message", error.message}, {"try", error.remedy}});
+    }
   }
   return dumped(json);
 }
@@ -420,14 +466,16 @@ std::string to_json(const ValidationTable& table) {
   for (const ValidationRow& row : table.rows) {
     Json one = {{"what", row.what},
                 {"value", number(row.value)},
-                {"interval99", interval(row.interval99)},
+                {"interval95", row.interval95 ? interval(*row.interval95) : Json(nullptr)},
                 {"expected", row.expected ? interval(*row.expected) : Json(nullptr)},
+                {"verdict", word_of(row.verdict())},
                 {"met", row.judged() ? Json(row.met()) : Json(nullptr)}};
     if (row.unit) one["unit"] = *row.unit;
     if (row.spread) one["spread"] = number(*row.spread);
-    if (row.coverage) one["coverage"] = number(*row.coverage);
+    if (row.trials) one["trials"] = *row.trials;
     json["rows"].push_back(std::move(one));
   }
+  json["verdict"] = word_of(table.verdict());
   json["met"] = table.met();
   if (!table.notes.empty()) json["notes"] = table.notes;
   for (const Chart& chart : table.charts) json["charts"].push_back(chart_json(chart));
@@ -477,32 +525,23 @@ std::string one_or_list_json(const char* schema_of_list, const std::vector<std::
   return one_or_list(schema_of_list, objects);
 }
 
-std::optional<PassivityBand> passivity_band_from_json(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
-  const Json::json_pointer alone("/passivity/band_hz"), first("/results/0/passivity/band_hz");
-  for (const auto& place : {alone, first}) {
-    if (!json.contains(place)) continue;
-    const Json& band = json[place];
-    if (!band.is_array() || band.size() != 2 || !band[0].is_number() || !band[1].is_number()) continue;
-    return PassivityBand{Hertz(band[0].get<double>()), Hertz(band[1].get<double>()), "as stored with the result"};
-  }
-  return std::nullopt;
-}
+namespace {
 
-Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
+/// Every result of a document by itself, read by `read`.
+template <class Read>
+auto each_result(std::string_view text, Read read) -> Result<std::vector<decltype(read(Json()))>> {
   const char* const remedy = "give a file that 'mbk measure --json' or 'mbk identify --json' wrote";
   try {
     const Json json = Json::parse(text);
-    std::vector<Identification> all;
+    std::vector<decltype(read(Json()))> all;
     if (has_schema(json, kResultsSchema)) {
       const auto results = json.find("results");
       if (results == json.end() || !results->is_array() || results->empty()) {
         throw Malformed{"'results' holds no result"};
       }
-      for (const Json& one : *results) all.push_back(identification_from(one));
+      for (const Json& one : *results) all.push_back(read(one));
     } else {
-      all.push_back(identification_from(json));
+      all.push_back(read(json));
     }
     return all;
   } catch (const Malformed& malformed) {
@@ -512,6 +551,26 @@ Result<std::vector<Identification>> identifications_from_json(std::string_view t
   } catch (const nlohmann::json::exception& error) {
     return bad_data(fmt::format("not a result of mbk ({})", error.what()), remedy);
   }
+}
+
+}  // namespace
+
+Result<std::vector<Identification>> identifications_from_json(std::string_view text) {
+  return each_result(text, identification_from);
+}
+
+Result<std::vector<StoredResult>> results_from_json(std::string_view text) {
+  return each_result(text, [](const Json& json) {
+    StoredResult result{identification_from(json), std::nullopt, {}};
+    const auto others = json.find("alternatives");
+    if (others != json.end() && others->is_array() && !others->empty()) {
+      result.alternative = estimate_from(others->front(), axes_of(json));
+    }
+    if (const auto found = json.find("passivity"); found != json.end() && found->is_object()) {
+      result.passivity = stored_passivity_from(*found);
+    }
+    return result;
+  });
 }
 
 }  // namespace mbk::result

@@ -19,18 +19,18 @@
 
 namespace mbk::result {
 
-/// Schema "mbk.result/1". SI units; numbers carry every digit; absent = not computed, null = undefined.
+/// Schema "mbk.result/2". SI units; numbers carry every digit; absent = not computed, null = undefined.
 [[nodiscard]] std::string to_json(const Measurement& measured);
 
 /// Schema "mbk.results/1": several results and, where there is one, their summary.
-[[nodiscard]] std::string to_json(const std::vector<Measurement>& results, const std::optional<Summary>& summary);
+[[nodiscard]] std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together);
 
 /// Schema "mbk.ellipse/1": the ellipses and antisymmetry of a result; "mbk.ellipses/1" with `results` for several.
 [[nodiscard]] std::string to_json(const std::vector<Identification>& identifications,
                                   const std::vector<Findings>& findings);
 
-/// Schema "mbk.passivity/1": what decides whether a limb is passive, in full: `passivity` as in a result, and for each
-/// recording the energy over time and part by part.
+/// Schema "mbk.passivity/2": what happened in a trial and what the model predicts, in full: `passivity` as in a result,
+/// and for each recording the energy over time and part by part.
 [[nodiscard]] std::string passivity_to_json(const std::vector<SourceFile>& sources, const Passivity& passivity,
                                             const std::vector<Energy>& energies);
 
@@ -40,8 +40,7 @@ namespace mbk::result {
 /// Schema "mbk.contents/1": what a file holds where nothing in it is recognised as a recording, and why.
 [[nodiscard]] std::string to_json(const FileContents& contents, const Error& unrecognised);
 
-/// Schema "mbk.validation/1": a study against known truth. A row that is only reported has null for `expected` and
-/// `met`.
+/// Schema "mbk.validation/1": a study against known truth. A row that is informative has null for `expected` and `met`.
 [[nodiscard]] std::string to_json(const ValidationTable& table);
 
 /// Schema "mbk.workspace/1": where the hand can be, and the robot at one place where one is given. Metres, except that
@@ -51,13 +50,29 @@ namespace mbk::result {
 /// One document as it is, or several as `results` of a schema of their own.
 [[nodiscard]] std::string one_or_list_json(const char* schema_of_list, const std::vector<std::string>& documents);
 
-/// The band in which a stored result's model was judged, from its first result; absent where it does not say.
-[[nodiscard]] std::optional<PassivityBand> passivity_band_from_json(std::string_view text);
-
-/// Reads back what `to_json` wrote, schema mbk.result/1 or mbk.results/1: model, covariance (from the standard errors
-/// where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and inputs; not the
-/// preparation: written again, it says nothing of mode and protocol.
+/// Reads back what `to_json` wrote, schema mbk.result/2, mbk.result/1 or mbk.results/1: model, covariance (from the
+/// standard errors where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and
+/// inputs; not the preparation: written again, it says nothing of mode and protocol.
 /// @fails not JSON (the byte is named); another schema; no result; a matrix of the wrong shape (its name is said).
 [[nodiscard]] Result<std::vector<Identification>> identifications_from_json(std::string_view text);
+
+/// What a stored result says of passivity beside its models.
+struct StoredPassivity {
+  std::optional<PassivityBand> band;    ///< in which the data show how the limb answers
+  std::optional<PassivityBand> judged;  ///< in which its models were judged
+  std::optional<EnergyAccount> energy;  ///< of the trial; its verdict is made of the interval anew
+  std::vector<EnergyLine> lines;
+  std::optional<Method> predicts;  ///< whose model makes the prediction
+};
+
+/// A result with all that a statement on its passivity needs.
+struct StoredResult {
+  Identification identification;
+  std::optional<Identification> alternative;  ///< covariance from the standard errors in schema mbk.result/1
+  StoredPassivity passivity;
+};
+
+/// @fails as identifications_from_json
+[[nodiscard]] Result<std::vector<StoredResult>> results_from_json(std::string_view text);
 
 }  // namespace mbk::result

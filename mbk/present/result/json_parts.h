@@ -84,7 +84,8 @@ inline Json warnings_json(const std::vector<Warning>& warnings) {
   Json array = Json::array();
   for (const Warning& warning : warnings) {
     Json one = {{"code", word_of(warning.code)}, {"message", warning.message}, {"try", warning.remedy}};
-    if (const auto was = former_word_of(warning.code); !was.empty()) one["was"] = was;
+    const std::string_view was = warning.was.empty() ? former_word_of(warning.code) : warning.was;
+    if (!was.empty()) one["was"] = was;
     array.push_back(std::move(one));
   }
   return array;

@@ -98,7 +98,7 @@ TEST_P(BothAxes, ModelCovarianceFitWarningsAndInputsComeBackToTheLastBit) {
 TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   const std::size_t n = static_cast<std::size_t>(GetParam());
   const Json json = schemas::parsed(to_json(measured(GetParam())));
-  EXPECT_EQ(json.at("schema"), "mbk.result/1");
+  EXPECT_EQ(json.at("schema"), "mbk.result/2");
   EXPECT_THAT(json.at("software").get<std::string>(), testing::StartsWith("mbk "));
   EXPECT_EQ(json.at("inputs").at(0).at("file"), "a.mat");
   EXPECT_EQ(json.at("inputs").at(0).at("sha256"), "abc");
@@ -181,7 +181,7 @@ TEST(ToJson, BytesThatAreNoTextDoNotStopIt) {
 
 TEST(ToJson, SeveralResultsComeBackInTheirOrder) {
   const std::vector<Measurement> both = {measured(1), measured(2)};
-  const auto back = identifications_from_json(to_json(both, std::nullopt));
+  const auto back = identifications_from_json(to_json(both, SeveralTrials{}));
   ASSERT_TRUE(back) << back.error().line();
   ASSERT_EQ(back->size(), 2u);
   EXPECT_EQ(back->at(0).axes, 1);
@@ -191,13 +191,20 @@ TEST(ToJson, SeveralResultsComeBackInTheirOrder) {
 TEST(ToJson, ASummaryHasItsMeanAndError) {
   Summary summary;
   summary.trials = 2;
-  summary.mean = summary.between_trial_standard_error = measured(2).identification.model;
-  const Json json = schemas::parsed(to_json(std::vector<Measurement>{measured(2), measured(2)}, summary));
+  summary.omitted = {{"c.mat", "not usable"}};
+  summary.mean = summary.between_trial_standard_error = summary.half_width95 = measured(2).identification.model;
+  const SeveralTrials together{summary, "", {{ErrorKind::data, "no such file", "check the name", "d.mat"}}};
+  const Json json = schemas::parsed(to_json(std::vector<Measurement>{measured(2), measured(2)}, together));
   EXPECT_EQ(json.at("schema"), "mbk.results/1");
   EXPECT_EQ(json.at("results").size(), 2u);
   EXPECT_EQ(json.at("summary").at("trials"), 2);
   EXPECT_EQ(json.at("summary").at("model").at("K").size(), 2u);
   EXPECT_TRUE(json.at("summary").contains("between_trial_standard_error"));
+  EXPECT_EQ(json.at("summary").at("omitted").at(0).at("file"), "c.mat");
+  EXPECT_EQ(json.at("failed").at(0).at("file"), "d.mat");
+  const Json none = schemas::parsed(to_json(std::vector<Measurement>{measured(2), measured(2)}, {{}, "why", {}}));
+  EXPECT_FALSE(none.contains("summary"));
+  EXPECT_EQ(none.at("no_summary"), "why");
 }
 
 TEST(FromJson, WithoutACovarianceTakesTheStandardErrors) {
@@ -320,7 +327,7 @@ TEST(FromJson, RefusesEveryTruncation) {
 }
 
 TEST(FromJson, NeverThrowsOnMutatedDocuments) {
-  const std::string good = to_json(std::vector<Measurement>{measured(1), measured(2)}, std::nullopt);
+  const std::string good = to_json(std::vector<Measurement>{measured(1), measured(2)}, SeveralTrials{});
   const std::vector<std::string> tokens = {"null", "[]", "{}", "1e999", "\"\"",    "-",
                                            "]",    "}",  ",",  "\"",    "\\u0000", "true"};
   std::mt19937 random(11);
@@ -363,18 +370,25 @@ TEST(ToJson, AValidationKeepsItsRowsAndAddsWhatTheyHave) {
   ValidationTable table;
   table.study = "springs";
   table.unit = "N/m";
-  table.rows.push_back({"k_xx", 431.5, {429.0, 434.0}, std::pair{420.0, 440.0}});
-  table.rows.push_back({"m_xx", 1.3, {1.2, 1.4}, std::nullopt, "kg", 0.01, 0.95});
+  table.rows.push_back({"k_xx", 431.5, std::pair{429.0, 434.0}, std::pair{420.0, 440.0}});
+  table.rows.push_back({"m_xx", 1.3, {}, {}, "kg", 0.01});
+  table.rows.push_back({"held", 90.0, std::pair{55.5, 99.7}, std::pair{92.0, 98.0}, "%", {}, 10});
   Json json = schemas::parsed(to_json(table));
   const Json plain = {
-      {"what", "k_xx"}, {"value", 431.5}, {"interval99", {429.0, 434.0}}, {"expected", {420.0, 440.0}}, {"met", true}};
+      {"what", "k_xx"},   {"value", 431.5}, {"interval95", {429.0, 434.0}}, {"expected", {420.0, 440.0}},
+      {"verdict", "met"}, {"met", true}};
   EXPECT_EQ(json.at("rows").at(0), plain);
   const Json& reported = json.at("rows").at(1);
-  EXPECT_TRUE(reported.at("expected").is_null() && reported.at("met").is_null());
+  EXPECT_TRUE(reported.at("interval95").is_null() && reported.at("expected").is_null() && reported.at("met").is_null());
+  EXPECT_EQ(reported.at("verdict"), "informative");
   EXPECT_EQ(reported.at("unit"), "kg");
   EXPECT_EQ(reported.at("spread"), 0.01);
-  EXPECT_EQ(reported.at("coverage"), 0.95);
-  EXPECT_EQ(json.at("met"), true);
+  const Json& too_few = json.at("rows").at(2);
+  EXPECT_EQ(too_few.at("verdict"), "not shown");
+  EXPECT_EQ(too_few.at("trials"), 10);
+  EXPECT_EQ(too_few.at("met"), false);
+  EXPECT_EQ(json.at("verdict"), "not shown");
+  EXPECT_EQ(json.at("met"), false);
   EXPECT_FALSE(json.contains("notes") || json.contains("charts"));
 }
 

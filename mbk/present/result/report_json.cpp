@@ -93,8 +93,8 @@ std::string to_json(const Report& report) {
   json["trials"] = std::move(trials);
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.pop_back();  // the closing brace: the result follows as it stands in a file of its own
-  const bool several = measured.size() > 1 || report.summary.has_value();
-  return text + ",\"result\":" + (several ? to_json(measured, report.summary) : to_json(measured.front())) + "}\n";
+  return text + ",\"result\":" + (report.together ? to_json(measured, *report.together) : to_json(measured.front())) +
+         "}\n";
 }
 
 }  // namespace mbk::result

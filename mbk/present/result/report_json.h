@@ -27,10 +27,10 @@ struct ReportedResult {
 
 /// Everything in a report.
 struct Report {
-  std::vector<ReportedResult> results;  ///< at least one
-  std::optional<Summary> summary;
-  std::string command;  ///< as typed
-  std::string note;     ///< of whoever made the report: a date, a name; may be empty
+  std::vector<ReportedResult> results;    ///< at least one
+  std::optional<SeveralTrials> together;  ///< absent where one result was asked for
+  std::string command;                    ///< as typed
+  std::string note;                       ///< of whoever made the report: a date, a name; may be empty
 };
 
 /// Schema "mbk.report/1": `result` as `to_json` writes it, and for each result metadata, posture and diagnostics, which

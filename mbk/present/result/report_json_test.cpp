@@ -51,10 +51,14 @@ TEST(ReportJson, HoldsTheResultJustAsItIsWrittenAlone) {
 }
 
 TEST(ReportJson, HoldsSeveralResultsJustAsTheyAreWrittenAlone) {
-  Summary summary{2, Motion::rotation, measured().identification.model, measured().identification.standard_error};
-  const Report report{{{measured(), {}, std::nullopt}, {measured(), {}, std::nullopt}}, summary, "", "by A. B."};
+  Summary summary;
+  summary.trials = 2;
+  summary.mean = measured().identification.model;
+  summary.between_trial_standard_error = summary.half_width95 = measured().identification.standard_error;
+  const SeveralTrials together{summary, "", {}};
+  const Report report{{{measured(), {}, std::nullopt}, {measured(), {}, std::nullopt}}, together, "", "by A. B."};
   const Json json = schemas::parsed(to_json(report));
-  EXPECT_EQ(json["result"], schemas::parsed(to_json(std::vector<Measurement>{measured(), measured()}, summary)));
+  EXPECT_EQ(json["result"], schemas::parsed(to_json(std::vector<Measurement>{measured(), measured()}, together)));
   EXPECT_EQ(json["trials"].size(), 2U);
   EXPECT_EQ(json["note"], "by A. B.");
 }

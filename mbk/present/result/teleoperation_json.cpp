@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "mbk/model/trial/identification.h"
 #include "mbk/present/result/json_reading.h"
@@ -117,13 +118,40 @@ Json excess_json(const ExcessSweep& sweep) {
   return json;
 }
 
-/// A list with two numbers at that place, or none.
-std::optional<std::pair<double, double>> pair_at(const Json& json, const char* place) {
+/// The lowest of the numbers of a list at that place; absent where one is none.
+std::optional<double> lowest_at(const Json& json, const char* place) {
   const Json::json_pointer at(place);
-  if (!json.contains(at)) return std::nullopt;
-  const Json& found = json[at];
-  if (!found.is_array() || found.size() != 2 || !found[0].is_number() || !found[1].is_number()) return std::nullopt;
-  return std::pair(found[0].get<double>(), found[1].get<double>());
+  if (!json.contains(at) || !json[at].is_array() || json[at].empty()) return std::nullopt;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Json& one : json[at]) {
+    if (!one.is_number()) return std::nullopt;
+    lowest = std::min(lowest, one.get<double>());
+  }
+  return lowest;
+}
+
+/// Why the model of a document cannot stand for an operator; empty where it can.
+std::string unfit(const Json& json) {
+  const auto is = [&](const char* place, const Json& value) {
+    const Json::json_pointer at(place);
+    return json.contains(at) && json[at] == value;
+  };
+  if (is("/usable", false) || is("/passivity/prediction/verdict", "none") || is("/passivity/models/0/usable", false)) {
+    return "the result is not usable";
+  }
+  const auto warnings = json.find("warnings");
+  const bool warned =
+      warnings != json.end() && warnings->is_array() && std::ranges::any_of(*warnings, [](const Json& one) {
+        const auto word = one.is_object() ? one.value("code", Json()) : Json();
+        if (!word.is_string()) return false;
+        const auto code = value_of<WarningCode>(word.get<std::string>());
+        return code == WarningCode::fit_poor || code == WarningCode::held_out_fit_poor;
+      });
+  if (warned || is("/passivity/models/0/fits", false) || is("/passivity/decided_by", "energy")) {
+    return "its model explains too little of the force";
+  }
+  if (is("/passivity/band_hz", nullptr)) return "at no two frequencies does it show how the arm answers in all axes";
+  return "";
 }
 
 /// Whether a result or what decides its passivity has a unit of rotation.
@@ -190,34 +218,36 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
     }
     json = Json((*results)[0]);
   }
-  if (!has_schema(json, "mbk.result/1") && !has_schema(json, "mbk.passivity/1")) {
-    return bad_data("no result of mbk: its schema is neither mbk.result/1 nor mbk.passivity/1", remedy);
+  const auto schemas = {"mbk.result/2", "mbk.passivity/2", "mbk.result/1", "mbk.passivity/1"};
+  if (std::ranges::none_of(schemas, [&](const char* one) { return has_schema(json, one); })) {
+    return bad_data("no result of mbk: its schema is neither mbk.result/2 nor mbk.passivity/2", remedy);
   }
   if (is_of_rotation(json)) {
     return bad_data("it is of a joint that turns: its excess of passivity is in N·m·s/rad, and a design is in N·s/m",
                     "give the result of an arm that was moved along a line or in a plane");
   }
-  if (const auto excess = pair_at(json, "/passivity/eop/interval95")) {
-    return OperatorShortage{
-        0.0 - excess->first,
-        fmt::format("minus the lower end of the 95 % interval of the excess of passivity, {:.4g} to "
-                    "{:.4g} N·s/m",
-                    excess->first, excess->second),
-        excess};
+  if (const std::string why = unfit(json); !why.empty()) {
+    return tl::unexpected(Error{ErrorKind::not_usable, why + ", so that nothing follows from it for a design",
+                                "measure again; see what 'mbk measure' warns of, and its --report", ""});
   }
-  const auto index = pair_at(json, "/passivity/models/0/min_index_interval95");
-  const auto band = pair_at(json, "/passivity/models/0/band_hz");
-  if (!index || !band) {
+  const auto low = lowest_at(json, "/passivity/models/0/index/lower95"),
+             high = lowest_at(json, "/passivity/models/0/index/upper95"),
+             from = lowest_at(json, "/passivity/models/0/index/frequency_hz");
+  const Json::json_pointer band("/passivity/models/0/band_hz");
+  if (!low || !high || !from || !json.contains(band) || !json[band].is_array() || json[band].size() != 2 ||
+      !json[band][1].is_number()) {
     return bad_data("it says nothing of how passive the operator is",
-                    "measure with 'mbk measure --json', which writes passivity.eop, or give shortage_N_s_per_m");
+                    "measure with 'mbk measure --json', which writes the passivity index, or give shortage_N_s_per_m");
   }
+  const bool extrapolated = json.value(Json::json_pointer("/passivity/models/0/extrapolated"), false);
   return OperatorShortage{
-      0.0 - index->first,
-      fmt::format(
-          "minus the lower end of the 95 % interval of the smallest passivity index, {:.4g} to {:.4g} N·s/m, over "
-          "{:.3g} to {:.3g} Hz only: the model has no excess over all frequencies",
-          index->first, index->second, band->first, band->second),
-      index};
+      0.0 - *low,
+      fmt::format("minus the lower end of the 95 % interval of the smallest passivity index, {:.4g} to {:.4g} N·s/m, "
+                  "from {:.3g} to {:.3g} Hz, antisymmetric part included; {} is an assumption",
+                  *low, *high, *from, json[band][1].get<double>(),
+                  extrapolated ? "what lies beyond the data, in that band and outside it,"
+                               : "that it is no worse outside that band"),
+      std::pair{*low, *high}};
 }
 
 }  // namespace mbk::result

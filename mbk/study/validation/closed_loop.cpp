@@ -12,6 +12,8 @@
 #include "mbk/measure/identify/impedance_fit.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/passivity_index.h"
+#include "mbk/study/validation/rows.h"
+#include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
 
@@ -29,12 +31,14 @@ using Runs = std::vector<Run>;
 /// A task, and what is done to its ready scenario.
 struct Task {
   const char* scenario;
-  int trials;  ///< of one run, pooled: as a participant repeats a task
+  int trials;   ///< pooled in one measurement: as a participant repeats a task
+  int per_run;  ///< measurements of one run
   bool controller = true;
 };
 
-constexpr std::array kTasks = {Task{"rigid_sinusoidal_6N", 3}, Task{"rigid_sinusoidal_6N", 1, false},
-                               Task{"rigid_underdamped_2N", 3}};
+constexpr std::array kTasks = {Task{"rigid_sinusoidal_6N", 3, 1},
+                               Task{"rigid_sinusoidal_6N", 1, kTrialsWithoutController, false},
+                               Task{"rigid_underdamped_2N", 3, 1}};
 
 /// Peak of the multisine under which a limb without will is looked at [N]: at 6 N the arm's geometry bends its answer
 /// by more than the noise of one trial.
@@ -81,16 +85,10 @@ const ModelPassivity* passivity_by(const Run& run, Method method) {
   return nullptr;
 }
 
-/// How often something is so. Judged by the count itself: 19 of 20 are expected.
-ValidationRow share_row(std::string what, const Runs& runs, const std::function<bool(const Run&)>& holds, bool judged) {
-  const auto hits = static_cast<double>(std::ranges::count_if(runs, holds));
-  ValidationRow row;
-  row.what = std::move(what);
-  row.value = 100.0 * hits / static_cast<double>(runs.size());
-  row.interval99 = {row.value, row.value};
-  row.unit = "%";
-  if (judged) row.expected = {95.0, 100.0};
-  return row;
+/// How often something is so.
+ValidationRow how_often(std::string what, const Runs& runs, const std::function<bool(const Run&)>& holds, bool judged) {
+  return share_row(std::move(what), static_cast<int>(std::ranges::count_if(runs, holds)), static_cast<int>(runs.size()),
+                   judged ? std::optional(kNearlyAlways) : std::nullopt);
 }
 
 /// Eigenvalues of the symmetric parts against those of the arm itself [%].
@@ -129,21 +127,15 @@ void add_coverage(const Runs& runs, ValidationTable& table) {
       const double error = impedance::stacked(iv.model)[at] - impedance::stacked(run.truth)[at];
       held += std::abs(error) <= numeric::kNormal95 * impedance::stacked(iv.standard_error)[at] ? 1 : 0;
     }
-    const auto [low, high] = numeric::binomial_interval(held, count, 0.99);
-    ValidationRow row;
-    row.what = fmt::format("controller off, iv: 95 % interval of {} holds the truth", names[k]);
-    row.value = 100.0 * held / count;
-    row.interval99 = {100.0 * low, 100.0 * high};
-    if (k < 12) row.expected = {92.0, 98.0};  // x0 shifts with the posture: it is no part of the linear truth
-    row.unit = "%";
-    table.rows.push_back(std::move(row));
+    table.rows.push_back(share_row(fmt::format("controller off, iv: 95 % interval of {} holds the truth", names[k]),
+                                   held, count, kNearNominal));
   }
 }
 
 void add_multisine(const Runs& runs, ValidationTable& table) {
   constexpr auto kLs = Method::least_squares, kIv = Method::instrumental_variables;
   const auto add = [&](const char* what, bool judged, const std::function<bool(const Run&)>& holds) {
-    table.rows.push_back(share_row(fmt::format("6 N multisine: {}", what), runs, holds, judged));
+    table.rows.push_back(how_often(fmt::format("6 N multisine: {}", what), runs, holds, judged));
   };
   const auto model_says = [](Method method, const std::function<bool(const ModelPassivity&)>& says) {
     return [method, says](const Run& run) {
@@ -156,41 +148,51 @@ void add_multisine(const Runs& runs, ValidationTable& table) {
   add("iv passive, theorem 3.2 as it was applied", true,
       model_says(kIv, [](const ModelPassivity& model) { return model.published_rule; }));
   add("iv passive, M_s, B_s and K_s each with 95 %", true,
-      model_says(kIv, [](const ModelPassivity& model) { return model.symmetric_verdict == Verdict::passive; }));
+      model_says(kIv, [](const ModelPassivity& model) { return model.symmetric == Verdict::passive; }));
   add("iv passive, antisymmetry over the band too", false,
-      model_says(kIv, [](const ModelPassivity& model) { return model.verdict == Verdict::passive; }));
+      model_says(kIv, [](const ModelPassivity& model) { return model.verdict() == Verdict::passive; }));
   add("energy passive", true,
-      [](const Run& run) { return run.measured.passivity->energy->verdict == Verdict::passive; });
+      [](const Run& run) { return run.measured.passivity->trial->energy.verdict == Verdict::passive; });
   add("both methods differ by more than chance", true,
       [](const Run& run) { return run.measured.disagreement && run.measured.disagreement->significant; });
-  add("verdict active", false, [](const Run& run) { return run.measured.passivity->verdict == Verdict::active; });
+  add("prediction active", false,
+      [](const Run& run) { return run.measured.passivity->prediction.verdict == Verdict::active; });
   add_eigenvalues(runs, kIv, true, table);
   add_eigenvalues(runs, kLs, false, table);
 }
 
 void add_pulses(const Runs& runs, ValidationTable& table) {
   const auto add = [&](const char* what, const std::function<bool(const Run&)>& holds) {
-    table.rows.push_back(share_row(fmt::format("2 N pulses: {}", what), runs, holds, true));
+    table.rows.push_back(how_often(fmt::format("2 N pulses: {}", what), runs, holds, true));
   };
-  add("no model explains half of the force", [](const Run& run) { return run.measured.passivity->explained < 50.0; });
-  add("energy active", [](const Run& run) { return run.measured.passivity->energy->verdict == Verdict::active; });
-  add("verdict active, by the energy", [](const Run& run) {
-    return run.measured.passivity->verdict == Verdict::active && !run.measured.passivity->by_model;
+  add("no model explains half of the force",
+      [](const Run& run) { return by(run, Method::least_squares).fit.vaf.mean() < 50.0; });
+  add("energy active", [](const Run& run) { return run.measured.passivity->trial->energy.verdict == Verdict::active; });
+  add("the model predicts nothing", [](const Run& run) {
+    const auto& verdict = run.measured.passivity->prediction.verdict;
+    return !verdict || *verdict == Verdict::undecided;
   });
 }
 
 }  // namespace
 
 Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 20");
-  const int count = options.runs * static_cast<int>(kTasks.size());
-  Runs all(static_cast<std::size_t>(count));
+  if (options.runs < 1) return no_runs(options.runs);
+  std::vector<std::pair<const Task*, std::uint64_t>> plans;
+  std::array<std::size_t, kTasks.size() + 1> begins{};
+  for (std::size_t task = 0; task < kTasks.size(); ++task) {
+    const int trials = options.runs * kTasks[task].per_run;
+    for (int k = 0; k < trials; ++k) plans.emplace_back(&kTasks[task], options.seed + static_cast<std::uint64_t>(k));
+    begins[task + 1] = plans.size();
+  }
+  const auto count = static_cast<int>(plans.size());
+  Runs all(plans.size());
   int done = 0;
   const auto ran = numeric::parallel_for(
       count, options.threads,
       [&](int i) -> Result<void> {
-        const Task& task = kTasks[static_cast<std::size_t>(i / options.runs)];
-        auto run = perform(task, options.seed + static_cast<std::uint64_t>(i % options.runs));
+        const auto& [task, seed] = plans[static_cast<std::size_t>(i)];
+        auto run = perform(*task, seed);
         if (!run) return tl::unexpected(run.error());
         all[static_cast<std::size_t>(i)] = std::move(*run);
         return {};
@@ -199,9 +201,9 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
         if (options.progress) options.progress(++done, count);
       });
   if (!ran) return tl::unexpected(ran.error());
-  const auto of_task = [&](int task) {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(task) * options.runs;
-    return Runs(std::make_move_iterator(begin), std::make_move_iterator(begin + options.runs));
+  const auto of_task = [&](std::size_t task) {
+    const auto at = [&](std::size_t k) { return all.begin() + static_cast<std::ptrdiff_t>(begins[k]); };
+    return Runs(std::make_move_iterator(at(task)), std::make_move_iterator(at(task + 1)));
   };
 
   ValidationTable table;
@@ -214,7 +216,8 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
   add_coverage(of_task(1), table);
   add_pulses(of_task(2), table);
   table.notes.emplace_back(
-      "A run is three trials of participant 1's arm, held stiff, pooled (controller off: one). ls: least squares, iv: "
+      "A run is three trials of participant 1's arm, held stiff, pooled, and four with the controller off, each by "
+      "itself. ls: least squares, iv: "
       "instrumental variables from the known force.");
   table.notes.emplace_back(
       "Eigenvalues are those of the symmetric parts, as errors against the arm's own. What remains with iv is the "
@@ -231,7 +234,7 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
   table.notes.emplace_back("Theorem 3.2 as it was applied: estimates without intervals, antisymmetric parts left out.");
   table.notes.emplace_back(
       "Under 2 N pulses the participant answers each pulse itself: no instrument is valid, no model explains the "
-      "force, and the energy decides. No branch of the program knows the task.");
+      "force, and only the energy says what happened. No branch of the program knows the task.");
   table.notes.emplace_back(
       "The gains of the participant's controller are tuned to the findings of Dyck (2013, chapter 4), not fitted to "
       "anyone.");

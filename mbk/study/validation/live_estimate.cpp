@@ -13,6 +13,7 @@
 #include "mbk/simulate/laboratory/make_load.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
 #include "mbk/simulate/laboratory/simulation.h"
+#include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/temporary_folder.h"
 
@@ -91,7 +92,7 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
   const auto folder = TemporaryFolder::create("mbk-live-estimate");
   if (!folder) return tl::unexpected(folder.error());
   const auto runs = seeded_runs(
-      options, 200, [&](std::uint64_t seed) -> Result<Held> { return perform(trials->front(), seed, folder->path()); });
+      options, [&](std::uint64_t seed) -> Result<Held> { return perform(trials->front(), seed, folder->path()); });
   if (!runs) return tl::unexpected(runs.error());
 
   ValidationTable table;
@@ -112,21 +113,10 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
         hits += one ? 1 : 0;
         share[run] += one ? 100.0 / kNumbers : 0.0;
       }
-      const auto [low, high] = numeric::binomial_interval(hits, options.runs, 0.99);
-      ValidationRow row;
-      row.what = fmt::format("{:g} s, {}", kTimes[at], names[k]);
-      row.value = 100.0 * hits / options.runs;
-      row.interval99 = {100.0 * low, 100.0 * high};
-      rows.push_back(std::move(row));
+      rows.push_back(share_row(fmt::format("{:g} s, {}", kTimes[at], names[k]), hits, options.runs, kNearNominal));
     }
-    ValidationRow mean;
-    mean.what = fmt::format("{:g} s, mean of M, B and K", kTimes[at]);
-    mean.value = share.mean();
-    const double spread = count > 1 ? std::sqrt(numeric::variance(share)) : 100.0;
-    const double reach = numeric::kNormal99 * spread / std::sqrt(static_cast<double>(count));
-    mean.interval99 = {std::max(0.0, mean.value - reach), std::min(100.0, mean.value + reach)};
-    mean.expected = {90.0, 100.0};
-    table.rows.push_back(std::move(mean));
+    table.rows.push_back(
+        mean_row(fmt::format("{:g} s, mean of M, B and K", kTimes[at]), share, Range{90.0, 100.0}, "%"));
     std::ranges::move(rows, std::back_inserter(table.rows));
   }
   table.notes = {

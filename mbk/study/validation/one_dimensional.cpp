@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,6 +10,8 @@
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/srivc.h"
 #include "mbk/study/validation/one_dimensional_trial.h"
+#include "mbk/study/validation/rows.h"
+#include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
 
@@ -44,8 +45,6 @@ constexpr std::array kPrinted = {43.6, 69.1, -2.9, 27.3, 70.1};
 constexpr double kHolds = 90.0;
 /// How many times as much as for the arm without its controller has to be left unexplained.
 constexpr double kContrast = 3.0;
-
-constexpr double kNone = std::numeric_limits<double>::infinity();
 
 struct Outcome {
   one_dimensional::Axis axis;
@@ -101,40 +100,26 @@ Vector vaf_of(Outcomes outcomes) {
   return collected(outcomes, [](const Outcome& outcome) { return outcome.impedance.vaf; });
 }
 
-ValidationRow row_of(std::string what, double value, std::optional<std::pair<double, double>> expected) {
-  ValidationRow row;
-  row.what = std::move(what);
-  row.value = value;
-  row.interval99 = {value, value};
-  row.expected = expected;
-  row.unit = "%";
-  return row;
+ValidationRow settled_row(std::string what, Outcomes outcomes, const std::function<bool(const Outcome&)>& is) {
+  return share_row(std::move(what), static_cast<int>(std::ranges::count_if(outcomes, is)),
+                   static_cast<int>(outcomes.size()), {});
 }
 
-ValidationRow share_row(std::string what, Outcomes outcomes, const std::function<bool(const Outcome&)>& is,
-                        std::optional<std::pair<double, double>> expected) {
-  const auto count = static_cast<int>(outcomes.size());
-  const auto hits = static_cast<int>(std::ranges::count_if(outcomes, is));
-  const auto [low, high] = numeric::binomial_interval(hits, count, 0.99);
-  ValidationRow row = row_of(std::move(what), 100.0 * hits / count, expected);
-  row.interval99 = {100.0 * low, 100.0 * high};
-  row.unit = "% of trials";
-  return row;
-}
-
-/// The model of each trial on the other trials of its run.
-double median_across(Outcomes outcomes) {
-  std::vector<double> values;
+/// For each trial, the median VAF of its model on the other trials of its run [%].
+Vector vaf_across(Outcomes outcomes) {
+  Vector across(std::ssize(outcomes));
   for (std::size_t first = 0; first < outcomes.size(); first += kPrinted.size()) {
     const Outcomes run = outcomes.subspan(first, kPrinted.size());
-    for (const Outcome& model : run) {
-      for (const Outcome& trial : run) {
-        if (&model == &trial) continue;
-        values.push_back(one_dimensional::validation_vaf(model.impedance, trial.axis.impedance));
+    for (std::size_t model = 0; model < run.size(); ++model) {
+      std::vector<double> others;
+      for (std::size_t trial = 0; trial < run.size(); ++trial) {
+        if (model == trial) continue;
+        others.push_back(one_dimensional::validation_vaf(run[model].impedance, run[trial].axis.impedance));
       }
+      across[static_cast<Index>(first + model)] = numeric::median(std::move(others));
     }
   }
-  return median(Eigen::Map<const Vector>(values.data(), std::ssize(values)));
+  return across;
 }
 
 /// Fig. 4.7 in form.
@@ -165,46 +150,37 @@ void add_rows(std::size_t condition, Outcomes outcomes, ValidationTable& table) 
   for (std::size_t trial = 0; condition == kRigid && trial < kPrinted.size(); ++trial) {
     const Vector runs =
         vaf(Eigen::seqN(static_cast<Index>(trial), std::ssize(outcomes) / std::ssize(kPrinted), std::ssize(kPrinted)));
-    ValidationRow row =
-        row_of(fmt::format("{}, trial {}: VAF, printed {:g}", name, trial + 1, kPrinted[trial]), median(runs), {});
-    row.interval99 = {runs.minCoeff(), runs.maxCoeff()};
-    table.rows.push_back(std::move(row));
+    table.rows.push_back(
+        median_row(fmt::format("{}, trial {}: VAF, printed {:g}", name, trial + 1, kPrinted[trial]), runs, {}, "%"));
   }
-  const bool linear = condition != kRigid;
-  const std::pair<double, double> good = {kHolds, 100.0}, poor = {-kNone, kHolds};
-  const auto add = [&](const char* what, double value, std::optional<std::pair<double, double>> expected) {
-    table.rows.push_back(row_of(name + ": " + what, value, expected));
-  };
-  add("median VAF", median(vaf), linear ? good : poor);
-  add("lower quartile of the VAF", quantile(vaf, 0.25), {});
-  add("lowest VAF", vaf.minCoeff(), {});
-  add("median VAF on the other trials", median_across(outcomes), linear ? good : poor);
-  add("median VAF, commanded force to place",
-      median(collected(outcomes, [](const Outcome& outcome) { return outcome.admittance.vaf; })), {});
-  const auto share = [&](const char* what, const std::function<bool(const Outcome&)>& is,
-                         std::optional<std::pair<double, double>> expected) {
-    table.rows.push_back(share_row(name + ": " + what, outcomes, is, expected));
-  };
-  share("a stable model settled", [](const Outcome& outcome) { return outcome.impedance.holds; }, {});
-  share("so it did in continuous time", [](const Outcome& outcome) { return outcome.continuous; }, {});
+  const Range accepted = condition == kRigid ? at_most(kHolds) : Range{kHolds, 100.0};
+  table.rows.push_back(median_row(name + ": median VAF", vaf, accepted, "%"));
+  table.rows.push_back(exact_row(name + ": lower quartile of the VAF", quantile(vaf, 0.25), {}, "%"));
+  table.rows.push_back(exact_row(name + ": lowest VAF", vaf.minCoeff(), {}, "%"));
+  table.rows.push_back(median_row(name + ": median VAF on the other trials", vaf_across(outcomes), accepted, "%"));
+  table.rows.push_back(median_row(name + ": median VAF, commanded force to place",
+                                  collected(outcomes, [](const Outcome& outcome) { return outcome.admittance.vaf; }),
+                                  {}, "%"));
+  table.rows.push_back(settled_row(name + ": a stable model settled", outcomes,
+                                   [](const Outcome& outcome) { return outcome.impedance.holds; }));
+  table.rows.push_back(settled_row(name + ": so it did in continuous time", outcomes,
+                                   [](const Outcome& outcome) { return outcome.continuous; }));
 }
 
-/// The median VAF of one condition at one switching time [%].
-double median_at(Outcomes all, std::size_t each, std::size_t time, std::size_t condition) {
-  return median(vaf_of(all.subspan((time * kConditions.size() + condition) * each, each)));
+/// The VAF of one condition at one switching time [%].
+Vector vaf_at(Outcomes all, std::size_t each, std::size_t time, std::size_t condition) {
+  return vaf_of(all.subspan((time * kConditions.size() + condition) * each, each));
 }
 
-/// The conclusion must not hang on a switching time that nobody knows.
+/// The conclusion must not hang on a switching time that nobody knows. Trials of the same seed are compared.
 void add_contrasts(Outcomes all, std::size_t each, ValidationTable& table) {
   for (std::size_t time = 0; time < kSwitchingTimes.size(); ++time) {
-    const double rigid = median_at(all, each, time, kRigid), off = median_at(all, each, time, kOff);
-    table.rows.push_back(row_of(fmt::format("rigid, a switch every {:g} s: median VAF", kSwitchingTimes[time]), rigid,
-                                std::pair(-kNone, kHolds)));
-    ValidationRow row =
-        row_of(fmt::format("a switch every {:g} s: unexplained, rigid over controller off", kSwitchingTimes[time]),
-               (100.0 - rigid) / (100.0 - off), std::pair(kContrast, kNone));
-    row.unit = "times";
-    table.rows.push_back(std::move(row));
+    const Vector rigid = vaf_at(all, each, time, kRigid), off = vaf_at(all, each, time, kOff);
+    table.rows.push_back(median_row(fmt::format("rigid, a switch every {:g} s: median VAF", kSwitchingTimes[time]),
+                                    rigid, at_most(kHolds), "%"));
+    table.rows.push_back(median_row(
+        fmt::format("a switch every {:g} s: unexplained, rigid over controller off, median", kSwitchingTimes[time]),
+        ((100.0 - rigid.array()) / (100.0 - off.array())).matrix(), at_least(kContrast), "times"));
   }
 }
 
@@ -220,7 +196,7 @@ Chart switching_chart(Outcomes all, std::size_t each) {
     line.drawn = ChartSeries::Drawn::line;
     for (std::size_t k = 0; k < kSwitchingTimes.size(); ++k) {
       line.x.push_back(kSwitchingTimes[k]);
-      line.y.push_back(median_at(all, each, k, condition));
+      line.y.push_back(median(vaf_at(all, each, k, condition)));
     }
     chart.series.push_back(std::move(line));
   }
@@ -231,7 +207,7 @@ Chart switching_chart(Outcomes all, std::size_t each) {
 }  // namespace
 
 Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 2");
+  if (options.runs < 1) return no_runs(options.runs);
   const auto scenarios = ready("one_axis_random_binary");
   if (!scenarios) return tl::unexpected(scenarios.error());
   const std::size_t trials = kPrinted.size(), each = trials * static_cast<std::size_t>(options.runs);
@@ -280,7 +256,8 @@ Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
       fmt::format("The first rows are of a force that keeps its sign for {:g} s at least. That time is not published, "
                   "and decides how low they are; that they are low must hold at each.",
                   kSwitchingTimes.back()),
-      "Rows of a trial are medians over the runs, beside the lowest and the highest.",
+      "Rows of a trial are medians over the runs. The interval of a median lies between two of the values, and needs "
+      "six of them.",
       "Printed values are those of a person, and are only shown.",
       "Where the force does not switch in the last 10 s there is little to explain, and the VAF low for any arm.",
       "Controller off: the same arm, noise and co-contraction; relaxed: without co-contraction too.",

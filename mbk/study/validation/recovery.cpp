@@ -5,6 +5,8 @@
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/impedance_fit.h"
 #include "mbk/model/impedance/model.h"
+#include "mbk/study/validation/rows.h"
+#include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
 
@@ -44,16 +46,17 @@ void add_rows(const char* condition, Trials trials, ValidationTable& table) {
       const double reach = numeric::kNormal95 * impedance::stacked(trial.identification.standard_error)[at];
       held += std::abs(error[i]) <= reach ? 1 : 0;
     }
-    ValidationRow row = bias_row(fmt::format("{} {}", condition, names[k]), error, allowed[at], unit_of(k));
-    row.coverage = static_cast<double>(held) / static_cast<double>(runs);
-    table.rows.push_back(row);
+    const std::string name = fmt::format("{} {}", condition, names[k]);
+    table.rows.push_back(bias_row(name, error, allowed[at], unit_of(k)));
+    table.rows.push_back(
+        share_row(name + ": 95 % interval holds the truth", held, static_cast<int>(runs), kNearNominal));
   }
 }
 
 }  // namespace
 
 Result<ValidationTable> recovery_study(const StudyOptions& options) {
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 20");
+  if (options.runs < 1) return no_runs(options.runs);
   const std::pair<const char*, const char*> conditions[] = {{"sinusoidal", "relaxed_sinusoidal"},
                                                             {"underdamped", "relaxed_underdamped"}};
   std::vector<TrialPlan> plans;
@@ -80,8 +83,7 @@ Result<ValidationTable> recovery_study(const StudyOptions& options) {
     left = left.subspan(static_cast<std::size_t>(options.runs));
   }
   table.notes = {
-      "The value is the mean error over the runs (bias), with its 99 % interval; expected is less than 5 % of the "
-      "matrix's "
+      "The value of a parameter is its mean error over the runs (bias); accepted is less than 5 % of the matrix's "
       "largest element, and 2 mm for x0.",
       "The truth is the arm's linear impedance at the test location. The arm's force noise acts back on its motion "
       "through the robot, which biases least squares towards minus the robot; how much depends on the robot's gains."};

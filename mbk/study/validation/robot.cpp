@@ -8,6 +8,7 @@
 
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/study/validation/robot_trials.h"
+#include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
@@ -42,58 +43,54 @@ Vector of_runs(const Runs& runs, const std::function<double(const Run&)>& value)
   return values;
 }
 
+/// In how many runs something is so; accepted is nearly always.
+ValidationRow nearly_always(std::string what, const Runs& runs, const std::function<bool(const Run&)>& is) {
+  return share_row(std::move(what), static_cast<int>(std::ranges::count_if(runs, is)), static_cast<int>(runs.size()),
+                   kNearlyAlways);
+}
+
 /// Error of a coefficient [%], or as it is where the truth is zero.
 double error_of(const RobotCoefficient& found, double truth) {
   return truth == 0.0 ? found.value : 100.0 * (found.value / truth - 1.0);
 }
 
-bool holds(const RobotCoefficient& found, double truth, double errors) {
-  return std::abs(found.value - truth) <= errors * found.standard_error;
-}
-
 void add_coefficients(const Runs& runs, const Vector& truth, ValidationTable& table) {
-  const auto count = static_cast<double>(runs.size());
-  double pairs = 0.0, within = 0.0;
   for (Index k = 0; k < truth.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    const robot::Coefficient& name = runs.front().right.coefficients[at].coefficient;
+    const robot::Coefficient& coefficient = runs.front().right.coefficients[at].coefficient;
     const Vector error = of_runs(runs, [&](const Run& run) { return error_of(run.right.coefficients[at], truth[k]); });
-    ValidationRow row =
-        reported_row(fmt::format("bias of {}", name.name), error, truth[k] == 0.0 ? name.unit : std::string("%"));
-    row.coverage = of_runs(runs, [&](const Run& run) {
-                     return holds(run.right.coefficients[at], truth[k], numeric::kNormal95) ? 1.0 : 0.0;
-                   }).mean();
-    table.rows.push_back(std::move(row));
-    constexpr double kErrors = 2.0;
-    within += of_runs(runs, [&](const Run& run) {
-                return holds(run.right.coefficients[at], truth[k], kErrors) ? 1.0 : 0.0;
-              }).sum();
-    pairs += count;
+    table.rows.push_back(mean_row(fmt::format("bias of {}", coefficient.name), error, {},
+                                  truth[k] == 0.0 ? coefficient.unit : std::string("%")));
+    const auto held = std::ranges::count_if(runs, [&](const Run& run) {
+      const RobotCoefficient& found = run.right.coefficients[at];
+      return std::abs(found.value - truth[k]) <= numeric::kNormal95 * found.standard_error;
+    });
+    table.rows.push_back(share_row(fmt::format("95 % interval of {} holds the truth", coefficient.name),
+                                   static_cast<int>(held), static_cast<int>(runs.size()), kNearNominal));
   }
-  constexpr double kWithin = 90.0;  // [%]
-  table.rows.push_back(
-      at_least_row("all coefficients and runs: truth within 2 standard errors", 100.0 * within / pairs, kWithin, "%"));
   constexpr double kInertiaError = 0.5;  // [%]
   for (std::size_t k = 0; k < 3; ++k) {
-    const double worst = of_runs(runs, [&](const Run& run) {
-                           return std::abs(error_of(run.right.coefficients[k], truth[static_cast<Index>(k)]));
-                         }).maxCoeff();
-    table.rows.push_back(
-        at_most_row(fmt::format("largest error of {}", runs.front().right.coefficients[k].coefficient.name), worst,
-                    kInertiaError, "%"));
+    table.rows.push_back(nearly_always(
+        fmt::format("error of {} at most {:g} %", runs.front().right.coefficients[k].coefficient.name, kInertiaError),
+        runs, [&](const Run& run) {
+          return std::abs(error_of(run.right.coefficients[k], truth[static_cast<Index>(k)])) <= kInertiaError;
+        }));
   }
-  table.rows.push_back(reported_row("delay of the motors",
-                                    of_runs(runs, [](const Run& run) { return 1e3 * run.right.model.delay; }), "ms"));
+  table.rows.push_back(mean_row("delay of the motors",
+                                of_runs(runs, [](const Run& run) { return 1e3 * run.right.model.delay; }), {}, "ms"));
 }
 
 void add_fit(const Runs& runs, ValidationTable& table) {
   constexpr double kVaf = 99.0;  // [%]
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    const Vector vaf = of_runs(runs, [joint](const Run& run) { return run.right.fit[joint].vaf; });
-    const Vector rmse = of_runs(runs, [joint](const Run& run) { return 1e3 * run.right.fit[joint].rmse; });
-    table.rows.push_back(
-        at_least_row(fmt::format("joint {}: lowest VAF of held-out torque", joint + 1), vaf.minCoeff(), kVaf, "%"));
-    table.rows.push_back(reported_row(fmt::format("joint {}: RMSE of held-out torque", joint + 1), rmse, "mN·m"));
+    const std::string name = fmt::format("joint {}: ", joint + 1);
+    table.rows.push_back(nearly_always(fmt::format("{}VAF of held-out torque at least {:g} %", name, kVaf), runs,
+                                       [&](const Run& run) { return run.right.fit[joint].vaf >= kVaf; }));
+    table.rows.push_back(mean_row(name + "VAF of held-out torque",
+                                  of_runs(runs, [&](const Run& run) { return run.right.fit[joint].vaf; }), {}, "%"));
+    table.rows.push_back(mean_row(name + "RMSE of held-out torque",
+                                  of_runs(runs, [&](const Run& run) { return 1e3 * run.right.fit[joint].rmse; }), {},
+                                  "mN·m"));
   }
 }
 
@@ -104,16 +101,17 @@ double loss(const RobotIdentification& model, const RobotIdentification& right) 
 
 void add_printed_sign(const Runs& runs, const Vector& truth, ValidationTable& table) {
   constexpr double kClearly = 2.0;
-  const Vector ratio = of_runs(runs, [](const Run& run) { return loss(run.printed, run.right); });
-  table.rows.push_back(at_least_row("printed Coriolis sign: least RMSE of held-out torque, over the right one's",
-                                    ratio.minCoeff(), kClearly, ""));
-  table.rows.push_back(reported_row("printed Coriolis sign: RMSE of held-out torque, over the right one's", ratio, ""));
+  const char* const what = "printed Coriolis sign: RMSE of held-out torque, over the right one's";
+  table.rows.push_back(nearly_always(fmt::format("{}, at least {:g}", what, kClearly), runs,
+                                     [&](const Run& run) { return loss(run.printed, run.right) >= kClearly; }));
+  table.rows.push_back(
+      mean_row(what, of_runs(runs, [](const Run& run) { return loss(run.printed, run.right); }), {}, ""));
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector error = of_runs(
         runs, [&](const Run& run) { return error_of(run.printed.coefficients[k], truth[static_cast<Index>(k)]); });
-    table.rows.push_back(reported_row(
+    table.rows.push_back(mean_row(
         fmt::format("printed Coriolis sign: error of {}", runs.front().printed.coefficients[k].coefficient.name), error,
-        "%"));
+        {}, "%"));
   }
 }
 
@@ -123,23 +121,23 @@ void add_without_coulomb(const Runs& runs, const Vector& truth, ValidationTable&
     const auto at = static_cast<std::size_t>(k);
     const Vector error =
         of_runs(runs, [&](const Run& run) { return error_of(run.without_coulomb.coefficients[at], truth[k]); });
-    table.rows.push_back(reported_row(
-        fmt::format("{}: error of {}", what, runs.front().without_coulomb.coefficients[at].coefficient.name), error,
-        "%"));
+    table.rows.push_back(
+        mean_row(fmt::format("{}: error of {}", what, runs.front().without_coulomb.coefficients[at].coefficient.name),
+                 error, {}, "%"));
   }
   for (std::size_t joint = 0; joint < 2; ++joint) {
     const Vector vaf = of_runs(runs, [joint](const Run& run) { return run.without_coulomb.fit[joint].vaf; });
-    table.rows.push_back(reported_row(fmt::format("{}: VAF of joint {}", what, joint + 1), vaf, "%"));
+    table.rows.push_back(mean_row(fmt::format("{}: VAF of joint {}", what, joint + 1), vaf, {}, "%"));
   }
-  table.rows.push_back(reported_row(fmt::format("{}: RMSE of held-out torque, over that of the full model", what),
-                                    of_runs(runs, [](const Run& run) { return loss(run.without_coulomb, run.right); }),
-                                    ""));
+  table.rows.push_back(mean_row(fmt::format("{}: RMSE of held-out torque, over that of the full model", what),
+                                of_runs(runs, [](const Run& run) { return loss(run.without_coulomb, run.right); }), {},
+                                ""));
 }
 
 }  // namespace
 
 Result<ValidationTable> robot_study(const StudyOptions& options) {
-  const auto ran = seeded_runs(options, 50, perform);
+  const auto ran = seeded_runs(options, perform);
   if (!ran) return tl::unexpected(ran.error());
   const Runs& runs = *ran;
   const auto truth = true_parameters(FrictionModel::full);

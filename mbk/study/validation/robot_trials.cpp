@@ -1,6 +1,5 @@
 #include "mbk/study/validation/robot_trials.h"
 
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -9,15 +8,6 @@
 
 namespace mbk::validation {
 namespace {
-
-ValidationRow limit_row(std::string what, double value, std::string unit) {
-  ValidationRow row;
-  row.what = std::move(what);
-  row.value = value;
-  row.interval99 = {value, value};
-  row.unit = std::move(unit);
-  return row;
-}
 
 Result<laboratory::Scenario> free_motion_scenario() {
   auto scenarios = ready("free_motion");
@@ -84,24 +74,6 @@ Result<RobotIdentification> identified_robot(const Recording& recording, Frictio
   measurement::RobotOptions options;
   options.fit.delay = true;
   return measurement::identify_robot({&recording, 1}, {}, model, options);
-}
-
-ValidationRow at_least_row(std::string what, double value, std::optional<double> limit, std::string unit) {
-  ValidationRow row = limit_row(std::move(what), value, std::move(unit));
-  if (limit) row.expected = {*limit, std::numeric_limits<double>::infinity()};
-  return row;
-}
-
-ValidationRow at_most_row(std::string what, double value, std::optional<double> limit, std::string unit) {
-  ValidationRow row = limit_row(std::move(what), value, std::move(unit));
-  if (limit) row.expected = {-std::numeric_limits<double>::infinity(), *limit};
-  return row;
-}
-
-ValidationRow reported_row(std::string what, const Vector& values, std::string unit) {
-  ValidationRow row = bias_row(std::move(what), values, 0.0, std::move(unit));
-  row.expected.reset();
-  return row;
 }
 
 }  // namespace mbk::validation

@@ -6,7 +6,6 @@
 
 #include "mbk/model/robot/planar_mechanism.h"
 #include "mbk/model/trial/robot_identification.h"
-#include "mbk/model/trial/validation_table.h"
 #include "mbk/simulate/laboratory/scenario.h"
 
 namespace mbk::validation {
@@ -39,13 +38,5 @@ void measure_currents(laboratory::Scenario& scenario);
 [[nodiscard]] Result<RobotIdentification> identified_robot(
     const Recording& recording, FrictionModel friction,
     robot::PlanarMechanism::Coriolis coriolis = robot::PlanarMechanism::Coriolis::skew);
-
-/// A number of the runs without an interval of its own, as their worst: at least or at most `limit`, where there is
-/// one.
-[[nodiscard]] ValidationRow at_least_row(std::string what, double value, std::optional<double> limit, std::string unit);
-[[nodiscard]] ValidationRow at_most_row(std::string what, double value, std::optional<double> limit, std::string unit);
-
-/// As bias_row, of which nothing is expected.
-[[nodiscard]] ValidationRow reported_row(std::string what, const Vector& values, std::string unit);
 
 }  // namespace mbk::validation

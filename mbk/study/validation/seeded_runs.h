@@ -11,16 +11,18 @@
 
 namespace mbk::validation {
 
+/// What a study answers that is asked for no runs.
+[[nodiscard]] inline tl::unexpected<Error> no_runs(int runs) {
+  return bad_usage(fmt::format("{} runs show nothing", runs), "pass --runs 1 or more");
+}
+
 /// perform(seed) for as many seeds as there are runs, several at a time, in the order of the seeds.
-/// @param usual  how many runs the message advises
 /// @fails  usage: no runs. As perform: the first failure.
 template <class Perform>
-auto seeded_runs(const StudyOptions& options, int usual, const Perform& perform)
+auto seeded_runs(const StudyOptions& options, const Perform& perform)
     -> Result<std::vector<typename std::invoke_result_t<Perform, std::uint64_t>::value_type>> {
   using Run = typename std::invoke_result_t<Perform, std::uint64_t>::value_type;
-  if (options.runs < 1) {
-    return bad_usage(fmt::format("{} runs show nothing", options.runs), fmt::format("pass --runs {}", usual));
-  }
+  if (options.runs < 1) return no_runs(options.runs);
   std::vector<Run> runs(static_cast<std::size_t>(options.runs));
   int done = 0;
   const auto ran = numeric::parallel_for(

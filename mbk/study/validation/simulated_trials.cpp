@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "mbk/base/numeric/parallel.h"
-#include "mbk/base/numeric/statistics.h"
 
 namespace mbk::validation {
 namespace {
@@ -62,19 +59,6 @@ Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& pla
       });
   if (!ran) return tl::unexpected(ran.error());
   return trials;
-}
-
-ValidationRow bias_row(std::string what, const Vector& errors, double allowed, std::string unit) {
-  const double spread = errors.size() > 1 ? std::sqrt(numeric::variance(errors)) : 0.0;
-  const double reach = numeric::kNormal99 * spread / std::sqrt(static_cast<double>(errors.size()));
-  ValidationRow row;
-  row.what = std::move(what);
-  row.value = errors.mean();
-  row.interval99 = {row.value - reach, row.value + reach};
-  row.expected = {-allowed, allowed};
-  row.unit = std::move(unit);
-  row.spread = spread;
-  return row;
 }
 
 std::pair<std::string, std::string> rig_names(const std::string& trial) {

@@ -39,9 +39,6 @@ struct TrialPlan {
 [[nodiscard]] Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans,
                                                              const StudyOptions& options);
 
-/// The mean of errors over runs, with its 99 % interval and their spread; expected is a mean within ±`allowed`.
-[[nodiscard]] ValidationRow bias_row(std::string what, const Vector& errors, double allowed, std::string unit);
-
 /// "K5" and "M3" of a rig's trial "K5_M3": its stiffness and its mass; the whole name twice where it has no "_M".
 [[nodiscard]] std::pair<std::string, std::string> rig_names(const std::string& trial);
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "mbk/study/validation/rows.h"
+#include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
 
@@ -71,7 +73,7 @@ Result<void> add_file(const RigFile& file, const StudyOptions& options, std::vec
 }  // namespace
 
 Result<ValidationTable> springs_study(const StudyOptions& options) {
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 3");
+  if (options.runs < 1) return no_runs(options.runs);
   std::vector<TrialPlan> plans;
   for (const RigFile& file : kFiles) {
     if (auto ok = add_file(file, options, plans); !ok) return tl::unexpected(ok.error());

@@ -1,31 +1,63 @@
 #include "mbk/study/validation/study.h"
 
+#include <algorithm>
 #include <array>
 
 #include "mbk/study/validation/coverage.h"
 
 namespace mbk::validation {
 
+namespace {
+
+// What shares the studies judge, with the trials of a run where they are not one.
+constexpr std::array kOfCoverage = {JudgedShare{kNominal, 95.0}, JudgedShare{kHardlyEver, 2.0, 0.5}};
+constexpr std::array kOfIntervals = {JudgedShare{kNearNominal, 95.0}};
+constexpr std::array kOfClosedLoop = {JudgedShare{kNearlyAlways, 100.0},
+                                      JudgedShare{kNearNominal, 95.0, kTrialsWithoutController}};
+constexpr std::array kOfRobot = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
+constexpr std::array kOfVirtualSensor = {JudgedShare{kNearNominal, 100.0, 5.0}};  // wide: a damper is not in the model
+constexpr std::array kOfTransferFunction = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 99.0}};
+constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
+constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0, 3.0}};
+constexpr std::array kOfFaultsAtAll = {JudgedShare{kNearNominal, 100.0}, JudgedShare{kHardlyEver, 0.0, 10.0}};
+
+}  // namespace
+
 std::span<const Study> studies() {
   static constexpr std::array kStudies = {
-      Study{"coverage", "how often the 95 % intervals of M, B, K and x0 hold the truth", 400, coverage_study},
-      Study{"recovery", "bias, spread and coverage for a relaxed arm in the closed loop", 20, recovery_study},
-      Study{"closed-loop", "least squares, instrumental variables and energy of an arm that acts back", 20,
-            closed_loop_study},
-      Study{"live-estimate", "how often the 95 % intervals hold the truth while the trial still runs", 200,
+      Study{"coverage", "how often the 95 % intervals of M, B, K and x0 hold the truth", kOfCoverage, 2,
+            coverage_study},
+      Study{"recovery", "bias, spread and coverage for a relaxed arm in the closed loop", kOfIntervals, 2,
+            recovery_study},
+      Study{"closed-loop", "least squares, instrumental variables and energy of an arm that acts back", kOfClosedLoop,
+            2, closed_loop_study},
+      Study{"live-estimate", "how often the 95 % intervals hold the truth while the trial still runs", kOfIntervals, 2,
             live_estimate_study},
-      Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", 3, springs_study},
-      Study{"robot", "dynamics of the robot, from its free motion", 50, robot_study},
-      Study{"virtual-sensor", "force, stiffness and mass without a force sensor", 4, virtual_sensor_study},
-      Study{"transfer-function", "a transfer function of four poles under noise, and its order", 50,
+      Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", {}, 3, springs_study},
+      Study{"robot", "dynamics of the robot, from its free motion", kOfRobot, 2, robot_study},
+      Study{"virtual-sensor", "force, stiffness and mass without a force sensor", kOfVirtualSensor, 2,
+            virtual_sensor_study},
+      Study{"transfer-function", "a transfer function of four poles under noise, and its order", kOfTransferFunction, 2,
             transfer_function_study},
-      Study{"one-dimensional", "no linear model holds for a rigid arm along one axis", 2, one_dimensional_study},
-      Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated", 25,
-            teleoperation_study},
-      Study{"participant", "when the simulated participant is active or passive", 10, participant_study},
-      Study{"faults", "motors off in time, whatever breaks at 1 kHz", 20, faults_study},
+      Study{"one-dimensional", "no linear model holds for a rigid arm along one axis", {}, 4, one_dimensional_study},
+      Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated",
+            kOfTeleoperation, 1, teleoperation_study},
+      Study{"participant", "when the simulated participant is active or passive", kOfParticipant, 2, participant_study},
+      Study{"faults", "motors off in time, whatever breaks at 1 kHz", kOfFaultsAtAll, 1, faults_study},
   };
   return kStudies;
+}
+
+int min_runs(const Study& study) {
+  int runs = 2;
+  for (const JudgedShare& judged : study.shares) runs = std::max(runs, min_runs(judged));
+  return runs;
+}
+
+int default_runs(const Study& study) {
+  int runs = study.usual_runs;
+  for (const JudgedShare& judged : study.shares) runs = std::max(runs, default_runs(judged));
+  return runs;
 }
 
 Result<ValidationTable> coverage_study(const StudyOptions& options) {

@@ -19,6 +19,8 @@
 #include "mbk/simulate/laboratory/simulate_teleoperation.h"
 #include "mbk/simulate/participant/load.h"
 #include "mbk/study/validation/robot_trials.h"
+#include "mbk/study/validation/rows.h"
+#include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
 #include "mbk/teleop/llewellyn.h"
@@ -251,10 +253,14 @@ Counted count(const Cases& cases, const std::function<bool(const Case&)>& which)
   return counted;
 }
 
-/// Where there is nothing to count nothing is shown, and nothing expected.
-ValidationRow count_row(std::string what, int value, int of, std::optional<double> at_most) {
-  if (of == 0) at_most.reset();
-  return at_most_row(std::move(what), value, at_most, fmt::format("of {}", of));
+/// What the criterion excludes: hardly ever by its share, and by the count of these cases never.
+void add_excluded(const std::string& what, int value, int of, ValidationTable& table) {
+  table.rows.push_back(share_row(what, value, of, kHardlyEver));
+  table.rows.push_back(exact_row(what + ": cases", value, Range{0.0, 0.0}, fmt::format("of {}", of)));
+}
+
+ValidationRow count_row(std::string what, int value, int of) {
+  return exact_row(std::move(what), value, {}, fmt::format("of {}", of));
 }
 
 void add_rows(const Operator& who, const Cases& cases, ValidationTable& table) {
@@ -270,28 +276,33 @@ void add_rows(const Operator& who, const Cases& cases, ValidationTable& table) {
     unseen += !one.stable && !one.shown ? 1 : 0;
   }
   const std::string start = fmt::format("{}: ", who.name);
-  table.rows.push_back(count_row(start + "stable, random terminations that grew", grew, simulated, 0.0));
-  table.rows.push_back(count_row(start + "stable, hardest terminations that grew", grew_hard, hard, 0.0));
+  add_excluded(start + "stable, random terminations that grew", grew, simulated, table);
+  add_excluded(start + "stable, hardest terminations that grew", grew_hard, hard, table);
   table.rows.push_back(
-      count_row(start + "stable, any of these that grew at 1 kHz and not at 8", grew_sampled, simulated + hard, {}));
+      count_row(start + "stable, any of these that grew at 1 kHz and not at 8", grew_sampled, simulated + hard));
   const Counted unstable = count(cases, [](const Case& one) { return !one.stable; });
-  table.rows.push_back(count_row(start + "not stable, constructed terminations that did not grow",
-                                 unstable.cases - unstable.grew, unstable.cases, 0.0));
+  add_excluded(start + "not stable, constructed terminations that did not grow", unstable.cases - unstable.grew,
+               unstable.cases, table);
+  constexpr double kSameFrequency = 5.0;  // [%]
+  int elsewhere = 0;
   double furthest = 0.0;
   for (const Case& one : cases) {
     if (one.stable || !one.shown || !one.shown->grew) continue;
-    furthest = std::max(furthest, std::abs(one.shown->frequency / one.shown->expected_frequency - 1.0));
+    const double distance = 100.0 * std::abs(one.shown->frequency / one.shown->expected_frequency - 1.0);
+    elsewhere += distance > kSameFrequency ? 1 : 0;
+    furthest = std::max(furthest, distance);
   }
-  constexpr double kSameFrequency = 5.0;  // [%]
-  table.rows.push_back(at_most_row(start + "not stable, largest distance from the violated frequency", 100.0 * furthest,
-                                   kSameFrequency, "%"));
-  table.rows.push_back(count_row(start + "not stable, nothing to construct below 62.5 Hz or too slow", unseen,
-                                 unstable.cases + unseen, {}));
+  add_excluded(start + fmt::format("not stable, grew further than {:g} % from the violated frequency", kSameFrequency),
+               elsewhere, unstable.grew, table);
+  table.rows.push_back(
+      exact_row(start + "not stable, largest distance from the violated frequency", furthest, {}, "%"));
+  table.rows.push_back(
+      count_row(start + "not stable, nothing to construct below 62.5 Hz or too slow", unseen, unstable.cases + unseen));
   const Counted by_sampling = count(cases, [](const Case& one) { return one.stable && !one.stable_sampled; });
   table.rows.push_back(count_row(start + "stable but for the sampling, constructed terminations that grew",
-                                 by_sampling.grew, by_sampling.cases, {}));
+                                 by_sampling.grew, by_sampling.cases));
   table.rows.push_back(
-      count_row(start + "stable, over a line with 10 % loss and 5 ms of jitter, grew", grew_late, late, {}));
+      count_row(start + "stable, over a line with 10 % loss and 5 ms of jitter, grew", grew_late, late));
 }
 
 void add_controlled(const Cases& cases, ValidationTable& table) {
@@ -302,7 +313,7 @@ void add_controlled(const Cases& cases, ValidationTable& table) {
     grew += *one.shown->grew_with_controller ? 1 : 0;
   }
   table.rows.push_back(count_row("constructed terminations that grow in spite of a passivity controller at the master",
-                                 grew, controlled, {}));
+                                 grew, controlled));
 }
 
 /// A hand that pushes with a constant force [N].
@@ -348,11 +359,9 @@ Result<void> add_wall(ValidationTable& table) {
   for (const auto& [with, known] : {std::pair{false, -0.237}, {true, -0.007}}) {
     const auto energy = wall_energy(with);
     if (!energy) return tl::unexpected(energy.error());
-    ValidationRow row = at_least_row(
+    table.rows.push_back(exact_row(
         fmt::format("wall of 30 kN/m at 1 kHz, lowest energy {} passivity controller", with ? "with" : "without"),
-        *energy, {}, "J");
-    row.expected = {known - kLastDigit, known + kLastDigit};
-    table.rows.push_back(std::move(row));
+        *energy, Range{known - kLastDigit, known + kLastDigit}, "J"));
   }
   return {};
 }
@@ -376,7 +385,7 @@ Chart growth_chart(const std::vector<Cases>& of_operators) {
 }  // namespace
 
 Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 25");
+  if (options.runs < 1) return no_runs(options.runs);
   constexpr int kDesigns = static_cast<int>(kArchitectures.size());
   const int designs = kDesigns * options.runs;
   std::vector<Cases> of_operators(kOperators.size(), Cases(static_cast<std::size_t>(designs)));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "mbk/measure/identify/srivc.h"
 #include "mbk/measure/identify/transfer_function_fit.h"
 #include "mbk/study/validation/robot_trials.h"
+#include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
@@ -40,16 +42,6 @@ SignalPair noisy_record(std::uint64_t seed) {
   return pair;
 }
 
-/// A value of the study, right to ±uncertainty.
-ValidationRow row_between(std::string what, double value, double uncertainty, std::pair<double, double> expected) {
-  ValidationRow row;
-  row.what = std::move(what);
-  row.value = value;
-  row.interval99 = {value - uncertainty, value + uncertainty};
-  row.expected = expected;
-  return row;
-}
-
 struct Run {
   Vector theta, standard_error;
   bool right_order = false;
@@ -77,7 +69,7 @@ Result<Run> identified_run(std::uint64_t seed) {
 }  // namespace
 
 Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
-  const auto ran = seeded_runs(options, 50, identified_run);
+  const auto ran = seeded_runs(options, identified_run);
   if (!ran) return tl::unexpected(ran.error());
   const std::vector<Run>& runs = *ran;
 
@@ -95,29 +87,20 @@ Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
   constexpr double kBias = 1.0;  // [%]
   for (Index k = 0; k < kTruth.size(); ++k) {
     const Vector error = of_runs([&](const Run& run) { return 100.0 * (run.theta[k] / kTruth[k] - 1.0); });
-    ValidationRow row = bias_row(fmt::format("bias of {}", kNames[k]), error, kBias, "%");
-    row.coverage =
-        of_runs([&](const Run& run) {
-          return std::abs(run.theta[k] - kTruth[k]) <= numeric::kNormal95 * run.standard_error[k] ? 1.0 : 0.0;
-        }).mean();
-    table.rows.push_back(std::move(row));
-  }
-  const double root_runs = std::sqrt(static_cast<double>(options.runs));
-  for (Index k = 0; options.runs > 1 && k < kTruth.size(); ++k) {
-    const Vector error = of_runs([&](const Run& run) { return run.theta[k] - kTruth[k]; });
-    const double spread = std::sqrt((error.array() - error.mean()).square().sum() / (options.runs - 1)),
-                 ratio = spread / kPublishedSpread[k];
-    constexpr double kFarthest = 3.0, kMin = 0.75, kMax = 1.25, kNormal99 = 2.576;
-    table.rows.push_back(row_between(fmt::format("mean of {}, in its standard errors from the truth", kNames[k]),
-                                     error.mean() / (spread / root_runs), 0.0, {-kFarthest, kFarthest}));
+    table.rows.push_back(bias_row(fmt::format("bias of {}", kNames[k]), error, kBias, "%"));
+    const auto held = std::ranges::count_if(runs, [&](const Run& run) {
+      return std::abs(run.theta[k] - kTruth[k]) <= numeric::kNormal95 * run.standard_error[k];
+    });
+    table.rows.push_back(share_row(fmt::format("95 % interval of {} holds the truth", kNames[k]),
+                                   static_cast<int>(held), options.runs, kNearNominal));
+    const Vector theta = of_runs([&](const Run& run) { return run.theta[k]; });
     table.rows.push_back(
-        row_between(fmt::format("spread of {}, over the published {:g}", kNames[k], kPublishedSpread[k]), ratio,
-                    kNormal99 * ratio / std::sqrt(2.0 * (options.runs - 1)), {kMin, kMax}));
+        spread_row(fmt::format("spread of {}, over the published {:g}", kNames[k], kPublishedSpread[k]), theta,
+                   kPublishedSpread[k], {0.75, 1.25}));
   }
-  constexpr double kOrder = 90.0;  // [%]
-  table.rows.push_back(at_least_row("order (4, 1) chosen of eight",
-                                    100.0 * of_runs([](const Run& run) { return run.right_order ? 1.0 : 0.0; }).mean(),
-                                    kOrder, "%"));
+  table.rows.push_back(share_row("order (4, 1) chosen of eight",
+                                 static_cast<int>(std::ranges::count_if(runs, &Run::right_order)), options.runs,
+                                 kNearlyAlways));
   table.notes.emplace_back(
       "(−6400 s + 1600)/(s⁴ + 5 s³ + 408 s² + 416 s + 1600) of Rao & Garnier (2002), behind a random binary input of "
       "71.6 s at 100 Hz and white noise of a tenth of the output's variance. Six starts each, none near the truth.");

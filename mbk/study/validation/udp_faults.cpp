@@ -18,6 +18,7 @@
 #include "mbk/experiment/safety/gate.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/study/validation/child_process.h"
+#include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/temporary_folder.h"
 #include "mbk/study/validation/udp_fault_kinds.h"
 
@@ -36,13 +37,12 @@ constexpr int kFaultFreeTrials = 3;  // of a run
 /// Of a trial of forces without a fault [N]. With the 6 N of the others this arm is 80 mm from home within an hour,
 /// where the stop is right.
 constexpr double kFaultFreeForce = 4.0;
-constexpr int kAttempts = 5;             // of a run with a fault, where a recorded stall ends the trial first
-constexpr double kPatience = 30.0;       // for a program beyond its trial [s]
-constexpr double kStall = 0.005;         // between two ticks of the loop, or missed in a row by the robot [s]
-constexpr double kBefore = 1.0;          // a stall explains a trip for so long [s]
-constexpr int kNotConfirmedOff = 7;      // exit code of `mbk run`
-constexpr double kShareExpected = 99.0;  // lower end of the interval of a share [%]
-constexpr double kHandSpeed = 0.4;       // with a flipped sign, trial of positions [m/s]
+constexpr int kAttempts = 5;         // of a run with a fault, where a recorded stall ends the trial first
+constexpr double kPatience = 30.0;   // for a program beyond its trial [s]
+constexpr double kStall = 0.005;     // between two ticks of the loop, or missed in a row by the robot [s]
+constexpr double kBefore = 1.0;      // a stall explains a trip for so long [s]
+constexpr int kNotConfirmedOff = 7;  // exit code of `mbk run`
+constexpr double kHandSpeed = 0.4;   // with a flipped sign, trial of positions [m/s]
 
 /// What a stall of the loop, the link or the robot's program may look like from the other side.
 constexpr std::array<std::string_view, 12> kOfStalls = {"late",
@@ -317,33 +317,10 @@ Safe safe_state_of(const FaultOutcome& outcome) {
   return off && (outcome.said.confirmed || !began) ? Safe::confirmed : Safe::silently_wrong;
 }
 
-ValidationRow row_of(std::string what, double value, std::optional<std::pair<double, double>> expected,
-                     std::string unit) {
-  ValidationRow row;
-  row.what = std::move(what);
-  row.value = value;
-  row.interval99 = {value, value};
-  row.expected = expected;
-  row.unit = std::move(unit);
-  return row;
-}
-
-/// "at least", by the lower end of the exact 95 % interval: few runs show little.
-ValidationRow share_row(const std::string& what, int good, int of) {
-  const double low = of > 0 ? 100.0 * numeric::binomial_interval(good, of, 0.95).first : 0.0;
-  return row_of(fmt::format("{}: {} of {}, a share of at least", what, good, of), low, {{kShareExpected, 100.0}}, "%");
-}
-
-/// Upper end of the exact two-sided 95 % interval of a Poisson mean: P(N ≤ n) = 0.025.
-double poisson_upper(int count) {
-  double low = count, high = 2.0 * count + 20.0;
-  for (int i = 0; i < 100; ++i) {
-    const double mean = 0.5 * (low + high);
-    double term = std::exp(-mean), sum = term;
-    for (int n = 1; n <= count; ++n) sum += term *= mean / n;
-    (sum > 0.025 ? low : high) = mean;
-  }
-  return high;
+/// Exact two-sided 95 % interval of a Poisson mean: P(N ≥ n) = 0.025 at its lower end, P(N ≤ n) = 0.025 at the upper.
+Range poisson_interval(int count) {
+  const double low = count == 0 ? 0.0 : 0.5 * numeric::chi_square_quantile(0.025, 2 * count);
+  return {low, 0.5 * numeric::chi_square_quantile(0.975, 2 * count + 2)};
 }
 
 class Summary {
@@ -357,33 +334,35 @@ class Summary {
   void finish() {
     if (faults_ > 0) {
       table_->rows.push_back(
-          share_row("recognised within the documented ticks, for a right reason", in_time_, judged_));
-      table_->rows.push_back(share_row("motors confirmed off, or loudly not", safe_, faults_));
-      table_->rows.push_back(row_of("silently wrong about the motors", faults_ - safe_, {{0.0, 0.0}}, "runs"));
+          share_row("recognised within the documented ticks, for a right reason", in_time_, judged_, kOfFaults));
+      table_->rows.push_back(share_row("motors confirmed off, or loudly not", safe_, faults_, kOfFaults));
+      table_->rows.push_back(exact_row("silently wrong about the motors", faults_ - safe_, Range{0.0, 0.0}, "runs"));
       table_->rows.push_back(
-          row_of("confirmed with a torque below torque_error_Nm left, as documented", unresolved_, {}, "runs"));
+          exact_row("confirmed with a torque below torque_error_Nm left, as documented", unresolved_, {}, "runs"));
       for (const auto& [what, verdict] :
            {std::pair{"recognised late", Verdict::late}, std::pair{"stopped for another reason", Verdict::wrong_reason},
             std::pair{"not recognised", Verdict::not_recognised}}) {
-        table_->rows.push_back(row_of(what, verdicts_[static_cast<std::size_t>(verdict)], {{0.0, 0.0}}, "runs"));
+        table_->rows.push_back(exact_row(what, verdicts_[static_cast<std::size_t>(verdict)], Range{0.0, 0.0}, "runs"));
       }
-      table_->rows.push_back(row_of("ended by a recorded stall, counted apart and tried again",
-                                    verdicts_[static_cast<std::size_t>(Verdict::stalled)], {}, "runs"));
-      table_->rows.push_back(row_of("trial over before the fault began",
-                                    verdicts_[static_cast<std::size_t>(Verdict::never_began)], {}, "runs"));
+      table_->rows.push_back(exact_row("ended by a recorded stall, counted apart and tried again",
+                                       verdicts_[static_cast<std::size_t>(Verdict::stalled)], {}, "runs"));
+      table_->rows.push_back(exact_row("trial over before the fault began",
+                                       verdicts_[static_cast<std::size_t>(Verdict::never_began)], {}, "runs"));
     }
     if (flipped_ >= 0.0) {
       table_->rows.push_back(
-          row_of("hand speed with a flipped sign, trial of positions", flipped_, {{0.0, kHandSpeed}}, "m/s"));
+          exact_row("hand speed with a flipped sign, trial of positions", flipped_, Range{0.0, kHandSpeed}, "m/s"));
     }
     if (free_ > 0) {
       const double hours = seconds_ / 3600.0;
       table_->rows.push_back(
-          row_of(fmt::format("trips in {:.1f} min without a fault", seconds_ / 60.0), trips_, {{0.0, 0.0}}, ""));
-      table_->rows.push_back(
-          row_of("trips in an hour without a fault, at most", poisson_upper(trips_) / hours, {{0.0, 3.75}}, ""));
-      table_->rows.push_back(row_of("of a recorded stall, counted apart", stalls_, {}, ""));
-      table_->rows.push_back(row_of("without a word about the motors", silent_, {{0.0, 0.0}}, "trials"));
+          exact_row(fmt::format("trips in {:.1f} min without a fault", seconds_ / 60.0), trips_, Range{0.0, 0.0}, ""));
+      ValidationRow hourly = exact_row("trips in an hour without a fault", trips_ / hours, Range{0.0, 3.75}, "");
+      const auto [low, high] = poisson_interval(trips_);
+      hourly.interval95 = {low / hours, high / hours};
+      table_->rows.push_back(std::move(hourly));
+      table_->rows.push_back(exact_row("of a recorded stall, counted apart", stalls_, {}, ""));
+      table_->rows.push_back(exact_row("without a word about the motors", silent_, Range{0.0, 0.0}, "trials"));
     }
   }
 
@@ -426,13 +405,12 @@ class Summary {
     auto row = std::ranges::find(table_->rows, what, &ValidationRow::what);
     if (row == table_->rows.end()) {
       if (apart) return;
-      table_->rows.push_back(row_of(what, 0.0, {{0.0, documented(*job.kind, job.trial)}}, "ticks"));
+      table_->rows.push_back(exact_row(what, 0.0, Range{0.0, documented(*job.kind, job.trial)}, "ticks"));
       row = table_->rows.end() - 1;
     }
     if (apart) return;
     const double ticks = outcome.ticks >= 0 ? static_cast<double>(outcome.ticks) : 1e3 * kTrial;
     row->value = std::max(row->value, ticks);
-    row->interval99 = {row->value, row->value};
   }
 
   void add_free(const Job& job, const FaultOutcome& outcome) {
@@ -522,8 +500,7 @@ Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
   summary.finish();
   table.notes.push_back(
       fmt::format("A tick is 1 ms of the robot's clock. Expected is what docs/guide/safety.md documents, with {} ticks "
-                  "of ramp and {} of "
-                  "the link. Shares are the lower ends of exact 95 % intervals.",
+                  "of ramp and {} of the link.",
                   safety::kRampTicks, kLinkTicks));
   return table;
 }

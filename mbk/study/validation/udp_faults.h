@@ -20,9 +20,8 @@ struct UdpFaultsOptions {
 /// processes on the loopback, in real time. A run is one moment of each kind, in turn in a trial of positions and one
 /// of forces, and three minutes without a fault. What the motors truly did the robot records; a fault counts as
 /// recognised in time where they were off, or the robot was told so, within the documented ticks and the ramp.
-/// Expected, with the lower ends of 95 % intervals (Clopper–Pearson), so that few runs show nothing: recognised in time
-/// for a right reason, and never a wrong word about the motors. What a recorded stall of the loop or of the robot's
-/// program explains is counted apart and tried again, with another moment, up to five times.
+/// Expected: recognised in time for a right reason, and never a wrong word about the motors. What a recorded stall of
+/// the loop or of the robot's program explains is counted apart and tried again, with another moment, up to five times.
 /// @fails  usage: runs < 1; a fault that there is not. data: a program cannot be begun, or says something else.
 [[nodiscard]] Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options);
 

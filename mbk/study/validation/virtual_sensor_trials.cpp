@@ -42,8 +42,8 @@ Result<Eigen::Vector2d> force_rmse(const PreparedTrial& trial, const PreparedTri
   return Eigen::Vector2d((squares / static_cast<double>(rows)).cwiseSqrt());
 }
 
-Result<Outcome> measured(const Recording& recording, Force force, const Robots& robots, const PreparedTrial& truth,
-                         const measurement::Options& options) {
+Result<ForceOutcome> measured(const Recording& recording, Force force, const Robots& robots, const PreparedTrial& truth,
+                              const measurement::Options& options) {
   preprocess::Options signals = options.preprocess;
   signals.cutoff = truth.preparation.cutoff;
   signals.every = truth.preparation.every;
@@ -53,7 +53,7 @@ Result<Outcome> measured(const Recording& recording, Force force, const Robots& 
   if (!rmse) return tl::unexpected(rmse.error());
   auto found = identify::identify_impedance({*trial}, options.identify);
   if (!found) return tl::unexpected(found.error());
-  return Outcome{std::move(found->model), std::move(found->standard_error), std::move(found->fit.vaf), *rmse};
+  return ForceOutcome{std::move(found->model), std::move(found->standard_error), std::move(found->fit.vaf), *rmse};
 }
 
 }  // namespace

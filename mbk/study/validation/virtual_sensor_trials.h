@@ -43,7 +43,7 @@ struct Robots {
 [[nodiscard]] Result<Robots> identify_robots(std::uint64_t seed, const std::optional<robot::Capstan>& capstan = {});
 
 /// What one force made of one trial.
-struct Outcome {
+struct ForceOutcome {
   impedance::Model model, standard_error;
   Vector vaf;            ///< of the model, held out [%]
   Eigen::Vector2d rmse;  ///< of the force against what acted, behind the same filters [N]
@@ -53,9 +53,9 @@ struct Outcome {
 struct ForceTrial {
   std::string stiffness, mass;  ///< of a rig: "K5", "M3"
   impedance::Model truth;       ///< mean over the trial
-  std::array<Outcome, kForces> by;
+  std::array<ForceOutcome, kForces> by;
 
-  [[nodiscard]] const Outcome& of(Force force) const { return by[static_cast<std::size_t>(force)]; }
+  [[nodiscard]] const ForceOutcome& of(Force force) const { return by[static_cast<std::size_t>(force)]; }
 };
 
 /// How a trial is measured, apart from the source of its force.

@@ -3,7 +3,7 @@ import type { LiveEstimate, Value } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
 import { ellipsePanels } from "@mbk/shared/ellipses";
 import { fixed, withHalfWidth } from "@mbk/shared/format";
-import { matrices, unitsOf } from "@mbk/shared/result";
+import { matrices, methodNames, unitsOf } from "@mbk/shared/result";
 import { plainWarnings } from "@mbk/shared/warnings";
 
 const cells: [number, number][] = [[0, 0], [0, 1], [1, 0], [1, 1]];
@@ -58,8 +58,8 @@ export class EstimatePanel {
     const seconds = (estimate.perturbed_s ?? 0).toFixed(0);
     const ellipses = ellipsePanels(result);
     this.element.replaceChildren(
-      title(estimate.final ? ` of the whole perturbation, ${seconds} s` : ` so far, from ${seconds} s`),
-      h(
+      title(`${estimate.final ? ` of the whole perturbation, ${seconds} s` : ` so far, from ${seconds} s`}, by ${methodNames[result.method]}`),
+      !result.usable ? "" : h(
         "div",
         { class: "matrices" },
         ...matrices.map(({ symbol, title: name }) =>
@@ -71,7 +71,7 @@ export class EstimatePanel {
               withHalfWidth(result.model[symbol][i]?.[j] ?? null, result.standard_error[symbol][i]?.[j] ?? null, `${symbol}${i}${j}`))),
           )),
       ),
-      ellipses ?? "",
+      (result.usable && ellipses) || "",
       h(
         "p",
         { class: "tightening" },

@@ -1,5 +1,5 @@
 // The document of schema mbk.report/1 that stands in the page.
-import type { Method, Model, Report as ReportDocument, Summary } from "@mbk/shared/documents";
+import type { Failure, Method, Model, Report as ReportDocument, Summary } from "@mbk/shared/documents";
 import type { Trial } from "@mbk/shared/result";
 
 /** The document as the page goes through it. */
@@ -9,6 +9,10 @@ export interface Report {
   note: string | undefined;
   trials: Trial[];
   summary: Summary | undefined;
+  /** Why there is no summary of several recordings. */
+  noSummary: string | undefined;
+  /** Recordings that could not be measured. */
+  failed: Failure[];
 }
 
 /** Reads the document out of the page. Throws where it is none. */
@@ -21,6 +25,8 @@ export function readReport(json: ReportDocument): Report {
     command,
     note,
     summary: several ? result.summary : undefined,
+    noSummary: several ? result.no_summary : undefined,
+    failed: (several ? result.failed : undefined) ?? [],
     trials: (several ? result.results : [result]).map((one, k) => ({ ...(json.trials[k] ?? { recordings: [] }), result: one })),
   };
 }

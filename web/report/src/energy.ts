@@ -29,7 +29,7 @@ function overTime(all: Named[], id: string): Chart {
   return {
     id: `${id}-energy-over-time`,
     title: "Energy that the limb absorbed",
-    howToRead: "Where it rises the limb takes energy from the machine; where it falls the limb gives some. A spring only borrows, so small waves mean nothing: a sustained fall is the mark of an active limb.",
+    howToRead: "Where it rises the limb takes energy from the machine; where it falls the limb gives some. A spring only borrows, so small waves mean nothing: a sustained fall is energy that the limb delivered.",
     description: `${words.join("; ")}.`,
     x: { name: "time", unit: "s" },
     panels: [{
@@ -112,12 +112,12 @@ export function energySection(trial: Trial, id: string, level: HeadingLevel): HT
   const curl = recordings[0]?.energy.curl;
   return h("section", { id: `${id}-energy` },
     heading(level, "Energy"),
-    h("p", {}, "What the limb took from the machine, by force and motion alone: no model is needed. In short: ", h("span", { "data-name": "energy-reason" }, (account ?? recordings[0]?.energy.account)?.reason ?? ""), "."),
+    h("p", {}, "What the limb took from the machine, by force and motion alone: no model is needed."),
     accountTable(rows, units.B),
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "The excess of passivity is the damping that could be removed before the limb would have generated energy. A negative excess is a shortage: the damping that would have to be added."),
     ...(recordings.length ? [figure(overTime(recordings, id))] : []),
     parts ? figure(parts) : "",
-    curl && recordings.length === 1
+    curl && recordings.length === 1 && trial.result.usable
       ? h("p", {}, "The antisymmetric stiffness of ", data(curl.k_a, significant(curl.k_a), "curl-k_a"), ` ${units.K} absorbed `, data(curl.absorbed_J, significant(curl.absorbed_J), "curl-absorbed"), " J of it",
         curl.share === null ? "" : [" (", `${fixed(100 * curl.share, 0)} %`, ")"].join(""), ". No spring can: it is the work of the model's antisymmetric (rotational) stiffness along the path of the hand.")
       : "");

@@ -51,7 +51,7 @@ function drawing(name: string, matrix: Square, perNewton: number, words: string)
 
 export function forceFieldSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
   const K = trial.result.model.K;
-  if (trial.result.axes !== 2 || K.flat().length !== 4 || K.flat().some((value) => value === null)) return undefined;
+  if (!trial.result.usable || trial.result.axes !== 2 || K.flat().length !== 4 || K.flat().some((value) => value === null)) return undefined;
   const units = unitsOf(trial.result);
   const parts = partsOf(K as Square);
   const largest = Math.max(...parts.flatMap(({ matrix }) => steps.flatMap((y) => steps.map((x) => size(force(matrix, [x * reach, y * reach]))))));

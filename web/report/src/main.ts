@@ -117,7 +117,7 @@ function drawTransferFunction(report: TransferFunctionReport): void {
 }
 
 function draw(report: Report): void {
-  const several = report.trials.length > 1;
+  const several = report.trials.length > 1 || report.failed.length > 0;
   const sections = several
     ? [overviewSection(report), recordingsSection(report)]
     : trialSections(report.trials[0] as Trial, "trial-1", 2);

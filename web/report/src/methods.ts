@@ -7,6 +7,7 @@ import { modelBy } from "./data";
 import { methodNames } from "./words";
 
 const both: Method[] = ["ls", "iv"];
+const strongF = 104.7; // first-stage F from which ±1.96 standard errors are a 95 % interval (Lee et al. 2022)
 
 /** "K_xy", or "K" where there is one axis. */
 const elements = (axes: number) => {
@@ -22,34 +23,42 @@ function comparison(trial: Trial): HTMLElement | undefined {
   const other = alternatives?.[0];
   if (!other) return undefined;
   const units = unitsOf(trial.result);
-  const columns = both.map((method) => ({ method, found: modelBy(method, trial) }));
+  const usable = (method: Method): boolean => (method === other.method ? other.usable : trial.result.usable);
+  const shown = both.filter(usable);
+  if (shown.length === 0) return undefined;
+  const columns = shown.map((method) => ({ method, found: modelBy(method, trial) }));
   const rows: (Node | string)[][] = elements(axes).map(({ symbol, name, j, i }) => [
     name,
     ...columns.map(({ method, found }) => (found ? withHalfWidth(found.model[symbol][j]?.[i] ?? null, found.standard_error[symbol][j]?.[i] ?? null, `${method}-${symbol}${j}${i}`) : "")),
     units[symbol],
   ]);
-  rows.push(["VAF", ...both.map((method) => perAxis((method === other.method ? other.fit : fit).VAF, 1, "%", `${method}-VAF`)), ""]);
-  return table("The same recording by two methods; ± is the 95 % interval", ["", ...both.map((method) => `${methodNames[method]}${method === trial.result.method ? " (the model above)" : ""}`), "unit"], rows, "numbers methods");
+  rows.push(["VAF", ...shown.map((method) => perAxis((method === other.method ? other.fit : fit).VAF, 1, "%", `${method}-VAF`)), ""]);
+  return table(shown.length === 2 ? "The same recording by two methods; ± is the 95 % interval" : `By ${methodNames[shown[0] as Method]} alone: the other method is not usable here; ± is the 95 % interval`, ["", ...shown.map((method) => `${methodNames[method]}${method === trial.result.method ? " (the model above)" : ""}`), "unit"], rows, "numbers methods");
 }
 
 function disagreement(trial: Trial): HTMLElement | undefined {
   const { disagreement: d, axes } = trial.result;
   if (!d) return undefined;
   const unit = unitsOf(trial.result)[(d.parameter[0] ?? "").toUpperCase() as "M" | "B" | "K"] ?? unitsOf(trial.result).x0;
-  const numbers = [`They differ most in ${parameterName(d.parameter)}: by `, withHalfWidth(d.iv_less_ls, d.standard_error, "iv-less-ls"), ` ${unit}`];
-  if (!d.significant) return h("p", { "data-significant": "false" }, h("strong", {}, "The two methods agree within chance. "), ...numbers, ".");
-  return h("p", { "data-significant": "true" }, h("strong", {}, "The two methods disagree beyond chance. "), ...numbers,
+  const instrument = trial.result.instrument ?? trial.result.alternatives.find((one) => one.instrument)?.instrument;
+  const other = trial.result.alternatives[0];
+  const holds = instrument?.strong && (trial.result.method === "iv" ? trial.result.usable : other?.usable);
+  if (!holds) return h("p", { "data-significant": "unknown" }, h("strong", {}, "Instrumental variables do not hold here, and cannot check least squares."));
+  const share = d.least_squares ? `, ${significant(Math.abs((100 * (d.iv_less_ls ?? 0)) / d.least_squares), 2)} % of what least squares finds` : "";
+  const numbers = [`They differ most in ${parameterName(d.parameter)}: by `, withHalfWidth(d.iv_less_ls, d.standard_error, "iv-less-ls"), ` ${unit}${share}`];
+  if (!d.significant) return h("p", { "data-significant": "false" }, h("strong", {}, "No difference between the two methods is significantly larger than the standard error of least squares. "), ...numbers, ".");
+  return h("p", { "data-significant": "true" }, h("strong", {}, "The two methods differ significantly. "), ...numbers,
     `. Least squares takes what the ${axes === 1 ? "limb" : "arm"} does on its own account, voluntarily or by reflex, for mechanics. Instrumental variables look only at what follows the known perturbation, and what the limb does of itself does not follow it. Where the instruments are strong and the two disagree, the latter support the limb.`);
 }
 
 function instrumentTable(instrument: Instrument, trial: Trial): HTMLElement {
   const { axes } = trial.result;
   const names = ["acceleration", "velocity", "position"].flatMap((kind) => axisNames(axes).map((axis) => `${kind} ${axis}`.trim()));
-  const rows: (Node | string)[][] = instrument.first_stage_F.map((value, k) => [names[k] ?? `${k + 1}`, data(value, significant(value), `first-stage-F${k}`), value === null ? "?" : value > 10 ? "✓ strong" : "✕ weak"]);
+  const rows: (Node | string)[][] = instrument.first_stage_F.map((value, k) => [names[k] ?? `${k + 1}`, data(value, significant(value), `first-stage-F${k}`), value === null ? "?" : value > strongF ? "✓ strong" : "✕ weak"]);
   return h("div", {},
     h("p", {}, h("strong", {}, instrument.strong ? "The instruments are strong. " : "The instruments are weak. "),
       "They are made from the commanded ", instrument.reference, "; the weakest first-stage F is ", data(instrument.weakest_F, significant(instrument.weakest_F), "weakest-F"),
-      instrument.strong ? ", above the customary 10." : ", not above the customary 10: do not rely on the model of instrumental variables.",
+      instrument.strong ? `, above ${strongF}.` : `, not above ${strongF}: the intervals of instrumental variables do not hold.`,
       " Of the force that instrumental variables leave unexplained, this share answers the perturbation all the same, by reflex or because the limb is more than inertia, damping and stiffness: ",
       perAxis(instrument.coherent_residual_fraction.map((share) => (share === null ? null : 100 * share)), 0, "%", "answered"), "."),
     table("Strength of the instruments: first-stage F of each signal, given the others", ["", "F", ""], rows, "numbers narrow instruments"));
@@ -85,7 +94,7 @@ function bootstrapTable(b: Bootstrap): HTMLElement {
 export function methodsSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
   const { alternatives, bootstrap } = trial.result;
   const instrument = trial.result.instrument ?? alternatives?.find((one) => one.instrument)?.instrument;
-  const parts = [disagreement(trial), comparison(trial), instrument && instrumentTable(instrument, trial), bootstrap && bootstrapTable(bootstrap)].filter((part) => part !== undefined);
+  const parts = [disagreement(trial), comparison(trial), instrument && instrumentTable(instrument, trial), bootstrap && trial.result.usable ? bootstrapTable(bootstrap) : undefined].filter((part) => part !== undefined);
   if (parts.length === 0) return undefined;
   return h("section", { id: `${id}-methods` }, heading(level, "Two methods, two kinds of interval"), ...parts);
 }

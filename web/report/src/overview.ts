@@ -1,5 +1,5 @@
 // Several recordings side by side.
-import type { Value } from "@mbk/shared/documents";
+import type { Passivity, Prediction, Value } from "@mbk/shared/documents";
 import { h, heading, table } from "@mbk/shared/dom";
 import { ellipsesSideBySide } from "@mbk/shared/ellipses";
 import { data, decimalsFor, fixed, normal95, significant, withInterval } from "@mbk/shared/format";
@@ -8,6 +8,7 @@ import { conditionOf, fileOf, participantOf, type Report } from "./data";
 import { energySideBySide } from "./energy";
 import { verdictBadge } from "./passivity";
 import { verdict } from "./summary";
+import { methodNames } from "./words";
 
 /** "P1, relaxed", or the name of the file where nothing else distinguishes it. */
 export function nameOf(trial: Trial, all: Trial[]): string {
@@ -43,8 +44,15 @@ function matrix(values: Value[][], halves: Value[][], name: string): HTMLElement
 
 const scaled = (values: Value[][], factor: number): Value[][] => values.map((row) => row.map((value) => (value === null ? null : factor * value)));
 
+/** What happened in the trial, and what its model predicts. */
+function verdicts(passivity: Passivity | undefined): HTMLElement[] {
+  if (!passivity) return [];
+  const badge = (what: string, verdict: Prediction): HTMLElement => h("span", { "data-statement": what }, `${what} `, verdictBadge(verdict));
+  return [badge("trial", passivity.trial?.verdict ?? "none"), badge("prediction", passivity.prediction.verdict)];
+}
+
 export function overviewSection(report: Report): HTMLElement {
-  const { trials, summary } = report;
+  const { trials, summary, noSummary, failed } = report;
   const rows = inOrder(trials);
   const first = trials[0] as Trial;
   const sameUnits = trials.every((trial) => unitsOf(trial.result).M === unitsOf(first.result).M);
@@ -54,7 +62,7 @@ export function overviewSection(report: Report): HTMLElement {
     { name: "condition", of: conditionOf },
   ].filter(({ of }) => trials.some((trial) => of(trial) !== undefined));
   const judged = trials.some((trial) => trial.result.passivity);
-  const head = ["recording", ...told.map(({ name }) => name), judged ? "usable, passive" : "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
+  const head = ["recording", ...told.map(({ name }) => name), judged ? "usable; trial, prediction" : "usable", ...matrices.map(({ symbol, title }) => `${title} ${symbol}${sameUnits ? ` [${unitsOf(first.result)[symbol]}]` : ""}`), "VAF [%]"];
   const body: (Node | string)[][] = rows.map(({ trial, id }) => {
     const { result } = trial;
     const said = verdict(trial);
@@ -63,17 +71,18 @@ export function overviewSection(report: Report): HTMLElement {
       ...told.map(({ of }) => of(trial) ?? "–"),
       h("div", { class: "badges" },
         h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "usable") : "not usable"}`),
-        result.passivity && verdictBadge(result.passivity.verdict)),
-      ...matrices.map(({ symbol }) => h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol))),
+        ...verdicts(result.passivity)),
+      ...matrices.map(({ symbol }) => result.usable ? h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol)) : "–"),
       h("div", {}, ...result.fit.VAF.map((vaf, axis) =>
         h("div", { class: "number" }, result.axes === 1 ? "" : `${"xy"[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
     ];
   });
   if (summary) {
-    body.push([`mean of ${summary.trials}`, ...told.map(() => ""), "", ...matrices.map(({ symbol }) => matrix(summary.model[symbol], summary.between_trial_standard_error[symbol], `mean-${symbol}`)), ""]);
+    const all = summary.trials + summary.omitted.length;
+    body.push([`mean of ${summary.trials}${summary.omitted.length > 0 ? ` of ${all}` : ""}, by ${methodNames[summary.method]}`, ...told.map(() => ""), "", ...matrices.map(({ symbol }) => matrix(summary.model[symbol], summary.half_width95[symbol], `mean-${symbol}`)), ""]);
   }
-  const two = trials.some((trial) => trial.result.ellipses);
-  const ellipseRows: (Node | string)[][] = rows.filter(({ trial }) => trial.result.ellipses).map(({ trial }) => [
+  const two = trials.some((trial) => trial.result.ellipses && trial.result.usable);
+  const ellipseRows: (Node | string)[][] = rows.filter(({ trial }) => trial.result.ellipses && trial.result.usable).map(({ trial }) => [
     nameOf(trial, trials),
     ...matrices.flatMap(({ name }) => {
       const e = trial.result.ellipses?.[name];
@@ -91,7 +100,10 @@ export function overviewSection(report: Report): HTMLElement {
     { id: "overview" },
     heading(2, "Side by side"),
     table("Model of each recording, by participant and condition", head, body, "numbers overview"),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval within one recording; in the row of the mean it is the standard error between recordings.${order}`),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval: of a recording, from within it; of the mean, from how the recordings differ.${order}`),
+    noSummary ? h("p", { "data-name": "no-summary" }, h("strong", {}, "There is no mean: "), `${noSummary}.`) : "",
+    ...(summary?.omitted ?? []).map(({ file, why }) => h("p", { "data-name": "omitted" }, h("strong", {}, "Not in the mean: "), `${file}: ${why}.`)),
+    ...failed.map(({ file, message, try: what }) => h("p", { "data-name": "failed" }, h("strong", {}, "Not measured: "), `${file}: ${message}; ${what}.`)),
     two ? table("Ellipses: area in the square of the matrix's unit, shape, orientation in degrees with its 95 % interval", ["recording", ...matrices.flatMap(({ symbol }) => [`${symbol} area`, `${symbol} shape`, `${symbol} angle`])], ellipseRows, "numbers overview") : "",
     energySideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
     ellipsesSideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),

@@ -1,5 +1,5 @@
-// Is the limb passive? The verdict in plain words, and what it rests on.
-import type { Condition, Interval, ModelPassivity, Passivity, Value, Verdict } from "@mbk/shared/documents";
+// What energy the limb absorbed, what its model predicts, and what both rest on. The statements are those of the document.
+import type { Condition, EnergyLine, Interval, ModelPassivity, Passivity, Prediction, Value, Verdict } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
 import { data, fixed, plain, significant, withInterval } from "@mbk/shared/format";
 import { type Trial, unitsOf } from "@mbk/shared/result";
@@ -10,61 +10,67 @@ import { methodNames, verdictWords } from "./words";
 /** Decimals for three digits of the value. */
 export const threeDigits = (value: Value): number => (value ? Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(value))), 0), 9) : 2);
 
-export const verdictBadge = (verdict: Verdict): HTMLElement =>
+export const verdictBadge = (verdict: Prediction): HTMLElement =>
   h("span", { class: `badge ${verdictWords[verdict].kind}`, "data-verdict": verdict }, `${verdictWords[verdict].sign} ${verdict}`);
 
-const bandText = ([low, high]: [number, number]): string => `${plain(low, 3)} to ${plain(high, 3)} Hz`;
+const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
-/** Where the verdict holds, in words. */
-function holds(passivity: Passivity): string {
-  const model = passivity.models?.[0];
-  if (passivity.decided_by === "energy") {
-    return "It holds for the motion that was recorded, all of it; of other motions it says nothing.";
-  }
-  return model ? `It holds from ${bandText(model.band_hz)}: ${model.band_rule}.` : "";
+/** A statement with the sign and the word of its verdict. */
+function statement(what: "trial" | "prediction", title: string, verdict: Prediction, text: string, ...more: (Node | string)[]): HTMLElement {
+  const { kind, sign, word } = verdictWords[verdict];
+  return h("div", { class: `verdict ${kind}`, "data-statement": what, "data-verdict": verdict },
+    h("span", { class: "sign", "aria-hidden": "true" }, sign),
+    h("div", {},
+      h("p", {}, `${title}: `, h("strong", {}, word), "."),
+      h("p", { "data-name": `${what}-statement` }, sentence(text)),
+      ...more));
 }
 
-const decidedBy = (passivity: Passivity): string => {
-  if (passivity.decided_by === "energy") return passivity.energy ? "Decided by the energy that the limb absorbed, without a model" : "Decided by nothing: there is no account of the energy";
-  const method = passivity.models?.[0]?.method;
-  return `Decided by the model${method ? ` of ${methodNames[method]}` : ""}`;
-};
+function trialStatement({ trial }: Passivity): HTMLElement {
+  if (!trial) return h("p", { "data-statement": "trial", "data-verdict": "none" }, "Nothing is said of what happened in the trial: force or motion is not plausible. See the warnings.");
+  return statement("trial", "What happened in this trial", trial.verdict, trial.statement, trial.reason ? h("p", {}, sentence(trial.reason)) : "");
+}
 
-/** Each way to a verdict in a row. */
-function ways(passivity: Passivity, unit: string): HTMLElement | undefined {
-  const rows: (Node | string)[][] = (passivity.models ?? []).map((model) => [
-    `model of ${methodNames[model.method]}`,
-    verdictBadge(model.verdict),
-    verdictBadge(model.symmetric_part),
+const predictionStatement = ({ prediction }: Passivity): HTMLElement =>
+  statement("prediction", "What the model predicts", prediction.verdict, prediction.statement);
+
+/** What each method's model says, beside how much it explains. */
+function methods({ models = [] }: Passivity, unit: string): HTMLElement | undefined {
+  if (models.length === 0) return undefined;
+  const rows = models.map((model): (Node | string)[] => [
+    `model of ${methodNames[model.method]}${model.usable ? (model.fits ? "" : ", fits poorly") : ", not usable"}`,
+    h("span", { class: "number" }, ...model.VAF.flatMap((value, axis) => [axis ? ", " : "", data(value, fixed(value, 1), `${model.method}-vaf${axis}`)]), " %"),
+    verdictBadge(model.symmetric),
+    verdictBadge(model.antisymmetric),
     verdictBadge(model.published_rule),
     h("span", { class: "number" }, withInterval(model.min_index, model.min_index_interval95, `${model.method}-min-index`, threeDigits(model.min_index)), ` ${unit}, at ${plain(model.min_index_at_hz, 3)} Hz`),
   ]);
-  if (passivity.energy) {
-    const { energy } = passivity;
-    rows.push(["energy absorbed", verdictBadge(energy.verdict), "", "", h("span", { class: "number" }, withInterval(energy.absorbed_J, energy.interval95, "account-absorbed", threeDigits(energy.absorbed_J)), " J")]);
-  }
-  if (rows.length === 0) return undefined;
-  return table("Each way to a verdict, with the smallest index or the energy and its 95 % interval", ["", "verdict", "symmetric part alone", "published rule", "smallest index, or energy"], rows, "numbers ways");
+  return table("Each method's model, with its smallest passivity index in the band and the 95 % interval", ["", "VAF", "straight motion", "circular motion", "published rule", "smallest index"], rows, "numbers ways");
+}
+
+function linesTable(lines: EnergyLine[] | undefined): HTMLElement | undefined {
+  if (!lines?.length) return undefined;
+  const rows = lines.map((line, k): (Node | string)[] => [
+    `${plain(line.frequency_hz, 3)} Hz`,
+    h("span", { class: "number" }, withInterval(line.absorbed_J, line.interval95, `line${k}`, threeDigits(line.absorbed_J)), " J"),
+  ]);
+  return table("Energy absorbed at each line of the perturbation; brackets are 95 % intervals for all lines at once", ["line", "absorbed"], rows, "numbers lines");
 }
 
 export function passivitySection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
   const { passivity } = trial.result;
   if (!passivity) return undefined;
-  const { kind, sign, word, meaning } = verdictWords[passivity.verdict];
   return h("section", { id: `${id}-passivity` },
-    heading(level, "Is the limb passive?"),
-    h("div", { class: `verdict ${kind}`, "data-passivity": passivity.verdict, "data-by": passivity.decided_by },
-      h("span", { class: "sign", "aria-hidden": "true" }, sign),
-      h("div", {},
-        h("p", {}, h("strong", {}, `${word}. `), meaning),
-        h("p", {}, `${decidedBy(passivity)}: `, h("span", { "data-name": "reason" }, passivity.reason), `. ${holds(passivity)}`))),
-    passivity.explained_percent === null ? "" : h("p", {}, "Inertia, damping and stiffness explain ", data(passivity.explained_percent, `${fixed(passivity.explained_percent, 0)} %`, "explained"), " of the force at best. The higher this is, the more reliable the model-based verdict."),
-    ways(passivity, unitsOf(trial.result).B),
+    heading(level, "Energy and passivity"),
+    trialStatement(passivity),
+    predictionStatement(passivity),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
+      "Two statements, neither of which follows from the other. The first is about this trial and its motion only. The second is what the model says of other motions within the band in which the data show how the limb responds; beyond it, it is extrapolated. Straight motion shows the symmetric parts of the model only; the antisymmetric parts do work in motion that circles. Neither is a promise that a machine is stable with this person."),
+    methods(passivity, unitsOf(trial.result).B),
     trial.result.disagreement?.significant
       ? h("p", {}, "The two methods disagree beyond chance: the limb did something on its own account, which least squares takes for mechanics. ", h("a", { href: `#${id}-methods` }, "Both beside each other"), ".")
       : "",
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
-      "Passive: the limb gives back no more energy than it took. “Undecided” is a finding, not a fault: the data allow both. The symmetric part leaves out what makes force across the motion; the published rule takes estimates at their face value, without intervals."));
+    linesTable(passivity.trial?.lines));
 }
 
 const outcome: Record<Verdict, string> = { passive: "✓ holds", active: "✕ fails", undecided: "? open" };
@@ -76,7 +82,7 @@ function conditionsTable(model: ModelPassivity): HTMLElement {
     return [
       c.name,
       data(c.value, fixed(c.value, decimals), name),
-      data(c.lower95, fixed(c.lower95, decimals), `${name}-lower`),
+      data(c.lower, fixed(c.lower, decimals), `${name}-lower`),
       data(c.upper, fixed(c.upper, decimals), `${name}-upper`),
       c.unit,
       h("strong", { class: `outcome ${verdictWords[c.verdict].kind}-text`, "data-verdict": c.verdict }, outcome[c.verdict]),
@@ -118,7 +124,7 @@ function indexChart(models: ModelPassivity[], unit: string, id: string): Chart |
   return {
     id: `${id}-index`,
     title: "Passivity index over the band",
-    howToRead: "Above zero the limb takes energy up at that frequency, whatever the direction of the motion; below it, it can give some. Where the shaded band crosses zero the data leave it open. Each panel has a scale of its own.",
+    howToRead: "Above zero the model absorbs energy at that frequency, whatever the direction of the motion; below it, it can generate some. Where the shaded band crosses zero the data leave it open. Each panel has a scale of its own.",
     description: `Half the smallest eigenvalue of Z + Zᴴ; passive where it is positive. ${words.join("; ")}.`,
     x: { name: "frequency", unit: "Hz", log: isWide(drawn[0]?.band_hz) },
     panels: drawn.map(({ method, index }) => ({
@@ -157,7 +163,7 @@ function nyquistChart(trial: Trial, id: string): Chart | undefined {
   return {
     id: `${id}-nyquist`,
     title: "Impedance in the complex plane",
-    howToRead: "Z(jω) = (k − m ω²)/(jω) + b along the band. Its real part is the damping: where the curve lies left of zero, in the shaded half, the limb gives energy. Low frequencies lie below, where stiffness rules; high ones above, where inertia does.",
+    howToRead: "Z(jω) = (k − m ω²)/(jω) + b along the band. Its real part is the damping: where the curve lies left of zero, in the shaded half, the model generates energy. Low frequencies lie below, where stiffness rules; high ones above, where inertia does.",
     description: `The real part is ${significant(b)} ${unit} throughout; the imaginary part goes from ${significant(imaginary[0])} at ${plain(frequency[0], 3)} Hz to ${significant(imaginary.at(-1))} ${unit} at ${plain(frequency.at(-1), 3)} Hz.`,
     x: { name: "real part", unit, range },
     panels: [{
@@ -180,15 +186,19 @@ function nyquistChart(trial: Trial, id: string): Chart | undefined {
 /** Conditions, excess and index: what stands behind the verdict of a model. */
 export function passivityDetails(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
   const models = trial.result.passivity?.models ?? [];
-  if (models.length === 0) return undefined;
+  const first = models[0];
+  if (!first) return undefined;
   const unit = unitsOf(trial.result).B;
   const charts = [indexChart(models, unit, id), nyquistChart(trial, id)].filter((chart) => chart !== undefined);
-  const below = models[0]?.nonpassive_below_hz;
+  const circular = first.circular_hz;
   return h("section", { id: `${id}-conditions` },
     heading(level, "Passivity of the model"),
+    trial.result.usable ? "" : h("p", {}, "The result is not usable: these numbers show why, and predict nothing."),
     ...models.map(conditionsTable),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "A condition holds where it is above zero with 95 % confidence, and fails where it is below zero with 95 % confidence for all conditions at once. Between the two it is open. All must hold for “passive”; one that fails makes “active”."),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "A condition holds where it is above zero with 97.5 % confidence, and fails where it is below zero with 97.5 % confidence for all conditions at once. Between the two it is open. All must hold for “passive”; one that fails makes “active”."),
     excessTable(models, unit),
-    below ? h("p", {}, "Below ", data(below, `${significant(below, 2)} Hz`, "nonpassive-below"), " the model's antisymmetric stiffness outweighs its damping: for slower motion than that the model is active, whatever it is in the band.") : "",
+    first.antisymmetric !== "passive" && circular ? h("p", {}, "In circular motion the model of ", methodNames[first.method], ", as estimated, absorbs energy above ", data(circular[0], significant(circular[0], 2), "circular-low"), " Hz",
+      circular[1] !== null && circular[1] < 10 * first.band_hz[1] ? [" and below ", significant(circular[1], 2), " Hz"].join("") : "",
+      ". Beyond, its antisymmetric part outweighs its damping; what lies outside the band is extrapolated.") : "",
     ...charts.map(figure));
 }

@@ -26,6 +26,7 @@ export function identityFacts(trial: Trial): HTMLElement {
     ["Duration", `${listed(result.inputs.map((input) => plain(input.duration_s, 4)))} s at ${onlyOne(result.inputs.map((input) => plain(input.rate_hz, 5)))} Hz`],
     ["Window", how?.window_rule],
     ["Filters", filters],
+    ["Method", `${methodNames[result.method]}${result.method_rule ? ` (${result.method_rule})` : ""}`],
     ["Mode", result.mode === "reference" ? `reference: the published procedure, ${how?.procedure ?? ""}` : result.mode],
   ]);
 }
@@ -63,8 +64,10 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
     { id: `${id}-model` },
     heading(level, "The model"),
     h("p", { class: "equation" }, "M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."),
-    table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval", head, rows, "numbers"),
-    axes === 2
+    result.usable
+      ? table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval", head, rows, "numbers")
+      : h("p", { "data-name": "no-model" }, "The model is not usable, and none of its numbers is shown. The file that ", h("code", {}, "mbk measure --json"), " writes holds them."),
+    axes === 2 && result.usable
       ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "“xy” is the force along x that comes from motion along y.")
       : "",
     table("How well the model explains the force", ["", "value"], fitRows, "numbers narrow"),
@@ -73,7 +76,7 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
 
 export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
   const { ellipses, antisymmetry } = trial.result;
-  if (!ellipses) return undefined;
+  if (!ellipses || !trial.result.usable) return undefined;
   const units = unitsOf(trial.result);
   const rows = matrices.map(({ symbol, name }) => {
     const e = ellipses[name];

@@ -114,7 +114,7 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
       h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
     h("p", {}, `${fileOf(trial)} holds ${significant(duration, 3)} s. ${how}${towardsShoulder(trial)}`),
-    h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, symbol, name, title))),
+    result.usable ? h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, symbol, name, title))) : "",
     fitSentence(trial),
   );
 }

@@ -1,8 +1,7 @@
 // What is said in plain words: terms, verdicts, and warnings of any system.
-import type { Method } from "@mbk/shared/documents";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
 
-export const methodNames: Record<Method, string> = { ls: "least squares", iv: "instrumental variables" };
+export { methodNames } from "@mbk/shared/result";
 
 /** Those that speak of a limb, said of any system. */
 export const transferFunctionWarnings: PlainWarnings = {
@@ -37,11 +36,12 @@ export const transferFunctionGlossary: [string, string][] = [
   ["Admittance, impedance", "Motion over force, and force over motion: each the inverse of the other."],
 ];
 
-/** The verdict of passivity: a sign and a word, so that nothing hangs on colour, and what it means. */
+/** A verdict on passivity: a sign and a word, so that nothing hangs on colour. What it is about, the statement says. */
 export const verdictWords = {
-  passive: { kind: "good", sign: "✓", word: "Passive", meaning: "Beyond reasonable doubt the limb takes energy up and gives back no more than it took. No passive machine can be made unstable by it." },
-  active: { kind: "bad", sign: "✕", word: "Active", meaning: "Beyond reasonable doubt the limb gave more energy than it took. A machine that counts on a passive limb may become unstable." },
-  undecided: { kind: "care", sign: "?", word: "Undecided", meaning: "The data allow both: the limb may be passive or active." },
+  passive: { kind: "good", sign: "✓", word: "passive" },
+  active: { kind: "bad", sign: "✕", word: "active" },
+  undecided: { kind: "care", sign: "?", word: "undecided" },
+  none: { kind: "care", sign: "–", word: "none" },
 } as const;
 
 export const meanings = {
@@ -68,7 +68,7 @@ export const glossary: [string, string][] = [
   ["Shape", "Long axis over short axis of an ellipse: 1 is a circle."],
   ["Orientation", "Angle of the long axis from x, counter-clockwise. An axis has no arrow, so 10° and 190° are the same."],
   ["Antisymmetry (z_mean)", "How far a matrix is from symmetric, relative to its size. Springs alone make symmetric stiffness; an interval that begins at 0 shows no antisymmetry."],
-  ["Passive", "A limb that gives back no more energy than it took. Passive limb and passive machine together are always stable."],
+  ["Passive", "Of a trial: the limb absorbed energy in it. Of a model: it absorbs energy in any motion within the band. Neither is a promise that a machine is stable with a person, who may do something else the next moment."],
   ["Passivity index", "At each frequency, the least damping of the model in any direction of motion: half the smallest eigenvalue of Z + Zᴴ. Positive is passive."],
   ["Excess, shortage of passivity", "How much damping could be taken away, or would have to be added, for the limb to be just passive."],
   ["Symmetric, antisymmetric part", "A matrix is the sum of both. Springs and masses are symmetric; an antisymmetric stiffness makes a force across the displacement that no spring makes."],

@@ -231,7 +231,7 @@ export function ellipsesOf(trial: Trial): HTMLElement | undefined {
 
 /** Ellipses of several trials side by side, each matrix at one scale. */
 export function ellipsesSideBySide(trials: Trial[], nameOf: (trial: Trial) => string): HTMLElement | undefined {
-  const drawn = trials.filter((trial) => trial.result.ellipses);
+  const drawn = trials.filter((trial) => trial.result.ellipses && trial.result.usable);
   if (drawn.length < 2) return undefined;
   return h(
     "figure",
@@ -256,7 +256,7 @@ export function ellipsesSideBySide(trials: Trial[], nameOf: (trial: Trial) => st
               "div",
               { class: "panel" },
               drawing(ellipse, `${nameOf(trial)}: ${title}`, unit, roomFor(compared, bands), reference, undefined, bands[k]),
-              h("p", { class: "panel-name" }, nameOf(trial), trial.result.usable ? "" : " (not usable)"),
+              h("p", { class: "panel-name" }, nameOf(trial)),
             );
           }),
         ),

@@ -1,10 +1,12 @@
 // What the pages ask of a result.
-import type { ReportedTrial, Result, Units } from "./documents";
+import type { Method, ReportedTrial, Result, Units } from "./documents";
 
 /** One result with what is drawn for it. */
 export interface Trial extends ReportedTrial {
   result: Result;
 }
+
+export const methodNames: Record<Method, string> = { ls: "least squares", iv: "instrumental variables" };
 
 export type MatrixName = "M" | "B" | "K";
 

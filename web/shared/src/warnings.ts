@@ -9,6 +9,30 @@ export const plainWarnings: PlainWarnings = {
     title: "The force was recorded with the opposite sign",
     meaning: "Everything comes out negative, which no limb can be. The recording itself is probably fine.",
   },
+  "implausible-scale": {
+    title: "Motion, force or model have a size that no limb has",
+    meaning: "A channel was probably read in the wrong unit, such as millimetres as metres. The numbers are not those of this limb.",
+  },
+  "axes-scaled-differently": {
+    title: "One axis seems to have another unit or gain than the other",
+    meaning: "The two directions answer each other very unequally, which no limb does. The numbers are not those of this limb.",
+  },
+  "axes-mismatched": {
+    title: "Force and motion do not belong to the same axes",
+    meaning: "An axis was probably flipped or two columns swapped: with another order or sign the model is that of a limb, as given it is not.",
+  },
+  "same-column": {
+    title: "Two channels are one column",
+    meaning: "The same data stand for two quantities. The numbers are not those of this limb.",
+  },
+  "other-column": {
+    title: "A channel was read from a column with another name",
+    meaning: "Check that the columns were named as the file means them.",
+  },
+  "handle-mass-too-large": {
+    title: "More handle mass was subtracted than was measured",
+    meaning: "The inertia that is left is not that of a limb.",
+  },
   "inertia-not-positive": {
     title: "The inertia is impossible",
     meaning: "In some direction the limb would have no mass or less than none. The numbers are not those of a limb.",
@@ -88,5 +112,25 @@ export const plainWarnings: PlainWarnings = {
   "uneven-clock": {
     title: "The samples are unevenly spaced",
     meaning: "The model allows for it; the tests of the residual do not.",
+  },
+  "closed-loop-bias": {
+    title: "Least squares is biased here",
+    meaning: "The limb and the robot move each other. What follows the known perturbation alone gives another model: that of instrumental variables.",
+  },
+  "unmodelled-response": {
+    title: "The limb responded to the perturbation",
+    meaning: "By will or by reflex. A part of that response looks like mechanics and stands in the numbers.",
+  },
+  "weak-instruments": {
+    title: "The perturbation moved the limb too little for this method",
+    meaning: "The ± intervals of instrumental variables do not hold.",
+  },
+  "invalid-instruments": {
+    title: "This method does not hold here",
+    meaning: "The limb responded to each pulse, and instrumental variables take that for mechanics.",
+  },
+  "mixed-conditions": {
+    title: "Different conditions were measured as one",
+    meaning: "The recordings are of different people, conditions or postures; one model for all of them may be that of none.",
   },
 };

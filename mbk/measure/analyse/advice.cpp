@@ -1,0 +1,129 @@
+#include "mbk/measure/analyse/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/analyse/channel_cure.h"
+#include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/trial/filtered_band.h"
+
+namespace mbk::analyse {
+namespace {
+
+constexpr const char* kCheckColumns =
+    "check with 'mbk info' that force and position are what their channels say, of one instant and in one frame";
+
+constexpr const char* kFilter =
+    "leave --cutoff out, or raise it: the filter cuts into the excited band; --mode reference has one of its own";
+
+const Matrix& part_of(const impedance::Model& model, WarningCode code) {
+  return code == WarningCode::inertia_not_positive     ? model.M
+         : code == WarningCode::stiffness_not_positive ? model.K
+                                                       : model.B;
+}
+
+double smallest(const Matrix& Z) {
+  return numeric::symmetric_eigenvalues(impedance::symmetric_part(Z)).minCoeff();
+}
+
+std::string method_option(Method method) {
+  return fmt::format("--method {}", word_of(method));
+}
+
+class Advisor {
+ public:
+  Advisor(const std::vector<const Recording*>& recordings, const std::vector<PreparedTrial>& trials,
+          const Measurement& measured)
+      : recordings_(recordings), trials_(trials), measured_(measured), id_(measured.identification) {}
+
+  /// What is likelier to help than what the warning says; nothing where that is right.
+  [[nodiscard]] std::optional<std::string> remedy(const Warning& warning) const {
+    const bool filtered = std::ranges::any_of(id_.preparations, cuts_into_band);
+    switch (warning.code) {
+      case WarningCode::inertia_not_positive:
+      case WarningCode::stiffness_not_positive:
+      case WarningCode::damping_not_positive:
+        return filtered ? kFilter : of_sign(warning.code);
+      case WarningCode::fit_poor:
+        return filtered ? kFilter : of_fit();
+      case WarningCode::held_out_fit_poor:
+      case WarningCode::band_too_narrow:
+        return filtered ? std::optional<std::string>(kFilter) : std::nullopt;
+      case WarningCode::motion_on_one_line:
+        return of_line();
+      default:
+        return std::nullopt;
+    }
+  }
+
+ private:
+  /// The other method finds a model that may be used, and of it this matrix positive.
+  [[nodiscard]] bool other_method_finds(WarningCode code) const {
+    const auto& other = measured_.alternative;
+    return other && other->method == Method::instrumental_variables && other->usable && other->model.M.allFinite() &&
+           smallest(part_of(other->model, code)) > 0.0;
+  }
+
+  [[nodiscard]] std::optional<std::string> of_sign(WarningCode code) const {
+    if (other_method_finds(code)) {
+      return fmt::format(
+          "{}: the limb's own force moves the robot too, which draws least squares towards minus the robot; what "
+          "follows "
+          "the known perturbation alone does not",
+          method_option(measured_.alternative->method));
+    }
+    const Matrix& error = part_of(id_.standard_error, code);
+    const bool chance = smallest(part_of(id_.model, code)) > -2.0 * numeric::kNormal95 * error.norm();
+    if (code == WarningCode::damping_not_positive) {
+      return "'mbk passivity' shows by the energy whether the limb itself acted; if it did not, force and position are "
+             "not simultaneous";
+    }
+    if (!chance) return kCheckColumns;
+    return code == WarningCode::inertia_not_positive
+               ? "perturb at higher frequencies, for longer, or pool trials with --pool"
+               : "perturb at lower frequencies, for longer, or pool trials with --pool";
+  }
+
+  [[nodiscard]] std::optional<std::string> of_fit() const {
+    const bool differ = measured_.disagreement && measured_.disagreement->significant;
+    if (id_.method == Method::least_squares && measured_.alternative && differ && measured_.alternative->usable) {
+      return fmt::format(
+          "{}: the limb acted on its own account, which biases least squares; 'mbk passivity' needs no model",
+          method_option(measured_.alternative->method));
+    }
+    return "the limb may have acted, or its reflexes may be strong: do not read M, B and K as a passive limb's; 'mbk "
+           "passivity' shows by the energy whether it acted";
+  }
+
+  [[nodiscard]] std::optional<std::string> of_line() const {
+    if (id_.axes != 2 || recordings_.size() != 1) return std::nullopt;
+    const Matrix& position = trials_.front().position;
+    const Index axis = numeric::variance(position.col(1)) > numeric::variance(position.col(0)) ? 1 : 0;
+    const auto option = channels_of_axis(*recordings_.front(), static_cast<int>(axis));
+    if (!option) return std::nullopt;
+    return fmt::format("perturb both axes independently, or measure the one axis that moved: {}", *option);
+  }
+
+  const std::vector<const Recording*>& recordings_;
+  const std::vector<PreparedTrial>& trials_;
+  const Measurement& measured_;
+  const Identification& id_;
+};
+
+}  // namespace
+
+void advise(const std::vector<const Recording*>& recordings, const std::vector<PreparedTrial>& trials,
+            Measurement& measured) {
+  const Advisor advisor(recordings, trials, measured);
+  for (Warning& warning : measured.identification.warnings) {
+    if (auto better = advisor.remedy(warning)) warning.remedy = std::move(*better);
+  }
+}
+
+}  // namespace mbk::analyse

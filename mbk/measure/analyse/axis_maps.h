@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mbk/model/trial/measurement.h"
+#include "mbk/model/trial/prepared_trial.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::analyse {
+
+/// Whether force and motion have the same signs and the same order of axes. For a symmetric positive definite Z and a
+/// signed permutation R other than I, the symmetric part of R Z is never positive definite: of the eight maps R (two
+/// with one axis), the force Rᵀ F gives a passive model by one at most. Where it is not the one that was given, and
+/// the given one is surely not passive in at least two of M, B and K, it is named, with the --channels that reads the
+/// recording so. Where the reference shows that the motion, and not the force, was mapped wrongly, the motion's
+/// channels are named. Beyond the eight, a force that is turned against the motion by the same angle in M, B and K is
+/// named too.
+[[nodiscard]] std::optional<Warning> check_axes(const std::vector<const Recording*>& recordings,
+                                                const std::vector<PreparedTrial>& trials, const Measurement& measured);
+
+}  // namespace mbk::analyse

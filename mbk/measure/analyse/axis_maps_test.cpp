@@ -1,0 +1,106 @@
+#include "mbk/measure/analyse/axis_maps.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <utility>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/model/trial/quantity_channels.h"
+
+namespace mbk::analyse {
+namespace {
+
+/// Symmetric and positive definite, of any size and orientation.
+Matrix random_stiffness(numeric::Random& random) {
+  Matrix A(2, 2);
+  for (double& value : A.reshaped()) value = random.normal();
+  return A * A.transpose() + 0.2 * Matrix::Identity(2, 2);
+}
+
+Measurement measured(const Matrix& R, const impedance::Model& model, double relative_error) {
+  Measurement result;
+  Identification& id = result.identification;
+  id.axes = 2;
+  id.model = {R * model.M, R * model.B, R * model.K, Vector::Zero(2)};
+  id.covariance = Matrix::Zero(14, 14);
+  for (Index part = 0; part < 3; ++part) {
+    const Matrix& Z = part == 0 ? model.M : part == 1 ? model.B : model.K;
+    const double error = relative_error * Z.norm();
+    id.covariance.diagonal().segment(4 * part, 4).setConstant(error * error);
+  }
+  id.standard_error = impedance::unstacked(id.covariance.diagonal().cwiseSqrt(), 2);
+  return result;
+}
+
+/// Channels read from columns 2 to 5.
+Recording recording() {
+  Recording result;
+  int column = 2;
+  for (const auto& [name, alias] :
+       {std::pair{"hand_x", "x"}, std::pair{"hand_y", "y"}, std::pair{"force_x", "Fx"}, std::pair{"force_y", "Fy"}}) {
+    result.channels.push_back({name, "", "base", Vector::Zero(1), {alias, std::to_string(column++), "", ""}});
+  }
+  return result;
+}
+
+std::optional<Warning> checked(const Measurement& one) {
+  const Recording from = recording();
+  PreparedTrial trial;
+  trial.axes = 2;
+  return check_axes({&from}, {trial}, one);
+}
+
+TEST(AxisMaps, EachOfTheEightIsFoundAndNamed) {
+  constexpr double kRelativeError = 0.01;
+  numeric::Random random(1);
+  const struct {
+    Eigen::Matrix2d R;
+    const char* channels;
+  } maps[] = {
+      {(Eigen::Matrix2d() << -1, 0, 0, 1).finished(), "x=2,y=3,Fx=-4,Fy=5"},
+      {(Eigen::Matrix2d() << 1, 0, 0, -1).finished(), "x=2,y=3,Fx=4,Fy=-5"},
+      {(Eigen::Matrix2d() << -1, 0, 0, -1).finished(), "x=2,y=3,Fx=-4,Fy=-5"},
+      {(Eigen::Matrix2d() << 0, 1, 1, 0).finished(), "x=2,y=3,Fx=5,Fy=4"},
+      {(Eigen::Matrix2d() << 0, -1, -1, 0).finished(), "x=2,y=3,Fx=-5,Fy=-4"},
+      {(Eigen::Matrix2d() << 0, -1, 1, 0).finished(), "x=2,y=3,Fx=5,Fy=-4"},
+      {(Eigen::Matrix2d() << 0, 1, -1, 0).finished(), "x=2,y=3,Fx=-5,Fy=4"},
+  };
+  for (int k = 0; k < 100; ++k) {
+    const impedance::Model model = {random_stiffness(random), random_stiffness(random), random_stiffness(random),
+                                    Vector::Zero(2)};
+    EXPECT_FALSE(checked(measured(Eigen::Matrix2d::Identity(), model, kRelativeError))) << k;
+    for (const auto& map : maps) {
+      const auto found = checked(measured(map.R, model, kRelativeError));
+      ASSERT_TRUE(found) << k << " " << map.channels;
+      EXPECT_NE(found->remedy.find(map.channels), std::string::npos) << k << ": " << found->remedy;
+    }
+  }
+}
+
+TEST(AxisMaps, NothingIsSaidOfNoise) {
+  numeric::Random random(2);
+  for (int k = 0; k < 200; ++k) {
+    impedance::Model model;
+    for (Matrix* Z : {&model.M, &model.B, &model.K}) {
+      Z->resize(2, 2);
+      for (double& value : Z->reshaped()) value = random.normal();
+    }
+    model.x0 = Vector::Zero(2);
+    EXPECT_FALSE(checked(measured(Eigen::Matrix2d::Identity(), model, 2.0))) << k;
+  }
+}
+
+TEST(AxisMaps, AForceThatIsTurnedIsNamedByItsAngle) {
+  numeric::Random random(3);
+  const impedance::Model model = {random_stiffness(random), random_stiffness(random), random_stiffness(random),
+                                  Vector::Zero(2)};
+  const auto found = checked(measured(Eigen::Rotation2D<double>(0.6).toRotationMatrix(), model, 0.01));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->code, WarningCode::axes_mismatched);
+  EXPECT_NE(found->message.find("34°"), std::string::npos) << found->message;
+}
+
+}  // namespace
+}  // namespace mbk::analyse

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::analyse {
+
+/// How one axis of a quantity should have been read.
+struct AxisCure {
+  int from = 0;         ///< axis whose source it takes
+  bool negate = false;  ///< with the other sign
+  std::string unit;     ///< in that unit; "" as it was
+  double gain = 1.0;    ///< times that much more
+};
+
+/// What should be read otherwise; nothing at first.
+struct ChannelCure {
+  std::array<AxisCure, 2> position{AxisCure{0}, AxisCure{1}}, force{AxisCure{0}, AxisCure{1}};
+  std::string reference_unit, time_unit;  ///< "" as they were
+};
+
+/// The whole of --channels that reads the recording so, as "--channels x=2:mm,y=3:mm,Fx=10,Fy=11,xr=12,yr=13"; nothing
+/// where the recording was not read from a file, or a source cannot be written there.
+[[nodiscard]] std::optional<std::string> cured_channels(const Recording& recording, int axes, const ChannelCure& cure);
+
+/// --channels for one axis of a recording of two: "--axes 1 --channels x=3,F=11,xr=13".
+[[nodiscard]] std::optional<std::string> channels_of_axis(const Recording& recording, int axis);
+
+}  // namespace mbk::analyse

@@ -1,0 +1,196 @@
+#include "mbk/measure/analyse/energy_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/model/trial/quantity_channels.h"
+
+namespace mbk::analyse {
+namespace {
+
+constexpr double kSearchRate = 100.0;   ///< [Hz] at which the period is looked for first
+constexpr double kNearlyRepeats = 0.1;  ///< of the reference's variance, over the whole window
+constexpr double kRepeats = 0.01;       ///< and at the rate of the recording
+constexpr double kUnlike = 0.5;         ///< that far a signal has to go from itself before it can come back
+constexpr Index kMinPeriods = 3;        ///< with fewer, nothing shows how they differ
+constexpr double kHighestLine = 50.0;   ///< [Hz]
+constexpr double kShareOfLine = 0.005;  ///< of the variance of an axis
+
+/// The window of a recording, sample by sample.
+struct Window {
+  Matrix position, force, reference;  ///< N×n
+  double rate = 0;                    ///< [Hz]
+};
+
+/// Absent where a channel is missing, a value is not a number, or the clock has a gap.
+std::optional<Window> window_of(const Recording& recording, const PreparedTrial& trial) {
+  if (trial.preparation.protocol == Protocol::underdamped || trial.segments.empty()) return std::nullopt;
+  const Segment &first = trial.segments.front(), &last = trial.segments.back();
+  const Index begin = first.first_sample, end = last.first_sample + (last.size() - 1) * trial.preparation.every + 1;
+  if (begin < 0 || end > recording.samples() || end - begin < 2) return std::nullopt;
+  const Vector time = recording.time.segment(begin, end - begin);
+  const Vector steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
+  if (!(steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5)) return std::nullopt;
+  Window window;
+  window.rate = trial.recording_rate;
+  for (const auto& [quantity, values] : {std::pair{&kPositionChannels, &window.position},
+                                         {&kForceChannels, &window.force},
+                                         {&kReferenceChannels, &window.reference}}) {
+    const Matrix all = recorded(recording, *quantity, trial.axes);
+    if (all.size() == 0) return std::nullopt;
+    *values = all.middleRows(begin, end - begin);
+    if (!values->allFinite()) return std::nullopt;
+  }
+  return window;
+}
+
+double total_variance(const Matrix& signal) {
+  return (signal.rowwise() - signal.colwise().mean()).squaredNorm() / static_cast<double>(signal.rows());
+}
+
+/// How far a signal is from itself `lag` samples later: 0 the same, about 1 nothing in common. Every `step`-th sample.
+double unlike_itself(const Matrix& signal, Index lag, Index step, double variance) {
+  double sum = 0.0;
+  Index count = 0;
+  for (Index i = 0; i + lag < signal.rows(); i += step, ++count)
+    sum += (signal.row(i + lag) - signal.row(i)).squaredNorm();
+  return sum / (2.0 * variance * static_cast<double>(count));
+}
+
+/// Whole periods of a signal, one after another.
+struct Periods {
+  Index begin = 0, length = 0, count = 0;  ///< [samples], [samples]
+};
+
+/// The periods of that length, counted from the end of the signal, in which it repeats itself; what comes before, as
+/// where the perturbation grows from rest, is left out.
+Periods periods_of(const Matrix& signal, Index length, double variance) {
+  Periods periods{signal.rows() - length, length, 1};
+  while (periods.begin >= length) {
+    const Matrix two = signal.middleRows(periods.begin - length, 2 * length);
+    if (unlike_itself(two, length, 1, variance) > kRepeats) break;
+    periods.begin -= length;
+    ++periods.count;
+  }
+  return periods;
+}
+
+/// Absent where the signal does not repeat itself kMinPeriods times.
+std::optional<Periods> periods_of(const Matrix& reference, double rate) {
+  const double variance = total_variance(reference);
+  if (!(variance > 0.0)) return std::nullopt;
+  const Index step = std::max<Index>(1, static_cast<Index>(rate / kSearchRate));
+  const Index longest = reference.rows() / kMinPeriods;
+  bool went_away = false;
+  for (Index lag = step; lag <= longest; lag += step) {
+    const double unlike = unlike_itself(reference, lag, step, variance);
+    went_away = went_away || unlike > kUnlike;
+    if (!went_away || unlike > kNearlyRepeats) continue;
+    Index best = lag;
+    double least = unlike;
+    for (Index near = lag - step; near <= std::min(lag + 2 * step, longest); ++near) {
+      const double here = unlike_itself(reference, near, step, variance);
+      if (here < least) std::tie(best, least) = std::pair{near, here};
+    }
+    const Periods found = periods_of(reference, best, variance);
+    if (found.count >= kMinPeriods) return found;
+  }
+  return std::nullopt;
+}
+
+/// Cosine and sine of 2π i/period, i = 0 … period − 1, as e^(−2πj i/period).
+Eigen::VectorXcd unit_circle(Index period) {
+  Eigen::VectorXcd circle(period);
+  for (Index i = 0; i < period; ++i) {
+    circle[i] = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(period));
+  }
+  return circle;
+}
+
+/// Complex amplitude of a harmonic in each column of one period: x = Re(X e^(jωt)).
+Eigen::RowVectorXcd amplitude(const Matrix& signal, Index harmonic, const Eigen::VectorXcd& circle) {
+  const Index period = circle.size();
+  Eigen::RowVectorXcd sum = Eigen::RowVectorXcd::Zero(signal.cols());
+  for (Index i = 0, at = 0; i < period; ++i, at = (at + harmonic) % period) sum += circle[at] * signal.row(i);
+  return sum * (2.0 / static_cast<double>(period));
+}
+
+std::vector<Index> harmonics_of(const Matrix& whole, const Periods& periods, double rate) {
+  const Index period = periods.length;
+  const Matrix reference = whole.middleRows(periods.begin, period);
+  const Eigen::VectorXcd circle = unit_circle(period);
+  const Matrix one = reference.rowwise() - reference.colwise().mean();
+  const double highest = std::min(kHighestLine, 0.25 * rate);
+  std::vector<Index> harmonics;
+  for (Index h = 1; static_cast<double>(h) * rate / static_cast<double>(period) <= highest; ++h) {
+    const Eigen::RowVectorXcd lines = amplitude(one, h, circle);
+    for (Index axis = 0; axis < one.cols(); ++axis) {
+      const double variance = one.col(axis).squaredNorm() / static_cast<double>(period);
+      if (0.5 * std::norm(lines[axis]) < kShareOfLine * variance || variance == 0.0) continue;
+      harmonics.push_back(h);
+      break;
+    }
+  }
+  return harmonics;
+}
+
+/// −∫ F·v dt of one harmonic over one period: −T/2 Re(F* jωX), summed over the axes.
+double absorbed_at(const Matrix& position, const Matrix& force, Index harmonic, const Eigen::VectorXcd& circle) {
+  const Eigen::RowVectorXcd X = amplitude(position, harmonic, circle), F = amplitude(force, harmonic, circle);
+  // T ω = 2π harmonic
+  const std::complex<double> work = F.conjugate().cwiseProduct(std::complex<double>(0.0, 1.0) * X).sum();
+  return -std::numbers::pi * static_cast<double>(harmonic) * work.real();
+}
+
+}  // namespace
+
+std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recordings,
+                                     std::span<const PreparedTrial> trials) {
+  std::vector<Index> harmonics;
+  std::vector<std::vector<double>> absorbed;  // of each period, line by line
+  Index length = 0;
+  double rate = 0.0;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const auto window = window_of(*recordings[k], trials[k]);
+    if (!window) return {};
+    const auto found = periods_of(window->reference, window->rate);
+    if (!found) return {};
+    auto own = harmonics_of(window->reference, *found, window->rate);
+    if (own.empty() || (k > 0 && (found->length != length || window->rate != rate || own != harmonics))) return {};
+    length = found->length;
+    rate = window->rate;
+    harmonics = std::move(own);
+    const Eigen::VectorXcd circle = unit_circle(length);
+    for (Index one = 0; one < found->count; ++one) {
+      const Matrix x = window->position.middleRows(found->begin + one * length, length),
+                   F = window->force.middleRows(found->begin + one * length, length);
+      std::vector<double> of_period;
+      for (const Index h : harmonics) of_period.push_back(absorbed_at(x, F, h, circle));
+      absorbed.push_back(std::move(of_period));
+    }
+  }
+  const auto periods = static_cast<Index>(absorbed.size());
+  if (periods < kMinPeriods) return {};
+  const double period_s = static_cast<double>(length) / rate;
+  const double quantile =
+      numeric::student_quantile(1.0 - 0.025 / static_cast<double>(harmonics.size()), static_cast<int>(periods) - 1);
+  std::vector<EnergyLine> lines;
+  for (std::size_t line = 0; line < harmonics.size(); ++line) {
+    Vector each(periods);
+    for (Index b = 0; b < periods; ++b) each[b] = absorbed[static_cast<std::size_t>(b)][line];
+    const double half = quantile * std::sqrt(static_cast<double>(periods) * numeric::variance(each)), sum = each.sum();
+    lines.push_back({Hertz(static_cast<double>(harmonics[line]) / period_s),
+                     static_cast<double>(periods) * period_s,
+                     sum,
+                     {sum - half, sum + half}});
+  }
+  return lines;
+}
+
+}  // namespace mbk::analyse

@@ -1,0 +1,364 @@
+#!/usr/bin/env python3
+"""The advice of every warning, followed on the recording that raised it: the warning goes, or the truth is nearer."""
+
+import json
+import pathlib
+import re
+
+from command import Case, flat, main, run, write_csv
+from help_tree import every_command
+from mistakes import as_option, first_options, right_map
+from tf_test import oscillator
+
+ROOT = pathlib.Path(__file__).parents[2]
+CODES = json.loads((ROOT / "schemas/common.schema.json").read_text(encoding="utf-8"))["definitions"]["WarningCode"]["enum"]
+
+ADVICE = {}  # code: a function of the test case, which raises it and follows its advice
+
+
+def advice_of(code):
+    def remember(function):
+        ADVICE[code] = function
+        return function
+    return remember
+
+
+def codes_of(ran):
+    return [warning["code"] for warning in ran.json["warnings"]]
+
+
+def hint_of(ran, code):
+    return next(warning["try"] for warning in ran.json["warnings"] if warning["code"] == code)
+
+
+class Advice(Case):
+    def simulated(self, name, *changes, seed=1, trial=None):
+        """A ready scenario with lines replaced, as a recording."""
+        text = run("simulate", "--show", name).out
+        for pattern, line in changes:
+            text, count = re.subn(pattern, line, text, count=1, flags=re.M)
+            self.assertEqual(count, 1, f"{pattern} is not in {name}")
+        scenario = self.file(f"{name}.toml", text)
+        path = self.folder / f"{name}.h5"
+        ran = run("simulate", scenario, "--seed", seed, "--out", path, "--overwrite", "--quiet",
+                  *(("--trial", trial) if trial else ()))
+        self.assertEqual(ran.code, 0, ran)
+        return path if path.exists() else next(self.folder.glob(f"{name}_*.h5"))
+
+    def columns(self, path):
+        """Names and columns of a recording, as a table."""
+        table = self.folder / "table.csv"
+        self.assertEqual(run("convert", path, table, "--overwrite").code, 0)
+        lines = [line for line in table.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+        rows = [list(map(float, line.split(","))) for line in lines[1:]]
+        return lines[0].split(","), [list(column) for column in zip(*rows)]
+
+    def with_columns(self, path, name, **changes):
+        """The recording as a table in which columns are changed, each by a function of its values."""
+        names, columns = self.columns(path)
+        for column, change in changes.items():
+            k = next(i for i, full in enumerate(names) if full.startswith(column))
+            columns[k] = change(columns[k])
+        return write_csv(self.folder / name, columns, names)
+
+    def measured(self, *arguments):
+        return run("measure", "--json", "--quiet", *arguments)
+
+    def goes(self, code, raised, followed):
+        self.assertIn(code, codes_of(raised), raised)
+        self.assertNotIn(code, codes_of(followed), followed)
+
+    def truth_is_nearer(self, code, raised, followed, path):
+        self.assertIn(code, codes_of(raised), raised)
+        metadata = run("info", path, "--json").json["metadata"]
+        truth = {name: json.loads(metadata[f"truth_{name}"]) for name in "MBK"}
+
+        def distance(ran):
+            return sum(sum((a - b) ** 2 for a, b in zip(flat(ran.json["model"][name]), flat(truth[name]))) /
+                       sum(b ** 2 for b in flat(truth[name])) for name in "MBK")
+        self.assertLess(distance(followed), distance(raised))
+
+    def test_every_code_has_its_advice_followed(self):
+        for code in CODES:
+            with self.subTest(code):
+                self.assertIn(code, ADVICE)
+                ADVICE[code](self)
+
+    def test_only_options_and_commands_that_exist_are_named(self):
+        """In every message of the library and the program."""
+        tree = every_command()
+        options = {option for command in tree for option in command.options} | {"--help"}
+        options |= {"--held-back"}  # read for one version
+        commands = {command.path[0] for command in tree if command.path}
+        for source in sorted(ROOT.glob("mbk/**/*.cpp")) + sorted(ROOT.glob("apps/mbk/*.cpp")):
+            if source.name.endswith("_test.cpp"):
+                continue
+            for text in re.findall(r'"((?:[^"\\\n]|\\.)*)"', source.read_text(encoding="utf-8")):
+                for option in re.findall(r"(?<![\w-])(--[a-z][a-z-]+)", text):
+                    self.assertIn(option, options, f"{source.relative_to(ROOT)}: {text}")
+                for command in re.findall(r"'mbk ([a-z]+)", text):
+                    self.assertIn(command, commands, f"{source.relative_to(ROOT)}: {text}")
+
+
+# ---- what a recording was read as ----
+
+def read_wrongly(test, code, change, *options, scenario="relaxed_sinusoidal"):
+    path = test.simulated(scenario)
+    raised = test.measured(*as_option(change(right_map())), *options, path)
+    followed = test.measured(*first_options(hint_of(raised, code)), *options, path)
+    test.goes(code, raised, followed)
+    test.assertIs(followed.json["usable"], True)
+
+
+@advice_of("implausible-scale")
+def _(test):
+    read_wrongly(test, "implausible-scale", lambda e: {**e, "x": "hand_x*1000", "y": "hand_y*1000"})
+
+
+@advice_of("axes-scaled-differently")
+def _(test):
+    read_wrongly(test, "axes-scaled-differently", lambda e: {**e, "Fx": "force_x*10"})
+
+
+@advice_of("force-sign-reversed")
+def _(test):
+    read_wrongly(test, "force-sign-reversed", lambda e: {**e, "Fx": "-force_x", "Fy": "-force_y"})
+
+
+@advice_of("axes-mismatched")
+def _(test):
+    read_wrongly(test, "axes-mismatched", lambda e: {**e, "Fx": "-force_x"})
+
+
+@advice_of("same-column")
+def _(test):  # name the right column
+    path = test.simulated("relaxed_sinusoidal")
+    raised = test.measured(*as_option({**right_map(), "Fy": "force_x"}), path)
+    test.goes("same-column", raised, test.measured(*as_option(right_map()), path))
+
+
+@advice_of("other-column")
+def _(test):  # without --channels the file's own names are taken
+    path = test.simulated("relaxed_sinusoidal")
+    raised = test.measured(*as_option({**right_map(), "x": "reference_x"}), path)
+    test.assertIn("without --channels", hint_of(raised, "other-column"))
+    test.goes("other-column", raised, test.measured(path))
+
+
+@advice_of("handle-mass-too-large")
+def _(test):  # leave it out
+    path = test.simulated("relaxed_sinusoidal")
+    raised = test.measured("--handle-mass", "5", path)
+    test.goes("handle-mass-too-large", raised, test.measured(path))
+
+
+# ---- the model ----
+
+@advice_of("inertia-not-positive")
+def _(test):
+    code, path = "inertia-not-positive", test.simulated("rigid_sinusoidal_6N")
+    raised = test.measured("--handle-mass", "0.194", path)
+    test.assertEqual(first_options(hint_of(raised, code)), ("--method", "iv"))
+    followed = test.measured("--handle-mass", "0.194", "--method", "iv", path)
+    test.goes(code, raised, followed)
+    test.assertIs(followed.json["usable"], True)
+    test.truth_is_nearer(code, raised, followed, path)
+    # and the filter, where that is the cause
+    path = test.simulated("relaxed_sinusoidal")
+    raised = test.measured("--cutoff", "0.3", path)
+    if code in codes_of(raised):
+        test.assertIn("leave --cutoff out", hint_of(raised, code))
+
+
+@advice_of("stiffness-not-positive")
+def _(test):
+    code, path = "stiffness-not-positive", test.simulated("force_task")
+    raised = test.measured(path)
+    test.assertEqual(first_options(hint_of(raised, code)), ("--method", "iv"))
+    test.goes(code, raised, test.measured("--method", "iv", path))
+
+
+@advice_of("damping-not-positive")
+def _(test):  # the energy says whether the limb acted
+    code, path = "damping-not-positive", test.simulated("rigid_underdamped_2N")
+    raised = test.measured(path)
+    test.assertIn(code, codes_of(raised), raised)
+    test.assertIn("'mbk passivity'", hint_of(raised, code))
+    absorbed = float(run("info", path, "--json").json["metadata"]["truth_energy_absorbed_J"])
+    test.assertLess(absorbed, 0.0)
+    test.assertRegex(run("passivity", path, "--quiet").out, "energy: active|delivered")
+
+
+@advice_of("band-too-narrow")
+def _(test):
+    code, path = "band-too-narrow", test.simulated("relaxed_sinusoidal")
+    raised = test.measured("--cutoff", "1", path)
+    test.assertIn("leave --cutoff to the default", hint_of(raised, code))
+    test.goes(code, raised, test.measured(path))
+    lines = (r"^harmonics = .*$", "harmonics = [1, 2, 3, 4]")
+    raised = test.measured(test.simulated("relaxed_sinusoidal", lines, (r"^floor_N = .*$", "floor_N = 1.0")))
+    test.assertIn("perturb at higher frequencies", hint_of(raised, code))
+    test.goes(code, raised, test.measured(test.simulated("relaxed_sinusoidal", (r"^floor_N = .*$", "floor_N = 1.0"))))
+
+
+@advice_of("motion-on-one-line")
+def _(test):
+    code, path = "motion-on-one-line", test.simulated("one_axis_random_binary", trial="trial_1")
+    raised = test.measured(path)
+    options = first_options(hint_of(raised, code))
+    test.assertEqual(options[:2], ("--axes", "1"))
+    followed = test.measured(*options, path)
+    test.goes(code, raised, followed)
+    test.assertEqual(followed.json["axes"], 1)
+
+
+@advice_of("motion-too-small")
+def _(test):  # perturb more
+    def in_steps(values):
+        return [round(value, 4) for value in values]
+
+    def coarse(peak):
+        path = test.simulated("relaxed_sinusoidal", (r"^peak_deg = .*$", f"peak_deg = {peak}"))
+        return test.with_columns(path, "coarse.csv", hand_x=in_steps, hand_y=in_steps)
+    code = "motion-too-small"
+    raised = test.measured(coarse(0.4))
+    test.goes(code, raised, test.measured(coarse(4)))
+
+
+@advice_of("poorly-conditioned")
+def _(test):  # several frequencies
+    raised = test.measured(test.simulated("relaxed_sinusoidal", (r"^harmonics = .*$", "harmonics = [10]"),
+                                          (r"^floor_N = .*$", "floor_N = 0")))
+    test.goes("poorly-conditioned", raised, test.measured(test.simulated("relaxed_sinusoidal")))
+
+
+@advice_of("held-out-fit-poor")
+def _(test):  # look at the parts
+    code = "held-out-fit-poor"
+
+    def changing(values):
+        return [value if k < 48_000 else 3 * value for k, value in enumerate(values)]
+    path = test.with_columns(test.simulated("relaxed_sinusoidal"), "changing.csv", force_x=changing, force_y=changing)
+    raised = test.measured(path)
+    test.assertIn("--to", hint_of(raised, code))
+    test.goes(code, raised, test.measured("--to", "47", path))
+
+
+@advice_of("fit-poor")
+def _(test):
+    code, path = "fit-poor", test.simulated("rigid_sinusoidal_6N")
+    raised = test.measured("--handle-mass", "0.194", path)
+    test.assertIn("mbk passivity", hint_of(raised, code))
+    followed = test.measured("--handle-mass", "0.194", "--method", "iv", path)
+    test.truth_is_nearer(code, raised, followed, path)
+
+
+@advice_of("no-held-out-data")
+def _(test):
+    path = test.simulated("relaxed_sinusoidal")
+    raised = test.measured("--protocol", "free", path)
+    test.assertIn("--split", hint_of(raised, "no-held-out-data"))
+    test.goes("no-held-out-data", raised, test.measured("--protocol", "free", "--split", "40", path))
+
+
+@advice_of("too-little-data")
+def _(test):
+    path = test.simulated("relaxed_sinusoidal")
+    raised = test.measured("--from", "12", "--to", "22", path)
+    test.assertIn("record at least", hint_of(raised, "too-little-data"))
+    test.goes("too-little-data", raised, test.measured(path))
+
+
+@advice_of("decimation-changes-model")
+def _(test):  # lower --cutoff
+    def hum(values):
+        return [value + 3.0 * (k % 10 < 5) for k, value in enumerate(values)]
+    path = test.with_columns(test.simulated("relaxed_sinusoidal"), "hum.csv",
+                             hand_x=lambda v: [a + 2e-4 * (k % 10 < 5) for k, a in enumerate(v)], force_x=hum)
+    how = ("--decimate-check", "--every", "1", "--sg-window", "7")
+    raised = test.measured(*how, "--cutoff", "none", path)
+    test.assertIn("--cutoff", hint_of(raised, "decimation-changes-model"))
+    test.goes("decimation-changes-model", raised, test.measured(*how, "--cutoff", "5", path))
+
+
+# ---- the recording ----
+
+CLOCK = (r"^\[sensors.force\]$", "[sensors.clock]\njitter_us = 60\n[sensors.force]")
+
+
+@advice_of("clock-jitter")
+def _(test):
+    path = test.simulated("relaxed_sinusoidal", CLOCK)
+    raised = test.measured(path)
+    test.assertIn("--resample", hint_of(raised, "clock-jitter"))
+    test.goes("clock-jitter", raised, test.measured("--resample", "1000", path))
+
+
+@advice_of("resampled")
+def _(test):  # record with a steady clock
+    raised = test.measured("--resample", "1000", test.simulated("relaxed_sinusoidal", CLOCK))
+    test.goes("resampled", raised, test.measured(test.simulated("relaxed_sinusoidal")))
+
+
+@advice_of("clipping")
+def _(test):  # choose a window without it
+    def clipped(values):
+        return [max(-1.0, min(1.0, value)) if 20_000 < k < 40_000 else value * 0.3 for k, value in enumerate(values)]
+    path = test.with_columns(test.simulated("relaxed_sinusoidal"), "clipped.csv", force_x=clipped)
+    raised = test.measured(path)
+    test.assertIn("window", hint_of(raised, "clipping"))
+    test.goes("clipping", raised, test.measured("--from", "40.1", path))
+
+
+# ---- mbk tf and mbk robot identify ----
+
+def tf(test, *options, rows=None):
+    lines = ["time,force,motion"] + [",".join(f"{value:.12g}" for value in row) for row in rows or oscillator()]
+    path = test.file("signals.csv", "\n".join(lines) + "\n")
+    return run("tf", path, "--input", "force", "--output", "motion", "--json", *options)
+
+
+@advice_of("input-explains-residual")
+def _(test):  # more poles
+    raised = tf(test, "--poles", "1", "--zeros", "0")
+    test.goes("input-explains-residual", raised, tf(test, "--orders", "1:3"))
+
+
+@advice_of("residual-not-white")
+def _(test):  # leave --hac-lag at 1 s
+    chance = __import__("random").Random(1)
+    noise, rows = 0.0, []
+    for time, u, y in oscillator(0.0):
+        noise = 0.95 * noise + 0.1 * chance.gauss(0, 1)
+        rows.append((time, u, y + noise))
+    raised = tf(test, "--poles", "2", "--zeros", "0", "--hac-lag", "0", rows=rows)
+    test.goes("residual-not-white", raised, tf(test, "--poles", "2", "--zeros", "0", rows=rows))
+
+
+@advice_of("pole-outside-band")
+def _(test):  # excite the system there
+    slow = [(t, u, y) for t, u, y in oscillator(0.02)]
+    raised = tf(test, "--poles", "3", "--zeros", "1", rows=slow)
+    if "pole-outside-band" not in codes_of(raised):
+        raised = tf(test, "--poles", "4", "--zeros", "2", rows=slow)
+    test.goes("pole-outside-band", raised, tf(test, "--poles", "2", "--zeros", "0", rows=slow))
+
+
+@advice_of("uneven-clock")
+def _(test):  # it is taken into account; an even clock has no such word
+    rows = [row for k, row in enumerate(oscillator()) if k % 7 != 3]
+    test.goes("uneven-clock", tf(test, "--poles", "2", "--zeros", "0", rows=rows), tf(test, "--poles", "2", "--zeros", "0"))
+
+
+@advice_of("torque-unit")
+def _(test):
+    path = test.simulated("free_motion")
+    entries = {"q1": "joint_1", "q2": "joint_2", "tau1": "torque_1*1000", "tau2": "torque_2*1000"}
+    raised = run("robot", "identify", "--json", "--quiet", *as_option(entries), path)
+    test.assertIn("N.mm", hint_of(raised, "torque-unit"))
+    cured = {name: source + (":N.mm" if name.startswith("tau") else "") for name, source in entries.items()}
+    test.goes("torque-unit", raised, run("robot", "identify", "--json", "--quiet", *as_option(cured), path))
+
+
+if __name__ == "__main__":
+    main()
