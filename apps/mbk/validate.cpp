@@ -72,8 +72,16 @@ std::vector<std::string> study_names() {
 std::string study_lines() {
   std::string lines;
   for (const validation::Study& study : validation::studies()) {
-    lines += fmt::format("  {:<17}  {}; {} runs, {} or more to meet every row\n", study.name, study.what,
-                         validation::default_runs(study), validation::min_runs(study));
+    lines += fmt::format("  {:<17}  {}\n", study.name, study.what);
+  }
+  return lines;
+}
+
+std::string runs_lines() {
+  std::string lines;
+  for (const validation::Study& study : validation::studies()) {
+    lines += fmt::format("  {:<17}  {}, at least {}\n", study.name, validation::default_runs(study),
+                         validation::min_runs(study));
   }
   return lines;
 }
@@ -135,16 +143,18 @@ Action add_validate(CLI::App& app) {
   CLI::App* command = add_command(app, "validate", "a method against known truth, as a table");
   // Made where it is asked for: the numbers of runs are computed.
   command->footer([] {
-    return "Studies:\n" + study_lines() +
+    return "Studies:\n" + study_lines() + "\nRuns by default, and those that it takes to meet every row:\n" +
+           runs_lines() +
            "\nExamples:\n"
            "  mbk validate coverage --runs 2000 --seed 7 --json\n"
            "  mbk validate participant --charts charts\n"
            "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
            "  mbk validate faults --link udp --runs 2\n"
            "      robots that misbehave, as processes behind UDP, in real time; four trials side by side\n\n"
-           "A row is met where its 95 % interval lies inside what is expected. It falls short where its value lies "
-           "outside. It is not shown where the value lies inside and the interval does not: that takes more runs.\n\n"
-           "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage, 3 bad or unreadable data, "
+           "A row is met where its 95 % interval lies inside what is expected. It falls short where its\n"
+           "value lies outside. It is not shown where the value lies inside and the interval does not:\n"
+           "that takes more runs.\n\n"
+           "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage, 3 bad or unreadable data,\n"
            "6 not shown by this many runs.";
   });
   const std::string names = fmt::format("{}", fmt::join(study_names(), ", "));

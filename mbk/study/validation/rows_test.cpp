@@ -112,7 +112,8 @@ TEST(ShareRow, HasTheIntervalOfClopperAndPearson) {
 
 TEST(MeanRow, HasTheIntervalOfStudentAndNoneOfOneRun) {
   const ValidationRow row = mean_row("x", Vector{{1.0, 2.0, 3.0}}, at_most(5.0), "N");
-  const double reach = 4.302652729911275 / std::sqrt(3.0);  // t of 2 degrees of freedom, spread 1
+  const double t = 0.95 * std::sqrt(2.0 / (1.0 - 0.95 * 0.95));  // 2 degrees of freedom
+  const double reach = t / std::sqrt(3.0);
   EXPECT_NEAR(row.interval95->first, 2.0 - reach, 1e-12);
   EXPECT_NEAR(row.interval95->second, 2.0 + reach, 1e-12);
   EXPECT_EQ(row.verdict(), met);
