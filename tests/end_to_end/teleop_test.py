@@ -166,7 +166,7 @@ class Teleop(Case):
     def test_an_excess_buys_stiffness(self):
         design, measured = self.design(b_m=1, b_s=1), self.file("r.json", result([4.0, 6.0]))
         ran = self.fine("teleop", design, "--parameter", "slave.k=0:5000", "--excess", "0:8:3", "--operator", measured,
-                        "--charts", self.folder / "c", "--json").json["excess"]
+                        "--charts", self.folder / "c", "--json", "--quiet").json["excess"]
         self.assertEqual([step["excess"] for step in ran["steps"]], [0, 4, 8])
         for step in ran["steps"]:
             # 4 (b_m + δ + d_m)(b_s + d_s) k_m k_s = (d_m k_s + d_s k_m)²: roots of k_s² + 2 (200 − q) k_s + 200²
@@ -255,7 +255,7 @@ class Teleop(Case):
             self.refused(WRONG_USAGE, "teleop", self.design(), "--parameter", wrong, says="--parameter")
         narrow = EXAMPLES / "narrow_resonance.toml"
         self.refused(WRONG_USAGE, "teleop", narrow, "--parameter", "slave.k=0:1", says="architecture")
-        for content, says in (("{", "byte"), ("{}", "schema"), (result(), "how passive")):
+        for content, says in (("{", "byte"), ("{}", "schema"), ('{"schema": "mbk.result/2", "passivity": {}}', "how passive")):
             path = self.file("r.json", content)
             self.refused(BAD_DATA, "teleop", self.design(), "--operator", path, says=["r.json", says])
         twice = self.design("[operator]\nshortage_N_s_per_m = 1\n")

@@ -94,7 +94,7 @@ std::optional<Periods> periods_of(const Matrix& reference, double rate) {
     if (!went_away || unlike > kNearlyRepeats) continue;
     Index best = lag;
     double least = unlike;
-    for (Index near = lag - step; near <= std::min(lag + 2 * step, longest); ++near) {
+    for (Index near = lag - step; near <= std::min(best + 2 * step, longest); ++near) {  // down to the bottom
       const double here = unlike_itself(reference, near, step, variance);
       if (here < least) std::tie(best, least) = std::pair{near, here};
     }

@@ -88,6 +88,7 @@ TEST(EnergyLines, LeaveOutWhereThePerturbationGrowsFromRest) {
   ASSERT_EQ(lines.size(), all.size());
   EXPECT_DOUBLE_EQ(all[0].duration, 5.0 * kPeriod);
   EXPECT_DOUBLE_EQ(lines[0].duration, 4.0 * kPeriod);
+  for (std::size_t k = 0; k < lines.size(); ++k) EXPECT_NEAR(lines[k].frequency.value, kHarmonics[k] / kPeriod, 1e-12);
   const double w = omega_of(2), truth = 4.0 * kPeriod * kDampers[2] * kAmplitude * kAmplitude * w * w;
   EXPECT_LT(lines[2].absorbed95.first, truth);
   EXPECT_GT(lines[2].absorbed95.second, truth);
