@@ -133,28 +133,4 @@ export const plainWarnings: PlainWarnings = {
     title: "Different conditions were measured as one",
     meaning: "The recordings are of different people, conditions or postures; one model for all of them may be that of none.",
   },
-  "implausible-scale": {
-    title: "The numbers are not the size of a limb's",
-    meaning: "A channel was probably read in another unit, with another gain or from another column than it was recorded.",
-  },
-  "axes-scaled-differently": {
-    title: "One axis has another scale than the other",
-    meaning: "One of the two directions was probably read in another unit or with another gain.",
-  },
-  "axes-mismatched": {
-    title: "Force and motion do not belong together",
-    meaning: "A sign, the order of the axes or a column is probably not what it was taken for. The recording itself may be fine.",
-  },
-  "same-column": {
-    title: "One column was read twice",
-    meaning: "Two signals are the same, so that the numbers say nothing of the limb.",
-  },
-  "other-column": {
-    title: "A column was read as another signal than its file says",
-    meaning: "The numbers hold only if that was intended.",
-  },
-  "handle-mass-too-large": {
-    title: "The handle is heavier than all that was measured",
-    meaning: "What was subtracted for the handle leaves less than no mass. Its mass is probably wrong.",
-  },
 };
