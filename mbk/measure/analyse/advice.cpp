@@ -23,7 +23,7 @@ constexpr const char* kFilter =
     "leave --cutoff out, or raise it: the filter cuts into the excited band; --mode reference has a filter of its own";
 
 constexpr const char* kInstruments =
-    "--method iv: the limb's own force moves the robot too, which biases least squares towards the negative robot "
+    "use --method iv; the limb's own force moves the robot too, which biases least squares towards the negative robot "
     "impedance";
 
 const Matrix& part_of(const impedance::Model& model, WarningCode code) {

@@ -21,6 +21,7 @@
 namespace mbk::analyse {
 namespace {
 
+constexpr double kExplained = 0.0;    ///< [%] of the held-out force: at or below, the model is not usable whatever its size
 constexpr double kKnown = 4.0;        ///< standard errors that the size of a matrix must have to count
 constexpr double kImbalance = 3.0;    ///< ratio of m_xy to m_yx from which the axes have different scales
 constexpr double kSameFactor = 3.0;   ///< within which M, B and K must be lopsided by the same
@@ -43,6 +44,7 @@ struct Part {
 struct Numbers {
   Vector position, motion, speed, force;  ///< axis by axis
   double rate = 0.0;
+  bool explained = false;  ///< the model explains enough of the force for its size to count
   Part M, B, K;
 };
 
@@ -66,7 +68,7 @@ struct Explanation {
 
 Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& id) {
   const Index n = id.axes;
-  Numbers numbers{Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, {}, {}, {}};
+  Numbers numbers{Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, false, {}, {}, {}};
   for (const PreparedTrial& trial : trials) {
     numbers.rate = std::max(numbers.rate, trial.recording_rate);
     for (const Segment& segment : trial.segments) {
@@ -84,7 +86,8 @@ Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& 
       }
     }
   }
-  // A filter that hides the inertia leaves no model that could be held against anything.
+  // A filter that hides the inertia leaves no model that could be held against anything, nor does a poor fit.
+  numbers.explained = id.fit.vaf.size() > 0 && id.fit.vaf.minCoeff() > kExplained;
   if (std::ranges::any_of(id.preparations, cuts_into_band)) return numbers;
   numbers.M = {id.model.M, id.standard_error.M};
   numbers.B = {id.model.B, id.standard_error.B};
@@ -156,12 +159,12 @@ std::vector<Violation> violations(const Numbers& n, std::span<const PlausibleRan
       case stiffness: {
         // What is too small to be seen at all is too small, where the limb is seen in another way.
         const Part& part = part_of(n, range.quantity);
-        const bool counts = part.known() || (limb && part.Z.size() > 0);
+        const bool counts = n.explained && (part.known() || (limb && part.Z.size() > 0));
         if (counts && outside(range, part.size(), part.size_error())) found.push_back({&range, part.size(), -1});
         break;
       }
       case frequency:
-        if (const auto f = frequency_of(n); f && outside(range, f->first, f->second)) {
+        if (const auto f = frequency_of(n); n.explained && f && outside(range, f->first, f->second)) {
           found.push_back({&range, f->first, -1});
         }
         break;
