@@ -20,7 +20,11 @@ constexpr const char* kCheckColumns =
     "check with 'mbk info' that force and position are what their channels say, of one instant and in one frame";
 
 constexpr const char* kFilter =
-    "leave --cutoff out, or raise it: the filter cuts into the excited band; --mode reference has one of its own";
+    "leave --cutoff out, or raise it: the filter cuts into the excited band; --mode reference has a filter of its own";
+
+constexpr const char* kInstruments =
+    "use --method iv; the limb's own force moves the robot too, which biases least squares towards the negative robot "
+    "impedance";
 
 const Matrix& part_of(const impedance::Model& model, WarningCode code) {
   return code == WarningCode::inertia_not_positive     ? model.M
@@ -30,10 +34,6 @@ const Matrix& part_of(const impedance::Model& model, WarningCode code) {
 
 double smallest(const Matrix& Z) {
   return numeric::symmetric_eigenvalues(impedance::symmetric_part(Z)).minCoeff();
-}
-
-std::string method_option(Method method) {
-  return fmt::format("--method {}", word_of(method));
 }
 
 class Advisor {
@@ -53,7 +53,6 @@ class Advisor {
       case WarningCode::fit_poor:
         return filtered ? kFilter : of_fit();
       case WarningCode::held_out_fit_poor:
-      case WarningCode::band_too_narrow:
         return filtered ? std::optional<std::string>(kFilter) : std::nullopt;
       case WarningCode::motion_on_one_line:
         return of_line();
@@ -63,42 +62,27 @@ class Advisor {
   }
 
  private:
-  /// The other method finds a model that may be used, and of it this matrix positive.
-  [[nodiscard]] bool other_method_finds(WarningCode code) const {
+  /// Instrumental variables find a model that may be used, and of it this matrix positive.
+  [[nodiscard]] bool instruments_find(WarningCode code) const {
     const auto& other = measured_.alternative;
     return other && other->method == Method::instrumental_variables && other->usable && other->model.M.allFinite() &&
            smallest(part_of(other->model, code)) > 0.0;
   }
 
   [[nodiscard]] std::optional<std::string> of_sign(WarningCode code) const {
-    if (other_method_finds(code)) {
-      return fmt::format(
-          "{}: the limb's own force moves the robot too, which draws least squares towards minus the robot; what "
-          "follows "
-          "the known perturbation alone does not",
-          method_option(measured_.alternative->method));
-    }
-    const Matrix& error = part_of(id_.standard_error, code);
-    const bool chance = smallest(part_of(id_.model, code)) > -2.0 * numeric::kNormal95 * error.norm();
-    if (code == WarningCode::damping_not_positive) {
-      return "'mbk passivity' shows by the energy whether the limb itself acted; if it did not, force and position are "
-             "not simultaneous";
-    }
-    if (!chance) return kCheckColumns;
-    return code == WarningCode::inertia_not_positive
-               ? "perturb at higher frequencies, for longer, or pool trials with --pool"
-               : "perturb at lower frequencies, for longer, or pool trials with --pool";
+    if (instruments_find(code)) return kInstruments;
+    // What is negative by more than chance and bias is not a limb's.
+    const double error = 2.0 * numeric::kNormal95 * part_of(id_.standard_error, code).norm();
+    const bool sure = smallest(part_of(id_.model, code)) < -error;
+    return sure && code != WarningCode::damping_not_positive ? std::optional<std::string>(kCheckColumns) : std::nullopt;
   }
 
   [[nodiscard]] std::optional<std::string> of_fit() const {
-    const bool differ = measured_.disagreement && measured_.disagreement->significant;
-    if (id_.method == Method::least_squares && measured_.alternative && differ && measured_.alternative->usable) {
-      return fmt::format(
-          "{}: the limb acted on its own account, which biases least squares; 'mbk passivity' needs no model",
-          method_option(measured_.alternative->method));
-    }
-    return "the limb may have acted, or its reflexes may be strong: do not read M, B and K as a passive limb's; 'mbk "
-           "passivity' shows by the energy whether it acted";
+    const auto& other = measured_.alternative;
+    const auto& difference = measured_.disagreement;
+    const bool better = other && other->method == Method::instrumental_variables && other->usable && difference &&
+                        difference->significant;
+    return better ? std::optional<std::string>(kInstruments) : std::nullopt;
   }
 
   [[nodiscard]] std::optional<std::string> of_line() const {

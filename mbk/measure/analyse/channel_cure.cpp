@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <string_view>
 
 #include "mbk/files/recording/channel_map.h"
@@ -16,19 +17,20 @@ namespace {
 class Map {
  public:
   void add(std::string_view alias, const ChannelOrigin& origin, bool negate, std::string_view unit, double gain) {
-    std::string source = origin.source;
-    const auto readings = recording::readings(source);
-    const bool shifted = std::ranges::any_of(readings, [](const auto& reading) { return reading.offset != 0.0; });
-    const bool scaled = !readings.front().is_plain() || readings.size() > 1;
-    // A minus stands before an offset, which would have to turn round too; a second gain cannot be written.
-    if (source.empty() || source.find_first_of(",:") != source.npos || (negate && shifted) || (gain != 1.0 && scaled)) {
+    if (origin.source.empty() || origin.source.find_first_of(",:") != std::string::npos) {
       possible_ = false;
       return;
     }
-    if (negate) source = source.starts_with('-') ? source.substr(1) : "-" + source;
-    if (gain != 1.0) source += fmt::format("*{:g}", gain);
+    std::string_view source = origin.source;
+    const bool minus = source.starts_with('-');
+    if (minus) source.remove_prefix(1);
+    // value = ±gain·name + offset, and all of it times the gain and the sign that cure it.
+    const auto read = recording::readings(source).back();
+    const double total = read.gain * gain, offset = read.offset * gain * (negate ? -1.0 : 1.0);
     if (!text_.empty()) text_ += ',';
-    text_ += fmt::format("{}={}", alias, source);
+    text_ += fmt::format("{}={}{}", alias, minus != negate ? "-" : "", read.name);
+    if (std::abs(total - 1.0) > 1e-12) text_ += fmt::format("*{:.12g}", total);
+    if (offset != 0.0) text_ += fmt::format("{:+.12g}", offset);
     const std::string_view in = unit.empty() ? std::string_view(origin.unit) : unit;
     if (!in.empty()) text_ += fmt::format(":{}", in);
   }

@@ -152,8 +152,8 @@ void judge_plausibility(const std::vector<const Recording*>& recordings, const s
   if (columns) {
     causes.push_back(*columns);
   } else {
-    for (auto found :
-         {check_scale(recordings, trials, id, ignored), check_axes(recordings, trials, measured), check_handle(id)}) {
+    for (auto found : {check_scale(recordings, trials, measured, ignored), check_axes(recordings, trials, measured),
+                       check_handle(id)}) {
       if (found) causes.push_back(std::move(*found));
     }
   }

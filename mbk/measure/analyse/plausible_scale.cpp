@@ -21,8 +21,10 @@
 namespace mbk::analyse {
 namespace {
 
+constexpr double kExplained = 0.0;    ///< [%] of the held-out force: at or below, the model is not usable whatever its size
 constexpr double kKnown = 4.0;        ///< standard errors that the size of a matrix must have to count
 constexpr double kImbalance = 3.0;    ///< ratio of m_xy to m_yx from which the axes have different scales
+constexpr double kSameFactor = 3.0;   ///< within which M, B and K must be lopsided by the same
 constexpr double kSignificant = 5.0;  ///< standard errors of what m_xy and m_yx differ by
 constexpr double kAlsoLikely = 0.5;   ///< decades: explanations that far behind the likeliest are named beside it
 constexpr double kPriceOfAxis = 0.5;  ///< decades: that one axis is wrong needs more evidence than that both are
@@ -42,6 +44,7 @@ struct Part {
 struct Numbers {
   Vector position, motion, speed, force;  ///< axis by axis
   double rate = 0.0;
+  bool explained = false;  ///< the model explains enough of the force for its size to count
   Part M, B, K;
 };
 
@@ -65,7 +68,7 @@ struct Explanation {
 
 Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& id) {
   const Index n = id.axes;
-  Numbers numbers{Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, {}, {}, {}};
+  Numbers numbers{Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, false, {}, {}, {}};
   for (const PreparedTrial& trial : trials) {
     numbers.rate = std::max(numbers.rate, trial.recording_rate);
     for (const Segment& segment : trial.segments) {
@@ -83,7 +86,8 @@ Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& 
       }
     }
   }
-  // A filter that hides the inertia leaves no model that could be held against anything.
+  // A filter that hides the inertia leaves no model that could be held against anything, nor does a poor fit.
+  numbers.explained = id.fit.vaf.size() > 0 && id.fit.vaf.minCoeff() > kExplained;
   if (std::ranges::any_of(id.preparations, cuts_into_band)) return numbers;
   numbers.M = {id.model.M, id.standard_error.M};
   numbers.B = {id.model.B, id.standard_error.B};
@@ -155,12 +159,12 @@ std::vector<Violation> violations(const Numbers& n, std::span<const PlausibleRan
       case stiffness: {
         // What is too small to be seen at all is too small, where the limb is seen in another way.
         const Part& part = part_of(n, range.quantity);
-        const bool counts = part.known() || (limb && part.Z.size() > 0);
+        const bool counts = n.explained && (part.known() || (limb && part.Z.size() > 0));
         if (counts && outside(range, part.size(), part.size_error())) found.push_back({&range, part.size(), -1});
         break;
       }
       case frequency:
-        if (const auto f = frequency_of(n); f && outside(range, f->first, f->second)) {
+        if (const auto f = frequency_of(n); n.explained && f && outside(range, f->first, f->second)) {
           found.push_back({&range, f->first, -1});
         }
         break;
@@ -185,24 +189,29 @@ std::vector<Violation> violations(const Numbers& n, std::span<const PlausibleRan
   return found;
 }
 
+/// log₁₀ of z_xy / z_yx, where the two surely differ; 0 otherwise.
+double lopsided(const Part& part) {
+  if (part.Z.size() == 0 || !part.Z.allFinite()) return 0.0;
+  const double xy = part.Z(0, 1), yx = part.Z(1, 0), error = std::hypot(part.error(0, 1), part.error(1, 0));
+  if (!(std::abs(xy - yx) > kSignificant * error)) return 0.0;
+  const auto at_least = [](double value, double its_error) { return std::max(std::abs(value), its_error); };
+  return std::log10(at_least(xy, part.error(0, 1)) / at_least(yx, part.error(1, 0)));
+}
+
 /// log₁₀ of how many times more the force along x comes from y than the other way round; 0 where nothing shows that
-/// the axes have different scales. A limb's inertia is symmetric, and its damping and stiffness nearly so; a wrong
-/// scale of one axis makes all of them lopsided alike.
+/// the axes have different scales. A limb's inertia is symmetric, and its damping and stiffness nearly so: a wrong
+/// scale of one axis makes all of them lopsided by the same factor, and what only biases them does not.
 double imbalance(const Numbers& n) {
   if (n.M.Z.rows() != 2) return 0.0;
-  const auto ratio = [](const Part& part) {
-    if (part.Z.size() == 0 || !part.Z.allFinite()) return 0.0;
-    const double xy = part.Z(0, 1), yx = part.Z(1, 0), error = std::hypot(part.error(0, 1), part.error(1, 0));
-    if (!(std::abs(xy - yx) > kSignificant * error)) return 0.0;
-    const auto at_least = [](double value, double its_error) { return std::max(std::abs(value), its_error); };
-    return std::log10(at_least(xy, part.error(0, 1)) / at_least(yx, part.error(1, 0)));
-  };
-  const double least = std::log10(kImbalance), m = ratio(n.M);
+  const double least = std::log10(kImbalance), same = std::log10(kSameFactor), m = lopsided(n.M);
   if (!(std::abs(m) > least)) return 0.0;
+  int confirmed = 0;
   for (const Part* other : {&n.B, &n.K}) {
-    if (const double r = ratio(*other); r * m > 0.0 && std::abs(r) > least) return m;
+    const double r = lopsided(*other);
+    if (r != 0.0 && std::abs(r - m) > same) return 0.0;
+    confirmed += r != 0.0 ? 1 : 0;
   }
-  return 0.0;
+  return confirmed > 0 ? m : 0.0;
 }
 
 /// How far numbers are from the usual ones, in decades, axis by axis.
@@ -425,18 +434,22 @@ Error explain_clock(Error error, const Recording& recording, const Inspection& i
 }
 
 std::optional<Warning> check_scale(const std::vector<const Recording*>& recordings,
-                                   const std::vector<PreparedTrial>& trials, const Identification& identification,
+                                   const std::vector<PreparedTrial>& trials, const Measurement& measured,
                                    const std::set<PlausibleQuantity>& ignored) {
+  const Identification& identification = measured.identification;
   const Recording& recording = *recordings.front();
   const int axes = identification.axes;
   const Numbers numbers = measure(trials, identification);
+  // In a closed loop one of the methods may be lopsided by its bias.
+  const bool same_scale =
+      imbalance(numbers) == 0.0 || (measured.alternative && imbalance(measure(trials, *measured.alternative)) == 0.0);
   const std::span<const PlausibleRange> hand = kHandRanges, joint = kJointRanges;
   // Where the file does not say what moves, either may be meant.
   std::vector<std::span<const PlausibleRange>> families;
   if (identification.motion != Motion::rotation) families.push_back(hand);
   if (identification.motion != Motion::translation) families.push_back(joint);
   const auto plausible = [&](const Numbers& n) {
-    return imbalance(n) == 0.0 &&
+    return (same_scale || imbalance(n) == 0.0) &&
            std::ranges::any_of(families, [&](const auto& ranges) { return violations(n, ranges, ignored).empty(); });
   };
   if (plausible(numbers)) return std::nullopt;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/inspection.h"
+#include "mbk/model/trial/measurement.h"
 #include "mbk/model/trial/plausible_ranges.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/recording.h"
@@ -19,8 +19,7 @@ namespace mbk::analyse {
 /// A model's size counts where it is known to better than a quarter of itself, so that nothing is said of noise.
 /// @param recordings which the trials were prepared from    @param ignored  ranges that are switched off
 [[nodiscard]] std::optional<Warning> check_scale(const std::vector<const Recording*>& recordings,
-                                                 const std::vector<PreparedTrial>& trials,
-                                                 const Identification& identification,
+                                                 const std::vector<PreparedTrial>& trials, const Measurement& measured,
                                                  const std::set<PlausibleQuantity>& ignored);
 
 /// An error of a recording whose clock runs at no plausible rate, with that said first: time that is read in the wrong

@@ -17,7 +17,7 @@ namespace mbk::identify {
 namespace {
 
 /// Thresholds of the warnings, each with its reason.
-constexpr double kLargestCondition = 1e3;      // two digits of a 16-bit sensor are left
+constexpr double kLargestCondition = 100.0;    // what no model explains, 1 % of the force, weighs as much as a parameter
 constexpr double kSmallestMotionRatio = 0.05;  // across the line of motion the limb moved a twentieth as far
 constexpr double kVafDrop = 10.0;              // points between in-sample and held-out
 constexpr double kPoorVaf = 70.0;              // relaxed arms give 92 % and more, ankles under tonic contraction 87
@@ -50,7 +50,7 @@ class Checker {
       warn(
           WarningCode::motion_on_one_line,
           fmt::format("the hand moved along one line: across it only {:.1f} % as far", 100.0 * excitation.motion_ratio),
-          "perturb both axes independently, or measure the one axis with --axes 1");
+          "perturb both axes independently, or measure the one axis: --axes 1, with its columns in --channels");
     }
     if (excitation.duration < kShortestDuration) {
       warn(WarningCode::too_little_data,
@@ -76,19 +76,20 @@ class Checker {
     if (!(inertia.smallest > 0.0)) {
       warn(WarningCode::inertia_not_positive,
            fmt::format("the inertia is {}: no limb has that", stated(inertia, units_.inertia)),
-           "raise the filter's --cutoff so that the inertia can be seen, and perturb at higher frequencies");
+           "perturb at higher frequencies, for longer, or pool trials with --pool");
       id_.usable = false;
     }
     if (!(stiffness.smallest > 0.0)) {
       warn(WarningCode::stiffness_not_positive, fmt::format("the stiffness is {}", stated(stiffness, units_.stiffness)),
-           "perturb at lower frequencies and for longer");
+           "perturb at lower frequencies, for longer, or pool trials with --pool");
       id_.usable = false;
     }
     if (damped && !(damping.smallest > 0.0)) {
       warn(WarningCode::damping_not_positive,
            fmt::format("the damping is {}: the limb feeds in energy, or force and position are not simultaneous",
                        stated(damping, units_.damping)),
-           "check for delays between the channels; a voluntary or reflex response also does this");
+           "'mbk passivity' shows by the energy whether the limb itself acted; if it did not, force and position are "
+           "not simultaneous");
     }
   }
 
@@ -105,7 +106,7 @@ class Checker {
            fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left may not "
                        "show the inertia",
                        top, how.band_high.value),
-           "leave --cutoff to the default, or raise it");
+           "leave --cutoff out, or raise it; --mode reference has a filter of its own");
     } else if (inertia.smallest > 0.0 && inertia.smallest < numeric::kNormal95 * inertia.standard_error) {
       warn(WarningCode::band_too_narrow,
            fmt::format("in the band up to {:.3g} Hz the inertia is not distinguishable from zero: {}", top,
@@ -134,7 +135,8 @@ class Checker {
     } else if (fit.vaf.minCoeff() < kPoorVaf) {
       warn(WarningCode::fit_poor,
            fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}", fit.vaf.minCoeff(), what),
-           "the limb may have acted or reflexes may be strong; do not read M, B and K as a passive limb's");
+           "the limb may have acted, or its reflexes may be strong: do not read M, B and K as a passive limb's; 'mbk "
+           "passivity' shows by the energy whether it acted");
       if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;
     }
   }
