@@ -180,7 +180,7 @@ Action add_validate(CLI::App& app) {
       ->check(suggests(fault_names()));
   command->add_flag("--page", arguments->page,
                     "of 'faults': writes docs/guide/safety.md, from the tables of both links");
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/1");
+  command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/2");
   CLI::Option* const charts = command
                                   ->add_option("--charts", arguments->charts,
                                                "also write the charts of the study as SVG files into this folder")

@@ -80,7 +80,7 @@ class Ellipse(Case):
                 ("empty", "", "empty"),
                 ("text", "M = 3 kg", "byte 1"),
                 ("list", "[]", "mbk.result/2"),
-                ("other schema", json.dumps({**good, "schema": "mbk.validation/1"}), "mbk.result/2"),
+                ("other schema", json.dumps({**good, "schema": "mbk.validation/2"}), "mbk.result/2"),
                 ("later schema", json.dumps({**good, "schema": "mbk.result/3"}), "mbk.result/2"),
                 ("number as schema", '{"schema": 3}', "mbk.result/2"),
                 ("no model", json.dumps(no_model), "'model'"),

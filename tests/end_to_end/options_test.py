@@ -387,7 +387,7 @@ class Validate(Case):
         ran = self.mbk("validate", "coverage", "--runs", "4", "--json", "--quiet", code=NOT_SHOWN)
         table = ran.json
         self.assertEqual((table["schema"], table["study"], table["runs"], table["seed"]),
-                         ("mbk.validation/1", "coverage", 4, 1))
+                         ("mbk.validation/2", "coverage", 4, 1))
         self.assertEqual([row["what"] for row in table["rows"]][:14],
                          ["m_xx", "m_xy", "m_yx", "m_yy", "b_xx", "b_xy", "b_yx", "b_yy", "k_xx", "k_xy", "k_yx",
                           "k_yy", "x0", "y0"])

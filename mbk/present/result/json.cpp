@@ -456,7 +456,7 @@ std::string to_json(const FileContents& contents, const Error& unrecognised) {
 }
 
 std::string to_json(const ValidationTable& table) {
-  Json json = header("mbk.validation/1");
+  Json json = header("mbk.validation/2");
   json["study"] = table.study;
   json["question"] = table.question;
   json["unit"] = table.unit;

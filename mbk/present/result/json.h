@@ -40,7 +40,7 @@ namespace mbk::result {
 /// Schema "mbk.contents/1": what a file holds where nothing in it is recognised as a recording, and why.
 [[nodiscard]] std::string to_json(const FileContents& contents, const Error& unrecognised);
 
-/// Schema "mbk.validation/1": a study against known truth. A row that is informative has null for `expected` and `met`.
+/// Schema "mbk.validation/2": a study against known truth. A row that is informative has null for `expected` and `met`.
 [[nodiscard]] std::string to_json(const ValidationTable& table);
 
 /// Schema "mbk.workspace/1": where the hand can be, and the robot at one place where one is given. Metres, except that

@@ -115,26 +115,25 @@ double vaf_of(const SimulatedTrial& trial) {
   return trial.identification.fit.vaf.mean();
 }
 
-/// Over the trials of every arm: in how many the energy has the expected sign and the VAF its band; and the means of
-/// each arm.
+/// Of each arm: in how many trials the energy has the expected sign and the VAF its band; and the means.
 void add_condition(const Condition& condition, Trials trials, ValidationTable& table) {
-  const auto share = [&](std::string what, const std::function<bool(const SimulatedTrial&)>& is) {
-    table.rows.push_back(share_row(std::move(what), static_cast<int>(std::ranges::count_if(trials, is)),
-                                   static_cast<int>(trials.size()), kNearlyAlways));
-  };
-  share(fmt::format("{}: E {}", condition.name, condition.energy_sign > 0.0 ? "rises" : "falls"),
-        [&](const SimulatedTrial& trial) { return energy_of(trial) * condition.energy_sign > 0.0; });
-  if (condition.vaf) {
-    share(fmt::format("{}: VAF {}", condition.name, words_of(*condition.vaf)), [&](const SimulatedTrial& trial) {
-      return condition.vaf->first <= vaf_of(trial) && vaf_of(trial) <= condition.vaf->second;
-    });
-  }
   for (std::size_t arm = 0; arm < kArms.size(); ++arm) {
     const std::size_t runs = trials.size() / kArms.size();
     const Trials mine = trials.subspan(arm * runs, runs);
-    const std::string name = fmt::format("{}, P{}: mean ", condition.name, kArms[arm]);
-    table.rows.push_back(mean_row(name + "E", collected(mine, energy_of), {}, "J"));
-    table.rows.push_back(mean_row(name + "VAF", collected(mine, vaf_of), {}, "%"));
+    const std::string name = fmt::format("{}, P{}: ", condition.name, kArms[arm]);
+    const auto share = [&](const std::string& what, const std::function<bool(const SimulatedTrial&)>& is) {
+      table.rows.push_back(share_row(name + what, static_cast<int>(std::ranges::count_if(mine, is)),
+                                     static_cast<int>(mine.size()), kNearlyAlways));
+    };
+    share(condition.energy_sign > 0.0 ? "E rises" : "E falls",
+          [&](const SimulatedTrial& trial) { return energy_of(trial) * condition.energy_sign > 0.0; });
+    if (condition.vaf) {
+      share("VAF " + words_of(*condition.vaf), [&](const SimulatedTrial& trial) {
+        return condition.vaf->first <= vaf_of(trial) && vaf_of(trial) <= condition.vaf->second;
+      });
+    }
+    table.rows.push_back(mean_row(name + "mean E", collected(mine, energy_of), {}, "J"));
+    table.rows.push_back(mean_row(name + "mean VAF", collected(mine, vaf_of), {}, "%"));
   }
 }
 
@@ -208,7 +207,7 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
       kTuned,
       "E is the energy that the limb absorbed in one trial, without the handle; VAF is that of the published procedure "
       "on held-out data, mean of both axes.",
-      "Shares are of the trials of all three arms. 2 N and 8 N differ in amplitude_N alone; the crossing is that of "
+      "2 N and 8 N differ in amplitude_N alone; the crossing is that of "
       "each run, by straight lines between the amplitudes."};
   return table;
 }

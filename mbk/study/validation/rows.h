@@ -19,7 +19,7 @@ using Range = std::pair<double, double>;
 /// study with fewer runs looks at it too.
 inline constexpr Range kNominal = {92.0, 98.0}, kNearNominal = {85.0, 100.0};
 /// Of what a study expects of every trial, and of what should never happen: no finite number of runs shows 100 or 0 %.
-inline constexpr Range kNearlyAlways = {90.0, 100.0}, kHardlyEver = {0.0, 5.0};
+inline constexpr Range kNearlyAlways = {95.0, 100.0}, kHardlyEver = {0.0, 5.0};
 /// Of what has to follow every fault.
 inline constexpr Range kOfFaults = {99.0, 100.0};
 

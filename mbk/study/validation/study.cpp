@@ -13,12 +13,13 @@ namespace {
 constexpr std::array kOfCoverage = {JudgedShare{kNominal, 95.0}, JudgedShare{kHardlyEver, 2.0, 0.5}};
 constexpr std::array kOfIntervals = {JudgedShare{kNearNominal, 95.0}};
 constexpr std::array kOfClosedLoop = {JudgedShare{kNearlyAlways, 100.0},
-                                      JudgedShare{kNearNominal, 95.0, kTrialsWithoutController}};
+                                      JudgedShare{kNominal, 95.0, kTrialsWithoutController}};
 constexpr std::array kOfRobot = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
-constexpr std::array kOfVirtualSensor = {JudgedShare{kNearNominal, 100.0, 5.0}};  // wide: a damper is not in the model
+constexpr std::array kOfVirtualSensor = {JudgedShare{kNearNominal, 100.0, 5.0},  // wide: a damper is not in the model
+                                         JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfTransferFunction = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 99.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
-constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0, 3.0}};
+constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfFaultsAtAll = {JudgedShare{kNearNominal, 100.0}, JudgedShare{kHardlyEver, 0.0, 10.0}};
 
 }  // namespace

@@ -67,7 +67,7 @@ struct Study {
 [[nodiscard]] Result<ValidationTable> participant_study(const StudyOptions& options);
 
 /// Trials without the voluntary controller in each run of closed_loop_study, each measured by itself.
-inline constexpr int kTrialsWithoutController = 4;
+inline constexpr int kTrialsWithoutController = 16;
 
 /// Where the limb acts back on its own motion: does least squares call a passive arm active, do instrumental variables
 /// not, and what does the energy say (Dyck 2013, table 4.3)? A run is three pooled trials of a rigid arm under a 6 N
