@@ -103,7 +103,8 @@ class Installed(unittest.TestCase):
                         self.assertIn(name.split("/")[0], PUBLIC | OF_C)
 
     def test_every_header_compiles_by_itself(self):
-        """A header that its own source file includes first has been compiled so by the build."""
+        """A header that its own source file includes first has been compiled so by the build, but for what precompiled
+        headers brought: tests/headers.py looks at that."""
         def is_proved(header):
             name = header.relative_to(self.include)
             source = SOURCE / name.with_suffix(".cpp")
