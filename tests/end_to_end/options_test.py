@@ -164,6 +164,7 @@ class Effects(Case):
                      "--pool", "--decimate-check", "--report", "--report-note",
                      "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay",  # sensor_test.py
                      "--robot",  # robot_force_test.py
+                     "--ranges", "--ignore-range",  # mistakes_test.py
                      "--arm"}  # joint_domain_test.py
         self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
 
@@ -201,10 +202,12 @@ class Effects(Case):
                 self.assertNotEqual(self.measured(*options)["model"], usual["model"])
         for options in (("--extension", "odd"), ("--padding", "15"), ("--acceleration", "derivative"),
                         ("--structure", "full"), ("--parameters-from", "identification"), ("--hac-lag", "1"),
-                        ("--method", "ls"), ("--handle-mass", "0"), ("--rate", "1e3"), ("--axes", "2"),
+                        ("--handle-mass", "0"), ("--rate", "1e3"), ("--axes", "2"),
                         ("--variable", "logs")):
             with self.subTest(options=options):
                 self.assertEqual(self.measured(*options), usual)
+        given = self.measured("--method", "ls")
+        self.assertEqual((given["method"], given["model"]), (usual["method"], usual["model"]))
         longer = self.measured("--hac-lag", "3")
         self.assertEqual(longer["model"], usual["model"])
         self.assertNotEqual(longer["standard_error"], usual["standard_error"])
@@ -256,7 +259,8 @@ class Effects(Case):
         usual = self.measured()["model"]
         flipped = self.measured("--channels", "x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13", code=4)["model"]
         self.assert_relative([[-k for k in row] for row in flipped["K"]], usual["K"], 1e-12)
-        in_mm = self.measured("--channels", "x=2:mm,y=3:mm,Fx=10,Fy=11,xr=12,yr=13")["model"]
+        # read in the wrong unit, which is computed as asked and not usable
+        in_mm = self.measured("--channels", "x=2:mm,y=3:mm,Fx=10,Fy=11,xr=12,yr=13", code=4)["model"]
         self.assert_relative([[k / 1e3 for k in row] for row in in_mm["K"]], usual["K"], 1e-9)
 
     def test_axes(self):
@@ -328,7 +332,7 @@ class Out(Case):
 
     def test_a_measurement_that_fails_leaves_nothing(self):
         bad = self.file("bad.csv", "time,x,y,Fx,Fy\n0,1,2,3,a\n1,2,3,4,5\n")
-        for arguments in ([bad], [make_log().path, bad], [make_log().path, "--from", "100"]):
+        for arguments in ([bad], [make_log().path, "--from", "100"]):
             self.refused(BAD_DATA, "measure", *arguments, "--out", self.folder / "result.json")
         kept = self.file("kept.json", "precious")
         self.refused(BAD_DATA, "measure", bad, "--out", kept, "--overwrite")

@@ -127,13 +127,18 @@ class Recordings(Case):
                                                  if kind == mat_file.COMPRESSED))
                 (folders["stripped"] / "log.mat").write_bytes(without_structures(told))
                 texts, results = {}, {}
-                for kind, folder in folders.items():
-                    texts[kind] = run("measure", "log.mat", folder=folder).bytes
-                    results[kind] = run("measure", "--json", "log.mat", folder=folder).json
+                for kind in ("told", "blind"):
+                    texts[kind] = run("measure", "log.mat", folder=folders[kind]).bytes
+                    results[kind] = run("measure", "--json", "log.mat", folder=folders[kind]).json
                     del results[kind]["inputs"][0]["sha256"]  # of the file's own bytes
-                for kind in ("blind", "stripped"):
-                    self.assertEqual(texts[kind], texts["told"], kind)
-                    self.assertEqual(results[kind], results["told"], kind)
+                self.assertEqual(texts["blind"], texts["told"])
+                self.assertEqual(results["blind"], results["told"])
+                # Without any metadata handle mass and method have to be given; then it is the same model.
+                told = results["told"]
+                stripped = run("measure", "--json", "--handle-mass", str(told["estimation"]["handle_mass_kg"]), "--method",
+                               told["method"], "log.mat", folder=folders["stripped"]).json
+                for part in ("model", "standard_error", "covariance", "fit"):
+                    self.assertEqual(stripped[part], told[part], part)
                 info = run("info", "log.mat", folder=folders["blind"]).out
                 self.assertNotIn("truth", info)
                 self.assertNotIn(name, info)

@@ -186,7 +186,7 @@ TEST(ModelPassivity, RefusesWhatIsNoModelAndWhatIsNoBand) {
 
 TEST(Instruments, SpeakOnlyWhereTheyAreStrongAndDiffer) {
   Identification id = arm();
-  const Disagreement yes{"k_xx", 10.0, 1.0, true}, no{"k_xx", 1.0, 1.0, false};
+  const Disagreement yes{"k_xx", 10.0, 1.0, 40.0, true}, no{"k_xx", 1.0, 1.0, 40.0, false};
   EXPECT_FALSE(instruments_speak(id, yes));
   id.instrument = InstrumentCheck{ReferenceQuantity::force, Vector::Constant(6, kStrongInstruments + 0.1), {}};
   EXPECT_TRUE(instruments_speak(id, yes));

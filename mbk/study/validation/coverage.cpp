@@ -119,8 +119,7 @@ impedance::Model antisymmetric_arm(impedance::Model arm, int kind, double share)
   return arm;
 }
 
-constexpr std::array kKinds = {"stiffness", "inertia", "both, opposite signs, low end",
-                               "both, opposite signs, high end"};
+constexpr std::array kKinds = {"stiffness", "inertia", "both, low end", "both, high end"};
 
 constexpr int kKindCount = static_cast<int>(kKinds.size());
 

@@ -19,7 +19,6 @@ using safety::Reason;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTick = 1e-3;  // [s]
 
 Vector2d direction(Random& random) {
   const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);

@@ -15,6 +15,8 @@
 
 namespace mbk::validation {
 
+inline constexpr double kTick = 1e-3;  ///< of the sessions in which faults come [s]
+
 /// What the robot is told to do while a fault comes.
 enum class TrialKind { position, force };
 

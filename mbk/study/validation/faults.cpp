@@ -171,7 +171,7 @@ struct Job {
 
 /// What has to be so after every fault: nearly always by its share, and by the count of these runs always.
 void add_demand(const std::string& what, int good, int runs, ValidationTable& table) {
-  table.rows.push_back(share_row(what, good, runs, kOfFaults));
+  table.rows.push_back(share_row(what, good, runs, kAlways));
   table.rows.push_back(exact_row(what + ": exceptions", runs - good, Range{0.0, 0.0}, fmt::format("of {}", runs)));
 }
 

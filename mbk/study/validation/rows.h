@@ -20,8 +20,8 @@ using Range = std::pair<double, double>;
 inline constexpr Range kNominal = {92.0, 98.0}, kNearNominal = {85.0, 100.0};
 /// Of what a study expects of every trial, and of what should never happen: no finite number of runs shows 100 or 0 %.
 inline constexpr Range kNearlyAlways = {95.0, 100.0}, kHardlyEver = {0.0, 5.0};
-/// Of what has to follow every fault.
-inline constexpr Range kOfFaults = {99.0, 100.0};
+/// Of what must always be so, such as what has to follow every fault, and of what must never be.
+inline constexpr Range kAlways = {99.0, 100.0}, kNever = {0.0, 1.0};
 
 /// Share of the trials of which something is so [%], with its exact (Clopper–Pearson) 95 % interval. Of no trials it is
 /// undefined, between 0 and 100 %.

@@ -77,7 +77,7 @@ TEST(RowVerdict, OfATableIsThatOfItsWorstRow) {
 
 /// Of the same share, fewer trials never show more.
 TEST(RowVerdict, DroppingRunsNeverTurnsWhatIsNotMetIntoMet) {
-  for (const Range& expected : {kNominal, kNearNominal, kNearlyAlways, kHardlyEver, kOfFaults}) {
+  for (const Range& expected : {kNominal, kNearNominal, kNearlyAlways, kHardlyEver, kAlways}) {
     for (const int trials : {20, 50, 100, 200}) {
       for (int hits = 0; hits <= trials; ++hits) {
         bool was_met = share_row("", hits, trials, expected).verdict() == met;

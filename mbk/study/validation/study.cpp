@@ -14,6 +14,7 @@ constexpr std::array kOfCoverage = {JudgedShare{kNominal, 95.0}, JudgedShare{kHa
 constexpr std::array kOfIntervals = {JudgedShare{kNearNominal, 95.0}};
 constexpr std::array kOfClosedLoop = {JudgedShare{kNearlyAlways, 100.0},
                                       JudgedShare{kNominal, 95.0, kTrialsWithoutController}};
+constexpr std::array kOfPassivity = {JudgedShare{kNever, 0.0}, JudgedShare{kAlways, 100.0}};
 constexpr std::array kOfRobot = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfVirtualSensor = {JudgedShare{kNearNominal, 100.0, 5.0},  // wide: a damper is not in the model
                                          JudgedShare{kNearlyAlways, 100.0}};
@@ -32,6 +33,8 @@ std::span<const Study> studies() {
             recovery_study},
       Study{"closed-loop", "least squares, instrumental variables and energy of an arm that acts back", kOfClosedLoop,
             2, closed_loop_study},
+      Study{"passivity", "what is said of passivity, of relaxed arms and of arms that give energy", kOfPassivity, 2,
+            passivity_study},
       Study{"live-estimate", "how often the 95 % intervals hold the truth while the trial still runs", kOfIntervals, 2,
             live_estimate_study},
       Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", {}, 3, springs_study},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/test_short_study.h"
 
 namespace mbk::validation {
@@ -68,6 +69,16 @@ TEST(Recovery, IsTheSameOnAnyNumberOfThreads) {
   const auto one = recovery_study({.runs = 2, .threads = 1}), two = recovery_study({.runs = 2, .threads = 2});
   ASSERT_TRUE(one && two);
   for (std::size_t k = 0; k < one->rows.size(); ++k) EXPECT_EQ(one->rows[k].value, two->rows[k].value);
+}
+
+TEST(PassivityStudy, NeverCallsARelaxedArmActiveAndHearsTheEnergyOfOneThatActs) {
+  const auto table = passivity_study({.runs = 3, .seed = 21});  // `mbk validate passivity` takes 500
+  expect_nothing_refuted(table);
+  EXPECT_EQ(table->rows.size(), 5u * 5 + 3);
+  for (const ValidationRow& row : table->rows) {
+    if (!row.judged()) continue;
+    EXPECT_DOUBLE_EQ(row.value, row.expected == kNever ? 0.0 : 100.0) << row.what;
+  }
 }
 
 TEST(LiveEstimate, ItsIntervalsHoldTheTruth) {

@@ -40,7 +40,7 @@ using teleop::Teleoperator;
 
 constexpr std::array kArchitectures = {Architecture::position_position, Architecture::position_force,
                                        Architecture::three_channel, Architecture::four_channel};
-constexpr double kTick = 1e-3;
+constexpr double kSamplingPeriod = 1e-3;  // [s]
 constexpr Port kOperator = Port::one;
 
 double log_uniform(Random& random, double low, double high) {
@@ -68,8 +68,8 @@ Teleoperator random_design(Architecture architecture, Random& random) {
   set("channels.force_to_master", random.uniform(0.0, 0.9));
   set("channels.force_to_slave", random.uniform(0.0, 0.9));
   if (random.uniform() < 0.5) {
-    set("delay.to_slave", kTick * static_cast<double>(1 + random.below(20)));
-    set("delay.to_master", kTick * static_cast<double>(1 + random.below(20)));
+    set("delay.to_slave", kSamplingPeriod * static_cast<double>(1 + random.below(20)));
+    set("delay.to_master", kSamplingPeriod * static_cast<double>(1 + random.below(20)));
   }
   return design;
 }
@@ -119,16 +119,16 @@ bool grows(const laboratory::MotionVerdict& verdict) {
 Result<std::optional<WorstTerminations>> hardest(const Teleoperator& design, double a) {
   constexpr double kMore = 0.2;  // [N·s/m]
   constexpr int kPoints = 500;
-  const FrequencyGrid grid{RadPerSec(1.0), laboratory::highest_shown(kTick), kPoints};
+  const FrequencyGrid grid{RadPerSec(1.0), laboratory::highest_shown(kSamplingPeriod), kPoints};
   const auto largest = teleop::largest_shortage_on_grid(design, grid, kOperator);
   if (!largest) return tl::unexpected(largest.error());
   const double beyond = std::max(a, largest->value()) + kMore;
   const auto exact = lti::exact(beyond);
   if (!exact) return std::nullopt;
-  const auto too_much = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kTick);
+  const auto too_much = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kSamplingPeriod);
   if (!too_much) return tl::unexpected(too_much.error());
   auto worst = teleop::worst_terminations(
-      design, teleop::violated_frequencies(*too_much, laboratory::highest_shown(kTick)), kTick, kOperator, beyond);
+      design, teleop::violated_frequencies(*too_much, laboratory::highest_shown(kSamplingPeriod)), kSamplingPeriod, kOperator, beyond);
   if (worst) worst->at_port[0].damping += beyond - a;
   return worst;
 }
@@ -184,7 +184,7 @@ Result<void> try_stable(const TeleoperationSetup& setup, double a, Random& rando
 
 Result<std::optional<Shown>> show(TeleoperationSetup setup, const AbsoluteStability& stability, double a) {
   const auto worst = teleop::worst_terminations(
-      setup.teleoperator, teleop::violated_frequencies(stability, laboratory::highest_shown(kTick)), kTick, kOperator,
+      setup.teleoperator, teleop::violated_frequencies(stability, laboratory::highest_shown(kSamplingPeriod)), kSamplingPeriod, kOperator,
       a);
   // what needs longer than is simulated is too near the boundary to be seen on either side of it
   constexpr double kSlowest = 0.16;  // [1/s]
@@ -194,7 +194,7 @@ Result<std::optional<Shown>> show(TeleoperationSetup setup, const AbsoluteStabil
   if (!verdict) return tl::unexpected(verdict.error());
   Shown shown{grows(*verdict), worst->frequency.value, verdict->frequency.value, worst->growth, verdict->growth, {}};
   if (a == 0.0) {
-    setup.passivity_controller = 0.5 * lti::to_double(setup.teleoperator.values.at("master.m")) / kTick;
+    setup.passivity_controller = 0.5 * lti::to_double(setup.teleoperator.values.at("master.m")) / kSamplingPeriod;
     const auto controlled = simulated(setup, worst->at_port);
     if (!controlled) return tl::unexpected(controlled.error());
     shown.grew_with_controller = grows(*controlled);
@@ -209,14 +209,14 @@ Result<Case> perform(const Teleoperator& design, double a, Random& random) {
   if (!network) return tl::unexpected(network.error());
   const AbsoluteStability decided = teleop::llewellyn(*network);
   constexpr int kPoints = 1000;
-  const FrequencyGrid grid{RadPerSec(1e-2), RadPerSec(std::numbers::pi / kTick), kPoints};
-  const auto sampled = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kTick);
+  const FrequencyGrid grid{RadPerSec(1e-2), RadPerSec(std::numbers::pi / kSamplingPeriod), kPoints};
+  const auto sampled = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kSamplingPeriod);
   if (!sampled) return tl::unexpected(sampled.error());
 
   Case result{decided.holds(), sampled->holds()};
   TeleoperationSetup setup;
   setup.teleoperator = design;
-  setup.sample_time = kTick;
+  setup.sample_time = kSamplingPeriod;
   if (result.stable && result.stable_sampled) {
     if (auto ok = try_stable(setup, a, random, result); !ok) return tl::unexpected(ok.error());
     return result;
@@ -339,7 +339,7 @@ Result<double> wall_energy(bool with_controller) {
   device.steps_per_tick = 4;
   auto loop = laboratory::ClosedLoop<1>::create(device, AxisVector<1>(kStart), hand);
   if (!loop) return tl::unexpected(loop.error());
-  auto controller = control::SeriesPassivityController::create(kTick, 0.5 * kMass / kTick);
+  auto controller = control::SeriesPassivityController::create(kSamplingPeriod, 0.5 * kMass / kSamplingPeriod);
   if (!controller) return tl::unexpected(controller.error());
   control::PassivityObserver observer;
   double lowest = 0.0;
@@ -348,7 +348,7 @@ Result<double> wall_energy(bool with_controller) {
     const double force = with_controller ? controller->step(x, asked) : asked;
     observer.step(x, force);
     lowest = std::min(lowest, observer.energy());
-    loop->hold(AxisVector<1>(-force), kTick);
+    loop->hold(AxisVector<1>(-force), kSamplingPeriod);
     loop->advance();
   }
   return lowest;

@@ -19,7 +19,6 @@ using Reasons = std::vector<std::string_view>;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTick = 1e-3;           // [s]
 constexpr double kLatchedTorque = 0.6;   // more than Limits::torque_error, which the motion can show [N·m]
 constexpr double kMeasuredTorque = 0.3;  // what drives that measure can show all the more [N·m]
 
