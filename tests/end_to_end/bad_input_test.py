@@ -97,8 +97,11 @@ class Files(BadInput):
     def test_one_bad_file_among_good_ones(self):
         good, bad = self.csv("good.csv"), self.file("bad.csv", "time,x\n0,1\n1,a\n")
         for files in ((good, bad), (bad, good)):
-            for options in ([], ["--json"], ["--pool"]):
-                self.refused(BAD_DATA, "measure", *files, *options, says=str(bad))
+            for options in ([], ["--json"]):  # it costs only itself
+                ran = self.mbk("measure", *files, *options, code=BAD_DATA)
+                self.assertIn(str(bad), ran.err)
+                self.assertIn(str(good), ran.out)
+            self.refused(BAD_DATA, "measure", *files, "--pool", says=str(bad))
 
     def test_names_that_are_no_utf_8(self):
         path = bytes(self.folder) + b"/caf\xe9.csv"

@@ -75,7 +75,8 @@ class Manual(Case):
 
     def test_groups_and_lists_are_kept(self):
         measure = self.fine("manual", "measure").out
-        self.assertEqual(re.findall(r"(?m)^\.SS (.*)$", measure), ["Force sensor", "Analysed interval", "Filters", "Model"])
+        self.assertEqual(re.findall(r"(?m)^\.SS (.*)$", measure), ["Force sensor", "Analysed interval", "Filters", "Model",
+                                                                     "Plausibility"])
         self.assertIn(".SH STUDIES\n.TP\n\\fBcoverage\\fR\n", self.fine("manual", "validate").out)
 
     def test_exit_codes_are_those_of_the_command(self):

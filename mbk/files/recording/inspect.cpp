@@ -74,7 +74,8 @@ bool can_clip(std::string_view name) {
   return std::ranges::any_of(kSensors, [&](std::string_view sensor) { return name.starts_with(sensor); });
 }
 
-void inspect_clipping(const Vector& values, ChannelFacts& facts) {
+/// Of finite values between facts.min and facts.max.
+void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& facts) {
   Index runs = 0;
   Index covered = 0;
   for (Index begin = 0; begin < values.size();) {
@@ -123,6 +124,23 @@ Inspection inspect(const Recording& recording) {
     facts.channels.push_back(inspect_channel(channel));
   }
   return facts;
+}
+
+std::vector<ChannelFacts> clipped_channels(const Recording& recording, double from_s, double to_s) {
+  std::vector<ChannelFacts> clipped;
+  const Vector& time = recording.time;
+  if (time.size() == 0) return clipped;
+  const Index begin = std::ranges::lower_bound(time, time[0] + from_s) - time.begin();
+  const Index end = std::ranges::upper_bound(time, time[0] + to_s) - time.begin();
+  for (const Channel& channel : recording.channels) {
+    if (!can_clip(channel.name) || begin >= end) continue;
+    const auto values = channel.values.segment(begin, end - begin);
+    if (!values.allFinite()) continue;
+    ChannelFacts facts{channel.name, channel.unit, values.minCoeff(), values.maxCoeff()};
+    if (facts.min < facts.max) inspect_clipping(values, facts);
+    if (facts.clipped) clipped.push_back(facts);
+  }
+  return clipped;
 }
 
 }  // namespace mbk::recording

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -110,6 +111,24 @@ TEST(Inspect, DoesNotCallTwoRunsClipped) {
   EXPECT_FALSE(inspect(with_channel("force_x", values)).channels[0].clipped);
   values.segment(500, 10).setConstant(5);
   EXPECT_TRUE(inspect(with_channel("force_x", values)).channels[0].clipped);
+}
+
+TEST(ClippedChannels, AreThoseThatReachTheirLimitWithinTheWindow) {
+  Vector values(1000), times(1000);
+  for (Index k = 0; k < 1000; ++k) {
+    const double one = std::sin(0.1 * static_cast<double>(k));
+    values[k] = k < 500 ? std::clamp(one, -0.9, 0.9) : one;
+    times[k] = 3.0 + 0.01 * static_cast<double>(k);
+  }
+  Recording recording = with_channel("force_x", values);
+  recording.time = times;
+  EXPECT_FALSE(inspect(recording).channels[0].clipped);  // later it goes farther
+  const auto clipped = clipped_channels(recording, 0.0, 4.9);
+  ASSERT_EQ(clipped.size(), 1U);
+  EXPECT_EQ(clipped[0].max, 0.9);
+  EXPECT_TRUE(clipped_channels(recording, 5.0, 9.99).empty());
+  EXPECT_TRUE(clipped_channels(recording, 20.0, 30.0).empty());
+  EXPECT_TRUE(clipped_channels(Recording{}, 0.0, 1.0).empty());
 }
 
 TEST(Inspect, CopesWithNoneAndOneSample) {

@@ -254,6 +254,10 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
   const Recording& recording = *recordings.front();
   const Identification& id = measured.identification;
   const int axes = id.axes;
+  // So few data have no sign that could be trusted.
+  if (std::ranges::find(id.warnings, WarningCode::too_little_data, &Warning::code) != id.warnings.end()) {
+    return std::nullopt;
+  }
   std::optional<AxisMap> map = map_of(id);
   if (!map && measured.alternative) map = map_of(*measured.alternative);
   if (!map) {

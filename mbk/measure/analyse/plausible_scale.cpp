@@ -45,6 +45,7 @@ struct Numbers {
   Vector position, motion, speed, force;  ///< axis by axis
   double rate = 0.0;
   bool explained = false;  ///< the model explains enough of the force for its size to count
+  double handle_mass = 0.0;  ///< [kg] subtracted from M, whatever its scale
   Part M, B, K;
 };
 
@@ -66,9 +67,16 @@ struct Explanation {
   double distance = 0.0;
 };
 
+/// What one value in a thousand exceeds.
+double largest_but_glitches(Vector values) {
+  const Index at = values.size() - 1 - values.size() / 1000;
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[at];
+}
+
 Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& id) {
   const Index n = id.axes;
-  Numbers numbers{Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, false, {}, {}, {}};
+  Numbers numbers{Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, false, id.handle_mass, {}, {}, {}};
   for (const PreparedTrial& trial : trials) {
     numbers.rate = std::max(numbers.rate, trial.recording_rate);
     for (const Segment& segment : trial.segments) {
@@ -79,7 +87,7 @@ Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& 
         const auto larger = [axis](Vector& of, double value) { of[axis] = std::max(of[axis], value); };
         const Vector position = rows(trial.position);
         larger(numbers.position, std::abs(position.mean()));
-        larger(numbers.speed, rows(trial.velocity).cwiseAbs().maxCoeff());
+        larger(numbers.speed, largest_but_glitches(rows(trial.velocity).cwiseAbs()));
         if (segment.size() < 2) continue;
         larger(numbers.motion, std::sqrt(numeric::variance(position)));
         larger(numbers.force, std::sqrt(numeric::variance(rows(trial.force_hand_on_robot))));
@@ -108,7 +116,10 @@ Numbers explained(Numbers n, const Explanation& by) {
       *Z = time * (by.force.asDiagonal() * *Z * by.position.cwiseInverse().asDiagonal());
     }
   };
+  const Matrix handle = n.handle_mass * Matrix::Identity(n.M.Z.rows(), n.M.Z.cols());
+  n.M.Z += handle;
   scale(n.M, by.time * by.time);
+  n.M.Z -= handle;
   scale(n.B, by.time);
   scale(n.K, 1.0);
   return n;
@@ -429,6 +440,7 @@ Error explain_clock(Error error, const Recording& recording, const Inspection& i
   const auto likely = of_clock_alone(Explanations(recording, {trial}, n).take(), inspection.rate_hz, range);
   error.message = fmt::format("the clock runs at {:.3g} Hz, and {:g} to {:g} Hz are plausible; {}", inspection.rate_hz,
                               range.low, range.high, error.message);
+  error.kind = ErrorKind::data;  // an option that does not fit is no mistake then
   error.remedy = remedy_of(std::span(likely).first(std::min<std::size_t>(likely.size(), 1)), recording, n);
   return error;
 }

@@ -199,7 +199,8 @@ class Checker {
     warn(WarningCode::decimation_changes_model,
          fmt::format("at {:g} Hz the model differs by {:.1f} %", id_.decimation->rate_hz,
                      100.0 * id_.decimation->largest_change),
-         "the signals hold something above 50 Hz; lower --cutoff");
+         fmt::format("the signals hold something above {:g} Hz: leave --sg-window out or raise it, or lower --cutoff",
+                     0.5 * id_.decimation->rate_hz));
   }
 
  private:

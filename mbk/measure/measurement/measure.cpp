@@ -29,9 +29,10 @@
 namespace mbk::measurement {
 namespace {
 
-void warn_of_clipping(const Inspection& inspection, PreparedTrial& trial) {
-  for (const ChannelFacts& facts : inspection.channels) {
-    if (!facts.clipped) continue;
+/// Of what counts: a sensor that was at its limit outside the window harms nothing.
+void warn_of_clipping(const Recording& recording, PreparedTrial& trial) {
+  const Preparation& how = trial.preparation;
+  for (const ChannelFacts& facts : recording::clipped_channels(recording, how.from_s, how.to_s)) {
     trial.warnings.push_back({WarningCode::clipping,
                               fmt::format("channel '{}' rests at its extreme again and again ({:g} to {:g} {}): the "
                                           "sensor or converter was at its limit",
@@ -141,7 +142,7 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
     return tl::unexpected<Error>(
         analyse::explain_clock(trial.error(), recording, source.recorded, options.preprocess.axes));
   }
-  warn_of_clipping(source.recorded, *trial);
+  warn_of_clipping(*source.given, *trial);
   if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   return trial;
 }
