@@ -186,8 +186,7 @@ int run(const PassivityArguments& arguments) {
 
 Action add_passivity(CLI::App& app) {
   auto arguments = std::make_shared<PassivityArguments>();
-  CLI::App* command =
-      add_command(app, "passivity", "what energy the limb absorbed, and what its model predicts");
+  CLI::App* command = add_command(app, "passivity", "what energy the limb absorbed, and what its model predicts");
   command->footer(
       "Examples:\n"
       "  mbk passivity log.mat\n"

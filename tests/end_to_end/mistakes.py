@@ -88,7 +88,7 @@ MISTAKES = (
     Mistake("Fy in kN, Fx in N", "implausible-scale|axes-scaled-differently", scaled("Fy", by=1e-3),
             says=("Fy is in kN",), drives="relaxed"),
     Mistake("Fx in mN, Fy in N", "implausible-scale|axes-scaled-differently", scaled("Fx", by=1e3),
-            says=("Fx is in mN",)),
+            says=("Fx is in mN",), drives="relaxed"),
     # gain
     Mistake("force gain 100", "implausible-scale", scaled("Fx", "Fy", by=100), says=("Fx",), cured=False),
     Mistake("force gain 1/100", "implausible-scale", scaled("Fx", "Fy", by=0.01), says=("Fx",), cured=False),

@@ -26,6 +26,10 @@ def model_of(ran):
 
 
 class Mistakes(Case):
+    def setUp(self):
+        super().setUp()
+        self.twins = {}  # by recording
+
     def recording(self, name):
         path = self.folder / f"{name}.h5"
         if not path.exists():
@@ -46,6 +50,14 @@ class Mistakes(Case):
             path.write_text("\n".join(",".join(row[i] for i in order) for row in rows) + "\n", encoding="utf-8")
         return path
 
+    def twin_of(self, path, right):
+        """What the recording gives where it is read rightly; measured once."""
+        if path not in self.twins:
+            twin = self.twins[path] = self.measured(path, right)
+            self.assertIn(twin.code, (FINE, NOT_USABLE), twin)
+            self.assertFalse(CAUSES & codes_of(twin), (path.name, twin.json["warnings"]))
+        return self.twins[path]
+
     def measured(self, path, entries, *options):
         return run("measure", "--json", "--quiet", *as_option(entries), *options, path)
 
@@ -54,9 +66,7 @@ class Mistakes(Case):
         right, wrong = right_map(mistake.axes), mistake.change(right_map(mistake.axes))
         if mistake.unnamed:
             right, wrong = numbered(right, mistake.axes), numbered(wrong, mistake.axes)
-        twin = self.measured(path, right)
-        self.assertIn(twin.code, (FINE, NOT_USABLE), twin)
-        self.assertFalse(CAUSES & codes_of(twin), (name, twin.json["warnings"]))
+        twin = self.twin_of(path, right)
         ran = self.measured(path, wrong, *mistake.options)
         if ran.code == BAD_DATA:  # refused, with the same hint
             said, hint = ran.err, ran.err

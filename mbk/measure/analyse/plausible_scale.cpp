@@ -21,8 +21,9 @@
 namespace mbk::analyse {
 namespace {
 
-constexpr double kExplained = 0.0;    ///< [%] of the held-out force: at or below, the model is not usable whatever its size
-constexpr double kKnown = 4.0;        ///< standard errors that the size of a matrix must have to count
+constexpr double kExplained =
+    0.0;                        ///< [%] of the held-out force: at or below, the model is not usable whatever its size
+constexpr double kKnown = 4.0;  ///< standard errors that the size of a matrix must have to count
 constexpr double kImbalance = 3.0;    ///< ratio of m_xy to m_yx from which the axes have different scales
 constexpr double kSameFactor = 3.0;   ///< within which M, B and K must be lopsided by the same
 constexpr double kSignificant = 5.0;  ///< standard errors of what m_xy and m_yx differ by
@@ -44,7 +45,7 @@ struct Part {
 struct Numbers {
   Vector position, motion, speed, force;  ///< axis by axis
   double rate = 0.0;
-  bool explained = false;  ///< the model explains enough of the force for its size to count
+  bool explained = false;    ///< the model explains enough of the force for its size to count
   double handle_mass = 0.0;  ///< [kg] subtracted from M, whatever its scale
   Part M, B, K;
 };
@@ -76,7 +77,8 @@ double largest_but_glitches(Vector values) {
 
 Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& id) {
   const Index n = id.axes;
-  Numbers numbers{Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, false, id.handle_mass, {}, {}, {}};
+  Numbers numbers{
+      Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), Vector::Zero(n), 0.0, false, id.handle_mass, {}, {}, {}};
   for (const PreparedTrial& trial : trials) {
     numbers.rate = std::max(numbers.rate, trial.recording_rate);
     for (const Segment& segment : trial.segments) {

@@ -17,7 +17,7 @@ namespace mbk::identify {
 namespace {
 
 /// Thresholds of the warnings, each with its reason.
-constexpr double kLargestCondition = 100.0;    // what no model explains, 1 % of the force, weighs as much as a parameter
+constexpr double kLargestCondition = 100.0;  // what no model explains, 1 % of the force, weighs as much as a parameter
 constexpr double kSmallestMotionRatio = 0.05;  // across the line of motion the limb moved a twentieth as far
 constexpr double kVafDrop = 10.0;              // points between in-sample and held-out
 constexpr double kPoorVaf = 70.0;              // relaxed arms give 92 % and more, ankles under tonic contraction 87

@@ -24,6 +24,7 @@
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/resample.h"
+#include "mbk/model/impedance/model.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::measurement {
@@ -259,7 +260,8 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
       (instrumental == other) == analyse::instruments_speak(*instrumental, measured.disagreement)) {
     std::swap(first, other);
   }
-  if (first->model.M.allFinite() && first->model.x0.allFinite()) {
+  // Equal rows of K, as of a force that was read twice, have no equilibrium.
+  if (impedance::stacked(first->model).allFinite() && impedance::stacked(first->judged).allFinite()) {
     auto consistent = identify::consistent_model(trials, *first);
     if (!consistent) return tl::unexpected(consistent.error());
     measured.consistent = std::move(*consistent);

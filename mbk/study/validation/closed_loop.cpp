@@ -215,10 +215,10 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
   add_multisine(of_task(0), table);
   add_coverage(of_task(1), table);
   add_pulses(of_task(2), table);
-  table.notes.push_back(
-      fmt::format("A run is three trials of participant 1's arm, held stiff, pooled, and {} with the controller off, each "
-                  "by itself. ls: least squares, iv: instrumental variables from the known force.",
-                  kTrialsWithoutController));
+  table.notes.push_back(fmt::format(
+      "A run is three trials of participant 1's arm, held stiff, pooled, and {} with the controller off, each "
+      "by itself. ls: least squares, iv: instrumental variables from the known force.",
+      kTrialsWithoutController));
   table.notes.emplace_back(
       "Eigenvalues are those of the symmetric parts, as errors against the arm's own. What remains with iv is the "
       "voluntary controller's answer to the perturbation, which by (4.2) of Dyck (2013) is part of what the hand "

@@ -128,7 +128,8 @@ Result<std::optional<WorstTerminations>> hardest(const Teleoperator& design, dou
   const auto too_much = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kSamplingPeriod);
   if (!too_much) return tl::unexpected(too_much.error());
   auto worst = teleop::worst_terminations(
-      design, teleop::violated_frequencies(*too_much, laboratory::highest_shown(kSamplingPeriod)), kSamplingPeriod, kOperator, beyond);
+      design, teleop::violated_frequencies(*too_much, laboratory::highest_shown(kSamplingPeriod)), kSamplingPeriod,
+      kOperator, beyond);
   if (worst) worst->at_port[0].damping += beyond - a;
   return worst;
 }
@@ -184,8 +185,8 @@ Result<void> try_stable(const TeleoperationSetup& setup, double a, Random& rando
 
 Result<std::optional<Shown>> show(TeleoperationSetup setup, const AbsoluteStability& stability, double a) {
   const auto worst = teleop::worst_terminations(
-      setup.teleoperator, teleop::violated_frequencies(stability, laboratory::highest_shown(kSamplingPeriod)), kSamplingPeriod, kOperator,
-      a);
+      setup.teleoperator, teleop::violated_frequencies(stability, laboratory::highest_shown(kSamplingPeriod)),
+      kSamplingPeriod, kOperator, a);
   // what needs longer than is simulated is too near the boundary to be seen on either side of it
   constexpr double kSlowest = 0.16;  // [1/s]
   if (!worst || worst->growth < kSlowest) return std::nullopt;
