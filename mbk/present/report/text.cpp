@@ -141,6 +141,7 @@ std::string validation_range(const Interval& interval, int decimals) {
   const auto end = [&](double value) {
     return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : value < 0.0 ? "-inf" : "inf";
   };
+  if (!std::isfinite(interval.first) && !std::isfinite(interval.second)) return "unbounded";
   return fmt::format("[{}, {}]", end(interval.first), end(interval.second));
 }
 

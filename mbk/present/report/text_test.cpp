@@ -330,6 +330,8 @@ TEST(ValidationText, AnUnboundedIntervalSaysSo) {
   ValidationTable table = validation();
   table.rows[0].interval95 = {429.0, std::numeric_limits<double>::infinity()};
   EXPECT_THAT(line_with(validation_text(table), "k_xx"), HasSubstr("[429.00, inf]"));
+  table.rows[0].interval95 = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  EXPECT_THAT(line_with(validation_text(table), "k_xx"), HasSubstr("unbounded"));
 }
 
 TEST(ValidationText, SpreadAndUnitStandWhereARowHasThem) {
