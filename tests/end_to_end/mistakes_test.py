@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What a person gets wrong is not called usable, and the hint names it; what is right raises no such word.
 
-Each mistake is made on every arm and drive that it can be made on; its twin is the same recording without it."""
+Each mistake is made on two recordings, with MBK_MISTAKES=all on every arm and drive that it can be made on; its twin is
+the same recording without it."""
 
 import os
 
@@ -11,6 +12,7 @@ from mistakes import (COLUMNS, COLUMNS_OF_ONE_AXIS, MISTAKES, as_option, first_o
 
 ARMS = ("relaxed_sinusoidal", "relaxed_underdamped", "rigid_underdamped_8N", "abnormal_tone")
 JOINTS = ("ankle_reflex",)
+ALL = os.environ.get("MBK_MISTAKES") == "all"
 CAUSES = {"implausible-scale", "axes-scaled-differently", "axes-mismatched", "same-column", "other-column",
           "handle-mass-too-large", "force-sign-reversed"}
 SEEDS = int(os.environ.get("MBK_MISTAKE_SEEDS", "2"))  # of each ready scenario, for false alarms
@@ -87,11 +89,12 @@ class Mistakes(Case):
                 self.assert_relative(got, expected, 1e-6)
 
     def test_every_mistake_is_found_and_named(self):
-        for mistake in MISTAKES:
-            for name in JOINTS if mistake.axes == 1 else ARMS:
-                if mistake.drives in name:
-                    with self.subTest(mistake=mistake.name, on=name):
-                        self.assert_found(mistake, name)
+        for k, mistake in enumerate(MISTAKES):
+            possible = JOINTS if mistake.axes == 1 else [name for name in ARMS if mistake.drives in name]
+            start, step = k % len(possible), 1 + k // len(possible) % max(len(possible) - 1, 1)
+            for name in possible if ALL else sorted({possible[start], possible[(start + step) % len(possible)]}):
+                with self.subTest(mistake=mistake.name, on=name):
+                    self.assert_found(mistake, name)
 
     def test_there_are_thirty_of_them(self):
         self.assertGreaterEqual(len(MISTAKES), 30)

@@ -24,7 +24,6 @@
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/resample.h"
-#include "mbk/model/impedance/model.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::measurement {
@@ -260,11 +259,11 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
       (instrumental == other) == analyse::instruments_speak(*instrumental, measured.disagreement)) {
     std::swap(first, other);
   }
-  // Equal rows of K, as of a force that was read twice, have no equilibrium.
-  if (impedance::stacked(first->model).allFinite() && impedance::stacked(first->judged).allFinite()) {
-    auto consistent = identify::consistent_model(trials, *first);
-    if (!consistent) return tl::unexpected(consistent.error());
+  auto consistent = identify::consistent_model(trials, *first);
+  if (consistent) {
     measured.consistent = std::move(*consistent);
+  } else if (consistent.error().kind != ErrorKind::not_usable) {  // there is a model, but none that it could be near
+    return tl::unexpected(consistent.error());
   }
   for (const Identification* id : {first, other}) {
     // A model without damping was not asked whether the limb has any.
