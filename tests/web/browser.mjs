@@ -158,10 +158,15 @@ export async function open(file, { script, ...options } = {}) {
 export async function scrollThrough(page) {
   const height = await page.evaluate(() => document.documentElement.scrollHeight);
   for (let y = 0; y < height; y += 600) {
-    await page.evaluate((top) => new Promise((drawn) => {
-      scrollTo({ top, behavior: "instant" });
-      requestAnimationFrame(() => requestAnimationFrame(drawn));
-    }), y);
+    await eventually(async () => {
+      const drawn = await page.evaluate((top) => new Promise((done) => {
+        scrollTo({ top, behavior: "instant" });
+        requestAnimationFrame(() => requestAnimationFrame(() => done(true)));
+        setTimeout(() => done(false), 2000);
+      }), y);
+      if (!drawn) await page.bringToFront(); // on a busy machine the browser may lose a frame, and waits for a reason to draw one
+      assert.ok(drawn, "no frame is drawn");
+    });
   }
   await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
 }
