@@ -190,14 +190,15 @@ Action add_passivity(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  mbk passivity log.mat\n"
-      "      the energy of the trial with its interval, every condition on the model, and the energy over time\n"
+      "      the energy of the trial with its interval, every condition of the model, energy over time\n"
       "  mbk passivity log.mat --band 0.5:3\n"
-      "      the model's prediction in a band of one's own choice; what lies outside the data is extrapolated\n"
+      "      the model's prediction in a band of one's own choice; beyond the data it is extrapolated\n"
       "  mbk passivity result.json\n"
       "      of the models and the energy that 'mbk measure --json' stored\n\n"
-      "Two statements. What happened: passive, the limb absorbed energy in this trial; active, it delivered some;\n"
-      "undecided, the 95 % interval holds zero. What the model predicts, in the band in which the perturbation\n"
-      "moves all axes and explains force and motion: passive, active, undecided, or none where no model is usable.\n"
+      "Two statements. What happened: passive, the limb absorbed energy in this trial; active, it\n"
+      "delivered some; undecided, the 95 % interval holds zero. What the model predicts, in the band\n"
+      "in which the perturbation moves all axes and explains force and motion: passive, active,\n"
+      "undecided, or none where no model is usable.\n"
       "Neither is a promise that a machine is stable with this person.");
   add_measure_options(*command, *arguments);
   command

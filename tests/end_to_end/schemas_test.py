@@ -71,7 +71,7 @@ class Schemas(Case):
         written = {name for path in source.rglob("*.cpp") if not path.name.endswith("_test.cpp")
                    for name in re.findall(r'"mbk\.(\w+/\d+)"', path.read_text(encoding="utf-8"))}
         self.assertGreater(len(written), 20)
-        for name in written - {"recording/1"}:  # the layout of HDF5 files
+        for name in written - {"recording/1"} - {"result/1", "passivity/1"}:  # of HDF5 files; what is still read
             word = name.split("/")[0]
             self.assertIn(f'"mbk.{name}"', (schemas.FOLDER / f"{word}.schema.json").read_text(encoding="utf-8"))
 

@@ -129,7 +129,8 @@ class OneBadFile(Case):
         self.assertEqual(ran.out.count("stiffness K"), 3)  # two and their mean
         ran = self.check("--quiet", "--json")
         self.assertEqual([one["inputs"][0]["file"] for one in ran.json["results"]], [str(log) for log in logs(1, 2)])
-        self.assertEqual([one["file"] for one in ran.json["failed"]], [str(self.folder / "bad.csv"), str(self.folder / "none.mat")])
+        self.assertEqual([one["file"] for one in ran.json["failed"]],
+                         [f'{self.folder / "bad.csv"}, line 3, column 2', str(self.folder / "none.mat")])
         self.assertTrue(all(one["message"] and one["try"] for one in ran.json["failed"]))
         self.assertEqual(ran.json["summary"]["trials"], 2)
         self.check("--quiet", command="identify")

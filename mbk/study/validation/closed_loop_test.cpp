@@ -16,7 +16,7 @@ TEST(ClosedLoopStudy, FindsThatLeastSquaresCallsAPassiveArmActiveAndInstrumentsA
   const auto table = closed_loop_study({.runs = 4, .seed = 1});
   ASSERT_TRUE(table) << table.error().line();
   for (const char* what : {"ls active, theorem 3.2", "iv passive, M_s", "energy passive", "no model explains half",
-                           "energy active", "verdict active, by the energy"}) {
+                           "energy active", "the model predicts nothing"}) {
     const ValidationRow* row = find(*table, what);
     ASSERT_NE(row, nullptr) << what;
     EXPECT_GE(row->value, 75.0) << what;  // of four runs; twenty and more by command
@@ -24,7 +24,7 @@ TEST(ClosedLoopStudy, FindsThatLeastSquaresCallsAPassiveArmActiveAndInstrumentsA
   const ValidationRow* const inertia = find(*table, "ls: smallest eigenvalue of M");
   ASSERT_NE(inertia, nullptr);
   EXPECT_LT(inertia->value, -100.0);  // its sign is wrong
-  const ValidationRow* const active = find(*table, "6 N multisine: verdict active");
+  const ValidationRow* const active = find(*table, "6 N multisine: prediction active");
   ASSERT_NE(active, nullptr);
   EXPECT_EQ(active->value, 0.0);
 }

@@ -154,13 +154,13 @@ TEST(Rows, IntervalsHoldTheTruth) {
 
 TEST(Runs, AreAsManyAsTheIntervalNeeds) {
   EXPECT_EQ(min_runs({kNominal, 95.0}), 226);
-  EXPECT_EQ(min_runs({kNearlyAlways, 100.0}), 36);  // 0.025^(1/36) = 90.3 %
+  EXPECT_EQ(min_runs({kNearlyAlways, 100.0}), 72);  // 0.025^(1/72) = 95.01 %
   EXPECT_EQ(min_runs({kHardlyEver, 0.0}), 72);      // 0.025^(1/72) = 95.01 %
   EXPECT_EQ(min_runs({kHardlyEver, 0.0, 3.0}), 24);
   EXPECT_EQ(min_runs({kHardlyEver, 0.0, 0.5}), 144);
   EXPECT_EQ(default_runs({kNominal, 95.0}), 2000);
   EXPECT_EQ(default_runs({kNearNominal, 95.0}), 250);
-  EXPECT_EQ(default_runs({kNearlyAlways, 100.0}), 50);
+  EXPECT_EQ(default_runs({kNearlyAlways, 100.0}), 100);
   EXPECT_NEAR(chance_to_be_met(kNominal, 95.0, 400), 0.5, 0.1);
 }
 
