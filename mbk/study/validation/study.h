@@ -66,9 +66,9 @@ struct Study {
 /// A run is one seed of every arm and condition.
 [[nodiscard]] Result<ValidationTable> participant_study(const StudyOptions& options);
 
-/// What is said of passivity, against the truth: of relaxed arms under several perturbations, where active is always
-/// wrong, and of rigid arms that answer 2 N pulses, which give energy. A run is one trial of each. Expected: never
-/// "active" of a relaxed arm, by the energy or by the model, and always by the energy of the others.
+/// What is said of passivity, against the truth: of relaxed arms under several perturbations, and of rigid arms that
+/// answer 2 N pulses, which give energy. A run is one trial of each. Expected: never "active" of a relaxed arm, by the
+/// model or, where it absorbed energy, by the energy; always by the energy of the others.
 [[nodiscard]] Result<ValidationTable> passivity_study(const StudyOptions& options);
 
 /// Trials without the voluntary controller in each run of closed_loop_study, each measured by itself.
