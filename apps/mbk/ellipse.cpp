@@ -32,7 +32,7 @@ int run(const EllipseArguments& arguments) {
     all.push_back(*findings);
     if (!shown.empty()) shown += "\n";
     for (const SourceFile& source : identification.sources) shown += source.path + "\n";
-    shown += fmt::format("  by {}\n", report::method_name(identification.method));
+    shown += fmt::format("  by {}\n", method_name(identification.method));
     if (identification.usable) {
       shown += report::ellipses_text(*findings);
     } else {

@@ -107,12 +107,9 @@ Result<Answer> from_result(const result::StoredResult& stored, const Asked& aske
   const Identification* first = &main;
   const Identification* other = stored.alternative ? &*stored.alternative : nullptr;
   if (other != nullptr && stored.passivity.predicts == other->method) std::swap(first, other);
-  for (const Identification* id : {first, other}) {
-    if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
-    auto model = analyse::model_passivity(*id, band);
-    if (!model) return tl::unexpected(model.error());
-    passivity.models.push_back(std::move(*model));
-  }
+  auto models = analyse::model_passivities({first, other}, band);
+  if (!models) return tl::unexpected(models.error());
+  passivity.models = std::move(*models);
   passivity.prediction = analyse::predict_passivity(passivity.models, main.usable, passivity.band);
   return answer;
 }

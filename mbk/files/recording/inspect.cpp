@@ -93,9 +93,9 @@ void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& fact
   facts.clipped = runs >= kRuns && facts.clipped_fraction >= kClippedFraction;
 }
 
-ChannelFacts inspect_channel(const Channel& channel) {
+/// Of those of its values.
+ChannelFacts inspect_channel(const Channel& channel, const Eigen::Ref<const Vector>& values) {
   ChannelFacts facts{channel.name, channel.unit, kNaN, kNaN};
-  const Vector& values = channel.values;
   if (values.size() > 0 && values.allFinite()) {
     facts.min = values.minCoeff();
     facts.max = values.maxCoeff();
@@ -121,7 +121,7 @@ Inspection inspect(const Recording& recording) {
   find_non_finite("time", recording.time, facts.non_finite);
   for (const Channel& channel : recording.channels) {
     find_non_finite(channel.name, channel.values, facts.non_finite);
-    facts.channels.push_back(inspect_channel(channel));
+    facts.channels.push_back(inspect_channel(channel, channel.values));
   }
   return facts;
 }
@@ -134,10 +134,7 @@ std::vector<ChannelFacts> clipped_channels(const Recording& recording, double fr
   const Index end = std::ranges::upper_bound(time, time[0] + to_s) - time.begin();
   for (const Channel& channel : recording.channels) {
     if (!can_clip(channel.name) || begin >= end) continue;
-    const auto values = channel.values.segment(begin, end - begin);
-    if (!values.allFinite()) continue;
-    ChannelFacts facts{channel.name, channel.unit, values.minCoeff(), values.maxCoeff()};
-    if (facts.min < facts.max) inspect_clipping(values, facts);
+    const ChannelFacts facts = inspect_channel(channel, channel.values.segment(begin, end - begin));
     if (facts.clipped) clipped.push_back(facts);
   }
   return clipped;

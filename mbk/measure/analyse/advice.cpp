@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
 
-#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/analyse/channel_cure.h"
-#include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/impedance/passivity_index.h"
 #include "mbk/model/trial/filtered_band.h"
 
 namespace mbk::analyse {
@@ -26,14 +26,13 @@ constexpr const char* kInstruments =
     "use --method iv; the limb's own force moves the robot too, which biases least squares towards the negative robot "
     "impedance";
 
-const Matrix& part_of(const impedance::Model& model, WarningCode code) {
-  return code == WarningCode::inertia_not_positive     ? model.M
-         : code == WarningCode::stiffness_not_positive ? model.K
-                                                       : model.B;
+/// The matrix that such a warning is about: 0 M, 1 B, 2 K.
+int matrix_of(WarningCode code) {
+  return code == WarningCode::inertia_not_positive ? 0 : (code == WarningCode::stiffness_not_positive ? 2 : 1);
 }
 
-double smallest(const Matrix& Z) {
-  return numeric::symmetric_eigenvalues(impedance::symmetric_part(Z)).minCoeff();
+double smallest(const impedance::Model& model, WarningCode code) {
+  return impedance::smallest_eigenvalue(model, matrix_of(code)).value;
 }
 
 class Advisor {
@@ -66,14 +65,15 @@ class Advisor {
   [[nodiscard]] bool instruments_find(WarningCode code) const {
     const auto& other = measured_.alternative;
     return other && other->method == Method::instrumental_variables && other->usable && other->model.M.allFinite() &&
-           smallest(part_of(other->model, code)) > 0.0;
+           smallest(other->model, code) > 0.0;
   }
 
   [[nodiscard]] std::optional<std::string> of_sign(WarningCode code) const {
     if (instruments_find(code)) return kInstruments;
     // What is negative by more than chance and bias is not a limb's.
-    const double error = 2.0 * numeric::kNormal95 * part_of(id_.standard_error, code).norm();
-    const bool sure = smallest(part_of(id_.model, code)) < -error;
+    const std::array<const Matrix*, 3> errors = {&id_.standard_error.M, &id_.standard_error.B, &id_.standard_error.K};
+    const double error = 2.0 * numeric::kNormal95 * errors[static_cast<std::size_t>(matrix_of(code))]->norm();
+    const bool sure = smallest(id_.model, code) < -error;
     return sure && code != WarningCode::damping_not_positive ? std::optional<std::string>(kCheckColumns) : std::nullopt;
   }
 

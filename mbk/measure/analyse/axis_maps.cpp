@@ -189,12 +189,6 @@ std::optional<AxisMap> map_by_reference(const std::vector<PreparedTrial>& trials
   return nearest_map(scale_y.cwiseInverse().asDiagonal() * yr * scale_r.cwiseInverse().asDiagonal());
 }
 
-std::string name_of(const Recording& recording, const QuantityChannels& quantity, int axes, int axis) {
-  const Channel* const channel = recording.find(quantity.name(axes, axis));
-  return channel != nullptr && !channel->origin.alias.empty() ? channel->origin.alias
-                                                              : std::string(quantity.name(axes, axis));
-}
-
 /// "with Fx and Fy exchanged", "with the other sign of Fy".
 std::string in_words(const AxisMap& map, const std::string& first, const std::string& second, int axes) {
   std::string text;

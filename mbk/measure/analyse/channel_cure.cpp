@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "mbk/files/recording/channel_map.h"
-#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
 namespace {
@@ -62,6 +61,15 @@ void add_time(const Recording& recording, std::string_view unit, Map& map) {
 }
 
 }  // namespace
+
+std::string name_of(const Channel& channel) {
+  return channel.origin.alias.empty() ? channel.name : channel.origin.alias;
+}
+
+std::string name_of(const Recording& recording, const QuantityChannels& quantity, int axes, int axis) {
+  const Channel* const channel = recording.find(quantity.name(axes, axis));
+  return channel == nullptr ? std::string(quantity.name(axes, axis)) : name_of(*channel);
+}
 
 std::optional<std::string> cured_channels(const Recording& recording, int axes, const ChannelCure& cure) {
   Map map;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "mbk/model/trial/quantity_channels.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::analyse {
@@ -21,6 +22,12 @@ struct ChannelCure {
   std::array<AxisCure, 2> position{AxisCure{0}, AxisCure{1}}, force{AxisCure{0}, AxisCure{1}};
   std::string reference_unit, time_unit;  ///< "" as they were
 };
+
+/// A channel as --channels calls it, "Fx", or by its full name where it was not read from a file.
+[[nodiscard]] std::string name_of(const Channel& channel);
+
+/// The same of one axis of a quantity, recorded or not.
+[[nodiscard]] std::string name_of(const Recording& recording, const QuantityChannels& quantity, int axes, int axis);
 
 /// The whole of --channels that reads the recording so, as "--channels x=2:mm,y=3:mm,Fx=10,Fy=11,xr=12,yr=13"; nothing
 /// where the recording was not read from a file, or a source cannot be written there.

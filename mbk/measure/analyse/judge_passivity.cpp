@@ -143,8 +143,7 @@ std::string words(const PassivityBand& band) {
 
 /// "the model (least squares, VAF 97 and 98 %)"
 std::string words(const ModelPassivity& model) {
-  std::string text =
-      model.method == Method::least_squares ? "the model (least squares" : "the model (instrumental variables";
+  std::string text = fmt::format("the model ({}", method_name(model.method));
   for (Index axis = 0; axis < model.vaf.size(); ++axis) {
     text += fmt::format("{}{:.0f}", axis == 0 ? ", VAF " : " and ", model.vaf[axis]);
   }
@@ -287,10 +286,7 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   add(fmt::format("{}B", smallest), "(3.24), (3.25)", units.damping, impedance::smallest_eigenvalue(id.model, 1));
   add(fmt::format("{}K", smallest), "(3.19), (3.20)", units.stiffness, impedance::smallest_eigenvalue(id.model, 2));
   result.symmetric = common_verdict(std::span(result.conditions));
-  if (id.instrument) {
-    for (const double share : id.instrument->coherent_residual)
-      result.coherent_residual = std::max(result.coherent_residual, share);
-  }
+  if (id.instrument) result.coherent_residual = largest_share(id.instrument->coherent_residual);
   result.published_rule =
       std::ranges::all_of(result.conditions, [](const PassivityCondition& c) { return c.value >= 0.0; });
   if (id.axes == 2) {
@@ -312,6 +308,18 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
                              result.curve.upper95.minCoeff<Eigen::PropagateNaN>()};
   result.excess = excess_of(id);
   return result;
+}
+
+Result<std::vector<ModelPassivity>> model_passivities(std::initializer_list<const Identification*> models,
+                                                      const PassivityBand& band) {
+  std::vector<ModelPassivity> passivities;
+  for (const Identification* id : models) {
+    if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
+    auto model = model_passivity(*id, band);
+    if (!model) return tl::unexpected(model.error());
+    passivities.push_back(std::move(*model));
+  }
+  return passivities;
 }
 
 bool instruments_speak(const Identification& instrumental, const std::optional<Disagreement>& disagreement) {

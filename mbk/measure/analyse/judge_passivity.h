@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,12 @@ namespace mbk::analyse {
 /// tested apart: they can add up.
 /// @fails  the model is not there (NaN); the band is empty or not positive.
 [[nodiscard]] Result<ModelPassivity> model_passivity(const Identification& identification, const PassivityBand& band);
+
+/// The same of several models, in their order; nullptr, a model that was not found and one without damping, which was
+/// not asked whether the limb has any, are left out.
+/// @fails  as model_passivity
+[[nodiscard]] Result<std::vector<ModelPassivity>> model_passivities(std::initializer_list<const Identification*> models,
+                                                                    const PassivityBand& band);
 
 /// Which of two methods' models makes the prediction: that of instrumental variables where its instruments are strong
 /// and it differs from least squares by more than chance, otherwise that of least squares.

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <utility>
 
-#include "mbk/base/numeric/dense.h"
 #include "mbk/measure/analyse/advice.h"
 #include "mbk/measure/analyse/axis_maps.h"
+#include "mbk/measure/analyse/channel_cure.h"
 #include "mbk/measure/analyse/plausible_scale.h"
-#include "mbk/model/impedance/ellipse.h"
+#include "mbk/model/impedance/passivity_index.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
@@ -36,8 +36,7 @@ std::vector<Column> columns_of(const Recording& recording, int axes) {
     for (int axis = 0; axis < axes; ++axis) {
       const Channel* const channel = recording.find(quantity.name(axes, axis));
       if (channel == nullptr) continue;
-      const std::string& alias = channel->origin.alias;
-      columns.push_back({alias.empty() ? channel->name : alias, &channel->origin, &channel->values, &quantity});
+      columns.push_back({name_of(*channel), &channel->origin, &channel->values, &quantity});
     }
   }
   columns.push_back({"time", &recording.time_origin, &recording.time, nullptr});
@@ -102,14 +101,10 @@ std::optional<Warning> check_names(const Recording& recording, int axes) {
                  fmt::format("check {} in --channels; without --channels the file's own names are taken", channels)};
 }
 
-double smallest_eigenvalue(const Matrix& Z) {
-  return numeric::symmetric_eigenvalues(impedance::symmetric_part(Z)).minCoeff();
-}
-
 /// A handle that weighs more than what was measured in one direction.
 std::optional<Warning> check_handle(const Identification& id) {
   if (!(id.handle_mass > 0.0) || !id.model.M.allFinite()) return std::nullopt;
-  const double left = smallest_eigenvalue(id.model.M), measured = left + id.handle_mass;
+  const double left = impedance::smallest_eigenvalue(id.model, 0).value, measured = left + id.handle_mass;
   const double error = 2.0 * id.standard_error.M.norm();
   if (!(left < -error && measured > error)) return std::nullopt;
   return Warning{

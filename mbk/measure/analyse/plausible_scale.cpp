@@ -284,11 +284,7 @@ class Explanations {
 
   /// "x", "Fy"; "x and y" of both.
   [[nodiscard]] std::string names(const QuantityChannels& quantity, int axis) const {
-    const auto name = [&](int of) {
-      const Channel* const channel = recording_.find(quantity.name(axes_, of));
-      return channel != nullptr && !channel->origin.alias.empty() ? channel->origin.alias
-                                                                  : std::string(quantity.name(axes_, of));
-    };
+    const auto name = [&](int of) { return name_of(recording_, quantity, axes_, of); };
     if (axis >= 0) return name(axis);
     return axes_ == 1 ? name(0) : name(0) + " and " + name(1);
   }
@@ -395,11 +391,11 @@ std::string remedy_of(std::span<const Explanation> likely, const Recording& reco
     return fmt::format("{}, and say them with --channels, as in x=2:mm; --ranges prints what is plausible", kCheck);
   }
   std::string text;
-  for (const Explanation& one : likely) {
+  constexpr std::size_t kNamed = 2;
+  for (const Explanation& one : likely.first(std::min(likely.size(), kNamed))) {
     const std::string option = option_of(one, recording, axes);
     text += fmt::format("{}if {}: {}", text.empty() ? "" : "; or, ", one.what,
                         option.empty() ? "say so with --channels, as in x=2:mm" : option);
-    if (&one - likely.data() == 1) break;
   }
   return fmt::format("{}; else {}; --ranges prints what is plausible", text, kCheck);
 }
@@ -412,10 +408,7 @@ std::string message_of(const std::vector<Violation>& found, const Recording& rec
     const QuantityChannels& channels =
         one.range->quantity == PlausibleQuantity::force ? kForceChannels : kPositionChannels;
     const Channel* const channel = one.axis < 0 ? nullptr : recording.find(channels.name(axes, one.axis));
-    const std::string of =
-        channel == nullptr || axes == 1
-            ? ""
-            : fmt::format(" of {}", channel->origin.alias.empty() ? channel->name : channel->origin.alias);
+    const std::string of = channel == nullptr || axes == 1 ? "" : fmt::format(" of {}", name_of(*channel));
     text += fmt::format("{} {}{} {:.3g} {} ({:g} to {:g})", k == 0 ? "" : ",", word_of(one.range->quantity), of,
                         one.value, one.range->unit, one.range->low, one.range->high);
   }

@@ -173,12 +173,7 @@ class Checker {
       id_.usable = false;
     }
     if (!id_.response || !(id_.response->largest() > kUnmodelled)) return;
-    const auto largest = [](const Vector& shares) {
-      double most = 0.0;
-      for (const double share : shares) most = std::max(most, std::isnan(share) ? 0.0 : share);
-      return most;
-    };
-    const double induced = largest(id_.response->induced);
+    const double induced = largest_share(id_.response->induced);
     const bool pulses = induced > kUnmodelled;
     warn(WarningCode::unmodelled_response,
          fmt::format("{:.0f} % of the force follows the perturbation and is neither inertia nor damping nor stiffness: "
@@ -282,9 +277,7 @@ void add_warnings(Identification& identification) {
 void warn_of_closed_loop(const Identification& instrumental, const Disagreement& disagreement,
                          Identification& least_squares) {
   if (!instrumental.usable || !disagreement.significant) return;
-  const Units units = units_of(least_squares.motion);
-  const char part = disagreement.parameter.front();
-  const char* const unit = part == 'm' ? units.inertia : (part == 'b' ? units.damping : units.stiffness);
+  const char* const unit = unit_of_parameter(disagreement.parameter, least_squares.motion);
   least_squares.warnings.push_back(
       {WarningCode::closed_loop_bias,
        fmt::format(

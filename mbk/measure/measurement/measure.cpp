@@ -56,6 +56,11 @@ void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& t
                                                   : "choose a window without long gaps with --from and --to"});
 }
 
+/// An error, with the file in which it is.
+tl::unexpected<Error> in_file(const Recording& recording, const Error& error) {
+  return tl::unexpected<Error>(recording.sources.empty() ? error : error.in(recording.sources[0].path));
+}
+
 /// A recording as it is analysed: on an even clock and with a computed force, where that was asked.
 struct Source {
   const Recording* given = nullptr;
@@ -68,10 +73,7 @@ struct Source {
     if (computed) return computed->recording;
     return even ? *even : *given;
   }
-  /// An error, with the file in which it is.
-  [[nodiscard]] tl::unexpected<Error> in_file(const Error& error) const {
-    return tl::unexpected<Error>(given->sources.empty() ? error : error.in(given->sources[0].path));
-  }
+  [[nodiscard]] tl::unexpected<Error> in_file(const Error& error) const { return measurement::in_file(*given, error); }
 };
 
 /// The even clock of a session that missed ticks, where a line across them is shorter than anything that the limb does.
@@ -126,8 +128,7 @@ Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, co
       }
     }
     auto source = make_ready(recording, options);
-    if (!source)
-      return tl::unexpected(recording.sources.empty() ? source.error() : source.error().in(recording.sources[0].path));
+    if (!source) return in_file(recording, source.error());
     sources.push_back(std::move(*source));
   }
   return sources;
@@ -176,7 +177,7 @@ Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& source
   for (std::size_t k = 0; k < trials.size(); ++k) {
     if (trials[k].preparation.every == finest) continue;
     auto trial = prepare_one(sources[k], options);
-    if (!trial) return tl::unexpected(trial.error());
+    if (!trial) return sources[k].in_file(trial.error());
     trials[k] = std::move(*trial);
   }
   return trials;
@@ -265,13 +266,9 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
   } else if (consistent.error().kind != ErrorKind::not_usable) {  // there is a model, but none that it could be near
     return tl::unexpected(consistent.error());
   }
-  for (const Identification* id : {first, other}) {
-    // A model without damping was not asked whether the limb has any.
-    if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
-    auto model = analyse::model_passivity(*id, band);
-    if (!model) return tl::unexpected(model.error());
-    passivity.models.push_back(std::move(*model));
-  }
+  auto models = analyse::model_passivities({first, other}, band);
+  if (!models) return tl::unexpected(models.error());
+  passivity.models = std::move(*models);
   passivity.trial = analyse::trial_passivity(measured.identification, std::move(*energy),
                                              analyse::energy_lines(recordings_of(sources), trials));
   if (!passivity.trial) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -36,6 +38,11 @@ enum class Method {
   return std::to_array<Word<Method>>({{least_squares, "ls"}, {instrumental_variables, "iv"}});
 }
 
+/// As it stands in sentences.
+[[nodiscard]] constexpr const char* method_name(Method method) {
+  return method == Method::least_squares ? "least squares" : "instrumental variables";
+}
+
 /// Which data stand behind the parameters; the fit is always judged on held-out data where there are any.
 enum class ParametersFrom {
   identification,  ///< the segments that are there to identify
@@ -50,6 +57,13 @@ enum class ParametersFrom {
 /// Smallest first-stage F at which ±1.96 standard errors of instrumental variables are a 95 % interval (Lee, McCrary,
 /// Moreira & Porter 2022, Am. Econ. Rev. 112: 104.7).
 inline constexpr double kStrongInstruments = 104.7;
+
+/// The largest of those that are known, and at least 0.
+[[nodiscard]] inline double largest_share(const Vector& shares) {
+  double largest = 0.0;
+  for (const double share : shares) largest = share > largest ? share : largest;  // a NaN is not
+  return largest;
+}
 
 /// What stands behind instrumental variables, and whether it may.
 struct InstrumentCheck {
@@ -68,15 +82,7 @@ struct UnmodelledResponse {
   Vector coherent;  ///< n, share of the force's variance in the residual that is linear in the past of the reference
   Vector induced;   ///< n, share of the force's variance in the residual beyond that at rest; empty: never at rest
 
-  [[nodiscard]] double largest() const {
-    double share = 0.0;
-    for (const Vector* one : {&coherent, &induced}) {
-      for (const double value : *one) {
-        if (value > share) share = value;
-      }
-    }
-    return share;
-  }
+  [[nodiscard]] double largest() const { return std::max(largest_share(coherent), largest_share(induced)); }
 };
 
 /// Where the handle's mass that was subtracted comes from.
@@ -127,6 +133,12 @@ struct Units {
       break;
   }
   return {"kg or kg·m²", "N·s/m or N·m·s/rad", "N/m or N·m/rad", "m or rad", "N or N·m"};
+}
+
+/// The unit of a parameter of M, B or K by its name, as in Identification::parameters: "m_xy", "b", "k_yy".
+[[nodiscard]] constexpr const char* unit_of_parameter(std::string_view name, Motion motion) {
+  const Units units = units_of(motion);
+  return name.starts_with('m') ? units.inertia : (name.starts_with('b') ? units.damping : units.stiffness);
 }
 
 /// Where two methods find different models in the same rows: the parameter whose difference exceeds the standard error

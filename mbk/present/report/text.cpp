@@ -168,10 +168,6 @@ std::string source_line(const SourceFile& source) {
 
 }  // namespace
 
-const char* method_name(Method method) {
-  return method == Method::least_squares ? "least squares" : "instrumental variables";
-}
-
 std::string wrapped(std::string_view text, std::size_t width) {
   std::string lines;
   std::size_t used = 0;
@@ -274,9 +270,7 @@ std::string alternative_text(const Identification& id, const Identification& alt
                ? said + model() + (alternative.warnings.empty() ? "" : "\n" + warnings_text(alternative.warnings))
                : said;
   }
-  const Units units = units_of(id.motion);
-  const char part = disagreement.parameter.empty() ? ' ' : disagreement.parameter.front();
-  const char* const unit = part == 'm' ? units.inertia : (part == 'b' ? units.damping : units.stiffness);
+  const char* const unit = unit_of_parameter(disagreement.parameter, id.motion);
   const std::string largest =
       fmt::format("{}: {:.3g} {} by least squares, {:.3g} ± {:.2g} {} ({:.2g} %) {} by instrumental variables",
                   disagreement.parameter, disagreement.least_squares, unit, std::abs(disagreement.difference),

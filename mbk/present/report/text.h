@@ -27,9 +27,6 @@ inline constexpr std::size_t kLineColumns = 100;
 /// The words of `text` on lines of at most `width` columns, as far as words are short enough.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width);
 
-/// "least squares", "instrumental variables".
-[[nodiscard]] const char* method_name(Method method);
-
 /// A result for the terminal: what was measured and how, the model with 95 % intervals and units, the fit, the
 /// ellipses with a picture where there are findings, and every warning with what to try. Of a model that is not usable
 /// no number is shown.

@@ -87,8 +87,7 @@ const ModelPassivity* passivity_by(const Run& run, Method method) {
 
 /// How often something is so.
 ValidationRow how_often(std::string what, const Runs& runs, const std::function<bool(const Run&)>& holds, bool judged) {
-  return share_row(std::move(what), static_cast<int>(std::ranges::count_if(runs, holds)), static_cast<int>(runs.size()),
-                   judged ? std::optional(kNearlyAlways) : std::nullopt);
+  return share_row(std::move(what), runs, holds, judged ? std::optional(kNearlyAlways) : std::nullopt);
 }
 
 /// Eigenvalues of the symmetric parts against those of the arm itself [%].

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/experiment/control/trial_control.h"
 #include "mbk/model/robot/workspace.h"
 
@@ -17,7 +18,6 @@ using device::State;
 using numeric::Random;
 using safety::Reason;
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Vector2d direction(Random& random) {
@@ -148,7 +148,7 @@ std::vector<FaultKind> sensors() {
        Onset::anywhere,
        {0, 0},
        {Reason::encoder_not_finite},
-       one_reads(&State::joint, kNotANumber)},
+       one_reads(&State::joint, kNaN)},
       {"encoder gives infinity",
        Onset::anywhere,
        {0, 0},
@@ -158,7 +158,7 @@ std::vector<FaultKind> sensors() {
        Onset::anywhere,
        {0, 0},
        {Reason::force_not_finite},
-       one_reads(&State::force, kNotANumber)},
+       one_reads(&State::force, kNaN)},
       {"force gives infinity",
        Onset::anywhere,
        {0, 0},
@@ -168,7 +168,7 @@ std::vector<FaultKind> sensors() {
        Onset::anywhere,
        {0, 0},
        {Reason::accelerometer_not_finite},
-       one_reads(&State::acceleration, kNotANumber)},
+       one_reads(&State::acceleration, kNaN)},
       {"acceleration gives infinity",
        Onset::anywhere,
        {0, 0},
@@ -312,7 +312,7 @@ std::vector<FaultKind> reports() {
        Onset::anywhere,
        {0, 0},
        {Reason::robot_clock},
-       reported([](State& state, int) { state.time = kNotANumber; })},
+       reported([](State& state, int) { state.time = kNaN; })},
       {"states get older by 0.1 ms each",
        Onset::anywhere,
        {230, 230},

@@ -101,8 +101,7 @@ Vector vaf_of(Outcomes outcomes) {
 }
 
 ValidationRow settled_row(std::string what, Outcomes outcomes, const std::function<bool(const Outcome&)>& is) {
-  return share_row(std::move(what), static_cast<int>(std::ranges::count_if(outcomes, is)),
-                   static_cast<int>(outcomes.size()), {});
+  return share_row(std::move(what), outcomes, is, {});
 }
 
 /// For each trial, the median VAF of its model on the other trials of its run [%].

@@ -44,9 +44,6 @@ constexpr const char* kTuned =
     "The gains of the participant's controller are tuned to the findings of Dyck (2013, chapter 4), not fitted to "
     "anyone.";
 
-/// Participants of the thesis whose limbs are used.
-constexpr std::array kArms = {1, 4, 5};
-
 /// Amplitudes of the crossover [N].
 constexpr std::array kAmplitudes = {1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0};
 
@@ -122,8 +119,7 @@ void add_condition(const Condition& condition, Trials trials, ValidationTable& t
     const Trials mine = trials.subspan(arm * runs, runs);
     const std::string name = fmt::format("{}, P{}: ", condition.name, kArms[arm]);
     const auto share = [&](const std::string& what, const std::function<bool(const SimulatedTrial&)>& is) {
-      table.rows.push_back(share_row(name + what, static_cast<int>(std::ranges::count_if(mine, is)),
-                                     static_cast<int>(mine.size()), kNearlyAlways));
+      table.rows.push_back(share_row(name + what, mine, is, kNearlyAlways));
     };
     share(condition.energy_sign > 0.0 ? "E rises" : "E falls",
           [&](const SimulatedTrial& trial) { return energy_of(trial) * condition.energy_sign > 0.0; });

@@ -45,8 +45,7 @@ Vector of_runs(const Runs& runs, const std::function<double(const Run&)>& value)
 
 /// In how many runs something is so; accepted is nearly always.
 ValidationRow nearly_always(std::string what, const Runs& runs, const std::function<bool(const Run&)>& is) {
-  return share_row(std::move(what), static_cast<int>(std::ranges::count_if(runs, is)), static_cast<int>(runs.size()),
-                   kNearlyAlways);
+  return share_row(std::move(what), runs, is, kNearlyAlways);
 }
 
 /// Error of a coefficient [%], or as it is where the truth is zero.
@@ -61,12 +60,12 @@ void add_coefficients(const Runs& runs, const Vector& truth, ValidationTable& ta
     const Vector error = of_runs(runs, [&](const Run& run) { return error_of(run.right.coefficients[at], truth[k]); });
     table.rows.push_back(mean_row(fmt::format("bias of {}", coefficient.name), error, {},
                                   truth[k] == 0.0 ? coefficient.unit : std::string("%")));
-    const auto held = std::ranges::count_if(runs, [&](const Run& run) {
+    const auto held = [&](const Run& run) {
       const RobotCoefficient& found = run.right.coefficients[at];
       return std::abs(found.value - truth[k]) <= numeric::kNormal95 * found.standard_error;
-    });
-    table.rows.push_back(share_row(fmt::format("95 % interval of {} holds the truth", coefficient.name),
-                                   static_cast<int>(held), static_cast<int>(runs.size()), kNearNominal));
+    };
+    table.rows.push_back(
+        share_row(fmt::format("95 % interval of {} holds the truth", coefficient.name), runs, held, kNearNominal));
   }
   constexpr double kInertiaError = 0.5;  // [%]
   for (std::size_t k = 0; k < 3; ++k) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::validation {
@@ -48,7 +49,7 @@ Range at_most(double limit) {
 }
 
 ValidationRow share_row(std::string what, int hits, int trials, std::optional<Range> expected) {
-  ValidationRow row = exact_row(std::move(what), std::numeric_limits<double>::quiet_NaN(), expected, "%");
+  ValidationRow row = exact_row(std::move(what), kNaN, expected, "%");
   row.interval95 = {0.0, 100.0};
   row.trials = trials;
   if (trials == 0) return row;
@@ -93,7 +94,7 @@ ValidationRow median_row(std::string what, const Vector& values, std::optional<R
 
 ValidationRow spread_row(std::string what, const Vector& values, double known, Range expected) {
   const auto count = static_cast<int>(values.size());
-  ValidationRow row = exact_row(std::move(what), std::numeric_limits<double>::quiet_NaN(), expected, "");
+  ValidationRow row = exact_row(std::move(what), kNaN, expected, "");
   row.interval95 = {0.0, kInfinity};
   if (count < 2) return row;
   const double ratio = std::sqrt(numeric::variance(values)) / known;

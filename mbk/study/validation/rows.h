@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <utility>
 
@@ -27,6 +29,13 @@ inline constexpr Range kAlways = {99.0, 100.0}, kNever = {0.0, 1.0};
 /// undefined, between 0 and 100 %.
 /// @param hits  0 … trials
 [[nodiscard]] ValidationRow share_row(std::string what, int hits, int trials, std::optional<Range> expected);
+
+/// The same of the runs or trials in a range that are so.
+template <std::ranges::sized_range Runs, class Is>
+[[nodiscard]] ValidationRow share_row(std::string what, const Runs& runs, const Is& is, std::optional<Range> expected) {
+  return share_row(std::move(what), static_cast<int>(std::ranges::count_if(runs, is)),
+                   static_cast<int>(std::ranges::size(runs)), expected);
+}
 
 /// Mean over independent runs, with the 95 % interval of Student's t and the spread of the runs; of one run the
 /// interval is unbounded.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,9 @@ namespace mbk::validation {
 /// The scenario of an arm with the limb of a participant (participant::participant_limb); everything else stays.
 /// @fails  as participant_limb
 [[nodiscard]] Result<laboratory::Scenario> with_limb(laboratory::Scenario scenario, int number);
+
+/// Participants of the thesis whose limbs studies of behaviour use.
+inline constexpr std::array kArms = {1, 4, 5};
 
 /// One simulated trial, measured.
 struct SimulatedTrial {

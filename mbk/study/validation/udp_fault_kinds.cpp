@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
+
 namespace mbk::validation {
 namespace {
 
@@ -17,7 +19,6 @@ using numeric::Random;
 using Make = std::function<void(RobotFault&, Random&)>;
 using Reasons = std::vector<std::string_view>;
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLatchedTorque = 0.6;   // more than Limits::torque_error, which the motion can show [N·m]
 constexpr double kMeasuredTorque = 0.3;  // what drives that measure can show all the more [N·m]
@@ -143,7 +144,7 @@ Make answers(std::function<std::uint64_t(std::uint64_t now, std::uint64_t held, 
 /// The robot's time is what `change` makes of it; `held` is that of the first tick.
 Make clock(std::function<double(double now, double held)> change) {
   return [change](RobotFault& fault, Random& random) {
-    says([change, held = kNotANumber](StateDatagram& state, int) mutable {
+    says([change, held = kNaN](StateDatagram& state, int) mutable {
       if (std::isnan(held)) held = state.raw.time;
       state.raw.time = change(state.raw.time, held);
     })(fault, random);
@@ -177,7 +178,7 @@ using Pair = Vector2d device::State::*;
 
 /// axis −1: both.
 Make frozen(Pair pair, int axis) {
-  return senses([=, held = Vector2d(kNotANumber, 0.0)](device::State& state, int) mutable {
+  return senses([=, held = Vector2d(kNaN, 0.0)](device::State& state, int) mutable {
     if (std::isnan(held[0])) held = state.*pair;
     for (Eigen::Index i = 0; i < 2; ++i) {
       if (axis < 0 || i == axis) (state.*pair)[i] = held[i];
@@ -204,7 +205,7 @@ Make off_by(Pair pair, double least, double most, bool drifts) {
 /// Counts backwards from where it is.
 Make backwards(int axis) {
   return [=](RobotFault& fault, Random&) {
-    fault.sense = [=, at = kNotANumber](device::State& state, int) mutable {
+    fault.sense = [=, at = kNaN](device::State& state, int) mutable {
       if (std::isnan(at)) at = state.joint[axis];
       state.joint[axis] = 2.0 * at - state.joint[axis];
     };
@@ -637,7 +638,7 @@ std::vector<UdpFaultKind> words() {
        SafeState::either,
        "",
        2,
-       says([](StateDatagram& state, int) { state.measured[0] = kNotANumber; })},
+       says([](StateDatagram& state, int) { state.measured[0] = kNaN; })},
       {"measured-gone",
        "the measured torque is withdrawn",
        Expected::trip,
@@ -706,7 +707,7 @@ std::vector<UdpFaultKind> clocks() {
        SafeState::either,
        "",
        1,
-       clock([](double, double) { return kNotANumber; })},
+       clock([](double, double) { return kNaN; })},
       {"clock-infinite",
        "the robot's clock is infinite",
        Expected::trip,
@@ -769,7 +770,7 @@ std::vector<UdpFaultKind> sensors() {
        SafeState::either,
        "",
        1,
-       one_reads(joint, kNotANumber)},
+       one_reads(joint, kNaN)},
       {"encoder-jumps",
        "one encoder jumps by 0.1 to 0.5 rad",
        Expected::trip,
@@ -860,7 +861,7 @@ std::vector<UdpFaultKind> sensors() {
        SafeState::either,
        "",
        1,
-       one_reads(force, kNotANumber)},
+       one_reads(force, kNaN)},
       {"force-sign",
        "the force changes its sign",
        Expected::not_detected,
@@ -887,7 +888,7 @@ std::vector<UdpFaultKind> sensors() {
        SafeState::confirmed,
        "",
        1,
-       one_reads(accel, kNotANumber)},
+       one_reads(accel, kNaN)},
       {"samples-aged",
        "all readings are 20 to 200 ms old, under new stamps",
        Expected::not_detected,
