@@ -73,6 +73,18 @@ OptionText describe_option(CLI::Option& option) {
   return text;
 }
 
+/// What --help lists; a former name is not.
+std::vector<CLI::App*> listed_commands(CLI::App& app) {
+  return app.get_subcommands([](CLI::App* one) { return !one->get_group().empty(); });
+}
+
+void add_names_below(CLI::App& app, std::vector<std::string>& names) {
+  for (CLI::App* below : listed_commands(app)) {
+    names.push_back(below->get_name());
+    add_names_below(*below, names);
+  }
+}
+
 CommandText describe_command(CLI::App& app, std::vector<std::string> path) {
   CommandText text;
   path.push_back(app.get_name());
@@ -83,7 +95,7 @@ CommandText describe_command(CLI::App& app, std::vector<std::string> path) {
     if (option->get_group().empty()) continue;  // kept out of --help too
     (option->get_positional() ? text.positionals : text.options).push_back(describe_option(*option));
   }
-  for (CLI::App* below : app.get_subcommands([](CLI::App* one) { return !one->get_group().empty(); })) {
+  for (CLI::App* below : listed_commands(app)) {
     text.commands.push_back(describe_command(*below, path));
   }
   return text;
@@ -97,6 +109,12 @@ CLI::App* add_command(CLI::App& parent, const std::string& name, const std::stri
 
 std::string CommandText::joined(const char* separator) const {
   return fmt::format("{}", fmt::join(path, separator));
+}
+
+std::vector<std::string> names_below(CLI::App& app) {
+  std::vector<std::string> names;
+  add_names_below(app, names);
+  return names;
 }
 
 CommandText describe(CLI::App& app) {

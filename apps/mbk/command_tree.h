@@ -34,6 +34,9 @@ struct CommandText {
   [[nodiscard]] std::string joined(const char* separator) const;
 };
 
+/// The name of every command below this one, each before those below it; no help is made for that.
+[[nodiscard]] std::vector<std::string> names_below(CLI::App& app);
+
 /// Everything that --help says on every level, as values. Fixed values come from a placeholder with words in small
 /// letters between bars ("HZ|none": none), from suggests() and, for files, from extensions: in the placeholder
 /// ("REC.mat") or in the description of a positional argument (".mat or .csv").

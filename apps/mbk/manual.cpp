@@ -78,12 +78,8 @@ Action add_manual(CLI::App& app) {
       "  mbk manual --pages ~/.local/share/man/man1\n"
       "      all of them, where man finds them: man mbk-measure\n\n"
       "Where mbk came as a package, or by 'cmake --install', the pages are in place.");
-  std::vector<std::string> names;
-  for_each_command(describe(app), [&](const CommandText& one) {
-    if (one.path.size() > 1) names.push_back(one.name());
-  });
   command->add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
-      ->check(suggests(names));
+      ->check(suggests(names_below(app)));
   CLI::Option* const pages =
       command->add_option("--pages", arguments->pages, "write every page into this folder, as mbk-measure.1")
           ->type_name("FOLDER")
