@@ -14,6 +14,8 @@ namespace mbk::app {
 
 namespace {
 
+constexpr double kMilliseconds = 1000.0;
+
 void add_range_options(CLI::App& command, std::set<PlausibleQuantity>& ignored) {
   const char* const group = "Plausibility";
   const std::vector<std::string> names(kWordList<PlausibleQuantity>.begin(), kWordList<PlausibleQuantity>.end());
@@ -82,6 +84,10 @@ Result<measurement::Options> measurement_options(const MeasureArguments& argumen
   } else if (a.robot) {
     return bad_usage("--robot belongs to --force-source virtual or observer", "add that, or leave --robot out");
   }
+  if (a.force_delay_ms != 0.0 && p.force_source != ForceSource::sensor) {
+    return bad_usage("--force-delay-ms belongs to a force that was measured", "leave it out");
+  }
+  options.force_delay = a.force_delay_ms / kMilliseconds;
   options.identify = arguments.identify;
   options.ignored_ranges = arguments.ignored_ranges;
   if (a.filters.resample_hz) options.resample = Hertz(*a.filters.resample_hz);

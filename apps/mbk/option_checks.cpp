@@ -55,6 +55,16 @@ CLI::Validator not_negative() {
           ""};
 }
 
+CLI::Validator number_within(double largest) {
+  return {[=](const std::string& given) -> std::string {
+            const auto value = number<double>(given);
+            return value && *value >= -largest && *value <= largest
+                       ? ""
+                       : fmt::format("{} is not a number from {:g} to {:g}", quoted(given), -largest, largest);
+          },
+          ""};
+}
+
 CLI::Validator whole_number(long least, long most) {
   return {[=](const std::string& given) -> std::string {
             const auto value = number<long>(given);

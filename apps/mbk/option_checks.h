@@ -12,6 +12,7 @@ inline constexpr double kMillimetres = 1000.0;  ///< in a metre: options say len
 /// empty values, "nan" and "inf" through.
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();
+[[nodiscard]] CLI::Validator number_within(double largest);  ///< from −largest to largest
 [[nodiscard]] CLI::Validator whole_number(long least, long most);
 [[nodiscard]] CLI::Validator odd_number(long least, long most);
 [[nodiscard]] CLI::Validator not_empty();

@@ -89,6 +89,8 @@ void add_protocol_options(CLI::App& command, PreprocessArguments& a) {
   add_window_options(command, a.window);
 }
 
+constexpr double kLongestDelayMs = 1000.0;
+
 void add_signal_options(CLI::App& command, PreprocessArguments& a) {
   add_filter_options(command, a.filters);
   add_choice(command, "--acceleration", a.acceleration, "where ẍ comes from")->group(kFilters);
@@ -102,6 +104,12 @@ void add_signal_options(CLI::App& command, PreprocessArguments& a) {
                   "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
       ->type_name("FILE")
       ->check(not_empty())
+      ->group(kFilters);
+  command
+      .add_option("--force-delay-ms", a.force_delay_ms,
+                  "by which the force was read late, as 'mbk sensor delay' finds it: undone first (0)")
+      ->type_name("MS")
+      ->check(number_within(kLongestDelayMs))
       ->group(kFilters);
 }
 

@@ -34,6 +34,7 @@ struct PreprocessArguments {
   FilterArguments filters;
   std::optional<AccelerationSource> acceleration;
   ForceSource force_source = ForceSource::sensor;
+  double force_delay_ms = 0.0;
   std::optional<std::filesystem::path> robot;
 };
 

@@ -5,9 +5,11 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output_options.h"
+#include "apps/mbk/preprocess_options.h"
 #include "apps/mbk/reading_options.h"
 #include "apps/mbk/sensor_options.h"
 #include "mbk/measure/calibration/force_sensor.h"
+#include "mbk/measure/measurement/find_sensor_delay.h"
 #include "mbk/present/report/sensor_text.h"
 #include "mbk/present/result/sensor_json.h"
 
@@ -110,16 +112,73 @@ Action add_calibrate(CLI::App& sensor) {
   return [arguments] { return run_calibrate(*arguments); };
 }
 
+struct SensorDelayArguments {
+  ReadingArguments reading;
+  WindowArguments window;
+  FilterArguments filters;
+  OutputArguments output;
+  double mass = 0.0;
+};
+
+Result<MeasuredDelay> find_delay(const SensorDelayArguments& arguments) {
+  const auto recordings = read_recordings(arguments.reading);
+  if (!recordings) return tl::unexpected(recordings.error());
+  if (recordings->size() != 1) return bad_usage("a delay is found in one recording", "name one FILE");
+  auto signals = signal_options(arguments.window, arguments.filters);
+  if (!signals) return tl::unexpected(signals.error());
+  signals->axes = arguments.reading.axes;
+  auto found = measurement::find_sensor_delay(recordings->front(), arguments.mass, *signals);
+  if (!found) return tl::unexpected<Error>(found.error().in(recordings->front().sources.front().path));
+  return found;
+}
+
+int run_delay(const SensorDelayArguments& arguments) {
+  const Output& output = arguments.output.to;
+  if (auto ok = output.check(arguments.reading.files); !ok) return report_error(ok.error());
+  const auto found = find_delay(arguments);
+  if (!found) return report_error(found.error());
+  const std::string text = arguments.output.json ? result::to_json(*found) : report::sensor_delay_text(*found);
+  if (auto ok = output.write(text); !ok) return report_error(ok.error());
+  return found->usable() ? kFine : kNotUsable;
+}
+
+Action add_delay(CLI::App& sensor) {
+  auto arguments = std::make_shared<SensorDelayArguments>();
+  CLI::App* command = add_command(sensor, "delay", "by how much the force is read late, from a known mass");
+  command->footer(
+      "Fix a known mass to the handle, let the robot move it about for half a minute (a multisine up\n"
+      "to some hertz), and record as in a trial. No hand may touch it.\n\n"
+      "Examples:\n"
+      "  mbk sensor delay mass.h5 --mass 1.194\n"
+      "      1 kg, and 0.194 kg of the handle that is beyond the force sensor\n"
+      "  mbk measure trial.h5 --force-delay-ms 10.2\n"
+      "      a trial with the delay that was found\n\n"
+      "Exit codes: 0 the delay is found, 2 wrong usage, 3 bad or unreadable data, 4 it is not to be\n"
+      "used: something else than that mass is at the handle, or its motion is too slow or short.");
+  add_reading_options(*command, arguments->reading);
+  command->add_option("--mass", arguments->mass, "beyond the force sensor, the handle's own included, kg")
+      ->type_name("KG")
+      ->check(positive())
+      ->required();
+  add_window_options(*command, arguments->window);
+  add_filter_options(*command, arguments->filters);
+  command->add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor_delay/1");
+  arguments->output.to.add_options(*command);
+  return [arguments] { return run_delay(*arguments); };
+}
+
 }  // namespace
 
 Action add_sensor(CLI::App& app) {
-  CLI::App* command = add_command(app, "sensor", "calibrate a force sensor of your own");
+  CLI::App* command = add_command(app, "sensor", "slope, zero and delay of a force sensor of your own");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"
       "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --json --out cell.json\n"
-      "  mbk measure --sensor cell.json trial.csv");
-  return add_calibrate(*command);
+      "  mbk measure --sensor cell.json trial.csv\n"
+      "  mbk sensor delay mass.h5 --mass 1.194");
+  const Action calibrate = add_calibrate(*command), delay = add_delay(*command);
+  return [command, calibrate, delay] { return command->got_subcommand("delay") ? delay() : calibrate(); };
 }
 
 }  // namespace mbk::app

@@ -273,6 +273,65 @@ def _(test):  # ask for no response
     test.goes("unmodelled-response", raised, test.measured(quiet))
 
 
+def departing(test, line, *changes, scenario="relaxed_sinusoidal"):
+    """The relaxed arm with something beside M, B and K."""
+    return test.simulated(scenario, (r"^\[participant.remnant\]", f"{line}\n\n[participant.remnant]"), *changes)
+
+
+@advice_of("missing-dynamics")
+def _(test):
+    path = test.simulated("relaxed_sinusoidal", (r'^kind = "load_cell"', 'kind = "load_cell"\ndelay_ms = 10'))
+    raised = test.measured(path)
+    test.assertIn("--force-delay-ms", hint_of(raised, "missing-dynamics"))
+    followed = test.measured("--force-delay-ms", 10, path)
+    test.goes("missing-dynamics", raised, followed)
+    test.truth_is_nearer("missing-dynamics", raised, followed, path)
+
+
+@advice_of("nonlinear-stiffness")
+def _(test):  # perturb less
+    cubic = "[participant.departures]\ncubic_stiffness_N_per_m3 = 1e6"
+    raised = test.measured(departing(test, cubic))
+    followed = test.measured(departing(test, cubic, (r"^peak_deg = 2 ", "peak_deg = 0.7 ")))
+    test.goes("nonlinear-stiffness", raised, followed)
+
+
+@advice_of("dry-friction")
+def _(test):  # look for friction, and remove it
+    path = departing(test, "[participant.departures]\ndry_friction_N = 0.5")
+    raised = test.measured(path)
+    test.goes("dry-friction", raised, test.measured(test.simulated("relaxed_sinusoidal")))
+
+
+@advice_of("stiffness-changes")
+def _(test):
+    path = departing(test, "[[participant.stiffness_at]]\ntime_s = 30\nfactor = 1\n\n"
+                           "[[participant.stiffness_at]]\ntime_s = 31\nfactor = 2")
+    raised = test.measured(path)
+    test.assertIn("--to", hint_of(raised, "stiffness-changes"))
+    for part in (("--to", 29), ("--from", 33)):
+        test.goes("stiffness-changes", raised, test.measured(*part, path))
+
+
+@advice_of("force-drifts")
+def _(test):
+    path = test.simulated("relaxed_sinusoidal",
+                          (r'^kind = "load_cell"', 'kind = "load_cell"\ndrift_rate_N_per_s = [0.02, 0.02]'))
+    raised = test.measured(path)
+    test.assertIn("--from", hint_of(raised, "force-drifts"))
+    test.goes("force-drifts", raised, test.measured("--from", 20, "--to", 34, path))
+
+
+@advice_of("tremor")
+def _(test):
+    path = departing(test, "[participant.departures]\ntremor_N = 1\ntremor_hz = 4.5")
+    raised = test.measured(path)
+    test.assertEqual(first_options(hint_of(raised, "tremor")), ("--method", "iv"))
+    followed = test.measured("--method", "iv", path)
+    test.goes("tremor", raised, followed)
+    test.truth_is_nearer("tremor", raised, followed, path)
+
+
 @advice_of("weak-instruments")
 def _(test):
     code, path = "weak-instruments", test.simulated("rigid_underdamped_8N", seed=31)

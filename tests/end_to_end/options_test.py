@@ -12,7 +12,7 @@ from command import (BAD_DATA, FINE, NOT_SHOWN, WRONG_USAGE, Case, copy, is_root
 
 COMMANDS = ("measure", "identify", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
             "completion", "manual", "passivity", "teleop", "compare", "reproduce")
-SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate",),
+SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate", "delay"),
                "robot": ("workspace", "describe", "identify", "force", "check")}
 NO_NUMBERS = ("", " ", "abc", "nan", "inf", "-inf", "1e400", "5Hz", "5,5", "0x10")
 NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
@@ -24,6 +24,7 @@ NUMBERS = {  # option: what it must not be, besides NO_NUMBERS
     "--to": ("0", "-1", "1e300"),
     "--handle-mass": ("-1", "1e300"),
     "--hac-lag": ("0", "-1", "1e300", "100000"),
+    "--force-delay-ms": ("1001", "-1e300"),
     "--sg-window": ("0", "-5", "1", "100", "3.5", "1e2", "99999999999999999999"),
     "--sg-order": ("0", "-1", "2.5", "1e1", "99999999999999999999"),
     "--padding": ("-1", "1.5", "1e3", "99999999999999999999"),

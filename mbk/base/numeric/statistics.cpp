@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/complement.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
@@ -64,6 +66,12 @@ double student_quantile(double p, int degrees_of_freedom) {
 
 double chi_square_quantile(double p, int degrees_of_freedom) {
   return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
+}
+
+double f_probability_above(double value, double numerator, double denominator) {
+  if (!(value > 0.0)) return 1.0;
+  if (!std::isfinite(value)) return 0.0;
+  return boost::math::cdf(boost::math::complement(boost::math::fisher_f(numerator, denominator), value));
 }
 
 double quantile(const Eigen::Ref<const Vector>& sorted, double p) {

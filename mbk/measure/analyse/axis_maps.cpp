@@ -241,6 +241,16 @@ std::optional<double> turned(const Identification& id) {
   return angle;
 }
 
+/// Whether the reference moves the limb along all axes. Along one that it does not move, least squares finds the
+/// negative robot, whose sign says nothing of how the axes were read.
+bool moved_by_reference(const Measurement& measured) {
+  constexpr double kMoves = 10.0;  // first-stage F (Staiger & Stock 1997, Econometrica 65:557)
+  for (const Identification* id : {&measured.identification, measured.alternative ? &*measured.alternative : nullptr}) {
+    if (id != nullptr && id->instrument) return id->instrument->weakest() > kMoves;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<Warning> check_axes(const std::vector<const Recording*>& recordings,
@@ -252,6 +262,7 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
   if (std::ranges::find(id.warnings, WarningCode::too_little_data, &Warning::code) != id.warnings.end()) {
     return std::nullopt;
   }
+  if (!moved_by_reference(measured)) return std::nullopt;
   std::optional<AxisMap> map = map_of(id);
   if (!map && measured.alternative) map = map_of(*measured.alternative);
   if (!map) {

@@ -32,7 +32,9 @@ constexpr std::array kImplausible = {WarningCode::force_sign_reversed,     Warni
                                      WarningCode::implausible_scale,       WarningCode::axes_mismatched,
                                      WarningCode::axes_scaled_differently, WarningCode::same_column};
 /// With these the model explains too little of the force to predict any.
-constexpr std::array kPoorFit = {WarningCode::fit_poor, WarningCode::held_out_fit_poor};
+constexpr std::array kPoorFit = {WarningCode::fit_poor,         WarningCode::held_out_fit_poor,
+                                 WarningCode::missing_dynamics, WarningCode::nonlinear_stiffness,
+                                 WarningCode::dry_friction,     WarningCode::stiffness_changes};
 
 template <std::size_t n>
 bool warns_of(const Identification& id, const std::array<WarningCode, n>& codes) {

@@ -189,6 +189,59 @@ class Checker {
     id_.usable = false;
   }
 
+  /// What M, B and K take for granted, and the data contradict.
+  void check_assumptions() {
+    for (const AssumptionTest& test : id_.assumptions) {
+      if (!test.contradicted) continue;
+      const double size = std::abs(test.size);
+      switch (test.assumption) {
+        case Assumption::simultaneous:
+          warn(WarningCode::missing_dynamics,
+               fmt::format(
+                   "the force does what no inertia, damping and stiffness does, much as if it came {:.1f} ms {}: "
+                   "force and position are not simultaneous, the grip yields, or the limb responds after a "
+                   "delay",
+                   1e3 * size, test.size > 0.0 ? "late" : "early"),
+               "find the delay of the force sensor with a known mass and 'mbk sensor delay', and give it with "
+               "--force-delay-ms; hold the handle more rigidly");
+          break;
+        case Assumption::linear_stiffness:
+          warn(
+              WarningCode::nonlinear_stiffness,
+              fmt::format("the stiffness depends on the amplitude: at that of this motion the limb is {:.0f} % {} than "
+                          "for small motion",
+                          100.0 * size, test.size > 0.0 ? "stiffer" : "less stiff"),
+              "perturb less, and state the amplitude beside M, B and K");
+          break;
+        case Assumption::no_dry_friction:
+          warn(WarningCode::dry_friction,
+               fmt::format("{:.2g} {} of the force depend on the direction of the motion and not on its speed: damping "
+                           "and stiffness are biased by that friction",
+                           size, units_.force),
+               "look for friction between the limb and the force sensor; perturb more or faster, which makes its share "
+               "smaller");
+          break;
+        case Assumption::constant_stiffness:
+          warn(WarningCode::stiffness_changes,
+               fmt::format(
+                   "the stiffness changed during the recording, by {:.0f} % (standard deviation): M, B and K are "
+                   "means of it",
+                   100.0 * size),
+               "measure the parts with --from and --to, and ask for the same state throughout");
+          break;
+        case Assumption::constant_rest:
+          warn(WarningCode::force_drifts,
+               fmt::format("the force drifts by {:.2g} {} from beginning to end: the equilibrium moved, or the force "
+                           "sensor's zero; x0 is a mean",
+                           size, units_.force),
+               "zero the force sensor before each trial; measure a shorter part with --from and --to");
+          break;
+        case Assumption::no_tremor:
+          break;  // found in the whole spectrum of the force, which is not here
+      }
+    }
+  }
+
   void check_decimation() {
     if (!id_.decimation || !(id_.decimation->largest_change > kDecimationChange)) return;
     warn(WarningCode::decimation_changes_model,
@@ -270,6 +323,7 @@ void add_warnings(Identification& identification) {
   }
   checker.check_fit();
   checker.check_response();
+  checker.check_assumptions();
   checker.check_conditions();
   checker.check_decimation();
 }

@@ -15,7 +15,9 @@
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/fit_checks.h"
 #include "mbk/measure/identify/instruments.h"
+#include "mbk/measure/identify/missing_dynamics.h"
 #include "mbk/measure/identify/regression.h"
+#include "mbk/model/trial/filtered_band.h"
 
 namespace mbk::identify {
 namespace {
@@ -62,6 +64,7 @@ class Fitter {
 
   [[nodiscard]] Result<void> choose_handle_mass();
   [[nodiscard]] UnmodelledResponse response_in(const Estimate& estimate) const;
+  [[nodiscard]] const std::vector<AssumptionTest>& assumptions_tested(Method method, const Estimate& estimate);
 
   const std::vector<PreparedTrial>& trials_;
   const Options& options_;
@@ -73,8 +76,9 @@ class Fitter {
   HandleMassSource handle_mass_from_ = HandleMassSource::none;
   bool all_ = false;
   std::optional<Instruments> instruments_;
-  std::array<std::optional<Estimate>, 2> estimates_;  ///< by method
-  std::array<Vector, 2> errors_;                      ///< standard errors of their coefficients, stacked
+  std::array<std::optional<Estimate>, 2> estimates_;        ///< by method
+  std::array<Vector, 2> errors_;                            ///< standard errors of their coefficients, stacked
+  std::optional<std::vector<AssumptionTest>> assumptions_;  ///< of the data, by whichever method comes first
 };
 
 Result<void> check_options(const std::vector<PreparedTrial>& trials, const Options& options) {
@@ -274,6 +278,7 @@ Result<Identification> Fitter::identify(Method method) {
     }
   }
   if (instruments_ && is_full(*fit)) result.response = response_in(*fit);
+  if (is_full(*fit)) result.assumptions = assumptions_tested(method, *fit);
   if (options_.bootstrap > 0 && is_full(*fit)) {
     auto replicates = resample(method);
     if (!replicates) return tl::unexpected(replicates.error());
@@ -336,6 +341,15 @@ UnmodelledResponse Fitter::response_in(const Estimate& estimate) const {
       result.induced[j] = all > 0.0 ? std::max(0.0, unexplained - at_rest[j] / weight) / all : std::nan("");
   }
   return result;
+}
+
+const std::vector<AssumptionTest>& Fitter::assumptions_tested(Method method, const Estimate& estimate) {
+  if (!assumptions_) {
+    const Matrix errors = errors_[static_cast<std::size_t>(method)].reshaped(estimate.coefficients.rows(), r_.axes());
+    assumptions_ =
+        test_assumptions(r_, estimate.coefficients, errors, passed_band(trials_.front().preparation), ranges_);
+  }
+  return *assumptions_;
 }
 
 Disagreement Fitter::compare() const {

@@ -22,7 +22,9 @@
 #include "mbk/measure/analyse/plausibility.h"
 #include "mbk/measure/analyse/plausible_scale.h"
 #include "mbk/measure/analyse/posture.h"
+#include "mbk/measure/analyse/tremor.h"
 #include "mbk/measure/identify/consistent_model.h"
+#include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/resample.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -64,9 +66,9 @@ tl::unexpected<Error> in_file(const Recording& recording, const Error& error) {
 /// A recording as it is analysed: on an even clock and with a computed force, where that was asked.
 struct Source {
   const Recording* given = nullptr;
-  Inspection recorded;  ///< of `given`
-  std::optional<Recording> even;
-  std::optional<Hertz> clock;  ///< of `even`
+  Inspection recorded;            ///< of `given`
+  std::optional<Recording> even;  ///< or with a force that was put where it belongs
+  std::optional<Hertz> clock;     ///< of `even`
   std::optional<preprocess::VirtualForce> computed;
 
   [[nodiscard]] const Recording& recording() const {
@@ -107,6 +109,11 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
     if (!even) return tl::unexpected(even.error());
     source.even = std::move(*even);
   }
+  if (options.force_delay != 0.0) {
+    auto in_time = preprocess::undo_force_delay(source.recording(), options.force_delay);
+    if (!in_time) return tl::unexpected(in_time.error());
+    source.even = std::move(*in_time);
+  }
   if (options.preprocess.force_source == ForceSource::sensor) return source;
   if (!options.preprocess.robot) return bad_usage("a computed force needs a robot", "name it with --robot");
   const Inspection inspection = source.even ? recording::inspect(*source.even) : source.recorded;
@@ -144,6 +151,9 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
         analyse::explain_clock(trial.error(), recording, source.recorded, options.preprocess.axes));
   }
   warn_of_clipping(*source.given, *trial);
+  if (options.force_delay != 0.0) {
+    trial->notes.push_back(fmt::format("the force was moved {:g} ms earlier, as asked", 1e3 * options.force_delay));
+  }
   if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   return trial;
 }
@@ -355,6 +365,10 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
   }
   Measurement measured = std::move(*identified);
   analyse::judge_plausibility(recordings_of(sources), trials, options.ignored_ranges, measured);
+  if (const auto tremor = analyse::test_tremor(recordings_of(sources), trials)) {
+    analyse::warn_of_tremor(*tremor, measured.identification);
+    if (measured.alternative) analyse::warn_of_tremor(*tremor, *measured.alternative);
+  }
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());

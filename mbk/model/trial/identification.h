@@ -85,6 +85,40 @@ struct UnmodelledResponse {
   [[nodiscard]] double largest() const { return std::max(largest_share(coherent), largest_share(induced)); }
 };
 
+/// What M ẍ + B ẋ + K (x − x₀) = −F takes for granted, and one recording can contradict.
+enum class Assumption {
+  simultaneous,        ///< force and motion are of one instant, and nothing between them yields or responds late
+  linear_stiffness,    ///< as stiff in large motion as in small
+  no_dry_friction,     ///< no force that depends on the direction of motion alone
+  constant_stiffness,  ///< one stiffness for the whole recording
+  constant_rest,       ///< one equilibrium, and a force sensor whose zero stays
+  no_tremor,           ///< no rhythm of the limb's own
+};
+
+[[nodiscard]] constexpr auto word_table(Assumption) {
+  using enum Assumption;
+  return std::to_array<Word<Assumption>>({{simultaneous, "simultaneous"},
+                                          {linear_stiffness, "linear-stiffness"},
+                                          {no_dry_friction, "no-dry-friction"},
+                                          {constant_stiffness, "constant-stiffness"},
+                                          {constant_rest, "constant-rest"},
+                                          {no_tremor, "no-tremor"}});
+}
+
+/// What the data say of one assumption.
+struct AssumptionTest {
+  Assumption assumption;
+  double p_value = 1;  ///< chance of such data where the assumption holds
+  /// What contradicts it, as large as it was found: the force late by [s]; stiffness at the motion's amplitude more
+  /// than at none, as a share; dry friction [N or N·m]; standard deviation of the stiffness over time, as a share;
+  /// drift of the force over the data behind the parameters [N or N·m]; standard deviation of the tremor's force [N or
+  /// N·m].
+  double size = 0;
+  double frequency_hz = 0;  ///< of a tremor
+  double shift = 0;  ///< what M, B or K change by when it is modelled too, in half widths of their 95 % intervals
+  bool contradicted = false;
+};
+
 /// Where the handle's mass that was subtracted comes from.
 enum class HandleMassSource { none, option, recording };
 
@@ -177,6 +211,7 @@ struct Identification {
   std::string method_rule;                     ///< why that method, in words; empty: it was asked for
   std::optional<InstrumentCheck> instrument;   ///< with instrumental variables only
   std::optional<UnmodelledResponse> response;  ///< where the reference is known
+  std::vector<AssumptionTest> assumptions;     ///< those that could be tested
   std::optional<Replicates> replicates;        ///< where a bootstrap was asked for
   Structure structure = Structure::full;
   double hac_lag_s = 0;    ///< reach of the autocovariance in the standard errors [s]

@@ -151,4 +151,21 @@ std::string sensor_text(const SensorCalibration& c) {
   return text + "\n(± is the 95 % interval; the slope of V on F, inverted, is the answer, and F on V stands beside)\n";
 }
 
+std::string sensor_delay_text(const MeasuredDelay& found) {
+  std::string text;
+  for (const SourceFile& source : found.sources) text += fmt::format("{}   {}\n", source.path, source.format);
+  const double half = kMilli * numeric::kNormal95 * found.delay_error;
+  text += fmt::format("  data    {:.3g} s; the mass explains {:.2f} % of the force\n", found.duration, found.vaf);
+  text += fmt::format("  mass    {:.4g} ± {:.2g} kg, stated {:g} kg\n", found.mass,
+                      numeric::kNormal95 * found.mass_error, found.stated_mass);
+  text += fmt::format("  delay   {:.2f} ± {:.2f} ms: the force is read {} the motion\n", kMilli * found.delay, half,
+                      found.delay < 0.0 ? "before" : "after");
+  for (const std::string& problem : found.problems) text += paragraph("  ! ", problem);
+  if (!found.usable()) return text + paragraph("  ", "so the delay is not to be used");
+  if (std::abs(kMilli * found.delay) <= half)
+    return text + "  force and motion are simultaneous as far as this shows\n";
+  return text + fmt::format("  mbk measure --force-delay-ms {:.2f} ... undoes it (± is the 95 % interval)\n",
+                            kMilli * found.delay);
+}
+
 }  // namespace mbk::report

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "mbk/model/trial/measured_delay.h"
 #include "mbk/model/trial/sensor_calibration.h"
 
 namespace mbk::report {
@@ -9,5 +10,8 @@ namespace mbk::report {
 /// The calibration of a force sensor for the terminal: slopes and zeros with standard errors, crosstalk, linearity,
 /// noise and resolution, warnings, and the options that apply it.
 [[nodiscard]] std::string sensor_text(const SensorCalibration& calibration);
+
+/// By how much a force sensor is late, how sure that is, and the option that undoes it; or why it is not to be used.
+[[nodiscard]] std::string sensor_delay_text(const MeasuredDelay& found);
 
 }  // namespace mbk::report

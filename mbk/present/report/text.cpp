@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/present/report/draw_chart.h"
@@ -219,11 +220,26 @@ std::string ellipses_text(const Findings& findings) {
          draw_ellipses(panels);
 }
 
+/// What two errors that one recording cannot show would do: F + e moves x₀ by K⁻¹ e, and F(t − τ) makes M ẍ + B ẋ + K x
+/// of (B − τ K) ẋ and so on.
+std::string unseen(const Identification& id) {
+  const Vector stretched = numeric::singular_values(id.model.K);
+  const Units units = units_of(id.motion);
+  const bool metres = id.motion == Motion::translation;
+  const double moved = 1.0 / stretched[stretched.size() - 1];
+  return paragraph(
+      "  ", fmt::format("(one recording does not show it: a force off by 1 {} moves x0 by up to {:.2g} {}, a "
+                        "force late by 1 ms makes B smaller by up to {:.2g} {})",
+                        units.force, metres ? 1e3 * moved : moved, metres ? "mm" : units.position, 1e-3 * stretched[0],
+                        units.damping));
+}
+
 std::string result_text(const Identification& id, const std::optional<Findings>& findings) {
   std::string text = inputs_line(id) + how_made(id) + "\n";
   if (id.usable) {
     text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
-    text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n\n";
+    text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n";
+    text += unseen(id) + "\n";
   }
   text += table({{id.fit.held_out ? "fit on held-out data" : "fit on the same data",
                   "VAF " + per_axis(id.fit.vaf, "%", 2), "RMSE " + per_axis(id.fit.rmse, units_of(id.motion).force, 3)},

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/model.h"
 #include "mbk/present/result/force_comparison_json.h"
@@ -102,6 +103,19 @@ Json instrument_json(const InstrumentCheck& check) {
 Json unmodelled_json(const UnmodelledResponse& response) {
   Json json = {{"coherent_share", list(response.coherent)}};
   if (response.induced.size() > 0) json["induced_share"] = list(response.induced);
+  return json;
+}
+
+Json assumptions_json(const std::vector<AssumptionTest>& tests) {
+  Json json = Json::array();
+  for (const AssumptionTest& test : tests) {
+    json.push_back({{"assumption", word_of(test.assumption)},
+                    {"contradicted", test.contradicted},
+                    {"p_value", number(test.p_value)},
+                    {"size", number(test.size)},
+                    {"shift", number(test.shift)}});
+    if (test.frequency_hz > 0.0) json.back()["frequency_hz"] = number(test.frequency_hz);
+  }
   return json;
 }
 
@@ -206,6 +220,8 @@ Json result_json(const Measurement& measured) {
   if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
   if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
+  json["assumptions"] = assumptions_json(id.assumptions);
+  json["sensitivity"] = {{"x0_per_force", rows(numeric::inverse(id.model.K))}, {"B_per_delay", rows(-id.model.K)}};
   json["alternatives"] = Json::array();
   if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
   json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/present/result/json_parts.h"
 
 namespace mbk::result {
@@ -222,6 +223,21 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
   read_provenance(calibration, json);
   if (!reader.problem.empty()) return bad_data(reader.problem, "calibrate again, or mend the file");
   return calibration;
+}
+
+std::string to_json(const MeasuredDelay& found) {
+  Json json = header("mbk.sensor_delay/1");
+  json["inputs"] = inputs_json(found.sources);
+  json["delay_s"] = number(found.delay);
+  json["delay_interval95_s"] = interval(numeric::interval95(found.delay, found.delay_error));
+  json["mass_kg"] = number(found.mass);
+  json["mass_interval95_kg"] = interval(numeric::interval95(found.mass, found.mass_error));
+  json["stated_mass_kg"] = number(found.stated_mass);
+  json["VAF"] = number(found.vaf);
+  json["duration_s"] = number(found.duration);
+  json["usable"] = found.usable();
+  json["problems"] = found.problems;
+  return dumped(json);
 }
 
 }  // namespace mbk::result

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "mbk/base/core/axes.h"
 #include "mbk/base/core/result.h"
@@ -19,9 +20,12 @@ struct LoadCellOptions {
   AxisVector<Axes> offset = AxisVector<Axes>::Zero();      ///< o [N]
   double drift_walk = 0.0;                                 ///< random walk of the offset [N/√s] ≥ 0
   AxisVector<Axes> drift_rate = AxisVector<Axes>::Zero();  ///< steady drift of the offset [N/s]
+  double delay = 0.0;                                      ///< τ, by which the amplifier's reading is late [s] ≥ 0
+  double resolution = 0.0;                                 ///< step of the converter [N] ≥ 0; 0 for none
 };
 
-/// f_read = G f + o + d[k] + w[k] + c[k], in the sensor's axes: drift d, white noise w and coloured noise c.
+/// f_read = G f(t − τ) + o + d[k] + w[k] + c[k], in the sensor's axes and in whole steps: drift d, white noise w and
+/// coloured noise c. Between samples the force goes straight.
 template <int Axes>
 class LoadCell {
  public:
@@ -30,8 +34,10 @@ class LoadCell {
   /// @fails  usage: a deviation or the walk is negative; the bandwidth is not above zero; a number is not finite.
   [[nodiscard]] static Result<LoadCell> create(const Options& options, double sample_time, std::uint64_t seed);
 
-  /// What the next reading adds to the true force, (G − 1) f + o + d + w + c [N].
+  /// What the next reading adds to the true force f [N].
   AxisVector<Axes> added(const AxisVector<Axes>& force) noexcept;
+
+  [[nodiscard]] double delay() const { return delay_; }  ///< τ [s]
 
  private:
   LoadCell(const Options& options, double sample_time, std::uint64_t seed);
@@ -42,8 +48,14 @@ class LoadCell {
     Drift drift;
   };
 
+  AxisVector<Axes> late(const AxisVector<Axes>& force) noexcept;
+
   AxisMatrix<Axes> gain_error_;
   AxisVector<Axes> offset_;
+  double resolution_, delay_, behind_;     // behind_: the delay in samples
+  std::vector<AxisVector<Axes>> history_;  // ring
+  std::size_t next_ = 0;
+  bool begun_ = false;
   std::array<AxisNoise, Axes> noise_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -24,6 +25,27 @@ TEST(LoadCell, AddsGainErrorCrosstalkAndOffset) {
   const Vector2d added = cell.added({10.0, 20.0});
   EXPECT_NEAR(added[0], 0.02 * 10.0 + 0.01 * 20.0 + 0.5, 1e-14);
   EXPECT_NEAR(added[1], -0.03 * 10.0 - 0.03 * 20.0 - 0.25, 1e-14);
+}
+
+TEST(LoadCell, ADelayReadsTheForceOfBefore) {
+  LoadCellOptions<2> options = silent();
+  options.delay = 2.5 * kTick;
+  LoadCell<2> cell = LoadCell<2>::create(options, kTick, 1).value();
+  EXPECT_EQ(cell.delay(), 2.5 * kTick);
+  for (int k = 0; k < 10; ++k) {
+    const Vector2d force(3.0 * k, -k);
+    const Vector2d read = force + cell.added(force);
+    const double then = std::max(0.0, k - 2.5);
+    if (k == 1 || k == 2) continue;  // the first force is taken for what was there before
+    EXPECT_NEAR((read - Vector2d(3.0 * then, -then)).norm(), 0.0, 1e-12) << k;
+  }
+}
+
+TEST(LoadCell, AResolutionRoundsWhatIsRead) {
+  LoadCellOptions<2> options = silent();
+  options.resolution = 0.5;
+  LoadCell<2> cell = LoadCell<2>::create(options, kTick, 1).value();
+  EXPECT_NEAR((Vector2d(1.3, -0.8) + cell.added({1.3, -0.8}) - Vector2d(1.5, -1.0)).norm(), 0.0, 1e-12);
 }
 
 TEST(LoadCell, WithEverythingOffAddsNothing) {

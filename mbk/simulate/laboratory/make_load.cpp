@@ -40,7 +40,9 @@ struct MakeLoad {
 
   Made operator()(participant::ArmOptions arm) const {
     arm.seed = scenario.seed;
-    return owned(participant::Arm::create(arm, 1.0 / scenario.rate.value), "participant");
+    auto made = participant::Arm::create(arm, 1.0 / scenario.rate.value);
+    if (!made || !trial.grip) return owned(std::move(made), "participant");
+    return owned(participant::CompliantGrip::create(*trial.grip, std::move(*made)), "participant.grip");
   }
 
   Made operator()(const participant::ToneRobot::Options& tone) const {

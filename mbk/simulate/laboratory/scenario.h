@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +15,7 @@
 #include "mbk/simulate/laboratory/ready_scenarios.h"
 #include "mbk/simulate/laboratory/simulated_experiment.h"
 #include "mbk/simulate/participant/arm.h"
+#include "mbk/simulate/participant/compliant_grip.h"
 #include "mbk/simulate/participant/one_axis_joint.h"
 #include "mbk/simulate/participant/tone_robot.h"
 
@@ -48,6 +50,7 @@ struct SimulatedTrial {
   AxisVector<Axes> home = AxisVector<Axes>::Zero();
   ModeOf<Axes> control;
   LoadPlan<Axes> load;
+  std::optional<participant::GripOptions> grip;  ///< of an arm; absent: hand and handle are one
   SensorOptions<Axes> sensors;
 };
 using PlanarTrial = SimulatedTrial<2>;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,30 @@ participant::ArmOptions read_will(const Section& s, const Vector2d& home) {
   return arm;
 }
 
+/// What the limb has beside M, B and K; nothing where the file does not speak of it.
+std::optional<participant::Departures::Options> read_departures(const Section& s) {
+  if (!s.given()) return std::nullopt;
+  participant::Departures::Options o;
+  o.dry_friction = s.number("dry_friction_N", o.dry_friction, at_least(0));
+  o.dry_friction_speed = s.number("dry_friction_speed_mm_per_s", o.dry_friction_speed, above(0));
+  o.cubic_stiffness = s.number("cubic_stiffness_N_per_m3", o.cubic_stiffness);
+  o.reflex_gain = s.number("reflex_gain_N_per_m", o.reflex_gain);
+  o.reflex_delay = s.number("reflex_delay_ms", o.reflex_delay, at_least(0));
+  o.tremor_force = s.number("tremor_N", o.tremor_force, at_least(0));
+  o.tremor_frequency = Hertz(s.number("tremor_hz", o.tremor_frequency.value, above(0)));
+  o.tremor_width = Hertz(s.number("tremor_width_hz", o.tremor_width.value, at_least(0)));
+  o.equilibrium_drift = s.vector2("equilibrium_drift_mm_per_s", o.equilibrium_drift);
+  return o;
+}
+
+std::optional<participant::GripOptions> read_grip(const Section& s) {
+  if (!s.given()) return std::nullopt;
+  participant::GripOptions grip;
+  grip.stiffness = s.required_number("stiffness_N_per_m", above(0));
+  grip.damping_ratio = s.number("damping_ratio", grip.damping_ratio, at_least(0));
+  return grip;
+}
+
 /// A matrix, or one number for the same in all directions.
 Matrix2d read_matrix_or_number(const Section& s, const char* key, const char* scalar_key) {
   if (s.has(key)) return s.matrix2(key, Matrix2d::Zero());
@@ -180,6 +205,8 @@ LoadCellOptions<2> read_load_cell(const Section& s) {
   cell.offset = s.vector2("offset_N", cell.offset);
   cell.drift_walk = s.number("drift_walk_N_per_sqrt_s", cell.drift_walk, at_least(0));
   cell.drift_rate = s.vector2("drift_rate_N_per_s", cell.drift_rate);
+  cell.delay = s.number("delay_ms", cell.delay, at_least(0));
+  cell.resolution = s.number("resolution_N", cell.resolution, at_least(0));
   return cell;
 }
 
@@ -312,6 +339,12 @@ PlanarTrial read_planar(const Section& root, const Section& robot) {
       trial.load = read_tone(person, trial.home);
     } else {
       participant::ArmOptions arm = read_will(person, trial.home);
+      for (const Section& at : person.sections("stiffness_at")) {
+        arm.stiffness_schedule.push_back(
+            {at.required_number("time_s", at_least(0)), at.required_number("factor", at_least(0))});
+      }
+      arm.departures = read_departures(person.section("departures"));
+      trial.grip = read_grip(person.section("grip"));
       if (kind == Kind::arm) arm.limb = read_two_links(person, trial.home);
       if (kind == Kind::linear) arm.limb = read_linear_limb(person, trial.home);
       trial.load = arm;

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <utility>
+
+#include "mbk/base/core/option_limits.h"
 
 namespace mbk::participant {
 namespace {
 
-constexpr std::uint32_t kControllerStream = 1, kRemnantStream = 2;
+constexpr std::uint32_t kControllerStream = 1, kRemnantStream = 2, kDeparturesStream = 3;
 
 /// Symmetric parts [xx, yy, xy] of a hand impedance.
 struct HandImpedance {
@@ -66,6 +71,18 @@ Result<ArmOptions> participant_options(int participant) {
   return options;
 }
 
+namespace {
+
+Vector2d rest_of(const ArmOptions& options) {
+  struct Rest {
+    Vector2d operator()(const TwoLinkArm::Options& arm) const { return arm.equilibrium; }
+    Vector2d operator()(const impedance::Model& limb) const { return limb.x0; }
+  };
+  return std::visit(Rest{}, options.limb);
+}
+
+}  // namespace
+
 Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
   struct CreateLimb {
     Result<Limb> operator()(const TwoLinkArm::Options& arm) const { return TwoLinkArm::create(arm).map(as_limb); }
@@ -80,30 +97,61 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
   if (!cocontraction) return tl::unexpected(cocontraction.error());
   const auto remnant = Remnant<2>::create(options.remnant, sample_time, options.seed, kRemnantStream);
   if (!remnant) return tl::unexpected(remnant.error());
-  return Arm(std::move(*limb), std::move(*controller), *cocontraction, *remnant);
+  for (std::size_t k = 0; k < options.stiffness_schedule.size(); ++k) {
+    const auto& [time, factor] = options.stiffness_schedule[k];
+    if (auto ok = not_negative({{"factor of the stiffness", factor, ""}}); !ok) return tl::unexpected(ok.error());
+    if (!std::isfinite(time) || (k > 0 && !(time > options.stiffness_schedule[k - 1].time))) {
+      return bad_usage("times of a stiffness schedule must rise");
+    }
+  }
+  std::optional<Departures> departures;
+  if (options.departures) {
+    auto made = Departures::create(*options.departures, rest_of(options), sample_time, options.seed, kDeparturesStream);
+    if (!made) return tl::unexpected(made.error());
+    departures = std::move(*made);
+  }
+  return Arm(std::move(*limb), std::move(*controller), *cocontraction, *remnant, std::move(departures),
+             options.stiffness_schedule);
 }
 
-Arm::Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant)
-    : limb_(std::move(limb)), controller_(std::move(controller)), cocontraction_(cocontraction), remnant_(remnant) {
-  tense();
+Arm::Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant,
+         std::optional<Departures> departures, std::vector<StiffnessAt> schedule)
+    : limb_(std::move(limb)),
+      controller_(std::move(controller)),
+      cocontraction_(cocontraction),
+      remnant_(remnant),
+      departures_(std::move(departures)),
+      schedule_(std::move(schedule)) {
+  tense(0.0);
 }
 
-void Arm::tense() {
-  std::visit([this](auto& limb) { limb.scale(cocontraction_.stiffness_scale(), cocontraction_.damping_scale()); },
-             limb_);
+double Arm::scheduled(double t) const {
+  if (schedule_.empty()) return 1.0;
+  const auto after = std::ranges::upper_bound(schedule_, t, {}, &StiffnessAt::time);
+  if (after == schedule_.begin()) return after->factor;
+  const StiffnessAt& before = *std::prev(after);
+  if (after == schedule_.end()) return before.factor;
+  return before.factor + (t - before.time) / (after->time - before.time) * (after->factor - before.factor);
 }
 
-void Arm::tick(double /*t*/, double /*sample_time*/, const HandState<2>& hand, const Vector2d& force_on_robot) {
+void Arm::tense(double t) {
+  const double stiffness = cocontraction_.stiffness_scale() * scheduled(t);
+  std::visit([&](auto& limb) { limb.scale(stiffness, cocontraction_.damping_scale()); }, limb_);
+}
+
+void Arm::tick(double t, double /*sample_time*/, const HandState<2>& hand, const Vector2d& force_on_robot) {
   cocontraction_.step(hand.velocity.norm());
-  tense();
+  tense(t);
   const Matrix2d K = std::visit([&](const auto& limb) { return limb.stiffness(hand.position); }, limb_);
   const Vector2d& voluntary = controller_.step(hand.position, force_on_robot, K, cocontraction_.voluntary_weight());
   noise_ = remnant_.step(voluntary.norm());
+  if (departures_) departures_->step(t, hand.position, K);
 }
 
 LoadDynamics<2> Arm::dynamics(const HandState<2>& hand) const {
   LoadDynamics<2> dynamics = std::visit([&](const auto& limb) { return limb.dynamics(hand); }, limb_);
   dynamics.bias -= controller_.force() + noise_;
+  if (departures_) dynamics.bias += departures_->force(hand);
   return dynamics;
 }
 

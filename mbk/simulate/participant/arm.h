@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
+#include <vector>
 
 #include "mbk/simulate/participant/cocontraction.h"
+#include "mbk/simulate/participant/departures.h"
 #include "mbk/simulate/participant/intermittent_controller.h"
 #include "mbk/simulate/participant/linear_limb.h"
 #include "mbk/simulate/participant/remnant.h"
@@ -11,13 +14,22 @@
 
 namespace mbk::participant {
 
+/// From then on the limb's own stiffness is so many times what it is; before the first and after the last it stays,
+/// between two it goes straight.
+struct StiffnessAt {
+  double time = 0.0;    ///< [s]
+  double factor = 1.0;  ///< ≥ 0
+};
+
 /// Everything that tells one simulated arm from another. A relaxed and a rigid arm differ in these numbers only.
 struct ArmOptions {
   std::variant<TwoLinkArm::Options, impedance::Model> limb;  ///< two links, or the same impedance everywhere
   IntermittentController::Options controller;
   Cocontraction::Options cocontraction;
   Remnant<2>::Options remnant;
-  std::uint64_t seed = 1;  ///< of the controller's errors and of the remnant
+  std::vector<StiffnessAt> stiffness_schedule;    ///< in order of time; empty: it does not change by itself
+  std::optional<Departures::Options> departures;  ///< what the limb has beside M, B and K
+  std::uint64_t seed = 1;                         ///< of the controller's errors, the remnant and a tremor
 };
 
 /// An arm that is asked to do nothing: no voluntary force, no co-contraction, a little noise.
@@ -40,7 +52,7 @@ struct ArmOptions {
 [[nodiscard]] Result<ArmOptions> participant_options(int participant);
 
 /// A person's arm: a passive limb, and what the person adds to it,
-///   F_h = passive limb (stiffness and damping scaled by co-contraction) + F_v + n
+///   F_h = passive limb (stiffness and damping scaled by co-contraction) − departures + F_v + n
 /// F_v of an intermittent controller, n a remnant. All three are decided once a tick and held over it.
 class Arm : public Load<2> {
  public:
@@ -60,13 +72,17 @@ class Arm : public Load<2> {
 
  private:
   using Limb = std::variant<TwoLinkArm, LinearLimb>;
-  Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant);
-  void tense();
+  Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant,
+      std::optional<Departures> departures, std::vector<StiffnessAt> schedule);
+  void tense(double t);
+  [[nodiscard]] double scheduled(double t) const;
 
   Limb limb_;
   IntermittentController controller_;
   Cocontraction cocontraction_;
   Remnant<2> remnant_;
+  std::optional<Departures> departures_;
+  std::vector<StiffnessAt> schedule_;
   Vector2d noise_ = {0.0, 0.0};
 };
 

@@ -15,6 +15,7 @@ constexpr std::array kOfIntervals = {JudgedShare{kNearNominal, 95.0}};
 constexpr std::array kOfClosedLoop = {JudgedShare{kNearlyAlways, 100.0},
                                       JudgedShare{kNominal, 95.0, kTrialsWithoutController}};
 constexpr std::array kOfPassivity = {JudgedShare{kNever, 0.0}, JudgedShare{kAlways, 100.0}};
+constexpr std::array kOfMisspecification = {JudgedShare{kNearlyAlways, 99.0}, JudgedShare{kHardlyEver, 1.0}};
 constexpr std::array kOfRobot = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfVirtualSensor = {JudgedShare{kNearNominal, 100.0, 5.0},  // wide: a damper is not in the model
                                          JudgedShare{kNearlyAlways, 100.0}};
@@ -35,6 +36,8 @@ std::span<const Study> studies() {
             2, closed_loop_study},
       Study{"passivity", "what is said of passivity, of relaxed arms and of arms that give energy", kOfPassivity, 2,
             passivity_study},
+      Study{"misspecification", "what is said where M, B and K do not hold, and where they do", kOfMisspecification, 2,
+            misspecification_study},
       Study{"live-estimate", "how often the 95 % intervals hold the truth while the trial still runs", kOfIntervals, 2,
             live_estimate_study},
       Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", {}, 3, springs_study},

@@ -71,6 +71,13 @@ TEST(Recovery, IsTheSameOnAnyNumberOfThreads) {
   for (std::size_t k = 0; k < one->rows.size(); ++k) EXPECT_EQ(one->rows[k].value, two->rows[k].value);
 }
 
+TEST(MisspecificationStudy, WarnsWhereTheModelDoesNotHoldAndIsSilentWhereItDoes) {
+  const auto table = misspecification_study({.runs = 2});
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  EXPECT_GE(std::ranges::count_if(table->rows, [](const ValidationRow& row) { return row.judged(); }), 40);
+  expect_nothing_refuted(*table);
+}
+
 TEST(PassivityStudy, NeverCallsARelaxedArmActiveAndHearsTheEnergyOfOneThatActs) {
   const auto table = passivity_study({.runs = 3, .seed = 21});  // `mbk validate passivity` takes 500
   expect_nothing_refuted(table);

@@ -33,6 +33,30 @@ export const plainWarnings: PlainWarnings = {
     title: "More handle mass was subtracted than was measured",
     meaning: "The inertia that is left is not that of a limb.",
   },
+  "missing-dynamics": {
+    title: "The force does something that inertia, damping and stiffness do not",
+    meaning: "Force and position may not have been recorded at the same time, the grip may have yielded, or the limb responded after a delay. The numbers are biased.",
+  },
+  "nonlinear-stiffness": {
+    title: "The limb is not equally stiff in small and large motion",
+    meaning: "The stiffness holds for motion of this size only.",
+  },
+  "dry-friction": {
+    title: "There is friction that does not depend on speed",
+    meaning: "Part of it stands in the damping and the stiffness, which are biased.",
+  },
+  "stiffness-changes": {
+    title: "The limb became stiffer or softer during the recording",
+    meaning: "The numbers are means over states that differ.",
+  },
+  "force-drifts": {
+    title: "The force drifted from beginning to end",
+    meaning: "The hand's place of rest moved, or the zero of the force sensor did. The equilibrium is a mean.",
+  },
+  "tremor": {
+    title: "The limb trembled",
+    meaning: "A rhythm of its own stands in the force and biases the numbers of least squares.",
+  },
   "inertia-not-positive": {
     title: "The inertia is impossible",
     meaning: "In some direction the limb would have no mass or less than none. The numbers are not those of a limb.",

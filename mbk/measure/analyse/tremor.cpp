@@ -1,0 +1,132 @@
+#include "mbk/measure/analyse/tremor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "mbk/base/dsp/spectrum.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/model/trial/quantity_channels.h"
+
+namespace mbk::analyse {
+namespace {
+
+constexpr double kLowest = 3.0, kHighest = 14.0;  ///< [Hz]
+constexpr double kResolution = 0.25;              ///< [Hz]
+constexpr double kNear = 0.75, kFar = 2.0;        ///< of what a line is compared with [Hz]
+constexpr double kShortest = 16.0;                ///< [s]
+constexpr double kAbove = 5.0, kChance = 1e-3;
+constexpr double kReach = 0.5;          ///< of a line of the reference in the spectrum [Hz]
+constexpr double kWeakest = 1e-4;       ///< line of a reference, of its strongest
+constexpr double kShareOfForce = 0.08;  ///< standard deviation over that of the force
+
+/// The median of the spectrum beside a line, on the side where it is lower and where it is higher.
+std::pair<double, double> beside(const dsp::Spectrum& spectrum, Index line) {
+  std::pair<double, double> sides = {std::numeric_limits<double>::infinity(), 0.0};
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<double> values;
+    for (Index k = 1; k < spectrum.frequency.size(); ++k) {
+      const double away = side * (spectrum.frequency[k] - spectrum.frequency[line]);
+      if (away >= kNear && away <= kFar) values.push_back(spectrum.density[k]);
+    }
+    if (values.empty()) continue;
+    const double middle = numeric::median(values);
+    sides = {std::min(sides.first, middle), std::max(sides.second, middle)};
+  }
+  return sides;
+}
+
+/// Whether the reference has a line near there: one that stands above what is beside it on either side.
+bool has_line(const dsp::Spectrum& reference, Index at) {
+  const double strongest = reference.density.maxCoeff();
+  for (Index k = 1; k < reference.frequency.size(); ++k) {
+    if (std::abs(reference.frequency[k] - reference.frequency[at]) > kReach) continue;
+    const double here = reference.density[k];
+    if (here > kWeakest * strongest && here > kAbove * beside(reference, k).first) return true;
+  }
+  return false;
+}
+
+/// How far a line stands above what is beside it.
+double prominence(const dsp::Spectrum& spectrum, Index line) {
+  const double floor = beside(spectrum, line).second;
+  return floor > 0.0 ? spectrum.density[line] / floor : 0.0;
+}
+
+/// The clearest line of one axis.
+AssumptionTest line_of(const Vector& force, const Vector& reference, double rate) {
+  AssumptionTest result{Assumption::no_tremor};
+  const auto of_force = dsp::welch(force, Hertz(rate), Hertz(kResolution)),
+             of_reference = dsp::welch(reference, Hertz(rate), Hertz(kResolution));
+  if (!of_force || !of_reference) return result;
+  const double width = of_force->frequency[1] - of_force->frequency[0];
+  const double segments = static_cast<double>(force.size()) / rate * width;
+  Index lines = 0, best = 0;
+  double highest = 0.0;
+  for (Index k = 1; k + 1 < of_force->frequency.size(); ++k) {
+    if (of_force->frequency[k] < kLowest || of_force->frequency[k] > kHighest) continue;
+    ++lines;
+    if (has_line(*of_reference, k)) continue;
+    const double above = prominence(*of_force, k);
+    if (above > highest) {
+      highest = above;
+      best = k;
+    }
+  }
+  if (best == 0) return result;
+  // Hann windows that overlap by half: about 1.9 degrees of freedom for each length of data that a segment takes.
+  const double freedom = 1.9 * 2.0 * segments;
+  result.p_value =
+      std::min(1.0, static_cast<double>(lines) * numeric::f_probability_above(highest, freedom, 2.0 * freedom));
+  const double floor = beside(*of_force, best).second;
+  result.size = std::sqrt(std::max(0.0, of_force->density.segment(best - 1, 3).sum() - 3.0 * floor) * width);
+  result.frequency_hz = of_force->frequency[best];
+  result.contradicted =
+      highest > kAbove && result.p_value < kChance && result.size > kShareOfForce * std::sqrt(numeric::variance(force));
+  return result;
+}
+
+}  // namespace
+
+std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> recordings,
+                                          std::span<const PreparedTrial> trials) {
+  std::optional<AssumptionTest> clearest;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const Recording& recording = *recordings[k];
+    const PreparedTrial& trial = trials[k];
+    const double rate = trial.recording_rate;
+    const Matrix force = recorded(recording, kForceChannels, trial.axes),
+                 reference = recorded(recording, kReferenceChannels, trial.axes);
+    if (force.size() == 0 || reference.size() == 0 || !(rate > 4.0 * kHighest)) continue;
+    const Index begin = std::max<Index>(0, std::llround(trial.preparation.from_s * rate)),
+                end = std::min<Index>(recording.samples(), std::llround(trial.preparation.to_s * rate) + 1);
+    if (static_cast<double>(end - begin) < kShortest * rate) continue;
+    const Vector time = recording.time.segment(begin, end - begin);
+    if ((time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff() * rate > 1.5) continue;
+    for (Index axis = 0; axis < trial.axes; ++axis) {
+      const Vector of_force = force.col(axis).segment(begin, end - begin),
+                   of_reference = reference.col(axis).segment(begin, end - begin);
+      if (!of_force.allFinite() || !of_reference.allFinite()) continue;
+      const AssumptionTest found = line_of(of_force, of_reference, rate);
+      if (!clearest || found.p_value < clearest->p_value) clearest = found;
+    }
+  }
+  return clearest;
+}
+
+void warn_of_tremor(const AssumptionTest& tremor, Identification& identification) {
+  identification.assumptions.push_back(tremor);
+  if (!tremor.contradicted || identification.method == Method::instrumental_variables) return;
+  identification.warnings.push_back(
+      {WarningCode::tremor,
+       fmt::format("the force has a rhythm of {:.3g} Hz, {:.2g} {} (standard deviation), that the perturbation did not "
+                   "make: the limb trembles, and M, B and K by least squares are biased",
+                   tremor.frequency_hz, tremor.size, units_of(identification.motion).force),
+       "use --method iv: instrumental variables take it for noise"});
+}
+
+}  // namespace mbk::analyse

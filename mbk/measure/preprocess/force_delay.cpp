@@ -1,0 +1,53 @@
+#include "mbk/measure/preprocess/force_delay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mbk/model/trial/quantity_channels.h"
+
+namespace mbk::preprocess {
+namespace {
+
+bool is_force(const Channel& channel) {
+  return channel.name == kForceChannels.one_axis || std::ranges::count(kForceChannels.plane, channel.name) > 0;
+}
+
+/// The signal at `when`, which is within `time`; `from` is the sample at or before which to look on.
+double value_at(const Vector& time, const Vector& values, double when, Index& from) {
+  while (from + 2 < time.size() && time[from + 1] <= when) ++from;
+  const double share = (when - time[from]) / (time[from + 1] - time[from]);
+  return values[from] + share * (values[from + 1] - values[from]);
+}
+
+}  // namespace
+
+Result<Recording> undo_force_delay(const Recording& recording, double delay) {
+  const Vector& time = recording.time;
+  const Index samples = recording.samples();
+  if (!std::isfinite(delay)) return bad_usage("a delay of the force must be finite");
+  if (std::ranges::none_of(recording.channels, is_force)) return bad_data("there is no force that could be late");
+  if (samples < 2 || !((time.tail(samples - 1) - time.head(samples - 1)).minCoeff() > 0.0)) {
+    return bad_data("time does not increase, so that no delay can be undone", "put it on one clock with --resample HZ");
+  }
+  Index begin = 0, end = samples;
+  while (begin < samples && time[begin] + delay < time[0]) ++begin;
+  while (end > begin && time[end - 1] + delay > time[samples - 1]) --end;
+  if (end - begin < 2) {
+    return bad_usage(fmt::format("a delay of {:g} s is as long as the recording", delay), "it is given in ms");
+  }
+  Recording result = recording;
+  result.time = time.segment(begin, end - begin);
+  for (Channel& channel : result.channels) {
+    const Vector values = channel.values;
+    channel.values = values.segment(begin, end - begin);
+    if (!is_force(channel)) continue;
+    Index from = 0;
+    for (Index i = begin; i < end; ++i) channel.values[i - begin] = value_at(time, values, time[i] + delay, from);
+  }
+  return result;
+}
+
+}  // namespace mbk::preprocess
