@@ -10,6 +10,7 @@
 namespace mbk::app {
 namespace {
 
+constexpr double kLongestDelayMs = 1000.0;
 constexpr const char* kWindow = "Analysed interval";
 constexpr const char* kFilters = "Filters";
 
@@ -88,8 +89,6 @@ void add_protocol_options(CLI::App& command, PreprocessArguments& a) {
       ->group(kWindow);
   add_window_options(command, a.window);
 }
-
-constexpr double kLongestDelayMs = 1000.0;
 
 void add_signal_options(CLI::App& command, PreprocessArguments& a) {
   add_filter_options(command, a.filters);
