@@ -43,7 +43,7 @@ using Enumerations =
     testing::Types<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal,
                    perturbation::MultisinePlan::Phases, perturbation::MultisinePlan::Axes, AccelerationSource,
                    AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, Exhibit::Kind, ForceSource,
-                   InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom, Procedure, Protocol, Provenance,
+                   InputHold, InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom, Procedure, Protocol, Provenance,
                    Readers, ReferenceQuantity, RobotMethod, SensorWarningCode, StabilityCondition, StabilityVerdict,
                    Structure, TransferFunctionMethod, Verdict, WarningCode, journal::Ending::How, recording::Format,
                    calibration::SensorFrame, teleop::Architecture, teleop::Form, teleop::SimulatedArm::Kind,

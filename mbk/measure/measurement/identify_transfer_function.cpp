@@ -101,6 +101,10 @@ Result<void> Preparer::thin_out(SignalPair& pair) {
   const auto every_one = every(pair);
   if (!every_one) return tl::unexpected(every_one.error());
   if (*every_one == 1) return {};
+  if (options_.fit.hold == InputHold::zero) {
+    return bad_usage("an input that was decimated behind a low-pass is not held between samples any more",
+                     "leave --sample-rate out, or take --hold first");
+  }
   const Hertz rate(1.0 / *pair.step);
   const Index begin = pair.first % *every_one;
   Matrix signals(pair.time.size(), pair.reference.size() > 0 ? 3 : 2);
