@@ -14,6 +14,7 @@
 #include "mbk/base/numeric/golden_section.h"
 #include "mbk/base/numeric/polynomial_roots.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/autoregression.h"
 #include "mbk/measure/identify/input_hold.h"
 #include "mbk/measure/identify/prediction_error.h"
 #include "mbk/measure/identify/srivc.h"
@@ -417,7 +418,10 @@ void Identifier::test(const Fit& fit) {
   std::vector<Vector> inputs;
   const std::vector<SignalPair> moved = delayed(experiments_, delay_, hold_);
   for (std::size_t k = 0; k < moved.size(); ++k) {
-    inputs.emplace_back(moved[k].input.tail(fit.innovations[k].size()).array() - moved[k].input.mean());
+    // In a loop the noise is in the input; what the reference makes of it is free of that.
+    const bool loop = options_.method == TransferFunctionMethod::closed_loop;
+    const Vector input = loop ? explained_by_past(moved[k].reference, moved[k].input) : moved[k].input;
+    inputs.emplace_back(input.tail(fit.innovations[k].size()).array() - input.mean());
   }
   double slowest = 0.0;  // [s]
   for (const Root& pole : found_.poles) slowest = std::max(slowest, 1.0 / std::abs(pole.value.real()));
@@ -576,17 +580,41 @@ std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& co
   return all;
 }
 
+namespace {
+
+/// Σ u[t − k] e[t] for k = 0 … lags over the standard deviation that it has without a relation. Both pass first what
+/// makes e white (its autoregressive model): then that is σ_e √Σu², whatever the colour of u (Box & Jenkins 1970, §11.1).
+Vector cross_correlation(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
+  constexpr Index kMaxOrder = 50, kSamplesEach = 20;
+  const Index shortest = std::ranges::min(residuals, {}, &Vector::size).size();
+  const Vector whitening = autoregression(residuals, std::min(kMaxOrder, shortest / kSamplesEach));
+  const Index order = whitening.size() - 1;
+  Vector cross = Vector::Zero(lags + 1);
+  double of_residual = 0.0, of_input = 0.0, samples = 0.0;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const Index n = residuals[k].size() - order;
+    const auto whitened = [&](const Vector& signal) -> Vector {
+      return dsp::difference_equation(whitening, Vector::Ones(1), signal).tail(n);
+    };
+    const Vector e = whitened(residuals[k]), u = whitened(inputs[k]);
+    for (Index lag = 0; lag <= std::min(lags, n - 1); ++lag) cross[lag] += u.head(n - lag).dot(e.tail(n - lag));
+    of_residual += e.squaredNorm();
+    of_input += u.squaredNorm();
+    samples += static_cast<double>(n);
+  }
+  return cross / std::sqrt(std::max(of_residual * of_input / samples, std::numeric_limits<double>::min()));
+}
+
+}  // namespace
+
 ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
   ResidualTests tests;
   tests.lags = lags;
-  Vector own = Vector::Zero(lags + 1), of_input = own, cross = own, pairs = own;
-  for (std::size_t k = 0; k < residuals.size(); ++k) {
-    const Vector &e = residuals[k], &u = inputs[k];
+  Vector own = Vector::Zero(lags + 1), pairs = own;
+  for (const Vector& e : residuals) {
     const Index n = e.size();
     for (Index lag = 0; lag <= std::min(lags, n - 1); ++lag) {
       own[lag] += e.head(n - lag).dot(e.tail(n - lag));
-      of_input[lag] += u.head(n - lag).dot(u.tail(n - lag));
-      cross[lag] += u.head(n - lag).dot(e.tail(n - lag));
       pairs[lag] += static_cast<double>(n - lag);
     }
   }
@@ -601,14 +629,11 @@ ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::ve
   }
   tests.autocorrelation_outside = static_cast<double>(outside) / static_cast<double>(lags);
   tests.whiteness_p = chi_squared_beyond(n * (n + 2.0) * sum, static_cast<double>(lags));
-  // Of two signals without relation the variance of Σ u e is Σ_k R_u(k) R_e(k) (Bartlett).
-  double variance = own[0] * of_input[0] / n;
-  for (Index lag = 1; lag <= lags; ++lag) variance += 2.0 * own[lag] * of_input[lag] / n;
-  const double deviation = std::sqrt(std::max(variance, 0.05 * own[0] * of_input[0] / n));
+  const Vector cross = cross_correlation(residuals, inputs, lags);
   outside = 0;
   double largest = 0.0;
   for (Index lag = 0; lag <= lags; ++lag) {
-    const double z = std::abs(cross[lag]) / deviation;
+    const double z = std::abs(cross[lag]);
     outside += z > limit ? 1 : 0;
     largest = std::max(largest, z);
   }

@@ -47,7 +47,10 @@ struct TransferFunctionOptions {
 [[nodiscard]] std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& covariance,
                                                      double sample_time = 0.0);
 
-/// @param residuals of each experiment    @param inputs as long as these    @param lags ≥ 1
+/// Whiteness by the sum of Ljung & Box (1978). The relation to the input by the largest of the cross-correlations at
+/// lags 0 … `lags`, of residual and input both behind the residual's autoregressive model, at Bonferroni's level: it is
+/// for an input that no noise reaches, and so in a loop for what the reference makes of it.
+/// @param residuals of each experiment    @param inputs as long as these, without their means    @param lags ≥ 1
 [[nodiscard]] ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs,
                                            Index lags);
 
