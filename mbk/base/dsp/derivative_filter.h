@@ -13,9 +13,9 @@ struct HeldStep {
 };
 
 /// Of the filter below, over `step`.
-/// @param held  absent: the input runs in straight lines between its samples (first-order hold). Otherwise it keeps each
-/// sample's value for this share of the interval, 0 < held ≤ 1, and then jumps to the next one's; 1: zero-order hold,
-/// and less is a zero-order hold behind a delay of that part of a sample.
+/// @param held  absent: the input runs in straight lines between its samples (first-order hold). Otherwise it keeps
+/// each sample's value for this share of the interval, 0 < held ≤ 1, and then jumps to the next one's; 1: zero-order
+/// hold, and less is a zero-order hold behind a delay of that part of a sample.
 [[nodiscard]] HeldStep held_step(const Vector& denominator, double step, std::optional<double> held = {});
 
 /// All derivatives of a signal behind 1/A in one pass, exactly for a signal that runs in straight lines between its

@@ -55,7 +55,8 @@ TEST(DerivativeFilter, IsTheDifferentialEquationBetweenStraightLines) {
 }
 
 TEST(DerivativeFilter, IsTheDifferentialEquationOfAnInputThatIsHeld) {
-  const Vector time = Vector::LinSpaced(60, 0.0, 11.8), u = (1.7 * time.array()).cos() + (time.array() > 6.0).cast<double>();
+  const Vector time = Vector::LinSpaced(60, 0.0, 11.8),
+               u = (1.7 * time.array()).cos() + (time.array() > 6.0).cast<double>();
   for (const double held : {1.0, 0.7, 0.25}) {  // each a whole number of the twin's steps
     for (const Index n : {1, 2, 5}) {
       const Vector a = Vector::LinSpaced(n, 1.5, 0.8 * static_cast<double>(n));

@@ -567,10 +567,11 @@ Result<void> Fitter::add_noise(std::vector<Search>& searches) const {
     leader[k] = known == leaders.end() ? k : *known;
     if (leader[k] == k && std::isfinite(searches[k].squares)) leaders.push_back(k);
   }
-  const auto ran = numeric::parallel_for(static_cast<int>(leaders.size()), options_.threads, [&](int i) -> Result<void> {
-    add_noise(searches[leaders[static_cast<std::size_t>(i)]]);
-    return {};
-  });
+  const auto ran =
+      numeric::parallel_for(static_cast<int>(leaders.size()), options_.threads, [&](int i) -> Result<void> {
+        add_noise(searches[leaders[static_cast<std::size_t>(i)]]);
+        return {};
+      });
   for (std::size_t k = 0; k < searches.size(); ++k) {
     if (leader[k] == k) continue;
     const SearchStart own = searches[k].start;

@@ -48,8 +48,8 @@ Vector along_straight_lines(const Vector& signal, const Vector& recorded, const 
   return values;
 }
 
-/// The samples that count, with the input as it was `delay` before. One that is held jumps within the interval then: the
-/// sample before holds for the part of one by which the delay is more than whole samples.
+/// The samples that count, with the input as it was `delay` before. One that is held jumps within the interval then:
+/// the sample before holds for the part of one by which the delay is more than whole samples.
 SignalPair delayed(const SignalPair& pair, double delay, InputHold hold) {
   const Index n = pair.samples();
   SignalPair shifted = pair;
@@ -268,8 +268,8 @@ Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
   return sharpened(poles, zeros, best);
 }
 
-/// Gauss–Newton steps of the delay alone, all other coefficients at their best, until it is a small part of its standard
-/// error off; a step that does not leave less is not taken.
+/// Gauss–Newton steps of the delay alone, all other coefficients at their best, until it is a small part of its
+/// standard error off; a step that does not leave less is not taken.
 Result<Fit> Identifier::sharpened(Index poles, Index zeros, double delay) {
   constexpr int kMax = 6;
   constexpr double kSmall = 0.02;
@@ -583,7 +583,8 @@ std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& co
 namespace {
 
 /// Σ u[t − k] e[t] for k = 0 … lags over the standard deviation that it has without a relation. Both pass first what
-/// makes e white (its autoregressive model): then that is σ_e √Σu², whatever the colour of u (Box & Jenkins 1970, §11.1).
+/// makes e white (its autoregressive model): then that is σ_e √Σu², whatever the colour of u (Box & Jenkins 1970,
+/// §11.1).
 Vector cross_correlation(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
   constexpr Index kMaxOrder = 50, kSamplesEach = 20;
   const Index shortest = std::ranges::min(residuals, {}, &Vector::size).size();

@@ -122,8 +122,9 @@ void Preparer::take_rate_of_model() {
   const double rate = 2.0 / dsp::kDecimationCutoff * top;
   if (rate <= kMaxDiscreteRate.value) return;
   rate_of_model_ = Hertz(rate);
-  notes.push_back(fmt::format("kept above {:g} Hz: 5 % of the output's power that follows the input lies above {:.3g} Hz",
-                              kMaxDiscreteRate.value, top));
+  notes.push_back(
+      fmt::format("kept above {:g} Hz: 5 % of the output's power that follows the input lies above {:.3g} Hz",
+                  kMaxDiscreteRate.value, top));
 }
 
 Result<void> Preparer::decimate() {

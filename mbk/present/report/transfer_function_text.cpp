@@ -34,8 +34,9 @@ const char* method_text(TransferFunctionMethod method) {
 
 std::string hold_text(InputHold hold, bool found) {
   const char* const because = hold == InputHold::zero ? ", as its steps show" : ", as it shows no steps";
-  return fmt::format("{}{}", hold == InputHold::zero ? "held between samples (zero-order hold)"
-                                                     : "straight lines between samples (first-order hold)",
+  return fmt::format("{}{}",
+                     hold == InputHold::zero ? "held between samples (zero-order hold)"
+                                             : "straight lines between samples (first-order hold)",
                      found ? because : "");
 }
 

@@ -84,9 +84,9 @@ struct Run {
 
 Result<Run> identified_run(std::uint64_t seed) {
   Run run;
-  for (const auto& [kind, to] : {std::pair{Record::straight_lines, &run.straight_lines},
-                                 std::pair{Record::held, &run.held},
-                                 std::pair{Record::held_and_delayed, &run.delayed}}) {
+  for (const auto& [kind, to] :
+       {std::pair{Record::straight_lines, &run.straight_lines}, std::pair{Record::held, &run.held},
+        std::pair{Record::held_and_delayed, &run.delayed}}) {
     auto made = estimated(seed, kind);
     if (!made) return tl::unexpected(made.error());
     *to = std::move(*made);
@@ -131,8 +131,8 @@ Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
     const Vector error =
         of_runs([&](const Run& run) { return 100.0 * (run.straight_lines.theta[k] / kTruth[k] - 1.0); });
     table.rows.push_back(bias_row(fmt::format("bias of {}", kNames[k]), error, kBias, "%"));
-    table.rows.push_back(coverage_row(fmt::format("95 % interval of {} holds the truth", kNames[k]), runs,
-                                      &Run::straight_lines, k));
+    table.rows.push_back(
+        coverage_row(fmt::format("95 % interval of {} holds the truth", kNames[k]), runs, &Run::straight_lines, k));
     const Vector theta = of_runs([&](const Run& run) { return run.straight_lines.theta[k]; });
     table.rows.push_back(
         spread_row(fmt::format("spread of {}, over the published {:g}", kNames[k], kPublishedSpread[k]), theta,
@@ -161,11 +161,11 @@ Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
   table.notes.emplace_back(
       "(−6400 s + 1600)/(s⁴ + 5 s³ + 408 s² + 416 s + 1600) of Rao & Garnier (2002), behind a random binary input of "
       "71.6 s at 100 Hz and white noise of a tenth of the output's variance. Six starts each, none near the truth.");
-  table.notes.emplace_back(
-      fmt::format("Between the samples the input is a straight line, in the truth as in the model. The rows of the held "
-                  "input have one that keeps its value until the next sample, which mbk is to see by itself; those of "
-                  "the delay have the same input {:g} ms late, and mbk looks for the delay up to 100 ms.",
-                  1e3 * kDelay));
+  table.notes.emplace_back(fmt::format(
+      "Between the samples the input is a straight line, in the truth as in the model. The rows of the held "
+      "input have one that keeps its value until the next sample, which mbk is to see by itself; those of "
+      "the delay have the same input {:g} ms late, and mbk looks for the delay up to 100 ms.",
+      1e3 * kDelay));
   return table;
 }
 
