@@ -72,8 +72,13 @@ bool is_held(const Vector& input) {
 }  // namespace
 
 InputHold input_hold(const std::vector<SignalPair>& experiments) {
-  const bool held = std::ranges::all_of(experiments, [](const SignalPair& pair) { return is_held(pair.input); });
-  return held && !experiments.empty() ? InputHold::zero : InputHold::first;
+  InputHold hold = InputHold::first;
+  for (const SignalPair& pair : experiments) {
+    if (pair.input.size() == 0 || pair.input.minCoeff() == pair.input.maxCoeff()) continue;
+    if (!is_held(pair.input)) return InputHold::first;
+    hold = InputHold::zero;
+  }
+  return hold;
 }
 
 }  // namespace mbk::identify

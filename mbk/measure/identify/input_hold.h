@@ -13,7 +13,7 @@ namespace mbk::identify {
 /// - it takes no more than eight values, and jumps as large among them.
 /// A staircase of one and the same small step is a coarse sensor, not a held input. What a white sequence does that
 /// changes its value at every sample cannot be seen in it: it is taken for straight lines.
-/// @returns zero only if it holds in all experiments
+/// @returns zero only if it holds in all experiments; one whose input never changes says nothing
 [[nodiscard]] InputHold input_hold(const std::vector<SignalPair>& experiments);
 
 }  // namespace mbk::identify

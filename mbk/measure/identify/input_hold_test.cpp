@@ -76,6 +76,10 @@ TEST(InputHold, IsZeroOnlyIfEachExperimentIsHeld) {
   smooth.input = sine(100.0);
   EXPECT_EQ(input_hold({held, held}), InputHold::zero);
   EXPECT_EQ(input_hold({held, smooth}), InputHold::first);
+  SignalPair still;
+  still.input = Vector::Ones(100);
+  EXPECT_EQ(input_hold({held, still}), InputHold::zero);
+  EXPECT_EQ(input_hold({still}), InputHold::first);
   EXPECT_EQ(input_hold({}), InputHold::first);
 }
 

@@ -43,8 +43,8 @@ struct ContinuousFit {
 /// Simplified refined instrumental variables for continuous-time models (Young & Jakeman 1980; Garnier & Young 2008):
 ///   y = B(s)/A(s) u + C(s)/A(s) δ + c + e,
 /// fitted to sampled signals without any difference quotient. The signals and the model's own noise-free output x̂ are
-/// filtered by sᵏ/A(s) exactly for the hold of the experiment (dsp::DerivativeFilter; y and x̂ run in straight lines); X
-/// = [−y_f, u_f], Z = [−x̂_f, u_f] and
+/// filtered by sᵏ/A(s) exactly for the hold of the experiment (dsp::DerivativeFilter; y and x̂ run in straight lines);
+/// X = [−y_f, u_f], Z = [−x̂_f, u_f] and
 ///   θ ← θ + (ZᵀX)⁻¹ Zᵀ(y − x̂),
 /// with A of the last pass, whose roots are reflected into the left half plane, until no coefficient changes by more
 /// than the tolerance. The fixed point is a stationary point of Σe² (output error). C and c, an initial state and an

@@ -102,7 +102,11 @@ Hertz top_of_response(const SignalPair& pair) {
   const auto spectra = dsp::cross_spectra({signals}, rate, dsp::segment_length(rate, kResolution, longest));
   if (!spectra) return Hertz(0.0);
   const Vector coherence = dsp::multiple_coherence(*spectra, 1).col(0);
-  const double significant = dsp::significant_coherence(spectra->independent_segments, 1);
+  // (1 − c)^(n − 1) = 5 % at one line; of all lines without a relation none is to be above c with 95 %.
+  constexpr double kLevel = 0.05;
+  const double lines = std::log(kLevel / static_cast<double>(coherence.size())) / std::log(kLevel);
+  const double of_one = dsp::significant_coherence(spectra->independent_segments, 1);
+  const double significant = 1.0 - std::pow(1.0 - of_one, lines);
   dsp::Spectrum response{spectra->frequency, Vector::Zero(spectra->frequency.size())};
   for (Index k = 0; k < coherence.size(); ++k) {
     const double power = spectra->density[static_cast<std::size_t>(k)](1, 1).real();
