@@ -35,6 +35,7 @@ struct TfArguments {
   ReportArguments report;
   std::optional<double> resample_hz;
   TransferFunctionMethod method = TransferFunctionMethod::srivc;
+  std::optional<InputHold> hold;
   std::optional<AdmittanceOutput> invert;
   double hac_lag_s = 1.0;
   unsigned threads = 0;
@@ -141,6 +142,7 @@ Result<measurement::TransferFunctionMeasurement> options_of(const TfArguments& a
     }
   }
   fit.max_delay = a.max_delay_s;
+  fit.hold = a.hold;
   fit.max_noise_order = a.noise_order;
   fit.hac_lag_s = a.hac_lag_s;
   fit.free_start = !a.from_rest;
@@ -341,6 +343,10 @@ Action add_tf(CLI::App& app, const std::string& typed) {
              "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
              "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
              "bj: Box-Jenkins, with a model of the noise")
+      ->group(model);
+  add_choice_or_auto(*command, "--hold", arguments->hold,
+                     "the input between its samples, for continuous time: zero keeps each value, first moves in "
+                     "straight lines; auto sees it in the input's steps (auto)")
       ->group(model);
   command->add_option("--delay", arguments->delay, "seconds by which the effect lags; auto finds it (0)")
       ->type_name("S|auto")

@@ -15,17 +15,17 @@ STEP = 0.01
 
 
 def oscillator(noise=0.02, seed=1, samples=3000):
-    """Rows time, u, y: u is held, and between its jumps the answer is that of the differential equation."""
+    """Rows time, u, y: u is held, and the answer is that of the differential equation."""
     chance = random.Random(seed)
     y = v = u = 0.0
     rows = []
-    fine = 20
+    ringing = W * math.sqrt(1 - ZETA**2)
+    decay, sine, cosine = math.exp(-ZETA * W * STEP), math.sin(ringing * STEP) / ringing, math.cos(ringing * STEP)
     for i in range(samples):
         last, u = u, (chance.choice((-1.0, 1.0)) if i % 12 == 0 else u)
-        for k in range(fine if i else 0):  # a straight line from the last u to this one
-            at = last + (u - last) * (k + 0.5) / fine
-            v += STEP / fine * (GAIN * W * W * at - 2 * ZETA * W * v - W * W * y)
-            y += STEP / fine * v
+        off = y - GAIN * last  # it rings about where the last u would have held it
+        y = GAIN * last + decay * (off * cosine + (v + ZETA * W * off) * sine)
+        v = decay * (v * cosine - (ZETA * W * v + W * W * off) * sine)
         rows.append((i * STEP, u, y + noise * chance.gauss(0, 1)))
     return rows
 
@@ -49,6 +49,38 @@ class TransferFunction(Case):
         self.assertEqual(found["denominator"][0], 1)
         by_number = self.fine("tf", file, "--input", "2", "--output", "3", "--poles", "2", "--zeros", "0", "--json")
         self.assertEqual(by_number.json["poles"], found["poles"])
+
+    def test_an_input_that_is_held_between_samples_is_seen_and_said(self):
+        file = self.csv(oscillator(0.01))
+        signals = ("--input", "force", "--output", "motion", "--poles", "2", "--zeros", "0")
+        found = self.fine("tf", file, *signals, "--json").json
+        self.assertEqual((found["hold"], found["hold_found"]), ("zero", True))
+        told = self.fine("tf", file, *signals, "--hold", "zero", "--json").json
+        self.assertEqual((told["hold"], told["hold_found"], told["poles"]), ("zero", False, found["poles"]))
+        self.assertIn("held between samples (zero-order hold), as its steps show", self.fine("tf", file, *signals).out)
+
+        def off(document):
+            truth = {"a0": W * W, "a1": 2 * ZETA * W, "b0": GAIN * W * W}
+            return max(abs(one["value"] - truth[one["name"]]) / one["standard_error"]
+                       for one in document["parameters"])
+
+        self.assertLess(off(found), 4)
+        lines = self.fine("tf", file, *signals, "--hold", "first", "--json").json
+        self.assertEqual(lines["hold"], "first")
+        self.assertGreater(off(lines), 10)  # half a sample of delay goes into its coefficients
+        self.refused(WRONG_USAGE, "tf", file, *signals, "--method", "oe", "--hold", "zero", says="--hold")
+        self.refused(WRONG_USAGE, "tf", file, *signals, "--sample-rate", "50", "--hold", "zero", says="not held")
+        oe = self.fine("tf", file, *signals[:-1], "2", "--method", "oe", "--json").json
+        self.assertNotIn("hold", oe)
+
+    def test_a_delay_that_is_found_has_an_interval(self):
+        rows = oscillator()
+        file = self.csv([(time, u, y) for (time, _, y), (_, u, _) in zip(rows, rows[2:])])  # u is known 2 samples early
+        signals = ("--input", "force", "--output", "motion", "--poles", "2", "--zeros", "0", "--delay", "auto")
+        found = self.fine("tf", file, *signals, "--json").json
+        self.assertLess(abs(found["delay_s"] - 2 * STEP), 4 * found["delay_standard_error_s"])
+        self.assertLess(found["delay_standard_error_s"], 0.1 * STEP)
+        self.assertIn("its uncertainty is in the intervals", self.fine("tf", file, *signals).out)
 
     def test_text_says_what_was_found(self):
         ran = self.fine("tf", self.csv(oscillator()), "--input", "force", "--output", "motion", "--orders", "1:3")

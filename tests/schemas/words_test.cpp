@@ -49,6 +49,7 @@ TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
   expect_words<InstrumentMotion>("robot", "/properties/instruments");
   expect_words<SensorWarningCode>("sensor", "/definitions/SensorWarning/properties/code");
   expect_words<TransferFunctionMethod>("tf", "/properties/method");
+  expect_words<InputHold>("tf", "/properties/hold");
   expect_words<AdmittanceOutput>("tf", "/definitions/InvertedAdmittance/properties/admittance_to");
   expect_words<StabilityVerdict>("teleop", "/definitions/Stability/properties/verdict");
   expect_words<StabilityCondition>("teleop", "/definitions/Stability/properties/conditions/items/properties/name");

@@ -1,11 +1,33 @@
 #include "mbk/base/dsp/derivative_filter.h"
 
+#include <utility>
+
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::dsp {
 
-HeldStep held_step(const Vector& denominator, double step) {
+namespace {
+
+/// Φ, and what an input of 1 adds over `step`.
+std::pair<Matrix, Vector> constant_step(const Vector& denominator, double step) {
   const Index n = denominator.size();
+  Matrix F = Matrix::Zero(n + 1, n + 1);
+  F.diagonal(1).setOnes();
+  F.row(n - 1).head(n) = -denominator.transpose();
+  const Matrix E = numeric::matrix_exponential(step * F);
+  return {E.topLeftCorner(n, n), E.col(n).head(n)};
+}
+
+}  // namespace
+
+HeldStep held_step(const Vector& denominator, double step, std::optional<double> held) {
+  const Index n = denominator.size();
+  if (held) {
+    const auto [before, from_last] = constant_step(denominator, *held * step);
+    if (*held == 1.0) return {before, from_last, Vector::Zero(n)};
+    const auto [after, from_next] = constant_step(denominator, (1.0 - *held) * step);
+    return {after * before, after * from_last, from_next};
+  }
   Matrix F = Matrix::Zero(n + 2, n + 2);
   F.diagonal(1).head(n - 1).setOnes();
   F.row(n - 1).head(n) = -denominator.transpose();
@@ -16,8 +38,8 @@ HeldStep held_step(const Vector& denominator, double step) {
   return {E.topLeftCorner(n, n), E.col(n).head(n) - from_next, from_next};
 }
 
-DerivativeFilter::DerivativeFilter(const Vector& denominator)
-    : a_(denominator), x_(Vector::Zero(denominator.size())), n_(denominator.size()) {}
+DerivativeFilter::DerivativeFilter(const Vector& denominator, std::optional<double> held)
+    : a_(denominator), x_(Vector::Zero(denominator.size())), held_share_(held), n_(denominator.size()) {}
 
 void DerivativeFilter::set_state(const Vector& state, double input) {
   x_ = state;
@@ -27,7 +49,7 @@ void DerivativeFilter::set_state(const Vector& state, double input) {
 void DerivativeFilter::set_step(double step) {
   if (step == step_) return;
   step_ = step;
-  held_ = held_step(a_, step);
+  held_ = held_step(a_, step, held_share_);
 }
 
 template <int N>

@@ -7,8 +7,8 @@
 namespace mbk::dsp {
 namespace {
 
-/// s² + 2·0.3 s + 1 by small Runge–Kutta steps, between samples on a straight line: the slow plain twin.
-Matrix integrated(const Vector& a, const Vector& time, const Vector& u) {
+/// By small Runge–Kutta steps, between samples on a straight line or held for that share of them: the slow plain twin.
+Matrix integrated(const Vector& a, const Vector& time, const Vector& u, std::optional<double> held = {}) {
   const Index n = a.size();
   Matrix states(n, u.size());
   Vector x = Vector::Zero(n);
@@ -23,7 +23,10 @@ Matrix integrated(const Vector& a, const Vector& time, const Vector& u) {
   for (Index i = 1; i < u.size(); ++i) {
     const double h = (time[i] - time[i - 1]) / kSteps;
     for (int k = 0; k < kSteps; ++k) {
-      const auto input = [&](double part) { return u[i - 1] + (u[i] - u[i - 1]) * (k + part) / kSteps; };
+      const auto input = [&](double part) {
+        if (held) return k + 0.5 < *held * kSteps ? u[i - 1] : u[i];
+        return u[i - 1] + (u[i] - u[i - 1]) * (k + part) / kSteps;
+      };
       const Vector k1 = rate(x, input(0.0)), k2 = rate(x + 0.5 * h * k1, input(0.5));
       const Vector k3 = rate(x + 0.5 * h * k2, input(0.5)), k4 = rate(x + h * k3, input(1.0));
       x += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
@@ -48,6 +51,23 @@ TEST(DerivativeFilter, IsTheDifferentialEquationBetweenStraightLines) {
     filter.begin(u[0]);
     for (Index i = 1; i < 60; ++i) filter.run(time[i] - time[i - 1], &u[i], 1, states.middleCols(i, 1));
     EXPECT_LT((states - expected).lpNorm<Eigen::Infinity>(), 1e-8) << n;
+  }
+}
+
+TEST(DerivativeFilter, IsTheDifferentialEquationOfAnInputThatIsHeld) {
+  const Vector time = Vector::LinSpaced(60, 0.0, 11.8),
+               u = (1.7 * time.array()).cos() + (time.array() > 6.0).cast<double>();
+  for (const double held : {1.0, 0.7, 0.25}) {  // each a whole number of the twin's steps
+    for (const Index n : {1, 2, 5}) {
+      const Vector a = Vector::LinSpaced(n, 1.5, 0.8 * static_cast<double>(n));
+      const Matrix expected = integrated(a, time, u, held);
+      DerivativeFilter filter(a, held);
+      Matrix states(n, 60);
+      states.col(0).setZero();
+      filter.begin(u[0]);
+      filter.run(0.2, &u[1], 59, states.rightCols(59));
+      EXPECT_LT((states - expected).lpNorm<Eigen::Infinity>(), 1e-8 * expected.lpNorm<Eigen::Infinity>()) << n << held;
+    }
   }
 }
 

@@ -303,15 +303,16 @@ Matrix free_at_starts(const Matrix& transition, const Vector& state, Index lengt
   return starts;
 }
 
-HeldStep cascaded(const HeldStep& filter, const Vector& weights, double through) {
-  const Index n = filter.transition.rows();
+HeldStep cascaded(const HeldStep& first, const HeldStep& second, const Vector& weights, double through) {
+  const Index n = first.transition.rows();
   HeldStep both{Matrix::Zero(2 * n, 2 * n), Vector(2 * n), Vector(2 * n)};
-  const Vector next_of_state = filter.transition.transpose() * weights;
-  both.transition.topLeftCorner(n, n) = both.transition.bottomRightCorner(n, n) = filter.transition;
+  const Vector next_of_state = first.transition.transpose() * weights;
+  both.transition.topLeftCorner(n, n) = first.transition;
+  both.transition.bottomRightCorner(n, n) = second.transition;
   both.transition.bottomLeftCorner(n, n) =
-      filter.from_last * weights.transpose() + filter.from_next * next_of_state.transpose();
-  both.from_last << filter.from_last, through * filter.from_last + weights.dot(filter.from_last) * filter.from_next;
-  both.from_next << filter.from_next, (weights.dot(filter.from_next) + through) * filter.from_next;
+      second.from_last * weights.transpose() + second.from_next * next_of_state.transpose();
+  both.from_last << first.from_last, through * second.from_last + weights.dot(first.from_last) * second.from_next;
+  both.from_next << first.from_next, (weights.dot(first.from_next) + through) * second.from_next;
   return both;
 }
 

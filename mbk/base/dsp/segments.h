@@ -44,9 +44,9 @@ class Segments {
 /// The same of the free motion from `state` at the first sample, for segments of `length` samples.
 [[nodiscard]] Matrix free_at_starts(const Matrix& transition, const Vector& state, Index length);
 
-/// Two of the same filter one behind the other: the second one's input is weightsᵀx + through·u of the first.
-/// States are those of the first, then of the second.
-[[nodiscard]] HeldStep cascaded(const HeldStep& filter, const Vector& weights, double through);
+/// Two filters one behind the other: the second one's input is weightsᵀx + through·u of the first.
+/// States are those of the first, then of the second, of which there are as many.
+[[nodiscard]] HeldStep cascaded(const HeldStep& first, const HeldStep& second, const Vector& weights, double through);
 
 /// Columns of a table whose rows are signals: row r begins at data + r·stride. Columns come in
 /// multiples of 16.

@@ -96,7 +96,8 @@ TEST(Segments, FindTheStatesOfAFilterBehindAFilter) {
   const Vector between = first.transpose() * weights + through * u;
   const Matrix second = one_after_the_other(a, kStep, between, Vector::Zero(n));
   const Segments signals({&u});
-  const Matrix starts = states_at_starts(cascaded(held_step(a, kStep), weights, through), signals, 0);
+  const HeldStep filter = held_step(a, kStep);
+  const Matrix starts = states_at_starts(cascaded(filter, filter, weights, through), signals, 0);
   for (Index l = 0; l < kSegments; ++l) {
     const Index begin = l * signals.length();
     ASSERT_LT(begin, u.size());

@@ -59,6 +59,16 @@ Vector stabilised(const Vector& c) {
   return from_roots(roots);
 }
 
+/// Roots near the unit circle are put to a damping ratio from where a search finds another way.
+Vector moved_inside(const Vector& f) {
+  constexpr double kNear = 0.999, kDamping = 0.1;
+  Eigen::VectorXcd roots = numeric::polynomial_roots(monic(f).reverse());
+  for (auto& root : roots) {
+    if (std::abs(root) > kNear) root *= std::exp(-kDamping * std::abs(std::log(root))) / std::abs(root);
+  }
+  return from_roots(roots);
+}
+
 /// x[t − lag], from rest.
 template <class Column>
 void put_shifted(const Vector& x, Index lag, double sign, Column&& to) {
@@ -66,12 +76,20 @@ void put_shifted(const Vector& x, Index lag, double sign, Column&& to) {
   to.tail(x.size() - lag) = sign * x.head(x.size() - lag);
 }
 
+/// The noise model's inverse, C/D.
+struct Whitening {
+  Vector C, D;
+  [[nodiscard]] Vector operator()(const Vector& x) const {
+    return C.size() + D.size() == 2 ? x : difference_equation(C, D, x);
+  }
+};
+
 /// Impulse responses of 1/F from the first samples on, and a constant: what an initial state and an offset can do.
-Matrix free_motion(const Vector& F, Index impulses, Index samples) {
+Matrix free_motion(const Vector& F, Index impulses, Index samples, const Whitening& whitened = {kOne, kOne}) {
   Matrix free(samples, impulses + 1);
-  const Vector response = difference_equation(kOne, F, Vector::Unit(samples, 0));
+  const Vector response = whitened(difference_equation(kOne, F, Vector::Unit(samples, 0)));
   for (Index j = 0; j < impulses; ++j) put_shifted(response, j, 1.0, free.col(j));
-  free.col(impulses).setOnes();
+  free.col(impulses) = whitened(Vector::Ones(samples));
   return free;
 }
 
@@ -136,12 +154,16 @@ struct Linear {
   }
 };
 
-/// The triangle that stands for all rows so far and these.
+/// The triangle that stands for all rows so far and these, of which a few at a time stay in the nearest cache.
 void add_rows(const Matrix& rows, Matrix& triangle) {
-  Matrix all(triangle.rows() + rows.rows(), rows.cols());
-  if (triangle.rows() > 0) all.topRows(triangle.rows()) = triangle;
-  all.bottomRows(rows.rows()) = rows;
-  triangle = numeric::householder_triangle(std::move(all));
+  const Index together = std::max<Index>(256, 4 * rows.cols());
+  for (Index begin = 0; begin < rows.rows(); begin += together) {
+    const Index count = std::min(together, rows.rows() - begin);
+    Matrix all(triangle.rows() + count, rows.cols());
+    if (triangle.rows() > 0) all.topRows(triangle.rows()) = triangle;
+    all.bottomRows(count) = rows.middleRows(begin, count);
+    triangle = numeric::householder_triangle(std::move(all));
+  }
 }
 
 class Fitter {
@@ -157,6 +179,10 @@ class Fitter {
     Model at;
     double squares = std::numeric_limits<double>::infinity();
   };
+  struct Start {
+    std::string made_by;
+    Vector f;
+  };
   using Signals = std::vector<Vector>;
 
   [[nodiscard]] Local local(const Model& at, std::size_t experiment, std::optional<Parts> slopes) const;
@@ -164,16 +190,22 @@ class Fitter {
   [[nodiscard]] double squares(const Model& at) const;
   [[nodiscard]] Model moved(Model at, Parts parts, const Vector& step) const;
   [[nodiscard]] Vector coefficients(const Model& at, Parts parts) const;
-  void descend(Search& search, Parts parts) const;
+  void descend(Search& search, Parts parts, int passes) const;
 
   [[nodiscard]] Vector regress(const Vector& filter, const Signals& outputs, const Signals* instruments, Index poles,
                                Index zeros) const;
   [[nodiscard]] Signals responses(const Vector& theta, Index poles) const;
   [[nodiscard]] Model with_best_numerator(const Vector& f) const;
-  [[nodiscard]] Search sharpened(std::string made_by, const Vector& f) const;
-  [[nodiscard]] std::vector<std::pair<std::string, Vector>> starts(const ContinuousFit& continuous,
-                                                                   const Vector& rich) const;
-  void model_noise(Model& at) const;
+  [[nodiscard]] Search sharpened(const Start& start, int passes) const;
+  [[nodiscard]] Search settled(const Start& start, const Vector& noise) const;
+  [[nodiscard]] Result<std::vector<Search>> settled(const std::vector<Start>& starts, const Vector& noise) const;
+  [[nodiscard]] Result<std::vector<Search>> with_noise(const std::vector<Start>& starts, std::vector<Search> white,
+                                                       const Vector& noise) const;
+  [[nodiscard]] std::vector<Start> starts(const ContinuousFit& continuous, const Vector& rich) const;
+  [[nodiscard]] std::vector<Model> noise_models(const Model& at) const;
+  void add_noise(Search& search) const;
+  [[nodiscard]] Result<void> add_noise(std::vector<Search>& searches) const;
+  [[nodiscard]] static bool is_better(const Search& a, const Search& b);
   void take_covariance(const Model& at, PredictionErrorFit& made) const;
   [[nodiscard]] double fit_of(const Model& at) const;
 
@@ -187,18 +219,14 @@ class Fitter {
 Local Fitter::local(const Model& at, std::size_t experiment, std::optional<Parts> slopes) const {
   const SignalPair& pair = experiments_[experiment];
   const Index total = pair.output.size();
-  const Vector F = monic(at.f), C = monic(at.c), D = monic(at.d);
-  const auto whitened = [&](const Vector& x) {
-    return at.c.size() + at.d.size() == 0 ? x : difference_equation(C, D, x);
-  };
+  const Vector F = monic(at.f), D = monic(at.d);
+  const Whitening whitened{monic(at.c), D};
   Vector response = difference_equation(at.b, F, pair.input);
   Local made;
   made.residual = pair.output - response;
-  const Matrix free = options_.free_start ? free_motion(F, n_, total) : Matrix(total, 0);
-  Matrix filtered = free;
-  for (auto column : filtered.colwise()) column = whitened(column);
-  const Projection projection(filtered);
-  if (free.cols() > 0) {
+  const Projection projection(options_.free_start ? free_motion(F, n_, total, whitened) : Matrix(total, 0));
+  if (options_.free_start) {
+    const Matrix free = free_motion(F, n_, total);
     const Vector motion = projection.coefficients(whitened(made.residual));
     response += free.leftCols(n_) * motion.head(n_);
     made.residual -= free * motion;
@@ -268,7 +296,7 @@ Vector Fitter::coefficients(const Model& at, Parts parts) const {
 
 /// Levenberg (1944) & Marquardt (1963), until a full step of Gauss & Newton would hardly move a coefficient, and then
 /// on to rounding.
-void Fitter::descend(Search& search, Parts parts) const {
+void Fitter::descend(Search& search, Parts parts, int passes) const {
   constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-9, kMaxDamping = 1e12, kLess = 0.1, kMore = 3.0;
   constexpr double kRounding = 1e-11;
   constexpr double kExact = 1e-22;  // of the output's squares: nothing is left but rounding
@@ -280,7 +308,7 @@ void Fitter::descend(Search& search, Parts parts) const {
   int refinements = 0;
   Linear now = linear(search.at, parts);
   search.squares = now.squares;
-  for (int pass = 0; pass < options_.max_iterations; ++pass, ++start.iterations) {
+  for (int pass = 0; pass < passes; ++pass, ++start.iterations) {
     const Vector full = now.step(0.0), theta = coefficients(search.at, parts);
     const double variance = now.squares / static_cast<double>(std::max<Index>(samples_ - theta.size(), 1));
     const Vector error = (variance * now.inverse().diagonal()).cwiseSqrt();
@@ -358,33 +386,86 @@ Model Fitter::with_best_numerator(const Vector& f) const {
   return moved(at, kNumerator, linear(at, kNumerator).step(0.0));
 }
 
-/// Steiglitz & McBride (1965): least squares behind 1/F of the last pass; the best of the passes is kept.
-Fitter::Search Fitter::sharpened(std::string made_by, const Vector& f) const {
-  constexpr int kPasses = 12;
+/// Steiglitz & McBride (1965): least squares behind 1/F of the last pass, until that leaves no less; the best of the
+/// passes is kept.   @param passes 1: the start as it is, with its best numerator
+Fitter::Search Fitter::sharpened(const Start& start, int passes) const {
+  constexpr double kLess = 1e-4;
   Search search;
-  search.start.made_by = std::move(made_by);
+  search.start.made_by = start.made_by;
   double modulus = 0.0;
-  for (const auto& z : numeric::polynomial_roots(monic(f).reverse()))
+  for (const auto& z : numeric::polynomial_roots(monic(start.f).reverse()))
     modulus += std::log(std::abs(std::log(z)) / step_);
   search.start.pole = std::exp(modulus / static_cast<double>(n_));
-  Vector now = f;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  Vector now = start.f;
+  double last = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < passes; ++pass) {
     Model at = with_best_numerator(now);
     const double sum = at.b.allFinite() ? squares(at) : std::numeric_limits<double>::infinity();
     if (sum < search.squares || pass == 0) {
       search.at = std::move(at);
       search.squares = sum;
     }
+    if (pass + 1 == passes || std::abs(last - sum) <= kLess * sum) break;
+    last = sum;
     const Vector theta = regress(now, outputs_, nullptr, n_, options_.zeros);
     now = stabilised(theta.head(n_));
   }
   return search;
 }
 
-std::vector<std::pair<std::string, Vector>> Fitter::starts(const ContinuousFit& continuous, const Vector& rich) const {
-  std::vector<std::pair<std::string, Vector>> all;
+bool Fitter::is_better(const Search& a, const Search& b) {
+  return a.start.converged != b.start.converged ? a.start.converged : a.squares < b.squares;
+}
+
+/// The dynamics behind a noise model that is held, from a start sharpened; where that leads out of the stable models,
+/// from the start as it is, as the sharpened one may stand in the valley of another minimum, or of none; and then from
+/// where the first search was held up, with its poles moved away from the unit circle.
+Fitter::Search Fitter::settled(const Start& start, const Vector& noise) const {
+  constexpr int kSharpened = 12;
+  const auto descended = [&](Search search) {
+    if (std::isfinite(search.squares)) {
+      search.at.c = noise;
+      descend(search, kDynamics, options_.max_iterations);
+    }
+    return search;
+  };
+  Search first = descended(sharpened(start, kSharpened));
+  if (first.start.converged || !first.at.f.allFinite()) return first;
+  for (const Vector& f : {start.f, moved_inside(first.at.f)}) {
+    Search next = descended(sharpened({start.made_by, f}, 1));
+    next.start.pole = first.start.pole;
+    if (next.start.converged) return next;
+  }
+  return first;
+}
+
+Result<std::vector<Fitter::Search>> Fitter::settled(const std::vector<Start>& starts, const Vector& noise) const {
+  std::vector<Search> searches(starts.size());
+  const auto ran = numeric::parallel_for(static_cast<int>(starts.size()), options_.threads, [&](int i) -> Result<void> {
+    const auto k = static_cast<std::size_t>(i);
+    searches[k] = settled(starts[k], noise);
+    return {};
+  });
+  if (!ran) return tl::unexpected(ran.error());
+  return searches;
+}
+
+/// From the same starts behind the noise that is held, and from the best of those without a noise model.
+Result<std::vector<Fitter::Search>> Fitter::with_noise(const std::vector<Start>& starts, std::vector<Search> white,
+                                                       const Vector& noise) const {
+  auto searches = settled(starts, noise);
+  if (!searches) return searches;
+  Search& best = *std::ranges::min_element(white, is_better);
+  best.start.made_by = "output error";
+  searches->push_back(std::move(best));
+  if (auto ok = add_noise(*searches); !ok) return tl::unexpected(ok.error());
+  return searches;
+}
+
+std::vector<Fitter::Start> Fitter::starts(const ContinuousFit& continuous, const Vector& rich) const {
+  std::vector<Start> all;
   const auto add = [&](std::string made_by, const Vector& f) {
-    if (f.allFinite()) all.emplace_back(std::move(made_by), stabilised(f));
+    if (f.allFinite()) all.push_back({std::move(made_by), stabilised(f)});
   };
   if (continuous.a.size() == n_ && continuous.a.allFinite()) {
     Vector A(n_ + 1);
@@ -408,42 +489,97 @@ std::vector<std::pair<std::string, Vector>> Fitter::starts(const ContinuousFit& 
   return all;
 }
 
-/// As many c as d, by the BIC of what the dynamics leave. The first values are those of Hannan & Rissanen (1982): least
-/// squares on the innovations of a long autoregression.
-void Fitter::model_noise(Model& at) const {
-  at.c = at.d = Vector();
-  Signals left;
-  for (std::size_t k = 0; k < experiments_.size(); ++k) left.push_back(local(at, k, std::nullopt).residual);
-  const auto count = static_cast<double>(samples_);
+/// The dynamics with no c and d, with 1, 2 … of each, and with c alone, the least BIC first. The first values are those
+/// of Hannan & Rissanen (1982), least squares on the innovations of a long autoregression, and a few steps from them
+/// tell the orders apart.
+std::vector<Model> Fitter::noise_models(const Model& at) const {
   constexpr Index kLong = 50;
+  constexpr int kSteps = 3, kPatience = 2;
+  const auto count = static_cast<double>(samples_);
+  const Model white{at.f, at.b, {}, {}};
+  Signals left;
+  for (std::size_t k = 0; k < experiments_.size(); ++k) left.push_back(local(white, k, std::nullopt).residual);
+  std::vector<std::pair<double, Model>> all;
+  const auto add = [&](Model model, double sum) {
+    const auto coefficients = static_cast<double>(model.c.size() + model.d.size());
+    all.emplace_back(count * std::log(sum) + coefficients * std::log(count), std::move(model));
+    return all.back().first;
+  };
+  double least = add(white, squares(white));
   const Vector longest = autoregression(left, std::min(kLong, samples_ / 20));
-  double least = count * std::log(squares(at));
-  Model best = at;
-  constexpr int kPatience = 2;
-  for (Index order = 1, rises = 0; order <= options_.max_noise_order && rises < kPatience; ++order, ++rises) {
-    Matrix triangle;
-    for (const Vector& v : left) {
-      const Vector e = difference_equation(longest, kOne, v);
-      Matrix columns(v.size(), 2 * order + 1);
-      for (Index j = 0; j < order; ++j) {
-        put_shifted(v, j + 1, -1.0, columns.col(j));
-        put_shifted(e, j + 1, 1.0, columns.col(order + j));
-      }
-      columns.col(2 * order) = v;
-      add_rows(columns, triangle);
+  const Index most = options_.max_noise_order;
+  Matrix triangle;
+  for (const Vector& v : left) {
+    const Vector e = difference_equation(longest, kOne, v);
+    Matrix columns(v.size(), 2 * most + 1);
+    for (Index j = 0; j < most; ++j) {
+      put_shifted(v, j + 1, -1.0, columns.col(2 * j));
+      put_shifted(e, j + 1, 1.0, columns.col(2 * j + 1));
     }
+    columns.col(2 * most) = v;
+    add_rows(columns, triangle);
+  }
+  for (Index order = 1, rises = 0; order <= most && rises < kPatience; ++order, ++rises) {
     const Vector theta =
-        Linear{triangle.topLeftCorner(2 * order, 2 * order), -triangle.col(2 * order).head(2 * order)}.step(0.0);
+        Linear{triangle.topLeftCorner(2 * order, 2 * order), -triangle.col(2 * most).head(2 * order)}.step(0.0);
     Search search;
-    search.at = {at.f, at.b, stabilised(theta.head(order)), stabilised(theta.tail(order))};
-    descend(search, kNoise);
-    const double bic = count * std::log(search.squares) + 2.0 * static_cast<double>(order) * std::log(count);
-    if (!(bic < least)) continue;
-    least = bic;
-    best = search.at;
+    search.at = {at.f, at.b, stabilised(theta(Eigen::seqN(0, order, 2))), stabilised(theta(Eigen::seqN(1, order, 2)))};
+    descend(search, kNoise, kSteps);
+    if (add(search.at, search.squares) >= least) continue;
+    least = all.back().first;
     rises = -1;
   }
-  at = std::move(best);
+  const Vector c = autoregression(left, most);
+  if (c.size() > 1) {
+    Model autoregressive = white;
+    autoregressive.c = c.tail(c.size() - 1);
+    add(autoregressive, squares(autoregressive));
+  }
+  std::ranges::stable_sort(all, {}, &std::pair<double, Model>::first);
+  std::vector<Model> models;
+  for (auto& [bic, model] : all) models.push_back(std::move(model));
+  return models;
+}
+
+/// All coefficients at once, with the noise model of least BIC that settles inside the stable ones. One zero of D at
+/// z = 1, where the offset took all there was, is no model, and another order does without.
+void Fitter::add_noise(Search& search) const {
+  constexpr std::size_t kMost = 6;
+  Search best;
+  const std::vector<Model> models = noise_models(search.at);
+  for (std::size_t k = 0; k < std::min(kMost, models.size()) && !best.start.converged; ++k) {
+    Search one{search.start, models[k], search.squares};
+    descend(one, kAll, options_.max_iterations);
+    if (k == 0 || is_better(one, best)) best = std::move(one);
+  }
+  search = std::move(best);
+}
+
+/// Of searches that ended on the same dynamics one goes on, and the others share what it finds.
+Result<void> Fitter::add_noise(std::vector<Search>& searches) const {
+  constexpr double kSame = 1e-6;
+  const auto are_same = [](const Search& a, const Search& b) {
+    return a.start.converged == b.start.converged && std::abs(a.squares - b.squares) <= kSame * b.squares;
+  };
+  std::vector<std::size_t> leader(searches.size()), leaders;
+  for (std::size_t k = 0; k < searches.size(); ++k) {
+    const auto known = std::ranges::find_if(leaders, [&](std::size_t i) { return are_same(searches[k], searches[i]); });
+    leader[k] = known == leaders.end() ? k : *known;
+    if (leader[k] == k && std::isfinite(searches[k].squares)) leaders.push_back(k);
+  }
+  const auto ran =
+      numeric::parallel_for(static_cast<int>(leaders.size()), options_.threads, [&](int i) -> Result<void> {
+        add_noise(searches[leaders[static_cast<std::size_t>(i)]]);
+        return {};
+      });
+  for (std::size_t k = 0; k < searches.size(); ++k) {
+    if (leader[k] == k) continue;
+    const SearchStart own = searches[k].start;
+    searches[k] = searches[leader[k]];
+    searches[k].start.made_by = own.made_by;
+    searches[k].start.pole = own.pole;
+  }
+  return ran;
 }
 
 double Fitter::fit_of(const Model& at) const {
@@ -499,32 +635,13 @@ Result<PredictionErrorFit> Fitter::run() {
   const Index high = std::clamp(samples_ / kSamplesEach / std::ssize(experiments_), n_, kRich);
   Vector rich = regress(Vector(), outputs_, nullptr, high, high);
   if (!rich.allFinite()) rich.setZero();
-  const auto first = starts(*continuous, rich);
-  std::vector<Search> searches(first.size());
-  const auto each = [&](auto&& work) {
-    return numeric::parallel_for(static_cast<int>(searches.size()), options_.threads, [&](int i) -> Result<void> {
-      work(static_cast<std::size_t>(i));
-      return {};
-    });
-  };
-  auto ran = each([&](std::size_t k) {
-    searches[k] = sharpened(first[k].first, first[k].second);
-    if (!std::isfinite(searches[k].squares)) return;
-    if (options_.noise_model) searches[k].at.c = stabilised(rich.head(high));
-    descend(searches[k], kDynamics);
-  });
-  if (ran && options_.noise_model) {
-    ran = each([&](std::size_t k) {
-      if (!std::isfinite(searches[k].squares)) return;
-      model_noise(searches[k].at);
-      descend(searches[k], kAll);
-    });
-  }
-  if (!ran) return tl::unexpected(ran.error());
+  const std::vector<Start> first = starts(*continuous, rich);
+  auto found = settled(first, Vector());
+  if (found && options_.noise_model) found = with_noise(first, std::move(*found), stabilised(rich.head(high)));
+  if (!found) return tl::unexpected(found.error());
+  std::vector<Search>& searches = *found;
   for (Search& one : searches) one.start.fit = fit_of(one.at);
-  const Search& best = *std::ranges::min_element(searches, [](const Search& a, const Search& b) {
-    return a.start.converged != b.start.converged ? a.start.converged : a.squares < b.squares;
-  });
+  const Search& best = *std::ranges::min_element(searches, is_better);
   PredictionErrorFit made;
   made.samples = samples_;
   for (const Search& one : searches) made.starts.push_back(one.start);

@@ -39,13 +39,15 @@ struct PredictionErrorFit {
 /// with C = D = 1 for output error. Levenberg–Marquardt on exact derivatives, which are signals through filters:
 ///   ∂ε/∂b_k = −C/(D F) u[t − k],   ∂ε/∂f_k = C/(D F) x̂[t − k],   ∂ε/∂c_k = v[t − k]/D,   ∂ε/∂d_k = −ε[t − k]/D
 /// with v = y − x̂. The initial state P and the offset c of each experiment are linear, and projected out (Golub &
-/// Pereyra 1973). A step out of the stable models is not taken; a search that is held up there has not settled.
+/// Pereyra 1973). A step out of the stable models is not taken; a search that is held up there has not settled, and its
+/// start is tried again unsharpened, and then with the poles it was held up with moved away from the unit circle.
 ///   Starts, as one alone can end in a local minimum: the continuous-time model of fit_continuous, z = e^{pT}; an ARX
 /// model of high order reduced; an ARX model; instrumental variables from it; real poles over the band, and those
 /// given. Each is sharpened by the iteration of Steiglitz & McBride (1965), and the numerator is always the best for
 /// its poles.
-///   Box–Jenkins: the dynamics first behind the noise model of the high-order ARX model, which is held; then as many c
-/// as d as the BIC of what is left says, then all at once.
+///   Box–Jenkins: the dynamics first behind the noise model of the high-order ARX model, which is held, and those of
+/// output error; then as many c as d, or c alone, as the BIC of what is left says, then all at once; a noise model that
+/// does not settle gives way to the one of next BIC.
 /// @param experiments  each on the same even clock, with its delay taken out of the input
 /// @fails  usage: orders out of range; no experiment; an uneven clock; clocks that differ.
 ///         data: too few samples; a value is not finite; input or output is constant.

@@ -34,8 +34,9 @@ double step_of(const SignalPair& pair, Index i) {
 /// The states of a filter over samples [begin, begin + count) of an experiment.
 class Pass {
  public:
-  Pass(const Vector& a, const SignalPair& pair, double scale, const Vector& start, double sign = 1.0)
-      : filter_(a), pair_(pair), scale_(scale), sign_(sign) {
+  Pass(const Vector& a, const SignalPair& pair, double scale, const Vector& start, double sign = 1.0,
+       std::optional<double> held = {})
+      : filter_(a, held), pair_(pair), scale_(scale), sign_(sign) {
     filter_.set_state(start);
   }
 
@@ -100,27 +101,30 @@ struct Iterate {
   [[nodiscard]] Vector physical() const { return theta().cwiseProduct(to_seconds()); }
 };
 
-/// Where the rows of a block stand: [those of Z that X has not | u | e | free motion | −y].
+/// Where the rows of a block stand: [those of Z that X has not | u | ∂x̂/∂τ | e | free motion | −y].
 struct Layout {
   Index n, q;                         ///< poles; coefficients of the numerator
   bool instruments, reference, free;  ///< present
   Index input = 0;                    ///< which signal is taken for u: kInput or kCleanInput
-  [[nodiscard]] Index z_size() const { return !instruments ? 0 : (reference ? n + q : n); }
+  bool delay = false;                 ///< τ is a parameter, too, behind a and b; q ≤ n
+  [[nodiscard]] Index of_input() const { return delay ? q + 1 : q; }
+  [[nodiscard]] Index parameters() const { return n + of_input(); }
+  [[nodiscard]] Index z_size() const { return !instruments ? 0 : (reference ? parameters() : n); }
   [[nodiscard]] Index u() const { return z_size(); }
-  [[nodiscard]] Index e() const { return u() + q; }
+  [[nodiscard]] Index e() const { return u() + of_input(); }
   [[nodiscard]] Index free_at() const { return e() + 1; }
   [[nodiscard]] Index free_size() const { return free ? n + 1 : 0; }
   [[nodiscard]] Index y() const { return free_at() + free_size(); }
   [[nodiscard]] Index rows() const { return y() + n; }
-  /// Rows that are X, in the order of [a, b].
+  /// Rows that are X, in the order of [a, b, τ].
   [[nodiscard]] std::vector<Index> x_rows() const {
     std::vector<Index> rows_of;
-    for (Index k = 0; k < n + q; ++k) rows_of.push_back(k < n ? y() + k : u() + k - n);
+    for (Index k = 0; k < parameters(); ++k) rows_of.push_back(k < n ? y() + k : u() + k - n);
     return rows_of;
   }
   [[nodiscard]] std::vector<Index> z_rows() const {
     std::vector<Index> rows_of = x_rows();
-    for (Index k = 0; instruments && k < (reference ? n + q : n); ++k) rows_of[static_cast<std::size_t>(k)] = k;
+    for (Index k = 0; k < z_size(); ++k) rows_of[static_cast<std::size_t>(k)] = k;
     return rows_of;
   }
 };
@@ -307,6 +311,12 @@ class Fitter {
   [[nodiscard]] Layout layout(bool instruments) const {
     return {n_, q_, instruments, instruments && options_.reference_instruments, options_.free_start};
   }
+  /// What the covariance is made of: instruments, and τ where it was found from the same data.
+  [[nodiscard]] Layout layout_of_covariance() const {
+    Layout all = layout(true);
+    all.delay = options_.delay_found && q_ <= n_;
+    return all;
+  }
   [[nodiscard]] Layout layout_of_clean_input(bool instruments) const {
     return {n_, q_, instruments, false, options_.free_start, kCleanInput};
   }
@@ -325,11 +335,12 @@ void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Ind
                   const Layout& layout, const Vector* free_weights, dsp::Rows now) const {
   static const std::vector<dsp::Abreast> kNone(kSteps);
   const double* const none = kNone.data()->values.data();
-  /// sᵏ/A, k = 0 … q − 1, of which the n-th is the signal itself less the others. Where q is less than n, rows that
-  /// follow are written, too, and only then get what belongs there.
+  /// sᵏ/A, k = 0 … q − 1, of which the n-th is the signal itself less the others, and −sB/A behind them. Where q is
+  /// less than n, rows that follow are written, too, and only then get what belongs there.
   const auto take_input = [&](Filter& filter, const double* signal, dsp::Rows to) {
     filter.run(signal, count, to);
-    if (q_ > n_) dsp::combine(-at.a, to, signal, columns, to.row(n_));
+    if (layout.of_input() > n_) dsp::combine(-at.a, to, signal, columns, to.row(n_));
+    if (layout.delay) dsp::combine(-at.b, rows_from(to, 1), none, columns, to.row(q_));
   };
   const dsp::Rows u = rows_from(now, layout.u()), free = rows_from(now, layout.free_at());
   if (filters.clean_u) take_input(*filters.clean_u, from.clean_input, rows_from(now, n_));
@@ -355,28 +366,29 @@ void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const
   const Vector* const c = layout.reference ? nullptr : free_weights(at, layout, experiment);
   const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kSegments;
   const dsp::HeldStep filter = dsp::held_step(at.a, at.scale * *pair.step);
+  const dsp::HeldStep of_input = pair.held ? dsp::held_step(at.a, at.scale * *pair.step, pair.held) : filter;
   const dsp::HeldStep negative{filter.transition, -filter.from_last, -filter.from_next};
   const auto from_rest = [&](const dsp::HeldStep& step, Index signal) {
     return dsp::SegmentFilter(step, dsp::states_at_starts(step, signals, signal));
   };
   const Index source = layout.reference ? kCleanInput : layout.input;  // of x̂
   // States at the starts: of the source and, below them, what x̂ has of it; the same of the free motion.
-  dsp::HeldStep to_x = filter, free_to_x = filter;
+  dsp::HeldStep to_x = of_input, free_to_x = filter;
   if (layout.instruments) {
     const double through = q_ > n_ ? at.b[n_] : 0.0;
     Vector weights = -through * at.a;
     weights.head(std::min(q_, n_)) += at.b.head(std::min(q_, n_));
-    to_x = dsp::cascaded(filter, weights, through);
-    if (c != nullptr) free_to_x = dsp::cascaded(filter, c->head(n_), 0.0);
+    to_x = dsp::cascaded(of_input, filter, weights, through);
+    if (c != nullptr) free_to_x = dsp::cascaded(filter, filter, c->head(n_), 0.0);
   }
   const Matrix of_source = dsp::states_at_starts(to_x, signals, source);
   Matrix of_free;
   if (layout.free) {
     of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
   }
-  const dsp::SegmentFilter source_filter(filter, of_source.topRows(n_));
+  const dsp::SegmentFilter source_filter(of_input, of_source.topRows(n_));
   Filters<dsp::SegmentFilter> filters{
-      from_rest(negative, kOutput), layout.reference ? from_rest(filter, kInput) : source_filter, {}, {}, {}};
+      from_rest(negative, kOutput), layout.reference ? from_rest(of_input, kInput) : source_filter, {}, {}, {}};
   if (layout.reference) filters.clean_u = source_filter;
   if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
   if (layout.instruments) {
@@ -412,7 +424,8 @@ template <class Use>
 void Fitter::blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const {
   const SignalPair& pair = experiments_[experiment];
   const Vector rest = Vector::Zero(n_);
-  Filters<Pass> filters{Pass(at.a, pair, at.scale, rest, -1.0), Pass(at.a, pair, at.scale, rest), {}, {}, {}};
+  Filters<Pass> filters{
+      Pass(at.a, pair, at.scale, rest, -1.0), Pass(at.a, pair, at.scale, rest, 1.0, pair.held), {}, {}, {}};
   if (layout.free) filters.free.emplace(at.a, pair, at.scale, Vector::Unit(n_, n_ - 1));
   if (layout.instruments) filters.x.emplace(at.a, pair, at.scale, rest, -1.0);
   Table table(layout.rows(), kBlock), signals(2, kBlock);
@@ -442,7 +455,7 @@ void Fitter::blocks(std::size_t experiment, const Iterate& at, const Layout& lay
 }
 
 Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, std::vector<Vector>* residuals) const {
-  const Index p = n_ + q_, u = layout.u(), y = layout.y(), rows = layout.rows();
+  const Index p = layout.parameters(), u = layout.u(), y = layout.y(), rows = layout.rows();
   const Index own = layout.instruments ? 0 : y, own_size = layout.instruments ? layout.z_size() : n_;
   Sums all{Matrix::Zero(p, p), Matrix::Zero(p, p), Vector::Zero(p), 0.0, 0, {}};
   for (std::size_t k = 0; k < experiments_.size(); ++k) {
@@ -578,7 +591,7 @@ Fitter::Search Fitter::search(double pole) const {
     if (((after - before).array().abs() <= options_.tolerance * after.array().abs()).all()) break;
   }
   const bool white = found.noise.size() == 1;
-  found.last = sums(found.at, layout(true), found.noise, white ? &found.residuals : nullptr);
+  found.last = sums(found.at, layout_of_covariance(), found.noise, white ? &found.residuals : nullptr);
   found.variance = found.last.ee / static_cast<double>(std::max<Index>(found.last.samples - n_ - q_, 1));
   found.rank = found.variance;
   // With the loop's noise in u the least error is not the truth's.
@@ -650,9 +663,9 @@ std::vector<double> Fitter::start_poles() const {
 }
 
 void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
-  const Layout rows = layout(true);
+  const Layout rows = layout_of_covariance();
   const Sums& last = best.last;
-  const Index p = n_ + q_;
+  const Index p = rows.parameters();
   const Matrix bread = options_.reference_instruments ? numeric::inverse(last.M)
                                                       : numeric::PivotedCholesky(last.S).solve(Matrix::Identity(p, p));
   made.white_covariance = made.variance * bread * last.S * bread.transpose();
@@ -696,8 +709,16 @@ void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
   const Vector physical = best.at.to_seconds();
   made.a = best.at.a.cwiseProduct(physical.head(n_));
   made.b = best.at.b.cwiseProduct(physical.tail(q_));
-  made.covariance = physical.asDiagonal() * made.covariance * physical.asDiagonal();
-  made.white_covariance = physical.asDiagonal() * made.white_covariance * physical.asDiagonal();
+  if (rows.delay) {
+    const double scale = best.at.scale;
+    made.delay_variance = made.covariance(p - 1, p - 1) / (scale * scale);
+    made.delay_correction = solved(last)[p - 1] / scale;
+  }
+  const auto of_model = [&](const Matrix& all) -> Matrix {
+    return physical.asDiagonal() * all.topLeftCorner(n_ + q_, n_ + q_) * physical.asDiagonal();
+  };
+  made.covariance = of_model(made.covariance);
+  made.white_covariance = of_model(made.white_covariance);
 }
 
 Result<ContinuousFit> Fitter::run() {
@@ -760,7 +781,7 @@ Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& e
   const Index n = a.size(), total = experiment.time.size();
   Iterate at{1.0, a, b, {}};
   at.rescale();
-  Pass pass(at.a, experiment, at.scale, Vector::Zero(n));
+  Pass pass(at.a, experiment, at.scale, Vector::Zero(n), 1.0, experiment.held);
   Matrix states(n, kBlock);
   Vector response(total);
   for (Index begin = 0; begin < total; begin += kBlock) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mbk/base/core/result.h"
@@ -17,8 +18,9 @@ struct ContinuousFitOptions {
   double hac_lag_s = 0.0;              ///< reach of the residual's correlation in the covariance [s]; 0: white
   double tolerance = 1e-4;             ///< largest relative change of a coefficient at which the search has settled
   int max_iterations = 100;
-  bool refine = true;    ///< go on to rounding once it has settled
-  unsigned threads = 0;  ///< for the starts; 0: as many as there are cores
+  bool refine = true;        ///< go on to rounding once it has settled
+  bool delay_found = false;  ///< from the same data: it is one more parameter of the covariance; fewer zeros than poles
+  unsigned threads = 0;      ///< for the starts; 0: as many as there are cores
 };
 
 /// What a search found, from the best start that settled on a stable model, or from the best one where none did.
@@ -26,12 +28,14 @@ struct ContinuousFit {
   Vector a, b;             ///< a₀ … a_{n−1} and b₀ … b_m, physical time
   bool converged = false;  ///< settled, and the solution itself is stable
   bool stable = true;
-  Matrix covariance;              ///< of [a; b]
-  Matrix white_covariance;        ///< the same as if what is left were white
-  double variance = 0;            ///< of what is left (with a noise model: of its innovations)
-  double fit = 0;                 ///< R_T² = 1 − Σe²/Σ(y − ȳ)²
-  Vector noise;                   ///< 1, c₁ … of the noise model; [1] without one
-  std::vector<Vector> residuals;  ///< y − x̂ of each experiment
+  Matrix covariance;                     ///< of [a; b]
+  std::optional<double> delay_variance;  ///< [s²] where the delay is one of the parameters
+  double delay_correction = 0;           ///< by which one Gauss–Newton step would move that delay [s]
+  Matrix white_covariance;               ///< the same as if what is left were white
+  double variance = 0;                   ///< of what is left (with a noise model: of its innovations)
+  double fit = 0;                        ///< R_T² = 1 − Σe²/Σ(y − ȳ)²
+  Vector noise;                          ///< 1, c₁ … of the noise model; [1] without one
+  std::vector<Vector> residuals;         ///< y − x̂ of each experiment
   std::vector<SearchStart> starts;
   Index samples = 0;
 };
@@ -39,7 +43,8 @@ struct ContinuousFit {
 /// Simplified refined instrumental variables for continuous-time models (Young & Jakeman 1980; Garnier & Young 2008):
 ///   y = B(s)/A(s) u + C(s)/A(s) δ + c + e,
 /// fitted to sampled signals without any difference quotient. The signals and the model's own noise-free output x̂ are
-/// filtered by sᵏ/A(s) exactly for a first-order hold (dsp::DerivativeFilter); X = [−y_f, u_f], Z = [−x̂_f, u_f] and
+/// filtered by sᵏ/A(s) exactly for the hold of the experiment (dsp::DerivativeFilter; y and x̂ run in straight lines);
+/// X = [−y_f, u_f], Z = [−x̂_f, u_f] and
 ///   θ ← θ + (ZᵀX)⁻¹ Zᵀ(y − x̂),
 /// with A of the last pass, whose roots are reflected into the left half plane, until no coefficient changes by more
 /// than the tolerance. The fixed point is a stationary point of Σe² (output error). C and c, an initial state and an
@@ -55,8 +60,8 @@ struct ContinuousFit {
 [[nodiscard]] Result<ContinuousFit> fit_continuous(const std::vector<SignalPair>& experiments,
                                                    const ContinuousFitOptions& options);
 
-/// Response of a continuous-time model from rest to the experiment's input (without its delay), exactly for a
-/// first-order hold.   @param a a₀ … a_{n−1}    @param b b₀ … b_m    @returns as many values as there are samples
+/// Response of a continuous-time model from rest to the experiment's input (without its delay), exactly for its hold.
+/// @param a a₀ … a_{n−1}    @param b b₀ … b_m    @returns as many values as there are samples
 [[nodiscard]] Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& experiment);
 
 /// What the best initial state and offset leave of `residual`, and so does the simulation's error of a record that did

@@ -14,6 +14,8 @@
 #include "mbk/base/numeric/golden_section.h"
 #include "mbk/base/numeric/polynomial_roots.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/autoregression.h"
+#include "mbk/measure/identify/input_hold.h"
 #include "mbk/measure/identify/prediction_error.h"
 #include "mbk/measure/identify/srivc.h"
 
@@ -22,37 +24,61 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-/// The samples that count, with the input as it was `delay` before, by straight lines; before the record its first
-/// value.
-SignalPair delayed(const SignalPair& pair, double delay) {
+/// As the samples of an even clock are that many samples later; before the record its first value.
+Vector whole_samples_later(const Vector& signal, Index samples) {
+  const Index late = std::min(samples, signal.size());
+  Vector values(signal.size());
+  values.head(late).setConstant(signal[0]);
+  values.tail(signal.size() - late) = signal.head(signal.size() - late);
+  return values;
+}
+
+/// As it was `delay` before each of these times, by straight lines; before the record its first value.
+Vector along_straight_lines(const Vector& signal, const Vector& recorded, const Vector& times, double delay) {
+  Vector values(times.size());
+  Index left = 0;
+  constexpr double kRounding = 1e-9;  // of an interval
+  for (Index i = 0; i < times.size(); ++i) {
+    const double t = times[i] - delay;
+    while (left + 1 < recorded.size() - 1 && recorded[left + 1] <= t) ++left;
+    double weight = std::clamp((t - recorded[left]) / (recorded[left + 1] - recorded[left]), 0.0, 1.0);
+    if (weight < kRounding || weight > 1.0 - kRounding) weight = std::round(weight);
+    values[i] = (1.0 - weight) * signal[left] + weight * signal[left + 1];
+  }
+  return values;
+}
+
+/// The samples that count, with the input as it was `delay` before. One that is held jumps within the interval then:
+/// the sample before holds for the part of one by which the delay is more than whole samples.
+SignalPair delayed(const SignalPair& pair, double delay, InputHold hold) {
   const Index n = pair.samples();
   SignalPair shifted = pair;
   shifted.first = 0;
   shifted.time = pair.time.tail(n);
   shifted.output = pair.output.tail(n);
-  const auto moved = [&](const Vector& signal) {
+  const bool held = hold == InputHold::zero;
+  Index late = 0;
+  if (held) shifted.held = 1.0;
+  if (held && delay > 0.0) {
+    constexpr double kRounding = 1e-9;
+    const double samples = delay / *pair.step, part = samples - std::floor(samples + kRounding);
+    late = static_cast<Index>(std::ceil(samples - kRounding));
+    if (part > kRounding) shifted.held = part;
+  }
+  const auto moved = [&](const Vector& signal) -> Vector {
     if (signal.size() == 0) return signal;
-    if (delay == 0.0) return Vector(signal.tail(n));
-    Vector values(n);
-    Index left = 0;
-    constexpr double kRounding = 1e-9;  // of an interval
-    for (Index i = 0; i < n; ++i) {
-      const double t = shifted.time[i] - delay;
-      while (left + 1 < pair.time.size() - 1 && pair.time[left + 1] <= t) ++left;
-      double weight = std::clamp((t - pair.time[left]) / (pair.time[left + 1] - pair.time[left]), 0.0, 1.0);
-      if (weight < kRounding || weight > 1.0 - kRounding) weight = std::round(weight);
-      values[i] = (1.0 - weight) * signal[left] + weight * signal[left + 1];
-    }
-    return values;
+    if (delay == 0.0) return signal.tail(n);
+    if (held) return whole_samples_later(signal, late).tail(n);
+    return along_straight_lines(signal, pair.time, shifted.time, delay);
   };
   shifted.input = moved(pair.input);
   shifted.reference = moved(pair.reference);
   return shifted;
 }
 
-std::vector<SignalPair> delayed(const std::vector<SignalPair>& pairs, double delay) {
+std::vector<SignalPair> delayed(const std::vector<SignalPair>& pairs, double delay, InputHold hold) {
   std::vector<SignalPair> all;
-  for (const SignalPair& pair : pairs) all.push_back(delayed(pair, delay));
+  for (const SignalPair& pair : pairs) all.push_back(delayed(pair, delay, hold));
   return all;
 }
 
@@ -67,6 +93,8 @@ struct Fit {
   Vector denominator, numerator;  ///< as in TransferFunction, without the 1
   bool converged = false;
   Matrix covariance, white_covariance;  ///< of [denominator; numerator]
+  std::optional<double> delay_variance;
+  double delay_correction = 0;
   double variance = 0, fit = 0;
   Vector noise_denominator, noise_numerator;
   std::vector<Vector> residuals, innovations;
@@ -80,6 +108,8 @@ Fit fit_of(ContinuousFit&& made) {
           .converged = made.converged,
           .covariance = std::move(made.covariance),
           .white_covariance = std::move(made.white_covariance),
+          .delay_variance = made.delay_variance,
+          .delay_correction = made.delay_correction,
           .variance = made.variance,
           .fit = made.fit,
           .noise_denominator = std::move(made.noise),
@@ -115,7 +145,11 @@ class Identifier {
  public:
   Identifier(const std::vector<SignalPair>& experiments, const std::vector<SignalPair>& held_out,
              const TransferFunctionOptions& options)
-      : experiments_(experiments), held_out_(held_out), options_(options), delay_(options.delay) {}
+      : experiments_(experiments),
+        held_out_(held_out),
+        options_(options),
+        delay_(options.delay),
+        hold_(discrete() ? InputHold::first : options.hold.value_or(input_hold(experiments))) {}
 
   Result<TransferFunctionIdentification> run();
 
@@ -125,6 +159,7 @@ class Identifier {
   [[nodiscard]] PredictionErrorOptions discrete_options(Index poles, Index zeros) const;
   [[nodiscard]] Result<Fit> fit(Index poles, Index zeros, double delay) const;
   Result<Fit> choose_delay(Index poles, Index zeros);
+  Result<Fit> sharpened(Index poles, Index zeros, double delay);
   [[nodiscard]] OrderChoice criteria(const Fit& fit, Index poles, Index zeros) const;
   Result<Fit> choose_order();
   void describe(const Fit& fit);
@@ -132,6 +167,7 @@ class Identifier {
   void test(const Fit& fit);
   [[nodiscard]] Vector simulation_error(const SignalPair& pair) const;
   [[nodiscard]] Result<void> check_clock() const;
+  [[nodiscard]] Result<void> check_hold() const;
   void simulate(const Fit& fit);
   void warn();
   [[nodiscard]] double median_step() const;
@@ -140,6 +176,7 @@ class Identifier {
   const std::vector<SignalPair>& held_out_;
   const TransferFunctionOptions& options_;
   double delay_;
+  InputHold hold_;
   TransferFunctionIdentification found_;
 };
 
@@ -159,6 +196,7 @@ ContinuousFitOptions Identifier::continuous_options(Index poles, Index zeros) co
   options.free_start = options_.free_start;
   options.hac_lag_s = options_.hac_lag_s;
   options.threads = options_.threads;
+  options.delay_found = options_.find_delay;
   options.reference_instruments = options_.method == TransferFunctionMethod::closed_loop;
   options.max_noise_order = options_.method == TransferFunctionMethod::rivc ? options_.max_noise_order : 0;
   return options;
@@ -178,7 +216,7 @@ PredictionErrorOptions Identifier::discrete_options(Index poles, Index zeros) co
 }
 
 Result<Fit> Identifier::fit(Index poles, Index zeros, double delay) const {
-  const std::vector<SignalPair> moved = delayed(experiments_, delay);
+  const std::vector<SignalPair> moved = delayed(experiments_, delay, hold_);
   const auto made = [](auto&& result) -> Result<Fit> {
     if (!result) return tl::unexpected(result.error());
     return fit_of(std::move(*result));
@@ -227,8 +265,25 @@ Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
       },
       std::less<>{}, [&](double low, double high) { return !failure && high - low > kNear * step; });
   if (failure) return tl::unexpected(*failure);
-  delay_ = best;
-  return fit(poles, zeros, delay_);
+  return sharpened(poles, zeros, best);
+}
+
+/// Gauss–Newton steps of the delay alone, all other coefficients at their best, until it is a small part of its
+/// standard error off; a step that does not leave less is not taken.
+Result<Fit> Identifier::sharpened(Index poles, Index zeros, double delay) {
+  constexpr int kMax = 6;
+  constexpr double kSmall = 0.02;
+  delay_ = delay;
+  auto best = fit(poles, zeros, delay_);
+  for (int k = 0; k < kMax && best && best->converged && best->delay_variance; ++k) {
+    if (std::abs(best->delay_correction) <= kSmall * std::sqrt(*best->delay_variance)) break;
+    const double next = std::clamp(delay_ + best->delay_correction, 0.0, options_.max_delay);
+    auto made = fit(poles, zeros, next);
+    if (!made || !made->converged || !(made->variance < best->variance)) break;
+    best = std::move(made);
+    delay_ = next;
+  }
+  return best;
 }
 
 OrderChoice Identifier::criteria(const Fit& fit, Index poles, Index zeros) const {
@@ -304,6 +359,9 @@ void Identifier::describe(const Fit& fit) {
     found_.model.denominator << fit.denominator, 1.0;
   }
   found_.model.delay = delay_;
+  if (fit.delay_variance) found_.delay_standard_error = std::sqrt(std::max(*fit.delay_variance, 0.0));
+  if (!discrete()) found_.hold = hold_;
+  found_.hold_found = !discrete() && !options_.hold;
   found_.covariance = fit.covariance;
   found_.hac_lag_s = options_.hac_lag_s;
   found_.fit = fit.fit;
@@ -358,9 +416,12 @@ void Identifier::describe_roots(const Fit& fit) {
 
 void Identifier::test(const Fit& fit) {
   std::vector<Vector> inputs;
-  const std::vector<SignalPair> moved = delayed(experiments_, delay_);
+  const std::vector<SignalPair> moved = delayed(experiments_, delay_, hold_);
   for (std::size_t k = 0; k < moved.size(); ++k) {
-    inputs.emplace_back(moved[k].input.tail(fit.innovations[k].size()).array() - moved[k].input.mean());
+    // In a loop the noise is in the input; what the reference makes of it is free of that.
+    const bool loop = options_.method == TransferFunctionMethod::closed_loop;
+    const Vector input = loop ? explained_by_past(moved[k].reference, moved[k].input) : moved[k].input;
+    inputs.emplace_back(input.tail(fit.innovations[k].size()).array() - input.mean());
   }
   double slowest = 0.0;  // [s]
   for (const Root& pole : found_.poles) slowest = std::max(slowest, 1.0 / std::abs(pole.value.real()));
@@ -393,7 +454,7 @@ void Identifier::simulate(const Fit& fit) {
   }
   double squares = 0.0, output = 0.0;
   Index count = 0;
-  for (const SignalPair& pair : delayed(held_out_, delay_)) {
+  for (const SignalPair& pair : delayed(held_out_, delay_, hold_)) {
     const Vector left = simulation_error(pair);
     squares += left.squaredNorm();
     found_.simulated.push_back({pair.time, pair.output, pair.output - left});
@@ -460,11 +521,25 @@ Result<void> Identifier::check_clock() const {
                                std::ceil(samples) * *step));
 }
 
+/// A jump of a held input has no place of its own between samples that are unevenly spaced.
+Result<void> Identifier::check_hold() const {
+  if (discrete() && options_.hold) {
+    return bad_usage("a model in discrete time holds what the input does between samples in its numerator",
+                     "leave --hold out, or take --method srivc");
+  }
+  const bool even = std::ranges::all_of(experiments_, [](const SignalPair& pair) { return pair.step.has_value(); });
+  const bool is_delayed = options_.find_delay || delay_ > 0.0;
+  if (hold_ == InputHold::first || !is_delayed || even) return {};
+  return bad_usage("a delay of an input that is held between samples needs an even clock",
+                   "take --hold first, or put the clock right by --resample");
+}
+
 Result<TransferFunctionIdentification> Identifier::run() {
   if (!(options_.delay >= 0.0) || !std::isfinite(options_.delay)) {
     return bad_usage(fmt::format("a delay of {} s is not possible", options_.delay), "give 0 or more seconds");
   }
   if (auto ok = check_clock(); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_hold(); !ok) return tl::unexpected(ok.error());
   auto fit = choose_order();
   if (!fit) return tl::unexpected(fit.error());
   describe(*fit);
@@ -505,17 +580,42 @@ std::vector<Root> roots_with_intervals(const Vector& ascending, const Matrix& co
   return all;
 }
 
+namespace {
+
+/// Σ u[t − k] e[t] for k = 0 … lags over the standard deviation that it has without a relation. Both pass first what
+/// makes e white (its autoregressive model): then that is σ_e √Σu², whatever the colour of u (Box & Jenkins 1970,
+/// §11.1).
+Vector cross_correlation(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
+  constexpr Index kMaxOrder = 50, kSamplesEach = 20;
+  const Index shortest = std::ranges::min(residuals, {}, &Vector::size).size();
+  const Vector whitening = autoregression(residuals, std::min(kMaxOrder, shortest / kSamplesEach));
+  const Index order = whitening.size() - 1;
+  Vector cross = Vector::Zero(lags + 1);
+  double of_residual = 0.0, of_input = 0.0, samples = 0.0;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const Index n = residuals[k].size() - order;
+    const auto whitened = [&](const Vector& signal) -> Vector {
+      return dsp::difference_equation(whitening, Vector::Ones(1), signal).tail(n);
+    };
+    const Vector e = whitened(residuals[k]), u = whitened(inputs[k]);
+    for (Index lag = 0; lag <= std::min(lags, n - 1); ++lag) cross[lag] += u.head(n - lag).dot(e.tail(n - lag));
+    of_residual += e.squaredNorm();
+    of_input += u.squaredNorm();
+    samples += static_cast<double>(n);
+  }
+  return cross / std::sqrt(std::max(of_residual * of_input / samples, std::numeric_limits<double>::min()));
+}
+
+}  // namespace
+
 ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
   ResidualTests tests;
   tests.lags = lags;
-  Vector own = Vector::Zero(lags + 1), of_input = own, cross = own, pairs = own;
-  for (std::size_t k = 0; k < residuals.size(); ++k) {
-    const Vector &e = residuals[k], &u = inputs[k];
+  Vector own = Vector::Zero(lags + 1), pairs = own;
+  for (const Vector& e : residuals) {
     const Index n = e.size();
     for (Index lag = 0; lag <= std::min(lags, n - 1); ++lag) {
       own[lag] += e.head(n - lag).dot(e.tail(n - lag));
-      of_input[lag] += u.head(n - lag).dot(u.tail(n - lag));
-      cross[lag] += u.head(n - lag).dot(e.tail(n - lag));
       pairs[lag] += static_cast<double>(n - lag);
     }
   }
@@ -530,14 +630,11 @@ ResidualTests test_residuals(const std::vector<Vector>& residuals, const std::ve
   }
   tests.autocorrelation_outside = static_cast<double>(outside) / static_cast<double>(lags);
   tests.whiteness_p = chi_squared_beyond(n * (n + 2.0) * sum, static_cast<double>(lags));
-  // Of two signals without relation the variance of Σ u e is Σ_k R_u(k) R_e(k) (Bartlett).
-  double variance = own[0] * of_input[0] / n;
-  for (Index lag = 1; lag <= lags; ++lag) variance += 2.0 * own[lag] * of_input[lag] / n;
-  const double deviation = std::sqrt(std::max(variance, 0.05 * own[0] * of_input[0] / n));
+  const Vector cross = cross_correlation(residuals, inputs, lags);
   outside = 0;
   double largest = 0.0;
   for (Index lag = 0; lag <= lags; ++lag) {
-    const double z = std::abs(cross[lag]) / deviation;
+    const double z = std::abs(cross[lag]);
     outside += z > limit ? 1 : 0;
     largest = std::max(largest, z);
   }

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "mbk/base/dsp/cross_spectrum.h"
 #include "mbk/base/dsp/decimate.h"
+#include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/channel_table.h"
 
@@ -66,19 +69,77 @@ class Preparer {
 
   /// @param whole  held out altogether
   Result<void> add(const Recording& recording, bool whole, bool hold_back);
+  /// To one rate for all, when all have been added.
+  Result<void> decimate();
 
   std::vector<SignalPair> experiments, held_out;
   std::string input_unit, output_unit;
   double recorded_rate_hz = 0.0;  ///< where samples were left out
+  std::vector<std::string> notes;
 
  private:
+  void take_rate_of_model();
   [[nodiscard]] Result<Index> every(const SignalPair& pair) const;
   Result<void> thin_out(SignalPair& pair);
   Result<void> cut(const Recording& recording, Piece piece, bool even, double from, double to,
                    std::vector<SignalPair>& into);
 
   const TransferFunctionMeasurement& options_;
+  Hertz rate_of_model_ = kMaxDiscreteRate;
 };
+
+/// Below which 95 % of that power of the output lies which follows the input, γ² S_yy of the lines whose coherence is
+/// significant, as noise is not to decide. Of a record too short for a spectrum nothing is known: 0.
+Hertz top_of_response(const SignalPair& pair) {
+  constexpr Index kMinSegment = 8, kSegments = 8;
+  constexpr double kShare = 0.95;
+  constexpr Hertz kResolution(0.5);
+  const Hertz rate(1.0 / *pair.step);
+  const Index samples = pair.samples(), longest = samples / kSegments;
+  if (longest < kMinSegment) return Hertz(0.0);
+  Matrix signals(samples, 2);
+  signals << pair.input.tail(samples), pair.output.tail(samples);
+  const auto spectra = dsp::cross_spectra({signals}, rate, dsp::segment_length(rate, kResolution, longest));
+  if (!spectra) return Hertz(0.0);
+  const Vector coherence = dsp::multiple_coherence(*spectra, 1).col(0);
+  // (1 − c)^(n − 1) = 5 % at one line; of all lines without a relation none is to be above c with 95 %.
+  constexpr double kLevel = 0.05;
+  const double lines = std::log(kLevel / static_cast<double>(coherence.size())) / std::log(kLevel);
+  const double of_one = dsp::significant_coherence(spectra->independent_segments, 1);
+  const double significant = 1.0 - std::pow(1.0 - of_one, lines);
+  dsp::Spectrum response{spectra->frequency, Vector::Zero(spectra->frequency.size())};
+  for (Index k = 0; k < coherence.size(); ++k) {
+    const double power = spectra->density[static_cast<std::size_t>(k)](1, 1).real();
+    if (coherence[k] > significant) response.density[k] = coherence[k] * power;
+  }
+  if (!(response.density.sum() > 0.0)) return Hertz(0.0);
+  return dsp::power_quantile(response, kShare, Hertz(0.5 * rate.value));
+}
+
+/// Fast enough that the low-pass leaves the output's response as it is.
+void Preparer::take_rate_of_model() {
+  if (!is_discrete(options_.fit.method) || options_.sample_rate_hz) return;
+  double top = 0.0;
+  for (const SignalPair& pair : experiments) {
+    if (pair.step) top = std::max(top, top_of_response(pair).value);
+  }
+  const double rate = 2.0 / dsp::kDecimationCutoff * top;
+  if (rate <= kMaxDiscreteRate.value) return;
+  rate_of_model_ = Hertz(rate);
+  notes.push_back(
+      fmt::format("kept above {:g} Hz: 5 % of the output's power that follows the input lies above {:.3g} Hz",
+                  kMaxDiscreteRate.value, top));
+}
+
+Result<void> Preparer::decimate() {
+  take_rate_of_model();
+  for (auto* const pairs : {&experiments, &held_out}) {
+    for (SignalPair& pair : *pairs) {
+      if (auto ok = thin_out(pair); !ok) return ok;
+    }
+  }
+  return {};
+}
 
 /// One of how many samples is kept.
 Result<Index> Preparer::every(const SignalPair& pair) const {
@@ -91,6 +152,9 @@ Result<Index> Preparer::every(const SignalPair& pair) const {
   }
   const double rate = 1.0 / *pair.step;
   constexpr double kRounding = 1e-6;
+  if (!wanted && rate_of_model_ > kMaxDiscreteRate) {
+    return std::max<Index>(1, static_cast<Index>(std::floor(rate / rate_of_model_.value)));
+  }
   if (!wanted) return static_cast<Index>(std::ceil(rate / kMaxDiscreteRate.value * (1.0 - kRounding)));
   if (*wanted <= rate * (1.0 + kRounding)) return static_cast<Index>(std::llround(rate / *wanted));
   return bad_usage(fmt::format("samples come at {:.6g} Hz, and not at {:g} Hz", rate, *wanted),
@@ -101,6 +165,10 @@ Result<void> Preparer::thin_out(SignalPair& pair) {
   const auto every_one = every(pair);
   if (!every_one) return tl::unexpected(every_one.error());
   if (*every_one == 1) return {};
+  if (options_.fit.hold == InputHold::zero) {
+    return bad_usage("an input that was decimated behind a low-pass is not held between samples any more",
+                     "leave --sample-rate out, or take --hold first");
+  }
   const Hertz rate(1.0 / *pair.step);
   const Index begin = pair.first % *every_one;
   Matrix signals(pair.time.size(), pair.reference.size() > 0 ? 3 : 2);
@@ -149,7 +217,6 @@ Result<void> Preparer::cut(const Recording& recording, Piece piece, bool even, d
   if (!options_.reference.empty()) pair.reference = taken(options_.reference);
   pair.first = begin - past;
   if (even) pair.step = (pair.time[pair.time.size() - 1] - pair.time[0]) / static_cast<double>(pair.time.size() - 1);
-  if (auto ok = thin_out(pair); !ok) return ok;
   into.push_back(std::move(pair));
   return {};
 }
@@ -215,6 +282,7 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
   if (prepared.experiments.empty()) {
     return bad_data("no segment of at least 8 samples without a gap is left to identify", "choose a longer window");
   }
+  if (auto ok = prepared.decimate(); !ok) return tl::unexpected(ok.error());
   auto found = identify::identify_transfer_function(prepared.experiments, prepared.held_out, options.fit);
   if (!found) return found;
   found->input = options.input;
@@ -223,6 +291,7 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
   found->input_unit = prepared.input_unit;
   found->output_unit = prepared.output_unit;
   found->recorded_rate_hz = prepared.recorded_rate_hz;
+  found->notes = std::move(prepared.notes);
   for (const Recording& recording : recordings) {
     found->sources.insert(found->sources.end(), recording.sources.begin(), recording.sources.end());
     found->notes.insert(found->notes.end(), recording.notes.begin(), recording.notes.end());

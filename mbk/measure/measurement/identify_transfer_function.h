@@ -18,7 +18,8 @@ struct TransferFunctionMeasurement {
   preprocess::WindowLimits window;  ///< split: what is behind it is held out; absent: the last fifth, unless whole
                                     ///< recordings are
   /// To which even samples are decimated behind a low-pass (dsp::decimate), to the nearest whole share of theirs.
-  /// Absent: for discrete-time models to at most kMaxDiscreteRate, the others take every sample. 0: every sample.
+  /// Absent: for discrete-time models to at most kMaxDiscreteRate, or to what keeps 95 % of the output's power that
+  /// follows the input (lines of significant coherence); the others take every sample. 0: every sample.
   std::optional<double> sample_rate_hz;
   identify::TransferFunctionOptions fit;
 };

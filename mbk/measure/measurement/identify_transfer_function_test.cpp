@@ -162,6 +162,66 @@ TEST(TransferFunction, InDiscreteTimeIsOfAHundredHertzUnlessAskedOtherwise) {
   EXPECT_EQ(faster.error().kind, ErrorKind::usage);
 }
 
+/// s²/(s² + 2 ζ w s + w²), 120 Hz, behind random steps every 4 ms, at 500 Hz: an acceleration, all of it fast.
+Recording fast_resonance(double noise) {
+  constexpr Index kSamples = 4096;
+  constexpr double kStep = 0.002;
+  const double w = 2.0 * std::numbers::pi * 120.0;
+  SignalPair pair;
+  pair.step = kStep;
+  pair.held = 1.0;
+  pair.time = Vector::LinSpaced(kSamples, 0.0, static_cast<double>(kSamples - 1)) * kStep;
+  pair.input.resize(kSamples);
+  numeric::Random random(3);
+  for (Index i = 0; i < kSamples; ++i) pair.input[i] = i % 2 == 0 ? random.normal() : pair.input[i - 1];
+  pair.output = identify::simulate_continuous(Vector{{w * w, 0.04 * w}}, Vector{{0.0, 0.0, 1.0}}, pair);
+  for (double& y : pair.output) y += noise * random.normal();
+  Recording recording;
+  recording.time = pair.time;
+  recording.channels = {{"input", "N", "", pair.input}, {"output", "m/s^2", "", pair.output}};
+  return recording;
+}
+
+TEST(TransferFunction, InDiscreteTimeKeepsTheRateAtWhichTheOutputAnswers) {
+  TransferFunctionMeasurement options;
+  options.fit.poles = options.fit.zeros = 2;
+  options.fit.method = TransferFunctionMethod::output_error;
+  const Recording fast = fast_resonance(0.1);
+  const auto found = identify_transfer_function({&fast, 1}, {}, options);
+  ASSERT_TRUE(found.has_value()) << found.error().line();
+  EXPECT_EQ(found->recorded_rate_hz, 0.0);  // every sample
+  EXPECT_NEAR(found->poles[0].frequency, 120.0, 0.2);
+  ASSERT_EQ(found->notes.size(), 1U);
+  EXPECT_NE(found->notes[0].find("kept above 100 Hz"), std::string::npos) << found->notes[0];
+}
+
+TEST(TransferFunction, InDiscreteTimeNoiseDoesNotDecideTheRate) {
+  Recording slow = slow_lag();
+  numeric::Random random(5);
+  for (double& y : slow.channels[1].values) y += 2.0 * random.normal();  // most of the output's power, up to 200 Hz
+  TransferFunctionMeasurement options;
+  options.fit.poles = options.fit.zeros = 1;
+  options.fit.method = TransferFunctionMethod::output_error;
+  const auto found = identify_transfer_function({&slow, 1}, {}, options);
+  ASSERT_TRUE(found.has_value()) << found.error().line();
+  EXPECT_NEAR(found->model.sample_time, 0.01, 1e-9);
+}
+
+TEST_F(FlexibleArm, SettlesInDiscreteTimeAtHighAndLowOrders) {
+  for (const auto method : {TransferFunctionMethod::output_error, TransferFunctionMethod::box_jenkins}) {
+    options_.fit.method = method;
+    options_.fit.orders = {{1, 1}, {2, 2}, {3, 3}, {4, 1}, {4, 4}, {5, 0}, {5, 5}, {6, 1}, {6, 5}, {6, 6}};
+    const auto found = identified();
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    for (const OrderChoice& one : found->orders) {
+      EXPECT_TRUE(one.usable) << word_of(method) << " " << one.poles << "/" << one.zeros;
+      const bool whole = one.poles == 6 && one.zeros >= 5;
+      EXPECT_GE(one.fit, whole ? 0.985 : 0.0) << word_of(method) << " " << one.poles << "/" << one.zeros;
+    }
+    EXPECT_GE(found->held_out_fit.value(), 0.975);
+  }
+}
+
 TEST(TransferFunction, KeepsTheSamplesOfADelayWhenItLeavesSomeOut) {
   Recording recording = slow_lag();
   const Index late = 40;  // 0.1 s

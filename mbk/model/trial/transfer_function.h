@@ -20,9 +20,19 @@ struct SignalPair {
   Vector input, output;        ///< as long as `time`
   Vector reference;            ///< what drives the loop, unrelated to the noise; empty where there is none
   std::optional<double> step;  ///< [s] between samples where the clock is even; absent where it is not
+  std::optional<double> held;  ///< input and reference between samples: absent: in straight lines; otherwise each keeps
+                               ///< its value for that share of the interval and then jumps to the next (1: ends there)
   Index first = 0;             ///< samples before it are only there for a delayed input
   [[nodiscard]] Index samples() const { return time.size() - first; }
 };
+
+/// What the input does between two samples: it keeps the first one's value, or moves in a straight line.
+enum class InputHold { zero, first };
+
+[[nodiscard]] constexpr auto word_table(InputHold) {
+  using enum InputHold;
+  return std::to_array<Word<InputHold>>({{zero, "zero"}, {first, "first"}});
+}
 
 /// B(s)/A(s) · e^{−sτ}, or with q⁻¹ in place of s where there is a sample time. In SI units and seconds.
 struct TransferFunction {
@@ -107,6 +117,9 @@ struct TransferFunctionIdentification {
   Vector noise_denominator;                ///< C: 1, c₁ … of the noise model e = ε/C(q⁻¹); empty without one
   Vector noise_numerator;                  ///< D: 1, d₁ … with e = D/C ε; empty without one
   bool delay_found = false;
+  std::optional<double> delay_standard_error;  ///< [s] of a delay that was found, where it is in the covariance
+  std::optional<InputHold> hold;               ///< absent for a model in discrete time, which needs none
+  bool hold_found = false;                     ///< by the steps of the input
   std::vector<SearchStart> starts;
   std::vector<OrderChoice> orders;  ///< where several were tried
   ResidualTests residuals;

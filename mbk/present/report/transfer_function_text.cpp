@@ -32,6 +32,22 @@ const char* method_text(TransferFunctionMethod method) {
   return "";
 }
 
+std::string hold_text(InputHold hold, bool found) {
+  const char* const because = hold == InputHold::zero ? ", as its steps show" : ", as it shows no steps";
+  return fmt::format("{}{}",
+                     hold == InputHold::zero ? "held between samples (zero-order hold)"
+                                             : "straight lines between samples (first-order hold)",
+                     found ? because : "");
+}
+
+std::string delay_text(const TransferFunctionIdentification& found) {
+  if (!found.delay_standard_error) {
+    return fmt::format("{:.6g} s, found; the intervals take it as known", found.model.delay);
+  }
+  return with_interval(found.model.delay, numeric::kNormal95 * *found.delay_standard_error) +
+         " s, found; its uncertainty is in the intervals";
+}
+
 std::string name_of(const std::string& channel, const std::string& unit) {
   return unit.empty() ? channel : fmt::format("{} [{}]", channel, unit);
 }
@@ -153,7 +169,8 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
                                            found.band_high)});
   }
   rows.push_back({"starts", starts_text(found)});
-  if (found.delay_found) rows.push_back({"delay", fmt::format("{:.6g} s, found", found.model.delay)});
+  if (found.hold) rows.push_back({"input", hold_text(*found.hold, found.hold_found)});
+  if (found.delay_found) rows.push_back({"delay", delay_text(found)});
   text += table(rows) + "\n";
   if (!found.orders.empty()) text += orders_text(found.orders) + "\n";
   text += fraction_text(found.model) + "\n" + coefficients_text(found) + "\n";

@@ -81,6 +81,11 @@ Json document(const TransferFunctionIdentification& found, const TransferFunctio
   json["sample_time"] = found.model.sample_time;
   json["delay_s"] = found.model.delay;
   json["delay_found"] = found.delay_found;
+  if (found.delay_standard_error) json["delay_standard_error_s"] = number(*found.delay_standard_error);
+  if (found.hold) {
+    json["hold"] = word_of(*found.hold);
+    json["hold_found"] = found.hold_found;
+  }
   const Index n = found.model.poles(), q = found.model.numerator.size();
   json["parameters"] = Json::array();
   const auto add = [&](std::string name, double value, Index at) {

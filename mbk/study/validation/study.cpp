@@ -19,7 +19,8 @@ constexpr std::array kOfMisspecification = {JudgedShare{kNearlyAlways, 99.0}, Ju
 constexpr std::array kOfRobot = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfVirtualSensor = {JudgedShare{kNearNominal, 100.0, 5.0},  // wide: a damper is not in the model
                                          JudgedShare{kNearlyAlways, 100.0}};
-constexpr std::array kOfTransferFunction = {JudgedShare{kNearNominal, 95.0}, JudgedShare{kNearlyAlways, 99.0}};
+constexpr std::array kOfTransferFunction = {JudgedShare{kNominalOrMore, 95.0}, JudgedShare{kNearlyAlways, 99.0},
+                                            JudgedShare{kHardlyEver, 1.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
 constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfFaultsAtAll = {JudgedShare{kNearNominal, 100.0}, JudgedShare{kHardlyEver, 0.0, 10.0}};
