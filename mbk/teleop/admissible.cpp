@@ -12,18 +12,6 @@ namespace {
 using lti::Interval;
 using lti::RootBracket;
 
-/// The fraction with the smallest denominator in [low, high] (Stern 1858, Brocot 1861).
-Rational simplest_between(const Rational& low, const Rational& high) {
-  using boost::multiprecision::denominator;
-  using boost::multiprecision::numerator;
-  if (low.sign() <= 0 && high.sign() >= 0) return 0;
-  if (high.sign() < 0) return -simplest_between(-high, -low);
-  const Rational whole = Rational(numerator(low) / denominator(low));
-  if (whole == low) return whole;
-  if (whole + 1 <= high) return whole + 1;
-  return whole + 1 / simplest_between(1 / (high - whole), 1 / (low - whole));
-}
-
 /// The four conditions as polynomials of X = ω² and k, each times a power of |d(jω)|².
 std::array<ParametricPolynomial, 4> conditions_of(const ParametricTwoPort& two_port) {
   const ParametricPolynomial X = ParametricPolynomial::of({0, 1});
@@ -171,7 +159,7 @@ std::vector<Boundary> boundaries(const CriticalValues& critical, const Rational&
   for (const auto& [polynomial, poles] : critical.factors()) {
     for (const RootBracket& root : lti::isolate_roots(polynomial, Interval{low, high})) {
       const RootBracket bracket = lti::refine(polynomial, root, kBits);
-      const Rational simplest = simplest_between(bracket.low, bracket.high);
+      const Rational simplest = lti::simplest_between(bracket.low, bracket.high);
       if (polynomial(simplest).is_zero()) {
         found.push_back(fraction(simplest));
       } else {
@@ -247,7 +235,7 @@ Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Ratio
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const Rational &from = ends[i].bracket.high, &to = ends[i + 1].bracket.low;
     const Rational third = (to - from) / 3;
-    samples.push_back(simplest_between(from + third, to - third));
+    samples.push_back(lti::simplest_between(from + third, to - third));
     inside.push_back(search.holds(samples.back()));
   }
 
@@ -275,38 +263,6 @@ Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Ratio
     }
   }
   return set;
-}
-
-LargestShortage largest_shortage(const PortEquations& equations, Port port) {
-  const auto holds = [&](const Rational& a) {
-    const auto two_port = equations.with_shortage(port, Polynomial{a}).at(0);
-    return two_port && is_absolutely_stable(*two_port);
-  };
-  LargestShortage result;
-  result.port = static_cast<int>(port);
-  constexpr int kDoublings = 64;
-  Rational low = -1, high = 1;
-  for (int i = 0; !holds(low); ++i) {
-    if (i == kDoublings) return result;
-    high = low;
-    low = 2 * low;
-  }
-  for (int i = 0; holds(high); ++i) {
-    if (i == kDoublings) return result;
-    low = high;
-    high = 2 * high;
-  }
-  const Rational finest = std::max<Rational>(abs(high), 1) / Rational(1ULL << 50U);
-  while (high - low > finest) {
-    // the simplest fraction of the middle keeps the numbers short
-    const Rational quarter = (high - low) / 4;
-    const Rational middle = simplest_between(low + quarter, high - quarter);
-    (holds(middle) ? low : high) = middle;
-  }
-  result.exists = true;
-  result.at_least = lti::to_double(low);
-  result.at_most = lti::to_double(high);
-  return result;
 }
 
 }  // namespace mbk::teleop

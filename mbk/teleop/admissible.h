@@ -21,11 +21,4 @@ namespace mbk::teleop {
 [[nodiscard]] Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Rational& low,
                                                    const Rational& high);
 
-/// The largest a for which the network stays stable when the termination at `port` has Re z ≥ −a and the other is
-/// passive (theorem 4.2). The set of such a is {a ≤ a_max}, since less a is less to ask; a_max is found by bisection
-/// between exact decisions, to 2⁻⁵⁰ of its size. A fraction with a small denominator that is the largest is found as
-/// such.
-/// @param equations  taken at k = 0
-[[nodiscard]] LargestShortage largest_shortage(const PortEquations& equations, Port port);
-
 }  // namespace mbk::teleop

@@ -100,29 +100,5 @@ TEST(AdmissibleSet, RefusesARangeThatEndsBeforeItBegins) {
   EXPECT_FALSE(admissible_set(position_position(1, 1, 1, 1, 1, 1).equations("slave.k"), 2, 1));
 }
 
-TEST(LargestShortage, OfPositionPositionIsTheClosedForm) {
-  // with k_s/k_m = d_s/d_m: b_s + d_s b_m/(b_m + d_m)
-  const PortEquations equations = position_position(2, 3, 10, 100, 20, 200).equations();
-  const LargestShortage two = largest_shortage(equations, Port::two), one = largest_shortage(equations, Port::one);
-  EXPECT_NEAR(two.value(), 19.0 / 3.0, 1e-13);
-  EXPECT_LE(two.at_least, 19.0 / 3.0 + 1e-15);
-  EXPECT_NEAR(one.value(), 2.0 + 10.0 * 3.0 / 23.0, 1e-13);
-}
-
-TEST(LargestShortage, IsTheEndOfTheAdmissibleSetOfA) {
-  const Teleoperator t = position_position(1, 1, 10, 100, 20, 300);
-  const LargestShortage largest = largest_shortage(t.equations(), Port::two);
-  const auto set = admissible_set(t.equations().with_shortage(Port::two, Polynomial{0, 1}), -100, 100);
-  ASSERT_TRUE(set) << set.error().line();
-  ASSERT_EQ(set->intervals.size(), 1u);
-  EXPECT_EQ(set->intervals[0].low.value, -100.0);
-  EXPECT_NEAR(set->intervals[0].high.value, largest.value(), 1e-12);
-}
-
-TEST(LargestShortage, DoesNotExistWhereNoExcessHelps) {
-  EXPECT_FALSE(largest_shortage(PortEquations::of(narrow_resonance()), Port::two).exists);
-  EXPECT_NEAR(largest_shortage(PortEquations::of(narrow_resonance()), Port::one).value(), -0.01, 1e-12);
-}
-
 }  // namespace
 }  // namespace mbk::teleop

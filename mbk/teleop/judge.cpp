@@ -13,6 +13,7 @@
 #include "mbk/base/lti/half_planes.h"
 #include "mbk/base/lti/on_axis.h"
 #include "mbk/teleop/admissible.h"
+#include "mbk/teleop/largest_shortage.h"
 #include "mbk/teleop/llewellyn.h"
 #include "mbk/teleop/sampled.h"
 

@@ -10,6 +10,7 @@
 #include "mbk/base/lti/half_planes.h"
 #include "mbk/base/lti/on_axis.h"
 #include "mbk/base/lti/real_roots.h"
+#include "mbk/teleop/conditions.h"
 
 namespace mbk::teleop {
 namespace {
@@ -22,38 +23,25 @@ using lti::RootBracket;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Re f(jω) and Im f(jω)/ω as functions of X = ω².
-struct OnAxis {
-  RationalFunction re, im;
-};
-
-RationalFunction function_of_square(const Polynomial& even, const Polynomial& squared_modulus) {
-  return RationalFunction(lti::in_square(even)) / RationalFunction(lti::in_square(squared_modulus));
-}
-
-OnAxis on_axis(const RationalFunction& f) {
-  const ComplexPolynomial n = lti::on_axis(f.numerator()), d = lti::on_axis(f.denominator());
-  const ComplexPolynomial product = n * lti::conjugate(d);
-  const Polynomial modulus = (d * lti::conjugate(d)).re;
-  return {function_of_square(product.re, modulus),
-          function_of_square(lti::divide(product.im, Polynomial{0, 1}).quotient, modulus)};
-}
-
-/// The four real functions of X that must not be negative.
+/// The four real functions of X = ω² that must not be negative.
 struct Conditions {
   RationalFunction r11, r22, product, squares;
 };
 
 Conditions conditions_of(const RationalMatrix& m) {
-  const RationalFunction r11 = on_axis(m(0, 0)).re, r22 = on_axis(m(1, 1)).re;
-  const OnAxis p = on_axis(m(0, 1) * m(1, 0));
-  const RationalFunction r = r11 * r22, two(Polynomial{2}), four(Polynomial{4}), X(Polynomial{0, 1});
-  return {r11, r22, two * r - p.re, four * r * (r - p.re) - X * p.im * p.im};
+  const ConditionsOnAxis axis = ConditionsOnAxis::of(m);
+  const auto over = [](const Polynomial& n, const Polynomial& d) {
+    return RationalFunction::of(n, d).value();  // d is a square, and not zero
+  };
+  return {over(axis.resistance[0], axis.modulus[0]), over(axis.resistance[1], axis.modulus[1]),
+          over(axis.product(), axis.scale), over(axis.squares(), axis.scale * axis.scale)};
 }
 
 /// A polynomial with the sign of f where f is finite.
 Polynomial with_sign_of(const RationalFunction& f) {
-  return f.numerator() * f.denominator();
+  const Polynomial& d = f.denominator();
+  const bool positive = lti::distinct_roots(d, Interval{Rational(0), {}}) == 0;
+  return positive ? f.numerator() : f.numerator() * d;
 }
 
 ViolatedBand at_pole(double omega, std::string detail) {
@@ -166,18 +154,20 @@ ConditionValues condition_values(const Eigen::MatrixXcd& immittance) {
   return {r11, r22, (2.0 * r11 * r22 - p.real() - std::abs(p)) / size};
 }
 
-bool is_absolutely_stable(const TwoPort& two_port) {
-  const RationalMatrix& m = two_port.matrix;
+bool has_passive_poles(const RationalMatrix& m) {
   for (const auto& [i, j] : kEntries) {
     if (lti::count_half_planes(m(i, j).denominator()).right > 0) return false;
   }
   std::vector<ViolatedBand> violated = joint_residues(m);
   for (const Index i : {0, 1}) judge_diagonal(m, i, "", violated);
-  if (!violated.empty()) return false;
-  const Conditions conditions = conditions_of(m);
-  const auto holds = [](const RationalFunction* f) { return lti::is_nonnegative(with_sign_of(*f)); };
-  const std::array all = {&conditions.r11, &conditions.r22, &conditions.product, &conditions.squares};
-  return std::ranges::all_of(all, holds);
+  return violated.empty();
+}
+
+bool is_absolutely_stable(const TwoPort& two_port) {
+  if (!has_passive_poles(two_port.matrix)) return false;
+  const ConditionsOnAxis axis = ConditionsOnAxis::of(two_port.matrix);
+  return lti::is_nonnegative(axis.resistance[0]) && lti::is_nonnegative(axis.resistance[1]) &&
+         lti::is_nonnegative(axis.product()) && lti::is_nonnegative(axis.squares());
 }
 
 AbsoluteStability llewellyn(const TwoPort& two_port) {

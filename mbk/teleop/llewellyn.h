@@ -13,13 +13,17 @@ namespace mbk::teleop {
 /// the last two of which say 2 r₁₁ r₂₂ − Re p − |p| ≥ 0. Three things that the theorem does not name are needed too,
 /// and are asked for: the axis includes ∞; m₁₂ and m₂₁ have no pole on the right; and where the axis has a pole, with
 /// residues k_ij, k₁₁ k₂₂ ≥ k₁₂ k₂₁ ([[1, 2], [2, 1]]/s passes all of the above, and a spring of −3 is what port 1
-/// shows when port 2 is free to move). Everything is decided exactly, in rational arithmetic by Sturm's theorem; only
-/// the frequencies and values that are returned are rounded.
+/// shows when port 2 is free to move). Everything is decided exactly, in rational arithmetic; only the
+/// frequencies and values that are returned are rounded.
 /// @returns  each condition with the bands in which it is violated and the worst frequency there
 [[nodiscard]] AbsoluteStability llewellyn(const TwoPort& two_port);
 
 /// llewellyn(two_port).holds(), quicker.
 [[nodiscard]] bool is_absolutely_stable(const TwoPort& two_port);
+
+/// The first two lines of it alone, and the residues of what port 1 shows: all that m₁₁ − a and m₂₂ − b have in common
+/// with m, for any numbers a and b.
+[[nodiscard]] bool has_passive_poles(const lti::RationalMatrix& m);
 
 /// 2 r₁₁ r₂₂ − Re p − |p| over 2 |r₁₁ r₂₂| + |Re p| + |p|, from −1 to 1, with the sign of the third condition.
 struct ConditionValues {

@@ -107,15 +107,19 @@ TwoPort exchanged(const TwoPort& two_port) {
   return turned;
 }
 
+Result<TwoPort> as_impedance_at(const TwoPort& two_port, Port port) {
+  const Form hybrid = port == Port::one ? Form::h : Form::g;
+  for (const Form form : {Form::z, hybrid}) {
+    if (auto converted = convert(two_port, form)) return converted;
+  }
+  return no_form(fmt::format("z or {}", word_of(hybrid)));
+}
+
 Result<TwoPort> with_shortage(const TwoPort& two_port, Port port, const Rational& a) {
   const Index i = port == Port::one ? 0 : 1;
-  for (const Form form : {Form::z, port == Port::one ? Form::h : Form::g}) {
-    auto converted = convert(two_port, form);
-    if (!converted) continue;
-    converted->matrix(i, i) = converted->matrix(i, i) - RationalFunction(Polynomial{a});
-    return converted;
-  }
-  return no_form(port == Port::one ? "z or h" : "z or g");
+  auto converted = as_impedance_at(two_port, port);
+  if (converted) converted->matrix(i, i) = converted->matrix(i, i) - RationalFunction(Polynomial{a});
+  return converted;
 }
 
 PortEquations PortEquations::of(const TwoPort& two_port) {

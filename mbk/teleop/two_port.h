@@ -40,6 +40,10 @@ enum class Port { one = 1, two = 2 };
 /// The other port's view: ports 1 and 2 exchanged, in the form with that meaning (h becomes g).
 [[nodiscard]] TwoPort exchanged(const TwoPort& two_port);
 
+/// The same network as z or, where that does not exist, as h (port 1) or g (port 2).
+/// @fails  not usable: it has neither; then no series impedance at that port changes anything.
+[[nodiscard]] Result<TwoPort> as_impedance_at(const TwoPort& two_port, Port port);
+
 /// The network with −a put in series with the port, z_ii − a: absolutely stable if and only if the network itself is
 /// stable with any termination of Re z ≥ −a at that port and a passive one at the other (Dyck 2013, theorem 4.2).
 /// @param a  shortage of passivity of the termination [N·s/m]; negative for an excess

@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
-#include "mbk/teleop/admissible.h"
 #include "mbk/teleop/architectures.h"
+#include "mbk/teleop/largest_shortage.h"
 #include "mbk/teleop/llewellyn.h"
 #include "mbk/thesis/errata.h"
 

@@ -35,23 +35,77 @@ IntegerPolynomial pseudo_remainder(IntegerPolynomial a, const IntegerPolynomial&
 
 constexpr std::uint64_t kPrime = 2147483647;  // 2³¹ − 1, so that products fit in 64 bits
 
-std::uint64_t power_modulo(std::uint64_t base, std::uint64_t exponent) {
+using Residues = std::vector<std::uint64_t>;  // of a polynomial modulo a prime, ascending, the last one not zero
+
+std::uint64_t power_modulo(std::uint64_t base, std::uint64_t exponent, std::uint64_t prime) {
   std::uint64_t result = 1;
   for (; exponent > 0; exponent /= 2) {
-    if (exponent % 2 != 0) result = result * base % kPrime;
-    base = base * base % kPrime;
+    if (exponent % 2 != 0) result = result * base % prime;
+    base = base * base % prime;
   }
   return result;
 }
 
-std::vector<std::uint64_t> modulo(const IntegerPolynomial& p) {
-  std::vector<std::uint64_t> result;
-  for (const Integer& c : p) {
-    const auto rest = Integer(abs(c) % kPrime).convert_to<std::uint64_t>();
-    result.push_back(c.sign() < 0 && rest != 0 ? kPrime - rest : rest);
-  }
+std::uint64_t inverse_modulo(std::uint64_t value, std::uint64_t prime) {
+  return power_modulo(value, prime - 2, prime);
+}
+
+std::uint64_t modulo(const Integer& value, std::uint64_t prime) {
+  const auto rest = Integer(abs(value) % prime).convert_to<std::uint64_t>();
+  return value.sign() < 0 && rest != 0 ? prime - rest : rest;
+}
+
+Residues modulo(const IntegerPolynomial& p, std::uint64_t prime) {
+  Residues result;
+  for (const Integer& c : p) result.push_back(modulo(c, prime));
   return result;
 }
+
+/// Their greatest common divisor modulo the prime, up to a factor.
+Residues gcd_modulo(Residues a, Residues b, std::uint64_t prime) {
+  if (a.size() < b.size()) std::swap(a, b);
+  while (b.size() > 1) {
+    const std::uint64_t inverse = inverse_modulo(b.back(), prime);
+    while (a.size() >= b.size()) {
+      const std::uint64_t factor = a.back() * inverse % prime;
+      const std::size_t shift = a.size() - b.size();
+      for (std::size_t i = 0; i < b.size(); ++i) a[shift + i] = (a[shift + i] + prime - factor * b[i] % prime) % prime;
+      while (!a.empty() && a.back() == 0) a.pop_back();
+    }
+    std::swap(a, b);
+  }
+  return b.empty() ? a : b;
+}
+
+bool is_prime(std::uint64_t odd) {
+  for (std::uint64_t divisor = 3; divisor * divisor <= odd; divisor += 2) {
+    if (odd % divisor == 0) return false;
+  }
+  return true;
+}
+
+/// A polynomial known modulo the product of some primes, by its remainders between −modulus/2 and modulus/2.
+struct Lifted {
+  IntegerPolynomial value;
+  Integer modulus = 1;
+
+  /// Takes up the remainders modulo another prime (the Chinese remainder theorem). @returns whether the value changed
+  bool take(const Residues& residues, std::uint64_t prime) {
+    const std::uint64_t inverse = inverse_modulo(modulo(modulus, prime), prime);
+    const Integer product = modulus * prime;
+    value.resize(residues.size());
+    bool changed = false;
+    for (std::size_t i = 0; i < residues.size(); ++i) {
+      const std::uint64_t step = (residues[i] + prime - modulo(value[i], prime)) % prime * inverse % prime;
+      if (step == 0) continue;
+      changed = true;
+      value[i] += modulus * step;
+      if (2 * value[i] > product) value[i] -= product;
+    }
+    modulus = product;
+    return changed;
+  }
+};
 
 }  // namespace
 
@@ -69,22 +123,55 @@ IntegerPolynomial primitive(const Polynomial& p) {
 
 bool are_surely_coprime(const IntegerPolynomial& first, const IntegerPolynomial& second) {
   if (first.empty() || second.empty()) return false;
-  std::vector<std::uint64_t> a = modulo(first), b = modulo(second);
+  const Residues a = modulo(first, kPrime), b = modulo(second, kPrime);
   // a common divisor keeps its degree only where the leading coefficients stay
-  if (a.back() == 0 || b.back() == 0) return false;
-  if (a.size() < b.size()) std::swap(a, b);
-  while (b.size() > 1) {
-    const std::uint64_t inverse = power_modulo(b.back(), kPrime - 2);
-    while (a.size() >= b.size()) {
-      const std::uint64_t factor = a.back() * inverse % kPrime;
-      const std::size_t shift = a.size() - b.size();
-      for (std::size_t i = 0; i < b.size(); ++i)
-        a[shift + i] = (a[shift + i] + kPrime - factor * b[i] % kPrime) % kPrime;
-      while (!a.empty() && a.back() == 0) a.pop_back();
-    }
-    std::swap(a, b);
+  return a.back() != 0 && b.back() != 0 && gcd_modulo(a, b, kPrime).size() == 1;
+}
+
+std::optional<IntegerPolynomial> exact_quotient(IntegerPolynomial a, const IntegerPolynomial& b) {
+  if (a.size() < b.size()) return a.empty() ? std::optional(a) : std::nullopt;
+  IntegerPolynomial quotient(a.size() - b.size() + 1);
+  for (std::size_t shift = quotient.size(); shift-- > 0;) {
+    Integer rest;
+    divide_qr(a[shift + b.size() - 1], b.back(), quotient[shift], rest);
+    if (!rest.is_zero()) return std::nullopt;
+    for (std::size_t i = 0; i < b.size(); ++i) a[shift + i] -= quotient[shift] * b[i];
   }
-  return !b.empty();
+  trim(a);
+  return a.empty() ? std::optional(std::move(quotient)) : std::nullopt;
+}
+
+IntegerPolynomial greatest_common_divisor(const IntegerPolynomial& first, const IntegerPolynomial& second) {
+  IntegerPolynomial a = first, b = second;
+  divide_by_content(a);
+  divide_by_content(b);
+  const Integer leading = gcd(a.back(), b.back());  // a multiple of that of the divisor
+  Lifted lifted;
+  for (std::uint64_t prime = kPrime;; prime -= 2) {
+    if (!is_prime(prime)) continue;
+    const Residues a_rest = modulo(a, prime), b_rest = modulo(b, prime);
+    if (a_rest.back() == 0 || b_rest.back() == 0) continue;
+    Residues common = gcd_modulo(a_rest, b_rest, prime);
+    if (common.size() == 1) return {1};
+    // a prime that divides a resultant gives too high a degree, never too low a one
+    if (!lifted.value.empty() && common.size() > lifted.value.size()) continue;
+    if (common.size() < lifted.value.size()) lifted = {};
+    const std::uint64_t factor = modulo(leading, prime) * inverse_modulo(common.back(), prime) % prime;
+    for (std::uint64_t& c : common) c = c * factor % prime;
+    if (lifted.take(common, prime)) continue;
+    IntegerPolynomial divisor = lifted.value;
+    divide_by_content(divisor);
+    if (divisor.back().sign() < 0) {
+      for (Integer& c : divisor) c = -c;
+    }
+    if (exact_quotient(a, divisor) && exact_quotient(b, divisor)) return divisor;
+  }
+}
+
+IntegerPolynomial derivative(const IntegerPolynomial& p) {
+  IntegerPolynomial result;
+  for (std::size_t i = 1; i < p.size(); ++i) result.push_back(p[i] * i);
+  return result;
 }
 
 int sign_at(const IntegerPolynomial& p, const Rational& x) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mbk/base/lti/polynomial.h"
@@ -17,6 +18,15 @@ using IntegerPolynomial = std::vector<Integer>;  // ascending, the last one not 
 /// a and b are proven to have no common root, by their remainders modulo a prime. Almost always true where they have
 /// none, and quick; false says nothing.
 [[nodiscard]] bool are_surely_coprime(const IntegerPolynomial& a, const IntegerPolynomial& b);
+
+/// The greatest common divisor over the rationals, primitive, its leading coefficient positive: from its remainders
+/// modulo primes, put together until it divides both (Brown 1971). Neither may be empty.
+[[nodiscard]] IntegerPolynomial greatest_common_divisor(const IntegerPolynomial& a, const IntegerPolynomial& b);
+
+/// a/b where b divides a with whole coefficients; nothing where it does not. b must not be empty.
+[[nodiscard]] std::optional<IntegerPolynomial> exact_quotient(IntegerPolynomial a, const IntegerPolynomial& b);
+
+[[nodiscard]] IntegerPolynomial derivative(const IntegerPolynomial& p);
 
 /// −1, 0 or 1.
 [[nodiscard]] int sign_at(const IntegerPolynomial& p, const Rational& x);

@@ -63,6 +63,32 @@ TEST(AreSurelyCoprime, SaysNothingWhereThePrimeHidesADivisor) {
   EXPECT_EQ(gcd(shared * Polynomial{1, 1}, shared * Polynomial{2, 1}), monic(shared));
 }
 
+TEST(GreatestCommonDivisor, IsTheLastOfTheSignedRemainders) {
+  Random random(4);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Polynomial shared = trial % 5 == 0 ? Polynomial{1} : random_polynomial(random, trial % 5);
+    const Polynomial a = shared * random_polynomial(random, 6), b = shared * random_polynomial(random, 1 + trial % 4);
+    const IntegerPolynomial found = greatest_common_divisor(primitive(a), primitive(b));
+    EXPECT_EQ(monic(as_rational(found)), monic(as_rational(signed_remainders(a, b).back()))) << "trial " << trial;
+    EXPECT_TRUE(exact_quotient(primitive(a), found)) << "trial " << trial;
+    EXPECT_GT(found.back(), 0) << "trial " << trial;
+  }
+}
+
+TEST(GreatestCommonDivisor, HasLongerCoefficientsThanAPrime) {
+  const Polynomial shared = with_roots({Rational(123456789012345678), Rational(-98765432109876543, 7)});
+  const IntegerPolynomial found =
+      greatest_common_divisor(primitive(shared * Polynomial{1, 3}), primitive(shared * Polynomial{2, 0, 5}));
+  EXPECT_EQ(found, primitive(shared));
+}
+
+TEST(ExactQuotient, IsNoneWhereARemainderIsLeft) {
+  EXPECT_EQ(exact_quotient({-1, 0, 1}, {1, 1}), (IntegerPolynomial{-1, 1}));
+  EXPECT_FALSE(exact_quotient({1, 0, 1}, {1, 1}));
+  EXPECT_FALSE(exact_quotient({1, 1}, {2, 2}));
+  EXPECT_FALSE(exact_quotient({1}, {1, 1}));
+}
+
 TEST(SignAt, IsThatOfTheValue) {
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {

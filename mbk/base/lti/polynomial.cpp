@@ -12,6 +12,14 @@
 
 namespace mbk::lti {
 
+namespace {
+
+Polynomial from_integers(const IntegerPolynomial& p) {
+  return Polynomial(std::vector<Rational>(p.begin(), p.end()));
+}
+
+}  // namespace
+
 Result<Rational> exact(double value) {
   if (!std::isfinite(value)) return bad_data("a coefficient is not finite");
   // the shortest form: -d.ddde-XX
@@ -39,6 +47,15 @@ Result<Rational> exact(double value) {
 
 double to_double(const Rational& value) {
   return value.convert_to<double>();
+}
+
+Rational simplest_between(const Rational& low, const Rational& high) {
+  if (low.sign() <= 0 && high.sign() >= 0) return 0;
+  if (high.sign() < 0) return -simplest_between(-high, -low);
+  const Rational whole = Rational(numerator(low) / denominator(low));
+  if (whole == low) return whole;
+  if (whole + 1 <= high) return whole + 1;
+  return whole + 1 / simplest_between(1 / (high - whole), 1 / (low - whole));
 }
 
 Polynomial::Polynomial(std::initializer_list<Rational> ascending) : coefficients_(ascending) {
@@ -120,16 +137,15 @@ Polynomial monic(const Polynomial& p) {
 }
 
 Polynomial gcd(const Polynomial& a, const Polynomial& b) {
-  if (a.degree() < b.degree()) return gcd(b, a);
-  if (b.is_zero()) return monic(a);
-  if (are_surely_coprime(primitive(a), primitive(b))) return Polynomial{1};
-  const IntegerPolynomial last = signed_remainders(a, b).back();
-  return monic(Polynomial(std::vector<Rational>(last.begin(), last.end())));
+  if (a.is_zero() || b.is_zero()) return monic(a.is_zero() ? b : a);
+  return monic(from_integers(greatest_common_divisor(primitive(a), primitive(b))));
 }
 
 Polynomial square_free(const Polynomial& p) {
-  const Polynomial repeated = gcd(p, p.derivative());
-  return monic(repeated.degree() > 0 ? divide(p, repeated).quotient : p);
+  const IntegerPolynomial whole = primitive(p);
+  if (whole.size() < 2) return Polynomial{1};
+  const IntegerPolynomial repeated = greatest_common_divisor(whole, derivative(whole));
+  return monic(repeated.size() == 1 ? p : from_integers(exact_quotient(whole, repeated).value()));
 }
 
 std::vector<Polynomial> square_free_factors(const Polynomial& p) {

@@ -20,6 +20,9 @@ using Rational =
 /// The double nearest to `value`.
 [[nodiscard]] double to_double(const Rational& value);
 
+/// The fraction with the smallest denominator in [low, high] (Stern 1858, Brocot 1861).
+[[nodiscard]] Rational simplest_between(const Rational& low, const Rational& high);
+
 /// p(x) = c₀ + c₁ x + … + cₙ xⁿ, exactly. Coefficients stand in ascending order everywhere.
 class Polynomial {
  public:

@@ -1,7 +1,6 @@
 #include "mbk/base/lti/real_roots.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 #include "mbk/base/lti/integer_polynomial.h"
@@ -9,75 +8,105 @@
 namespace mbk::lti {
 namespace {
 
-/// Sturm's sequence of the square-free part of a polynomial.
-class Sturm {
- public:
-  explicit Sturm(const Polynomial& p) {
-    const Polynomial once = square_free(p);
-    sequence_ = signed_remainders(once, once.derivative());
-  }
-
-  [[nodiscard]] int sign(const Rational& x) const { return sign_at(sequence_.front(), x); }
-
-  /// A point with what Sturm's theorem needs of it.
-  struct Point {
-    Rational x;
-    int variations;
-    bool is_root;
-  };
-
-  [[nodiscard]] Point point(const Rational& x) const { return {x, variations(x), sign(x) == 0}; }
-
-  /// Different roots in (low, high).
-  [[nodiscard]] static int roots(const Point& low, const Point& high) {
-    return low.variations - high.variations - (high.is_root ? 1 : 0);
-  }
-  [[nodiscard]] int roots(const Rational& low, const Rational& high) const { return roots(point(low), point(high)); }
-
-  /// Every root lies in (−bound, bound): Cauchy's 1 + max |cᵢ/cₙ|, up to the next power of two.
-  [[nodiscard]] Rational bound() const {
-    const IntegerPolynomial& p = sequence_.front();
-    Integer largest = 0;
-    for (const Integer& c : p) largest = std::max<Integer>(largest, abs(c));
-    const unsigned more = msb(largest) - msb(Integer(abs(p.back()))) + 2;
-    return Rational(Integer(1) << more);
-  }
-
- private:
-  [[nodiscard]] int variations(const Rational& x) const {
-    int count = 0, before = 0;
-    for (const IntegerPolynomial& p : sequence_) {
-      const int now = sign_at(p, x);
-      if (now * before < 0) ++count;
-      if (now != 0) before = now;
-    }
-    return count;
-  }
-
-  std::vector<IntegerPolynomial> sequence_;
-};
-
-void isolate(const Sturm& sturm, const Sturm::Point& low, const Sturm::Point& high, std::vector<RootBracket>& found) {
-  const int count = Sturm::roots(low, high);
-  if (count == 0) return;
-  const bool across_zero = low.x < 0 && high.x > 0;
-  if (count == 1 && !across_zero && !low.is_root && !high.is_root) {
-    found.push_back({low.x, high.x});
-    return;
-  }
-  const Sturm::Point middle = sturm.point(across_zero ? Rational(0) : (low.x + high.x) / 2);
-  isolate(sturm, low, middle, found);
-  if (middle.is_root) found.push_back({middle.x, middle.x});
-  isolate(sturm, middle, high, found);
+IntegerPolynomial once(const Polynomial& p) {
+  return primitive(square_free(p));
 }
 
-/// Where the interval can hold roots; nothing where it cannot.
-std::optional<std::pair<Rational, Rational>> finite(const Sturm& sturm, const Interval& interval) {
-  const Rational bound = sturm.bound();
+/// p(x + 1)
+void shift_by_one(IntegerPolynomial& p) {
+  for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+    for (std::size_t k = p.size() - 1; k-- > i;) p[k] += p[k + 1];
+  }
+}
+
+/// A positive multiple of p(low + (high − low) x).
+IntegerPolynomial on_unit_interval(const IntegerPolynomial& p, const Rational& low, const Rational& high) {
+  const Rational width = high - low;
+  const Integer common = lcm(Integer(denominator(low)), Integer(denominator(width)));
+  const Integer start = numerator(low) * (common / denominator(low));
+  const Integer step = numerator(width) * (common / denominator(width));
+  // Horner for commonⁿ p((start + step x)/common)
+  IntegerPolynomial result;
+  Integer power = 1;
+  for (std::size_t i = p.size(); i-- > 0;) {
+    result.insert(result.begin(), Integer(0));
+    for (std::size_t k = 0; k + 1 < result.size(); ++k) result[k] = result[k + 1] * start + result[k] * step;
+    result.back() *= step;
+    result.front() += p[i] * power;
+    power *= common;
+  }
+  return result;
+}
+
+/// At least as many as p has roots in (0, 1), and as many up to an even number (Descartes, by x → 1/(1 + x)); more
+/// than one is said as two.
+int descartes_bound(const IntegerPolynomial& p) {
+  IntegerPolynomial turned(p.rbegin(), p.rend());
+  shift_by_one(turned);
+  int count = 0, before = 0;
+  for (const Integer& c : turned) {
+    const int now = c.sign();
+    if (now * before < 0 && ++count > 1) break;
+    if (now != 0) before = now;
+  }
+  return count;
+}
+
+/// Surely no root in (low, high); false says nothing.
+bool is_surely_rootless(const IntegerPolynomial& p, const RootBracket& range) {
+  return descartes_bound(on_unit_interval(p, range.low, range.high)) == 0;
+}
+
+Integer value_at_one(const IntegerPolynomial& p) {
+  Integer sum = 0;
+  for (const Integer& c : p) sum += c;
+  return sum;
+}
+
+/// Isolates the roots of a square-free polynomial by halving until Descartes' rule counts none or one (Collins and
+/// Akritas 1976).
+void isolate(const IntegerPolynomial& p, const RootBracket& range, std::vector<RootBracket>& found) {
+  const int count = descartes_bound(p);
+  if (count == 0) return;
+  if (count == 1 && !p.front().is_zero() && !value_at_one(p).is_zero()) {
+    found.push_back(range);
+    return;
+  }
+  IntegerPolynomial half = p;  // 2ⁿ p(x/2)
+  for (std::size_t i = 0; i < half.size(); ++i) half[i] <<= half.size() - 1 - i;
+  const Rational middle = (range.low + range.high) / 2;
+  isolate(half, {range.low, middle}, found);
+  shift_by_one(half);
+  if (half.front().is_zero()) found.push_back({middle, middle});
+  isolate(half, {middle, range.high}, found);
+}
+
+/// Every root lies in (−bound, bound): 2 max |cₙ₋ₖ/cₙ|^(1/k) (Fujiwara 1916), up to a power of two.
+Rational root_bound(const IntegerPolynomial& p) {
+  const auto bits = [](const Integer& c) { return static_cast<int>(msb(Integer(abs(c)))); };
+  int exponent = 0;
+  for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+    if (p[i].is_zero()) continue;
+    const int k = static_cast<int>(p.size() - 1 - i), ratio = bits(p[i]) - bits(p.back()) + 1;
+    exponent = std::max(exponent, ratio / k + 1);
+  }
+  return Rational(Integer(1) << static_cast<unsigned>(exponent + 1));
+}
+
+/// Every root of a square-free polynomial in the interval, ascending.
+std::vector<RootBracket> isolate_once(const IntegerPolynomial& p, const Interval& interval) {
+  std::vector<RootBracket> found;
+  if (p.size() < 2) return found;
+  const Rational bound = root_bound(p);
   const Rational low = interval.low ? std::max<Rational>(*interval.low, -bound) : -bound;
   const Rational high = interval.high ? std::min<Rational>(*interval.high, bound) : bound;
-  if (low >= high) return std::nullopt;
-  return std::pair(low, high);
+  const auto within = [&](const Rational& from, const Rational& to) {
+    if (from < to) isolate(on_unit_interval(p, from, to), {from, to}, found);
+  };
+  within(low, std::min<Rational>(high, 0));
+  if (low < 0 && high > 0 && p.front().is_zero()) found.push_back({0, 0});
+  within(std::max<Rational>(low, 0), high);
+  return found;
 }
 
 /// Halves the bracket once. `p` changes its sign at the root.
@@ -96,25 +125,19 @@ void halve(const IntegerPolynomial& p, RootBracket& bracket) {
 }  // namespace
 
 int distinct_roots(const Polynomial& p, const Interval& interval) {
-  const Sturm sturm(p);
-  const auto ends = finite(sturm, interval);
-  return ends ? sturm.roots(ends->first, ends->second) : 0;
+  return static_cast<int>(isolate_roots(p, interval).size());
 }
 
 std::vector<RootBracket> isolate_roots(const Polynomial& p, const Interval& interval) {
-  std::vector<RootBracket> found;
-  const Sturm sturm(p);
-  if (const auto ends = finite(sturm, interval)) {
-    isolate(sturm, sturm.point(ends->first), sturm.point(ends->second), found);
-  }
-  return found;
+  return isolate_once(once(p), interval);
 }
 
 RootBracket refine(const Polynomial& p, const RootBracket& bracket, int bits) {
-  const IntegerPolynomial once = primitive(square_free(p));
+  if (bracket.low == bracket.high) return bracket;
+  const IntegerPolynomial simple = once(p);
   const Rational share(Integer(1), Integer(1) << static_cast<unsigned>(bits));
   RootBracket finer = bracket;
-  while (finer.high - finer.low > share * std::min<Rational>(abs(finer.low), abs(finer.high))) halve(once, finer);
+  while (finer.high - finer.low > share * std::min<Rational>(abs(finer.low), abs(finer.high))) halve(simple, finer);
   return finer;
 }
 
@@ -128,10 +151,9 @@ int sign_at_root(const Polynomial& q, const Polynomial& p, const RootBracket& br
   if (bracket.low == bracket.high) return q(bracket.low).sign();
   const Polynomial common = gcd(p, q);
   if (common.degree() > 0 && distinct_roots(common, {bracket.low, bracket.high}) > 0) return 0;
-  const Sturm sturm(q);
-  const IntegerPolynomial once = primitive(square_free(p));
+  const IntegerPolynomial simple = once(p), other = primitive(q);
   RootBracket finer = bracket;
-  while (finer.low != finer.high && sturm.roots(finer.low, finer.high) > 0) halve(once, finer);
+  while (finer.low != finer.high && !is_surely_rootless(other, finer)) halve(simple, finer);
   return q((finer.low + finer.high) / 2).sign();
 }
 
@@ -142,8 +164,8 @@ std::vector<PositiveInterval> negative_intervals(std::span<const Polynomial> pol
   Polynomial all{1};  // each root of any of them, once
   for (const Polynomial& p : polynomials) {
     if (p.is_zero()) continue;
-    const Polynomial once = square_free(p);
-    all = all * divide(once, gcd(all, once)).quotient;
+    const Polynomial simple = square_free(p);
+    all = all * divide(simple, gcd(all, simple)).quotient;
   }
   std::vector<RootBracket> ends{{0, 0}};
   for (const RootBracket& root : isolate_roots(all, {Rational(0), {}})) ends.push_back(refine(all, root));
@@ -171,7 +193,13 @@ std::vector<PositiveInterval> negative_intervals(const Polynomial& p) {
 }
 
 bool is_nonnegative(const Polynomial& p) {
-  return negative_intervals(p).empty();
+  if (p.is_zero()) return true;
+  if (p.leading().sign() < 0) return false;
+  const std::vector<Polynomial> factors = square_free_factors(p);
+  for (std::size_t k = 0; k < factors.size(); k += 2) {  // of odd multiplicity: there p changes its sign
+    if (!isolate_once(primitive(factors[k]), {Rational(0), {}}).empty()) return false;
+  }
+  return true;
 }
 
 }  // namespace mbk::lti

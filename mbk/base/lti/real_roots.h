@@ -13,7 +13,7 @@ struct Interval {
   std::optional<Rational> low, high;
 };
 
-/// How many different real roots p has in the interval (Sturm 1829). p must not be zero.
+/// How many different real roots p has in the interval. p must not be zero.
 [[nodiscard]] int distinct_roots(const Polynomial& p, const Interval& interval = {});
 
 /// A real root between two fractions: the only one in (low, high), neither end a root; or low = high, and that is it.
@@ -22,7 +22,8 @@ struct RootBracket {
   Rational low, high;
 };
 
-/// Every different real root of p in the interval, ascending. p must not be zero.
+/// Every different real root of p in the interval, ascending, exactly: by Descartes' rule of signs on halved intervals
+/// (Collins and Akritas 1976). p must not be zero.
 [[nodiscard]] std::vector<RootBracket> isolate_roots(const Polynomial& p, const Interval& interval = {});
 
 /// The bracket of a root of p halved until high − low ≤ 2^−bits |root|.

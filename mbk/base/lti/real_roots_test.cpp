@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "mbk/base/lti/integer_polynomial.h"
 #include "mbk/base/lti/test_polynomials.h"
 
 namespace mbk::lti {
@@ -38,6 +39,42 @@ TEST(DistinctRoots, AgreesWithTheRootsThatMadeThePolynomial) {
     const auto inside = std::count_if(distinct.begin(), distinct.end(),
                                       [&](const Rational& root) { return root > low && root < high; });
     EXPECT_EQ(distinct_roots(p, {low, high}), inside) << "trial " << trial;
+  }
+}
+
+/// Different roots in (low, high), neither of which is one, by Sturm's theorem (1829).
+int roots_by_sturm(const Polynomial& p, const Rational& low, const Rational& high) {
+  const Polynomial simple = square_free(p);
+  const auto sequence = signed_remainders(simple, simple.derivative());
+  const auto variations = [&](const Rational& x) {
+    int count = 0, before = 0;
+    for (const IntegerPolynomial& f : sequence) {
+      const int now = sign_at(f, x);
+      if (now * before < 0) ++count;
+      if (now != 0) before = now;
+    }
+    return count;
+  };
+  return variations(low) - variations(high);
+}
+
+TEST(IsolateRoots, FindsAsManyAsSturm) {
+  Random random(11);
+  for (int trial = 0; trial < 200; ++trial) {
+    Polynomial p = random_polynomial(random, 1 + trial % 9);
+    if (trial % 3 == 0) p = p * p * random_polynomial(random, 2);
+    if (trial % 4 == 0) p = p * p + Polynomial{Rational(trial % 8 - 4, 1000000)};  // pairs that almost touch
+    const Rational low = random_rational(random) - Rational(1, 97), high = low + abs(random_rational(random));
+    if (p(low).is_zero() || p(high).is_zero() || low == high) continue;
+    const auto brackets = isolate_roots(p, {low, high});
+    EXPECT_EQ(static_cast<int>(brackets.size()), roots_by_sturm(p, low, high)) << "trial " << trial;
+    for (const RootBracket& root : brackets) {
+      if (root.low == root.high) {
+        EXPECT_EQ(p(root.low), 0) << "trial " << trial;
+      } else {
+        EXPECT_EQ(roots_by_sturm(p, root.low, root.high), 1) << "trial " << trial;
+      }
+    }
   }
 }
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
@@ -11,7 +14,10 @@
 namespace mbk::recording {
 namespace {
 
-constexpr double kGap = 1.5;  ///< median intervals
+constexpr double kGap = 1.5;             ///< median intervals
+constexpr double kGapOfJittering = 1.2;  ///< median intervals, where the clock jitters by more than kJitter
+constexpr double kJitter = 0.02;         ///< of a median interval, robust standard deviation
+constexpr Index kAround = 16;            ///< samples on either side of a gap that show whether time has moved on
 constexpr Index kRunLength = 5;
 constexpr Index kRuns = 3;
 constexpr double kClippedFraction = 0.002;
@@ -33,6 +39,69 @@ void find_missing(const Recording& recording, std::vector<MissingSamples>& found
     while (i < recording.samples() && is_missing(i)) ++i;
     found.push_back({first, i - first, recording.time[first]});
   }
+}
+
+std::vector<Gap> long_intervals(const Vector& time, double longer_than) {
+  std::vector<Gap> found;
+  for (Index i = 1; i < time.size(); ++i) {
+    const double interval = time[i] - time[i - 1];
+    if (interval > longer_than) found.push_back({i - 1, time[i - 1], interval});
+  }
+  return found;
+}
+
+/// The interval of an even clock behind a jittering one: the median over many samples.
+double even_interval(const Vector& time) {
+  constexpr Index kLag = 64;
+  std::vector<double> intervals;
+  for (Index i = kLag; i < time.size(); ++i) intervals.push_back((time[i] - time[i - kLag]) / kLag);
+  return numeric::median(intervals);
+}
+
+/// By how many intervals the samples from sample `after` on are later than those up to `before`, had none been lost.
+double lost_intervals(const Vector& time, Index before, Index after, double interval) {
+  const auto phase = [&](Index from, Index to) {
+    std::vector<double> phases;
+    for (Index i = from; i < to; ++i) phases.push_back(time[i] - static_cast<double>(i) * interval);
+    return numeric::median(phases);
+  };
+  const double later = phase(after, std::min(time.size(), after + kAround));
+  return (later - phase(std::max<Index>(0, before + 1 - kAround), before + 1)) / interval;
+}
+
+/// Of long intervals that follow each other closely, as many of the longest as samples were lost there.
+void keep_longest(std::span<Gap> close, double lost, std::vector<Gap>& gaps) {
+  const auto count = std::clamp<std::ptrdiff_t>(std::lround(lost), 1, std::ssize(close));
+  std::ranges::sort(close, std::greater(), &Gap::length);
+  std::ranges::sort(close.first(static_cast<std::size_t>(count)), {}, &Gap::sample);
+  gaps.insert(gaps.end(), close.begin(), close.begin() + count);
+}
+
+/// A late stamp is followed by a short interval, a lost sample is not: behind it all stamps are later.
+std::vector<Gap> gaps_of_jittering(const Vector& time, double median) {
+  const double interval = even_interval(time);
+  std::vector<Gap> lasting = long_intervals(time, kGapOfJittering * median), gaps;
+  std::erase_if(lasting,
+                [&](const Gap& gap) { return !(lost_intervals(time, gap.sample, gap.sample + 1, interval) > 0.5); });
+  for (std::size_t begin = 0; begin < lasting.size();) {
+    std::size_t end = begin + 1;
+    while (end < lasting.size() && lasting[end].sample - lasting[end - 1].sample < kAround) ++end;
+    const double lost = lost_intervals(time, lasting[begin].sample, lasting[end - 1].sample + 1, interval);
+    keep_longest(std::span(lasting).subspan(begin, end - begin), lost, gaps);
+    begin = end;
+  }
+  return gaps;
+}
+
+/// @param intervals  those of `time` that are positive
+std::vector<Gap> find_gaps(const Vector& time, const std::vector<double>& intervals, double median) {
+  constexpr Index kMin = 256;
+  constexpr double kNormal = 1.4826;  // standard deviations in a median absolute deviation
+  std::vector<double> deviations;
+  for (const double interval : intervals) deviations.push_back(std::abs(interval - median));
+  const bool jitters = kNormal * numeric::median(deviations) > kJitter * median;
+  if (!jitters || time.size() < kMin || !time.allFinite()) return long_intervals(time, kGap * median);
+  return gaps_of_jittering(time, median);
 }
 
 void inspect_time(const Vector& time, Inspection& facts) {
@@ -60,10 +129,7 @@ void inspect_time(const Vector& time, Inspection& facts) {
   facts.interval_max = d.maxCoeff();
   const auto n = static_cast<double>(d.size());
   facts.interval_standard_deviation = d.size() > 1 ? std::sqrt((d.array() - d.mean()).square().sum() / (n - 1.0)) : 0.0;
-  for (Index i = 1; i < time.size(); ++i) {
-    const double interval = time[i] - time[i - 1];
-    if (interval > kGap * facts.interval_median) facts.gaps.push_back({i - 1, time[i - 1], interval});
-  }
+  facts.gaps = find_gaps(time, intervals, facts.interval_median);
   // The mean does not carry the rounding of single time stamps.
   const bool unbroken = facts.gaps.empty() && static_cast<Index>(intervals.size()) + 1 == time.size();
   facts.rate_hz = 1.0 / (unbroken ? d.mean() : facts.interval_median);

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/random.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/test_files.h"
 
@@ -44,6 +46,41 @@ TEST(Inspect, ReportsGaps) {
   EXPECT_EQ(facts.gaps[0].sample, 2);
   EXPECT_EQ(facts.gaps[0].time, 12);
   EXPECT_EQ(facts.gaps[0].length, 3);
+}
+
+/// 60 s at 1 kHz with `lost` samples lost, each by itself; stamps deviate by a standard deviation of `jitter`
+/// intervals.
+Recording jittering(double jitter, bool normal, int lost, std::vector<Index>& before_lost) {
+  numeric::Random random(5);
+  std::vector<double> times;
+  for (int i = 0, left = lost; i < 60000; ++i) {
+    if (left > 0 && i > 0 && i % 2500 == 0) {
+      --left;
+      before_lost.push_back(static_cast<Index>(times.size()) - 1);
+      continue;
+    }
+    const double deviation = normal ? random.normal() : std::sqrt(3.0) * (2.0 * random.uniform() - 1.0);
+    times.push_back(0.001 * (i + jitter * deviation));
+  }
+  Recording recording;
+  recording.time = Eigen::Map<const Vector>(times.data(), static_cast<Index>(times.size()));
+  return recording;
+}
+
+TEST(Inspect, TellsLostSamplesFromJitter) {
+  for (const double jitter : {0.01, 0.05, 0.1, 0.2}) {
+    for (const bool normal : {true, false}) {
+      for (const int lost : {0, 20}) {
+        std::vector<Index> before_lost;
+        const Inspection facts = inspect(jittering(jitter, normal, lost, before_lost));
+        ASSERT_EQ(facts.gaps.size(), before_lost.size()) << jitter << (normal ? " normal" : " uniform");
+        for (std::size_t k = 0; k < before_lost.size(); ++k) {
+          // with 20 % the interval beside may be longer than that of the lost sample
+          EXPECT_NEAR(double(facts.gaps[k].sample), double(before_lost[k]), jitter > 0.1 ? 3 : 0) << jitter;
+        }
+      }
+    }
+  }
 }
 
 TEST(Inspect, ReportsSamplesThatAreNaNInEveryChannel) {

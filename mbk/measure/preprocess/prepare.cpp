@@ -124,7 +124,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
                                             filters.smoothing.half_window())
                         : default_windows(how.protocol, signals->reference, clock, options.window);
   if (!plan) return tl::unexpected(plan.error());
-  if (auto ok = check_clock(clock, inspection.interval_median, *plan, trial.warnings); !ok) {
+  if (auto ok = check_clock(clock, inspection, *plan, trial.warnings); !ok) {
     return tl::unexpected(ok.error());
   }
   if (auto ok = check_finite(clock, *signals, *plan); !ok) return tl::unexpected(ok.error());

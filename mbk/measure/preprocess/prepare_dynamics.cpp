@@ -168,7 +168,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   made.recording_duration = inspection.duration + inspection.interval_median;
   const auto plan = default_windows(Protocol::free, {}, clock, options.signals.window);
   if (!plan) return tl::unexpected(plan.error());
-  if (auto ok = check_clock(clock, inspection.interval_median, *plan, made.warnings); !ok) {
+  if (auto ok = check_clock(clock, inspection, *plan, made.warnings); !ok) {
     return tl::unexpected(ok.error());
   }
   if (auto ok = check_joint_signals(*signals, *model.mechanism, clock, *plan); !ok) return tl::unexpected(ok.error());

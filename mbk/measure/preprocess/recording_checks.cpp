@@ -33,7 +33,9 @@ Result<void> check_choices(const Options& options) {
   return {};
 }
 
-Result<void> check_clock(const Clock& clock, double median, const WindowPlan& plan, std::vector<Warning>& warnings) {
+Result<void> check_clock(const Clock& clock, const Inspection& inspection, const WindowPlan& plan,
+                         std::vector<Warning>& warnings) {
+  const double median = inspection.interval_median;
   double sum = 0.0, largest = 0.0;
   Index count = 0;
   for (const Cut& cut : plan.cuts) {
@@ -45,7 +47,7 @@ Result<void> check_clock(const Clock& clock, double median, const WindowPlan& pl
             interval == 0.0 ? fmt::format("time repeats {}", at()) : fmt::format("time runs backwards {}", at()),
             "choose a window without it with --from and --to");
       }
-      if (interval > 1.5 * median) {
+      if (std::ranges::binary_search(inspection.gaps, i - 1, {}, &Gap::sample)) {
         return bad_data(
             fmt::format("a gap of {:.4g} s in time {}, where samples are {:.4g} s apart", interval, at(), median),
             "choose a window without it with --from and --to, or put the samples on an even clock with "

@@ -16,9 +16,8 @@ namespace mbk::preprocess {
 [[nodiscard]] Result<void> check_choices(const Options& options);
 
 /// Time inside the cuts must be even enough to be called even: it neither repeats nor runs backwards nor leaves a gap
-/// of more than 1.5 median intervals. Lesser jitter is left as it is, and warned of from 1 % on.
-/// @param median interval [s]
-[[nodiscard]] Result<void> check_clock(const Clock& clock, double median, const WindowPlan& plan,
+/// that inspection found. Lesser jitter is left as it is, and warned of from 1 % on.
+[[nodiscard]] Result<void> check_clock(const Clock& clock, const Inspection& inspection, const WindowPlan& plan,
                                        std::vector<Warning>& warnings);
 
 /// No sample may be missing (NaN in every channel) throughout the limits: what a session lost is not bridged.

@@ -92,7 +92,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   if (!plan) return tl::unexpected(plan.error());
   std::vector<Warning> warnings;
   if (auto ok = check_missing(clock, inspection.missing, limits); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_clock(clock, inspection.interval_median, *plan, warnings); !ok) {
+  if (auto ok = check_clock(clock, inspection, *plan, warnings); !ok) {
     return tl::unexpected(ok.error());
   }
   if (auto ok = check_joint_signals(*signals, mechanism, clock, *plan); !ok) return tl::unexpected(ok.error());

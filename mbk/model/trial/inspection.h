@@ -7,7 +7,8 @@
 
 namespace mbk {
 
-/// An interval of more than 1.5 times the median one.
+/// An interval of more than 1.5 times the median one. Where the clock jitters by more than 2 %: of more than 1.2 times,
+/// and all stamps behind it stay later by half an interval or more, as behind a lost sample.
 struct Gap {
   Index sample = 0;     ///< the last sample before it
   double time = 0.0;    ///< of that sample [s]
