@@ -3,7 +3,7 @@
 
 #include "apps/mbk/output.h"
 #include "apps/mbk/robot_commands.h"
-#include "mbk/measure/identify/robot_fit.h"
+#include "mbk/measure/identify/base_parameters.h"
 #include "mbk/model/robot_file/robot_file.h"
 #include "mbk/present/report/robot_description_text.h"
 #include "mbk/present/result/robot_description_json.h"

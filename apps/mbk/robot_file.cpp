@@ -33,6 +33,8 @@ Result<robot::RobotDescription> from_result(const std::filesystem::path& file) {
   model.delay = stored->delay;
   description->source = file.string();
   description->unstated.clear();
+  description->usable = stored->usable;
+  description->warnings = stored->warnings;
   return description;
 }
 
@@ -53,6 +55,11 @@ Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>&
   if (!description->unstated.empty()) {
     return bad_data(fmt::format("it does not say {}", fmt::join(description->unstated, ", ")),
                     "find them with 'mbk robot identify FILE... --robot ROBOT --json', or state them", file->string());
+  }
+  if (!description->usable) {
+    return fail(ErrorKind::not_usable,
+                fmt::format("its dynamics are not usable ({})", fmt::join(description->warnings, ", ")),
+                "identify the robot again, as the file's warnings advise", file->string());
   }
   return std::move(description->model);
 }

@@ -14,7 +14,8 @@ namespace mbk::app {
 [[nodiscard]] Result<robot::RobotDescription> describe_robot(const std::optional<std::filesystem::path>& file);
 
 /// The same, to compute a force with: every coefficient must be known.
-/// @fails  as describe_robot; data: the file leaves coefficients open (they are named).
+/// @fails  as describe_robot; data: the file leaves coefficients open (they are named); not usable: 'mbk robot
+/// identify' found them and said that they must not be used.
 [[nodiscard]] Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>& file);
 
 }  // namespace mbk::app

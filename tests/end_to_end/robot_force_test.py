@@ -8,7 +8,7 @@ import math
 import pathlib
 import shutil
 
-from command import BAD_DATA, FINE, WRONG_USAGE, Case, folder_of_logs, main, run
+from command import BAD_DATA, FINE, NOT_USABLE, WRONG_USAGE, Case, folder_of_logs, main, run
 
 ROBOTS = pathlib.Path(__file__).parents[2] / "examples/robots"
 STIFFNESS = [[421.57, -18.87], [-18.87, 213.35]]  # of the rig's trial K1_M1 [N/m]
@@ -122,6 +122,18 @@ class Force(Case):
         found = self.force(rig(), "--robot", stated)
         self.assertLess(max(found["force_comparison"]["all"]["RMSE"]), SENSOR)
         self.assertNotIn("standard_error_RMS", found)  # nobody knows how sure those numbers are
+
+    def test_a_robot_that_is_not_usable_gives_no_force(self):
+        free = made("free.h5", "simulate", "free_motion", "--quiet")
+        bad = self.folder / "turned.json"
+        self.mbk("robot", "identify", free, "--json", "--out", bad, "--channels",
+                 "time=time,q1=joint_1,q2=joint_2,tau1=-torque_1,tau2=-torque_2", code=NOT_USABLE)
+        out = self.folder / "force.h5"
+        for command in (("robot", "force", rig(), "--out", out),
+                        ("measure", rig(), "--force-source", "virtual")):
+            self.refused(NOT_USABLE, *command, "--robot", bad,
+                         says=["turned.json", "not usable", "inertia-not-positive", "identify the robot again"])
+        self.assertFalse(out.exists())
 
     def test_without_a_robot_it_is_the_published_one(self):
         published = self.file("robot.toml", "[robot]\nkind = \"planar\"\n\n[drive]\nterms = [\"viscous\"]\n")

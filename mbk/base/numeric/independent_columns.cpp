@@ -4,9 +4,10 @@
 
 namespace mbk::numeric {
 
-IndependentColumns independent_columns(const Matrix& Z, double tolerance) {
+IndependentColumns independent_columns(const Matrix& Z, double tolerance, double negligible) {
   const Index p = Z.cols();
   const Matrix small = Z.rows() > 4 * p ? householder_triangle(Z) : Z;
+  const double shortest = p == 0 ? 0.0 : negligible * small.colwise().norm().maxCoeff();
   Matrix directions(small.rows(), p);
   IndependentColumns found;
   for (Index j = 0; j < p; ++j) {
@@ -16,7 +17,7 @@ IndependentColumns independent_columns(const Matrix& Z, double tolerance) {
     for (int pass = 0; pass < 2; ++pass) {
       for (Index k = 0; k < count; ++k) rest -= directions.col(k).dot(rest) * directions.col(k);
     }
-    if (!(rest.norm() > tolerance * length)) continue;
+    if (!(length > shortest && rest.norm() > tolerance * length)) continue;
     directions.col(count) = rest.normalized();
     found.kept.push_back(j);
   }

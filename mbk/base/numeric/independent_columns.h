@@ -13,7 +13,8 @@ struct IndependentColumns {
 };
 
 /// From left to right: a column is kept where its distance from the span of those kept before it is more than
-/// `tolerance` of its length (modified Gram–Schmidt, twice). A column of zeros is never kept.
-[[nodiscard]] IndependentColumns independent_columns(const Matrix& Z, double tolerance);
+/// `tolerance` of its length (modified Gram–Schmidt, twice). A column of zeros is never kept, nor one whose length is
+/// at most `negligible` of the longest's: what rounding leaves of zeros.
+[[nodiscard]] IndependentColumns independent_columns(const Matrix& Z, double tolerance, double negligible = 0.0);
 
 }  // namespace mbk::numeric

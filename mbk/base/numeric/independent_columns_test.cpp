@@ -30,5 +30,12 @@ TEST(IndependentColumns, KeepsTheFirstOfTwins) {
   EXPECT_TRUE(independent_columns(Matrix::Zero(3, 2), 1e-9).kept.empty());
 }
 
+TEST(IndependentColumns, DoesNotKeepWhatRoundingLeavesOfZeros) {
+  Matrix Z = Matrix::Random(40, 3);
+  Z.col(1) *= 1e-16;
+  EXPECT_EQ(independent_columns(Z, 1e-6).kept.size(), 3U);
+  EXPECT_EQ(independent_columns(Z, 1e-6, 1e-9).kept, (std::vector<Index>{0, 2}));
+}
+
 }  // namespace
 }  // namespace mbk::numeric

@@ -11,8 +11,8 @@
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
-#include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/base_parameters.h"
 #include "mbk/measure/identify/regression.h"
 
 namespace mbk::identify {
@@ -108,17 +108,13 @@ class RobotFitter {
 
  private:
   Result<void> prepare();
+  void take_columns(const std::vector<Index>& free);
   Result<void> solve();
   void take_covariance();
   void judge(RobotIdentification& found) const;
   void describe(RobotIdentification& found) const;
   void check_inertia(RobotIdentification& found) const;
   [[nodiscard]] bool is_fixed(Index k) const { return std::ranges::find(options_.fixed, k) != options_.fixed.end(); }
-  /// What any motion could identify of the coefficients that are not fixed.
-  [[nodiscard]] int structural_rank() const {
-    const std::vector<Index> kept = structural_columns(model_, options_.fixed).kept;
-    return static_cast<int>(kept.size());
-  }
   [[nodiscard]] bool by_instruments() const { return options_.method == RobotMethod::instrumental_variables; }
   /// Residuals of the rows, N×n.
   [[nodiscard]] Matrix residuals(const Stack& rows) const {
@@ -136,6 +132,7 @@ class RobotFitter {
   const RobotFitOptions& options_;
   Stack rows_;
   Index n_ = 0, p_ = 0, lags_ = 0;
+  int structural_rank_ = 0;
   Vector sigma_, theta_;
   Matrix bread_, covariance_;  ///< of the columns that are kept, and of the delay's where it is estimated
   Matrix residuals_;
@@ -191,14 +188,28 @@ Result<void> RobotFitter::prepare() {
   free_names_.clear();
   const std::vector<robot::Coefficient> names = model_.coefficients();
   for (const Index k : all) free_names_.push_back(names[static_cast<std::size_t>(k)]);
-  constexpr double kApart = 1e-6;
-  columns_ = numeric::independent_columns(stacked(rows_.W, all, nullptr, sigma_), kApart);
-  kept_.clear();
-  for (const Index k : columns_.kept) kept_.push_back(all[static_cast<std::size_t>(k)]);
+  take_columns(all);
   if (kept_.empty()) {
     return bad_data("no joint moved: nothing of the robot's dynamics was excited", "move every joint");
   }
   return {};
+}
+
+/// Of the `free` coefficients those that the data identify, each one that any motion could.
+void RobotFitter::take_columns(const std::vector<Index>& free) {
+  constexpr double kApart = 1e-6, kNegligible = 1e-9;
+  const numeric::IndependentColumns base = structural_columns(model_, options_.fixed);
+  structural_rank_ = static_cast<int>(base.kept.size());
+  std::vector<Index> candidates;
+  for (const Index k : base.kept) candidates.push_back(free[static_cast<std::size_t>(k)]);
+  const numeric::IndependentColumns excited =
+      numeric::independent_columns(stacked(rows_.W, candidates, nullptr, sigma_), kApart, kNegligible);
+  columns_ = {{}, excited.combination * base.combination};
+  kept_.clear();
+  for (const Index k : excited.kept) {
+    columns_.kept.push_back(base.kept[static_cast<std::size_t>(k)]);
+    kept_.push_back(candidates[static_cast<std::size_t>(k)]);
+  }
 }
 
 Result<void> RobotFitter::solve() {
@@ -308,7 +319,7 @@ void RobotFitter::describe(RobotIdentification& found) const {
   }
   found.model.covariance(kept_, kept_) = covariance_.topLeftCorner(kept, kept);
   found.rank = static_cast<int>(kept);
-  found.structural_rank = structural_rank();
+  found.structural_rank = structural_rank_;
 
   const Matrix Z = stacked(rows_.W, kept_, nullptr, sigma_);
   const Vector length = Z.colwise().norm();
@@ -454,30 +465,6 @@ Result<RobotFit> RobotFitter::fit() {
 }
 
 }  // namespace
-
-numeric::IndependentColumns structural_columns(const robot::DynamicModel& model, const std::vector<Index>& fixed) {
-  const Index n = model.mechanism->joints();
-  const std::vector<robot::JointVector> postures = model.mechanism->postures(5);
-  const auto p = static_cast<Index>(model.coefficients().size());
-  const auto places = static_cast<Index>(postures.size());
-  const Index samples = std::max<Index>(20 * p, 100);
-  numeric::Random random(1);
-  robot::JointMotion motion{Matrix(samples, n), Matrix(samples, n), Matrix(samples, n)};
-  for (Index i = 0; i < samples; ++i) {
-    const robot::JointVector& at = postures[static_cast<std::size_t>((i * places) / samples)];
-    for (Index joint = 0; joint < n; ++joint) {
-      motion.position(i, joint) = at[joint] + random.uniform(-0.1, 0.1);
-      motion.velocity(i, joint) = random.uniform(-2.0, 2.0);
-      motion.acceleration(i, joint) = random.uniform(-10.0, 10.0);
-    }
-  }
-  std::vector<Index> all;
-  for (Index k = 0; k < p; ++k) {
-    if (std::ranges::find(fixed, k) == fixed.end()) all.push_back(k);
-  }
-  constexpr double kApart = 1e-8;
-  return numeric::independent_columns(stacked(model.regressors(motion), all, nullptr, Vector::Ones(n)), kApart);
-}
 
 Result<RobotFit> fit_robot(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_out,
                            const robot::DynamicModel& model, const RobotFitOptions& options) {

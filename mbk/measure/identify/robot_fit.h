@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/base/numeric/independent_columns.h"
 #include "mbk/model/robot/dynamic_model.h"
 #include "mbk/model/trial/prepared_dynamics.h"
 #include "mbk/model/trial/robot_identification.h"
@@ -24,23 +23,16 @@ struct RobotFit {
 };
 
 /// τ_j = W_j θ + e_j over all joints, each weighted by 1/σ_j of its own residual until that settles, over all trials in
-/// one fit. Columns that the data do not identify (distance below 10⁻⁶ of their length from the span of those before)
-/// are left out and said to be part of those that stay: base parameters (Gautier 1991). Standard errors: Newey–West
-/// with the joints' residuals together, widened as in newey_west_widening. The delay enters as δ τ̇ and is linearised:
-/// fit again with the torque shifted by it.
-/// With instruments R: θ = (Σ R_jᵀW_j/σ_j²)⁻¹ Σ R_jᵀτ_j/σ_j² (Janot et al. 2014), which noise of the measured motion
-/// does not bias as long as it is not in R.
+/// one fit. Of the base parameters of the robot (base_parameters.h), columns that the data do not identify (distance
+/// below 10⁻⁶ of their length from the span of those before) are left out too, and said to be part of those that stay.
+/// Standard errors: Newey–West with the joints' residuals together, widened as in newey_west_widening. The delay enters
+/// as δ τ̇ and is linearised: fit again with the torque shifted by it. With instruments R: θ = (Σ R_jᵀW_j/σ_j²)⁻¹ Σ
+/// R_jᵀτ_j/σ_j² (Janot et al. 2014), which noise of the measured motion does not bias as long as it is not in R.
 /// @param model  its bodies, drives and delay; of its parameters, those that are fixed count
 /// @param held_out  whole recordings that only judge; where there are none, the validation segments of `trials` do
 /// @fails  no trial; trials of different robots or rates; too few rows; a value is not finite; nothing is excited.
 [[nodiscard]] Result<RobotFit> fit_robot(const std::vector<PreparedDynamics>& trials,
                                          const std::vector<PreparedDynamics>& held_out,
                                          const robot::DynamicModel& model, const RobotFitOptions& options);
-
-/// What any motion could identify of a robot's coefficients, and what the others are made of: its base parameters.
-/// By the regressors of random motions; columns are counted among those that are not `fixed`. The motions are within
-/// the limits of the joints, always the same ones.
-[[nodiscard]] numeric::IndependentColumns structural_columns(const robot::DynamicModel& model,
-                                                             const std::vector<Index>& fixed = {});
 
 }  // namespace mbk::identify

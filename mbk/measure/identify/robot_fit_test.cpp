@@ -11,7 +11,6 @@
 #include "mbk/base/numeric/random.h"
 #include "mbk/model/robot/planar_mechanism.h"
 #include "mbk/model/robot/serial_chain.h"
-#include "mbk/model/robot/single_joint.h"
 
 namespace mbk::identify {
 namespace robot_fit_test {
@@ -339,17 +338,6 @@ TEST(RobotFit, RefusesWhatHoldsNothing) {
   EXPECT_FALSE(fit_robot({broken}, {}, model, {}));
   expect_refused({trial(model)}, model, "has no value", {.fixed = {40}});
   expect_refused({trial(model)}, model, "reach of the autocovariance", {.hac_lag_s = -1.0});
-}
-
-TEST(StructuralColumns, OfADriveWhoseMotorMovesWithItsBodyAreOneLess) {
-  const robot::DynamicModel model{std::make_shared<robot::SingleJoint>(robot::SingleJoint::Options{}),
-                                  {.motor_inertia = true},
-                                  Vector::Zero(5),
-                                  {}};
-  const numeric::IndependentColumns columns = structural_columns(model);
-  EXPECT_EQ(columns.kept, (std::vector<Index>{0, 2, 3, 4}));  // mass, viscous, coulomb, offset
-  EXPECT_NEAR(columns.combination(0, 1), 1.0, 1e-12);
-  EXPECT_EQ(structural_columns(model, {0}).kept, (std::vector<Index>{0, 1, 2, 3}));  // counted without the mass
 }
 
 }  // namespace robot_fit_test

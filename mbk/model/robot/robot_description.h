@@ -14,6 +14,8 @@ struct RobotDescription {
   std::string urdf;                   ///< the text of its URDF; empty where it has none
   std::string source;                 ///< the file it came from, or what else it is called
   std::vector<std::string> unstated;  ///< names of coefficients whose values the files leave open
+  bool usable = true;                 ///< false: what identified it said that its numbers must not be used
+  std::vector<std::string> warnings;  ///< of what identified it, their codes
 };
 
 }  // namespace mbk::robot

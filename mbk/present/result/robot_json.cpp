@@ -67,6 +67,10 @@ StoredRobot stored_from(const Json& json) {
   if (!is_covariance(stored.covariance)) throw Malformed{"'covariance' is not that of any numbers"};
   stored.delay = number_from(json.at("motor_delay_s"));
   if (!(std::abs(stored.delay) < 1.0)) throw Malformed{"the motor delay is not a number of seconds below 1"};
+  stored.usable = json.value("usable", true);
+  for (const Json& warning : json.value("warnings", Json::array())) {
+    stored.warnings.push_back(warning.at("code").get<std::string>());
+  }
   return stored;
 }
 

@@ -25,6 +25,8 @@ struct StoredRobot {
   Vector parameters;
   Matrix covariance;
   double delay = 0;  ///< [s]
+  bool usable = true;
+  std::vector<std::string> warnings;  ///< their codes
 };
 
 /// Reads back what `to_json` wrote.

@@ -72,6 +72,8 @@ TEST(RobotJson, ComesBackDigitForDigit) {
   EXPECT_EQ(stored->drive.stribeck_velocity, 0.07);
   EXPECT_EQ(stored->description, found.description);
   EXPECT_EQ(stored->urdf, found.urdf);
+  EXPECT_FALSE(stored->usable);
+  EXPECT_THAT(stored->warnings, ElementsAre("torque-unit"));
 }
 
 TEST(RobotJson, SaysHowEachCoefficientWasFound) {
