@@ -459,7 +459,7 @@ def _(test):  # leave --hac-lag at 1 s
 
 @advice_of("pole-outside-band")
 def _(test):  # excite the system there
-    raised = tf(test, "--poles", "3", "--zeros", "0", rows=behind_a_lag(0.006, 0.0002))
+    raised = tf(test, "--poles", "3", "--zeros", "0", rows=behind_a_lag(0.004, 0.0002))
     test.assertIn("excite", hint_of(raised, "pole-outside-band"))
     # of a pole that is excited there is no such word
     test.goes("pole-outside-band", raised, tf(test, "--poles", "3", "--zeros", "0", rows=behind_a_lag(0.02, 0.0002)))

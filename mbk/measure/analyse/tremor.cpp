@@ -126,7 +126,7 @@ void warn_of_tremor(const AssumptionTest& tremor, Identification& identification
        fmt::format("the force has a rhythm of {:.3g} Hz, {:.2g} {} (standard deviation), that the perturbation did not "
                    "make: the limb trembles, and M, B and K by least squares are biased",
                    tremor.frequency_hz, tremor.size, units_of(identification.motion).force),
-       "use --method iv: instrumental variables take it for noise"});
+       "instrumental variables take it for noise: use --method iv"});
 }
 
 }  // namespace mbk::analyse

@@ -132,9 +132,10 @@ class Checker {
       warn(WarningCode::fit_poor, fmt::format("the {} never changes, so that nothing of it can be explained", what),
            "check the force sensor and its channel");
       id_.usable = false;
-    } else if (fit.vaf.minCoeff() < kPoorVaf) {
+    } else if (const double least = std::min(fit.vaf.minCoeff(), fit.vaf_in_sample.minCoeff()); least < kPoorVaf) {
       warn(WarningCode::fit_poor,
-           fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}", fit.vaf.minCoeff(), what),
+           fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}{}", least, what,
+                       least < fit.vaf.minCoeff() ? " that made them" : ""),
            "the limb may have acted, or its reflexes may be strong: do not read M, B and K as a passive limb's; 'mbk "
            "passivity' shows by the energy whether it acted");
       if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;

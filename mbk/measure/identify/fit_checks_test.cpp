@@ -247,6 +247,15 @@ TEST(Warnings, APoorFitIsNamedAndStaysUsable) {
   EXPECT_TRUE(id.usable);
 }
 
+TEST(Warnings, APoorFitInSampleIsNamedThoughHeldOutDataHideIt) {
+  Identification id = identified(trial(arm(), {.noise = 0.3}));
+  id.fit.vaf_in_sample.setConstant(66.0);
+  id.fit.vaf.setConstant(73.0);
+  const Identification poor = judged(id);
+  EXPECT_THAT(codes(poor), ElementsAre("fit-poor"));
+  EXPECT_NE(poor.warnings.front().message.find("66.0 % of the force in one axis that made them"), std::string::npos);
+}
+
 TEST(Warnings, AModelWorseThanTheMeanIsUnusable) {
   PreparedTrial changed = trial(arm());
   const Segment held = changed.segments[1];
