@@ -74,7 +74,9 @@ TEST(Recovery, IsTheSameOnAnyNumberOfThreads) {
 TEST(MisspecificationStudy, WarnsWhereTheModelDoesNotHoldAndIsSilentWhereItDoes) {
   const auto table = misspecification_study({.runs = 2});
   ASSERT_TRUE(table.has_value()) << table.error().message;
-  EXPECT_GE(std::ranges::count_if(table->rows, [](const ValidationRow& row) { return row.judged(); }), 40);
+  const auto warned = [](const ValidationRow& row) { return row.what.ends_with(": warned"); };
+  EXPECT_GE(std::ranges::count_if(table->rows, warned), 40);
+  EXPECT_GE(std::ranges::count_if(table->rows, &ValidationRow::judged), 30);
   expect_nothing_refuted(*table);
 }
 
