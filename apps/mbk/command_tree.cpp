@@ -8,6 +8,7 @@
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/output.h"
 
 namespace mbk::app {
 namespace {
@@ -105,6 +106,13 @@ CommandText describe_command(CLI::App& app, std::vector<std::string> path) {
 
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& summary) {
   return parent.add_subcommand(name, summary);
+}
+
+int run_chosen(const CLI::App& parent, const Actions& actions) {
+  for (const auto& [name, action] : actions) {
+    if (parent.got_subcommand(name)) return action();
+  }
+  return kWrongUsage;
 }
 
 std::string CommandText::joined(const char* separator) const {

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace mbk::app {
 
@@ -14,6 +16,12 @@ std::string command_line(int argc, char** argv);
 
 /// A subcommand of `parent`. The one place that makes one: what CLI11 needs for it is compiled once.
 CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& summary);
+
+/// What each subcommand does, by its name.
+using Actions = std::vector<std::pair<std::string, Action>>;
+
+/// Runs the action of the subcommand that was typed; kWrongUsage where none was.
+int run_chosen(const CLI::App& parent, const Actions& actions);
 
 /// Each adds one subcommand to `app` and gives the action to run when it was chosen.
 /// @param typed the command line, which a report repeats

@@ -102,7 +102,7 @@ int run(int argc, char** argv) {
   app.formatter(std::make_shared<HelpFormatter>());
   app.failure_message(one_line);
 
-  const std::vector<std::pair<const char*, mbk::app::Action>> commands = {
+  const mbk::app::Actions commands = {
       {"measure", mbk::app::add_measure(app, mbk::app::command_line(argc, argv))},
       {"identify", mbk::app::add_identify(app)},
       {"tf", mbk::app::add_tf(app, mbk::app::command_line(argc, argv))},
@@ -133,10 +133,7 @@ int run(int argc, char** argv) {
     if (auto ok = mbk::app::Output().write(out.str()); !ok) return mbk::app::report_error(ok.error());
     return code == 0 ? mbk::app::kFine : mbk::app::kWrongUsage;
   }
-  for (const auto& [name, action] : commands) {
-    if (app.got_subcommand(name)) return action();
-  }
-  return mbk::app::kWrongUsage;
+  return mbk::app::run_chosen(app, commands);
 }
 
 }  // namespace

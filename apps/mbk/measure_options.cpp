@@ -14,8 +14,6 @@ namespace mbk::app {
 
 namespace {
 
-constexpr double kMilliseconds = 1000.0;
-
 void add_range_options(CLI::App& command, std::set<PlausibleQuantity>& ignored) {
   const char* const group = "Plausibility";
   const std::vector<std::string> names(kWordList<PlausibleQuantity>.begin(), kWordList<PlausibleQuantity>.end());

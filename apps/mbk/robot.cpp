@@ -109,17 +109,12 @@ Action add_robot(CLI::App& app) {
       "  mbk robot check my_experiment.toml --live\n"
       "  mbk robot identify free_motion.h5\n");
   group->require_subcommand(1);
-  const std::vector<std::pair<std::string, Action>> actions = {{"workspace", add_workspace(*group)},
-                                                               {"describe", add_robot_describe(*group)},
-                                                               {"identify", add_robot_identify(*group)},
-                                                               {"force", add_robot_force(*group)},
-                                                               {"check", add_robot_check(*group)}};
-  return [group, actions] {
-    for (const auto& [name, action] : actions) {
-      if (group->got_subcommand(name)) return action();
-    }
-    return kWrongUsage;
-  };
+  const Actions actions = {{"workspace", add_workspace(*group)},
+                           {"describe", add_robot_describe(*group)},
+                           {"identify", add_robot_identify(*group)},
+                           {"force", add_robot_force(*group)},
+                           {"check", add_robot_check(*group)}};
+  return [group, actions] { return run_chosen(*group, actions); };
 }
 
 }  // namespace mbk::app

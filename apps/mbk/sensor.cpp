@@ -16,8 +16,6 @@
 namespace mbk::app {
 namespace {
 
-constexpr double kMilliseconds = 1000.0;
-
 struct SensorCalibrateArguments {
   ReadingArguments reading;
   OutputArguments output;
@@ -177,8 +175,8 @@ Action add_sensor(CLI::App& app) {
       "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --json --out cell.json\n"
       "  mbk measure --sensor cell.json trial.csv\n"
       "  mbk sensor delay mass.h5 --mass 1.194");
-  const Action calibrate = add_calibrate(*command), delay = add_delay(*command);
-  return [command, calibrate, delay] { return command->got_subcommand("delay") ? delay() : calibrate(); };
+  const Actions actions = {{"calibrate", add_calibrate(*command)}, {"delay", add_delay(*command)}};
+  return [command, actions] { return run_chosen(*command, actions); };
 }
 
 }  // namespace mbk::app

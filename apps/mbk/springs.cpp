@@ -309,14 +309,9 @@ Action add_springs(CLI::App& app) {
       "Examples:\n"
       "  mbk springs find --stiffness 443.86,232.34,16.74 --at 393:-55\n"
       "  mbk springs field --help");
-  const std::vector<std::pair<const char*, Action>> actions = {
+  const Actions actions = {
       {"field", add_field(*command)}, {"find", add_find(*command)}, {"calibrate", add_calibrate(*command)}};
-  return [command, actions] {
-    for (const auto& [name, action] : actions) {
-      if (command->got_subcommand(name)) return action();
-    }
-    return kWrongUsage;
-  };
+  return [command, actions] { return run_chosen(*command, actions); };
 }
 
 }  // namespace mbk::app

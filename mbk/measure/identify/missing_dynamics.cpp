@@ -176,6 +176,11 @@ class Tester {
 
   [[nodiscard]] Vector stiffness(Index axis) const { return coefficients_.col(axis).segment(2 * n_, n_); }
 
+  /// Of what the assumption excludes, for one axis of the force.
+  [[nodiscard]] Index columns_of(Assumption assumption) const {
+    return assumption == Assumption::constant_stiffness ? waves_.cols() : n_;
+  }
+
   /// [ẍ ẋ x 1] and what the assumptions exclude.
   [[nodiscard]] Matrix regressors(const Motion& motion, const std::vector<Assumption>& added, Index axis) const {
     Matrix Z(rows(), 3 * n_ + 1);
@@ -263,10 +268,10 @@ class Tester {
   [[nodiscard]] std::optional<AssumptionTest> test(Assumption assumption, std::vector<Assumption> model) const {
     model.push_back(assumption);
     AssumptionTest result{assumption};
+    const Index last = columns_of(assumption);
     std::vector<AxisFit> fits;
     double gain = 0.0;
     for (Index axis = 0; axis < n_; ++axis) {
-      const Index last = excluded(assumption, measured_, stiffness(axis), waves_).cols();
       auto one = fit(regressors(measured_, model, axis), regressors(explained_, model, axis), force_.col(axis), last);
       if (!one) return std::nullopt;
       const double chance = numeric::f_probability_above(one->statistic, static_cast<double>(last), one->freedom);
@@ -290,7 +295,7 @@ class Tester {
   }
 
   [[nodiscard]] double size_of(Assumption assumption, const std::vector<AxisFit>& fits) const {
-    const Index tested = assumption == Assumption::constant_stiffness ? waves_.cols() : n_;
+    const Index tested = columns_of(assumption);
     Matrix M(n_, n_), K(n_, n_), added(n_, tested);
     for (Index axis = 0; axis < n_; ++axis) {
       const Vector& b = fits[static_cast<std::size_t>(axis)].coefficients;
@@ -342,7 +347,7 @@ class Tester {
     Vector ramp(rows());
     for (Index k = 0; k < rows(); ++k) ramp[k] = (static_cast<double>(k) + 0.5) / count - 0.5;
     for (Index axis = 0; axis < n_; ++axis) {
-      const Vector residual = force_.col(axis) - regressors(measured_, {}, axis) * fitted(axis);
+      const Vector residual = residual_of(axis);
       const Vector heights = waves.transpose() * residual;
       double beside = 0.0;
       for (Index j = kTrend; j < kBesideTrend; ++j) beside += static_cast<double>(j + 1) * heights[j] * heights[j];
@@ -360,12 +365,11 @@ class Tester {
     return result;
   }
 
-  /// Coefficients of an axis for positions from the mean of these rows.
-  [[nodiscard]] Vector fitted(Index axis) const {
-    Vector b = coefficients_.col(axis);
-    const Matrix Z = regressors(measured_, {}, axis);
-    b[3 * n_] = (force_.col(axis) - Z.leftCols(3 * n_) * b.head(3 * n_)).mean();
-    return b;
+  /// What the fit leaves of an axis, without its mean.
+  [[nodiscard]] Vector residual_of(Index axis) const {
+    const Matrix motion = regressors(measured_, {}, axis).leftCols(3 * n_);
+    const Vector residual = force_.col(axis) - motion * coefficients_.col(axis).head(3 * n_);
+    return residual.array() - residual.mean();
   }
 
   const Regression& r_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/measure/preprocess/straight_lines.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
@@ -13,13 +14,6 @@ namespace {
 
 bool is_force(const Channel& channel) {
   return channel.name == kForceChannels.one_axis || std::ranges::count(kForceChannels.plane, channel.name) > 0;
-}
-
-/// The signal at `when`, which is within `time`; `from` is the sample at or before which to look on.
-double value_at(const Vector& time, const Vector& values, double when, Index& from) {
-  while (from + 2 < time.size() && time[from + 1] <= when) ++from;
-  const double share = (when - time[from]) / (time[from + 1] - time[from]);
-  return values[from] + share * (values[from + 1] - values[from]);
 }
 
 }  // namespace
@@ -44,8 +38,11 @@ Result<Recording> undo_force_delay(const Recording& recording, double delay) {
     const Vector values = channel.values;
     channel.values = values.segment(begin, end - begin);
     if (!is_force(channel)) continue;
-    Index from = 0;
-    for (Index i = begin; i < end; ++i) channel.values[i - begin] = value_at(time, values, time[i] + delay, from);
+    StraightLines between(time);
+    for (Index i = begin; i < end; ++i) {
+      between.move_to(time[i] + delay);
+      channel.values[i - begin] = between.value_of(values);
+    }
   }
   return result;
 }

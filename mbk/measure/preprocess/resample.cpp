@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "mbk/measure/preprocess/straight_lines.h"
+
 namespace mbk::preprocess {
 
 Result<Recording> resample(const Recording& recording, Hertz rate) {
@@ -30,16 +32,13 @@ Result<Recording> resample(const Recording& recording, Hertz rate) {
   Recording even = recording;
   even.time.resize(count);
   for (Channel& channel : even.channels) channel.values.resize(count);
-  Index left = 0;
+  StraightLines between(recording.time);
   for (Index i = 0; i < count; ++i) {
     const double t = first + static_cast<double>(i) / rate.value;
-    while (left < n - 2 && recording.time[left + 1] <= t) ++left;
-    const double weight = (t - recording.time[left]) / (recording.time[left + 1] - recording.time[left]);
+    between.move_to(t);
     even.time[i] = t;
     for (std::size_t c = 0; c < even.channels.size(); ++c) {
-      const Vector& values = recording.channels[c].values;
-      even.channels[c].values[i] =
-          weight == 0.0 ? values[left] : (1.0 - weight) * values[left] + weight * values[left + 1];
+      even.channels[c].values[i] = between.value_of(recording.channels[c].values);
     }
   }
   return even;

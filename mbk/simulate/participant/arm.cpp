@@ -34,6 +34,15 @@ Matrix symmetric(const std::array<double, 3>& parts) {
   return (Matrix2d() << parts[0], parts[2], parts[2], parts[1]).finished();
 }
 
+/// Where the limb rests.
+Vector2d rest_of(const ArmOptions& options) {
+  struct Rest {
+    Vector2d operator()(const TwoLinkArm::Options& arm) const { return arm.equilibrium; }
+    Vector2d operator()(const impedance::Model& limb) const { return limb.x0; }
+  };
+  return std::visit(Rest{}, options.limb);
+}
+
 }  // namespace
 
 ArmOptions relaxed_arm_options() {
@@ -70,18 +79,6 @@ Result<ArmOptions> participant_options(int participant) {
   options.limb = *limb;
   return options;
 }
-
-namespace {
-
-Vector2d rest_of(const ArmOptions& options) {
-  struct Rest {
-    Vector2d operator()(const TwoLinkArm::Options& arm) const { return arm.equilibrium; }
-    Vector2d operator()(const impedance::Model& limb) const { return limb.x0; }
-  };
-  return std::visit(Rest{}, options.limb);
-}
-
-}  // namespace
 
 Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
   struct CreateLimb {

@@ -122,17 +122,10 @@ std::vector<Misspecification> broken() {
   const auto stiffer = [](std::vector<participant::StiffnessAt> schedule) {
     return [schedule](Scenario& s) { stiffness_changes(s, schedule); };
   };
-  const auto along_one_line = [](Scenario& s) {
-    perturbation::RandomBinaryPlan plan;
-    plan.quantity = perturbation::Quantity::position;
-    plan.sequence.amplitude = 0.008;
-    plan.angle = std::numbers::pi / 4.0;
-    s.perturbation.kind = plan;
-  };
   std::vector<Misspecification> list = {
       {"both joints moved alike", sine, warning,
        [](Scenario& s) { sines(s).phases = perturbation::MultisinePlan::Phases::schroeder; }},
-      {"moved along one line", sine, warning, along_one_line},
+      {"moved along one line", sine, warning, perturb_along_a_diagonal},
       {"force late by 1 ms", sine, nothing, late(0.001)},
       {"force late by 3 ms", sine, nothing, late(0.003)},
       {"force late by 10 ms", sine, warning, late(0.010)},

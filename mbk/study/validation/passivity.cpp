@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -31,15 +30,6 @@ void make_small(Scenario& scenario) {
   std::get<perturbation::MultisinePlan>(scenario.perturbation.kind).peak /= 8.0;
 }
 
-/// ±8 mm along a diagonal, by the hand.
-void make_binary(Scenario& scenario) {
-  perturbation::RandomBinaryPlan plan;
-  plan.quantity = perturbation::Quantity::position;
-  plan.sequence.amplitude = 0.008;
-  plan.angle = std::numbers::pi / 4.0;
-  scenario.perturbation.kind = plan;
-}
-
 /// The joints at one frequency alone.
 void make_sine(Scenario& scenario) {
   std::get<perturbation::MultisinePlan>(scenario.perturbation.kind).harmonics = {10};
@@ -48,7 +38,7 @@ void make_sine(Scenario& scenario) {
 constexpr std::array kDrives = {Drive{"multisine", "relaxed_sinusoidal", true, as_it_is},
                                 Drive{"small multisine", "relaxed_sinusoidal", true, make_small},
                                 Drive{"one sine", "relaxed_sinusoidal", true, make_sine},
-                                Drive{"random binary", "relaxed_sinusoidal", true, make_binary},
+                                Drive{"random binary", "relaxed_sinusoidal", true, perturb_along_a_diagonal},
                                 Drive{"pulses", "relaxed_underdamped", true, as_it_is},
                                 Drive{"2 N pulses", "rigid_underdamped_2N", false, as_it_is}};
 

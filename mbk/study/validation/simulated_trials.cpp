@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "mbk/base/numeric/parallel.h"
 
 namespace mbk::validation {
@@ -40,6 +42,14 @@ Result<laboratory::Scenario> with_limb(laboratory::Scenario scenario, int number
   auto& arm = std::get<participant::ArmOptions>(std::get<laboratory::PlanarTrial>(scenario.trial).load);
   std::get<participant::TwoLinkArm::Options>(arm.limb).joints = limb->joints;
   return scenario;
+}
+
+void perturb_along_a_diagonal(laboratory::Scenario& scenario) {
+  perturbation::RandomBinaryPlan plan;
+  plan.quantity = perturbation::Quantity::position;
+  plan.sequence.amplitude = 0.008;
+  plan.angle = std::numbers::pi / 4.0;
+  scenario.perturbation.kind = plan;
 }
 
 Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, const StudyOptions& options) {

@@ -21,6 +21,9 @@ namespace mbk::validation {
 /// @fails  as participant_limb
 [[nodiscard]] Result<laboratory::Scenario> with_limb(laboratory::Scenario scenario, int number);
 
+/// ±8 mm along a diagonal, by the hand, at random moments.
+void perturb_along_a_diagonal(laboratory::Scenario& scenario);
+
 /// Participants of the thesis whose limbs studies of behaviour use.
 inline constexpr std::array kArms = {1, 4, 5};
 
