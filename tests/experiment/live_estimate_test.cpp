@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <new>
+#include <string>
 
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
@@ -35,8 +37,8 @@ number = 1
 )";
 
 /// The journal of a whole trial.
-journal::Journal recorded() {
-  const Trial trial = read_experiment(kExperiment, "experiment.toml", laboratory::read_simulation).value().front();
+journal::Journal recorded(const std::string& experiment = kExperiment) {
+  const Trial trial = read_experiment(experiment, "experiment.toml", laboratory::read_simulation).value().front();
   const auto robot = laboratory::simulated_robot(trial).value();
   const auto plan = make_plan(trial).value();
   journal::Journal journal{header_of(plan, robot->facts()), {}, {}, {}};
@@ -51,15 +53,32 @@ journal::Journal recorded() {
   return journal;
 }
 
+/// As far as it had come `seconds` after the perturbation began.
+journal::Journal until(journal::Journal journal, double seconds) {
+  journal.ticks.erase(
+      std::ranges::find_if(journal.ticks, [&](const journal::Tick& tick) { return tick.perturbation_time > seconds; }),
+      journal.ticks.end());
+  return journal;
+}
+
+measurement::Options with_handle() {
+  measurement::Options options;
+  options.identify.handle_mass = 0.194;
+  options.passivity = false;
+  return options;
+}
+
+bool warns_of_a_change(const Measurement& measured) {
+  return std::ranges::count(measured.identification.warnings, WarningCode::stiffness_changes, &Warning::code) > 0;
+}
+
 bool warns_of_resampling(const Measurement& measured) {
   return std::ranges::count(measured.identification.warnings, WarningCode::resampled, &Warning::code) > 0;
 }
 
 TEST(LiveEstimate, MissedTicksAreBridgedAndSaid) {
   journal::Journal journal = recorded();
-  measurement::Options options;
-  options.identify.handle_mass = 0.194;
-  options.passivity = false;
+  const measurement::Options options = with_handle();
   const auto whole = estimate(journal, options);
   ASSERT_TRUE(whole) << whole.error().line();
   EXPECT_FALSE(warns_of_resampling(*whole));
@@ -77,6 +96,52 @@ TEST(LiveEstimate, MissedTicksAreBridgedAndSaid) {
     for (Index j : {0, 1}) {
       EXPECT_NEAR(other.model.K(i, j), one.model.K(i, j), 0.2 * one.standard_error.K(i, j));
       EXPECT_NEAR(other.model.M(i, j), one.model.M(i, j), 0.2 * one.standard_error.M(i, j));
+    }
+  }
+}
+
+constexpr const char* kForAWhile = R"(
+[robot]
+handle_mass_kg = 0.194
+[control]
+kind = "position"
+[perturbation]
+kind = "multisine"
+duration_s = 40
+moving_in_s = 2
+[participant]
+kind = "linear"
+mass_kg = [[1.3, -0.9], [-0.9, 1.9]]
+damping_Ns_per_m = [[5.8, -2.1], [-2.1, 10.6]]
+stiffness_N_per_m = [[42, -29], [-29, 125]]
+)";
+
+TEST(LiveEstimate, AStiffnessThatTriplesIsFollowedWithinFiveSeconds) {
+  const journal::Journal steady = recorded(kForAWhile);
+  const auto before = estimate_now(steady, with_handle());
+  ASSERT_TRUE(before) << before.error().line();
+  EXPECT_EQ(before->from, 0.0);
+  EXPECT_FALSE(warns_of_a_change(before->measured));
+  const Matrix K = before->measured.identification.model.K;
+
+  const journal::Journal changed = recorded(std::string(kForAWhile) + R"(
+[[participant.stiffness_at]]
+time_s = 22
+factor = 1
+[[participant.stiffness_at]]
+time_s = 22.1
+factor = 3
+)");
+  const auto change = std::ranges::find_if(changed.ticks, [](const journal::Tick& tick) { return tick.time >= 22.1; });
+  ASSERT_NE(change, changed.ticks.end());
+  const double at = change->perturbation_time;
+  for (double later : {5.0, 10.0, 15.0}) {
+    const auto now = estimate_now(until(changed, at + later), with_handle());
+    ASSERT_TRUE(now) << now.error().line();
+    EXPECT_TRUE(warns_of_a_change(now->measured)) << later;
+    EXPECT_NEAR(now->from, at + later - 5.0, 0.1);
+    for (Index i : {0, 1}) {
+      EXPECT_NEAR(now->measured.identification.model.K(i, i), 3.0 * K(i, i), 0.2 * 3.0 * K(i, i)) << later;
     }
   }
 }

@@ -349,8 +349,8 @@ void Console::decide(Action action) {
 }
 
 void Console::estimated(const LiveEstimate::Estimate& estimate) {
-  std::string json =
-      fmt::format(R"({{"type":"estimate","final":{},"perturbed_s":{:.3f},)", estimate.final, estimate.perturbed);
+  std::string json = fmt::format(R"({{"type":"estimate","final":{},"from_s":{:.3f},"perturbed_s":{:.3f},)",
+                                 estimate.final, estimate.from, estimate.perturbed);
   if (estimate.measured) {
     json += "\"result\":" + result::to_json(*estimate.measured) + "}";
   } else {

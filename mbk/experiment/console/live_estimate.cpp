@@ -17,7 +17,10 @@ namespace mbk::console {
 namespace {
 
 constexpr auto kInterval = std::chrono::seconds(1);
-constexpr double kShortest = 2.0;  // of a perturbation worth a look [s]
+constexpr double kShortest = 2.0;      // of a perturbation worth a look [s]
+constexpr double kRecent = 5.0;        // that tell of the limb as it is now, once it has changed [s]
+constexpr double kChange = 0.3;        // of the stiffness, by norm, from which it changed
+constexpr double kBeyondChance = 8.0;  // standard errors: each second of each trial asks, of four elements
 constexpr int kNiceness = 10;
 
 double perturbed(const journal::Journal& journal) {
@@ -33,6 +36,15 @@ void cut_unread(Recording& recording, int latency) {
   for (Channel& channel : recording.channels) channel.values.conservativeResize(samples);
 }
 
+/// By more than chance, and by enough to matter. What the fit of all so far holds back at its end, a change there above
+/// all, its own test of a constant stiffness does not see.
+bool stiffness_differs(const Identification& now, const Identification& all) {
+  const Matrix difference = now.model.K - all.model.K;
+  const Matrix chance = (now.standard_error.K.array().square() + all.standard_error.K.array().square()).sqrt().matrix();
+  return difference.norm() > kChange * all.model.K.norm() &&
+         (difference.array().abs() > kBeyondChance * chance.array()).any();
+}
+
 }  // namespace
 
 Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options) {
@@ -45,6 +57,29 @@ Result<Measurement> estimate(const journal::Journal& journal, const measurement:
   if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
   const Recording window = preprocess::perturbation_only(std::move(*recording));
   return measurement::measure({&window, 1}, options);
+}
+
+Result<Recent> estimate_now(const journal::Journal& journal, const measurement::Options& options) {
+  auto whole = estimate(journal, options);
+  if (!whole) return tl::unexpected(whole.error());
+  const double from = perturbed(journal) - kRecent;
+  if (from < kRecent) return Recent{0.0, std::move(*whole)};
+  measurement::Options last = options;
+  last.preprocess.window.from_s = from;
+  auto recent = estimate(journal, last);
+  if (!recent) return Recent{0.0, std::move(*whole)};
+  const Identification& all = whole->identification;
+  Identification& now = recent->identification;
+  const auto warned = [](const Identification& one) {
+    return std::ranges::find(one.warnings, WarningCode::stiffness_changes, &Warning::code) != one.warnings.end();
+  };
+  if (!warned(all) && !stiffness_differs(now, all)) return Recent{0.0, std::move(*whole)};
+  if (!warned(now)) {
+    now.warnings.push_back({WarningCode::stiffness_changes,
+                            fmt::format("the stiffness changed: M, B and K are those of the last {:g} s", kRecent),
+                            "ask for the same state throughout, or measure the parts with --from and --to"});
+  }
+  return Recent{from, std::move(*recent)};
 }
 
 LiveEstimate::LiveEstimate(std::function<void(const Estimate&)> done)
@@ -86,16 +121,20 @@ void LiveEstimate::finish() {
 void LiveEstimate::look(std::span<const journal::Tick> came, bool final) noexcept {
   double seen = 0.0;
   const auto give_up = [&](const char* why) {
-    done_({final, seen, bad_data(fmt::format("not estimated: {}", why), "the recording can be measured later")});
+    done_({final, seen, 0.0, bad_data(fmt::format("not estimated: {}", why), "the recording can be measured later")});
   };
   try {
     try {
       journal_.ticks.insert(journal_.ticks.end(), came.begin(), came.end());
       seen = perturbed(journal_);
       if (seen < kShortest) {
-        if (final) done_({final, seen, bad_data(fmt::format("the perturbation went on for {:.1f} s only", seen))});
-      } else if (final || (!came.empty() && came.back().perturbing())) {
-        done_({final, seen, estimate(journal_, options_)});
+        if (final) done_({final, seen, 0.0, bad_data(fmt::format("the perturbation went on for {:.1f} s only", seen))});
+      } else if (final) {
+        done_({final, seen, 0.0, estimate(journal_, options_)});
+      } else if (!came.empty() && came.back().perturbing()) {
+        auto now = estimate_now(journal_, options_);
+        const double from = now ? now->from : 0.0;
+        done_({final, seen, from, std::move(now).map([](Recent&& one) { return std::move(one.measured); })});
       }
     } catch (const std::exception& error) {
       give_up(error.what());

@@ -19,13 +19,26 @@ namespace mbk::console {
 /// @fails  data: nothing was perturbed yet; as journal::to_recording and measurement::measure.
 [[nodiscard]] Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options);
 
-/// M, B, K of a trial while it runs: about once a second `estimate` of all ticks so far, by a thread of its own that
-/// every other goes before. The last one, of the whole trial, is the one of its recording.
+/// What a trial that still runs shows of the limb as it is now.
+struct Recent {
+  double from = 0.0;  ///< time of the perturbation from which it counts [s]; 0 where the limb did not change
+  Measurement measured;
+};
+
+/// `estimate` of all ticks so far, or, where the last five seconds have another stiffness (8 standard errors of the
+/// difference of an element, and 30 % of K by norm), or that of all warns of a change, of those five seconds with
+/// the warning stiffness-changes: a mean over two states of the limb is that of neither.
+/// @fails  as `estimate`
+[[nodiscard]] Result<Recent> estimate_now(const journal::Journal& journal, const measurement::Options& options);
+
+/// M, B, K of a trial while it runs: about once a second `estimate_now`, by a thread of its own that every other goes
+/// before. The last one, `estimate` of the whole trial, is the one of its recording.
 class LiveEstimate {
  public:
   struct Estimate {
     bool final = false;      ///< of the whole trial
     double perturbed = 0.0;  ///< time of the perturbation that it saw [s]
+    double from = 0.0;       ///< and from which on it counts [s]
     Result<Measurement> measured;
   };
 

@@ -55,10 +55,12 @@ export class EstimatePanel {
     }
     const units = unitsOf(result);
     const history = this.tightening.add(result.standard_error as unknown as Record<string, Value[][]>);
-    const seconds = (estimate.perturbed_s ?? 0).toFixed(0);
+    const from = estimate.from_s ?? 0;
+    const seconds = ((estimate.perturbed_s ?? 0) - from).toFixed(0);
+    const span = estimate.final ? ` of the whole perturbation, ${seconds} s` : from > 0 ? ` of the last ${seconds} s: the stiffness changed` : ` so far, from ${seconds} s`;
     const ellipses = ellipsePanels(result);
     this.element.replaceChildren(
-      title(`${estimate.final ? ` of the whole perturbation, ${seconds} s` : ` so far, from ${seconds} s`}, by ${methodNames[result.method]}`),
+      title(`${span}, by ${methodNames[result.method]}`),
       !result.usable ? "" : h(
         "div",
         { class: "matrices" },
