@@ -278,9 +278,11 @@ TEST(Prediction, IsNoneWhereTheResultOrTheModelIsNotUsable) {
   EXPECT_FALSE(predict_passivity({}, true, kBand).verdict);
 }
 
-TEST(Prediction, IsUndecidedAtMostWhereTheModelFitsPoorlyOrNoBandIsLeft) {
+TEST(Prediction, IsUndecidedAtMostWhereTheModelFitsPoorlyOrDoesNotHoldOrNoBandIsLeft) {
   for (const double k_a : {2.0, 40.0}) {  // passive and active otherwise
-    for (const WarningCode code : {WarningCode::fit_poor, WarningCode::held_out_fit_poor}) {
+    for (const WarningCode code :
+         {WarningCode::fit_poor, WarningCode::held_out_fit_poor, WarningCode::missing_dynamics,
+          WarningCode::nonlinear_stiffness, WarningCode::dry_friction, WarningCode::stiffness_changes}) {
       Identification id = arm(k_a);
       id.warnings.push_back({code, "", ""});
       const PassivityPrediction poor = predicted(id);
