@@ -68,12 +68,8 @@ measurement::Options with_handle() {
   return options;
 }
 
-bool warns_of_a_change(const Measurement& measured) {
-  return std::ranges::count(measured.identification.warnings, WarningCode::stiffness_changes, &Warning::code) > 0;
-}
-
-bool warns_of_resampling(const Measurement& measured) {
-  return std::ranges::count(measured.identification.warnings, WarningCode::resampled, &Warning::code) > 0;
+bool warns_of(const Measurement& measured, WarningCode code) {
+  return std::ranges::count(measured.identification.warnings, code, &Warning::code) > 0;
 }
 
 TEST(LiveEstimate, MissedTicksAreBridgedAndSaid) {
@@ -81,7 +77,7 @@ TEST(LiveEstimate, MissedTicksAreBridgedAndSaid) {
   const measurement::Options options = with_handle();
   const auto whole = estimate(journal, options);
   ASSERT_TRUE(whole) << whole.error().line();
-  EXPECT_FALSE(warns_of_resampling(*whole));
+  EXPECT_FALSE(warns_of(*whole, WarningCode::resampled));
 
   std::size_t k = 0;
   std::erase_if(journal.ticks, [&](const journal::Tick&) { return ++k % 1000 < 3; });  // two in a thousand
@@ -89,7 +85,7 @@ TEST(LiveEstimate, MissedTicksAreBridgedAndSaid) {
   for (journal::Tick& tick : journal.ticks) tick.number = number++;  // they were never made: none is lost
   const auto with_gaps = estimate(journal, options);
   ASSERT_TRUE(with_gaps) << with_gaps.error().line();
-  EXPECT_TRUE(warns_of_resampling(*with_gaps));
+  EXPECT_TRUE(warns_of(*with_gaps, WarningCode::resampled));
   const Identification &one = whole->identification, &other = with_gaps->identification;
   // what is bridged is far shorter than the fastest motion: a small part of the doubt that there is anyway
   for (Index i : {0, 1}) {
@@ -121,7 +117,7 @@ TEST(LiveEstimate, AStiffnessThatTriplesIsFollowedWithinFiveSeconds) {
   const auto before = estimate_now(steady, with_handle());
   ASSERT_TRUE(before) << before.error().line();
   EXPECT_EQ(before->from, 0.0);
-  EXPECT_FALSE(warns_of_a_change(before->measured));
+  EXPECT_FALSE(warns_of(before->measured, WarningCode::stiffness_changes));
   const Matrix K = before->measured.identification.model.K;
 
   const journal::Journal changed = recorded(std::string(kForAWhile) + R"(
@@ -138,7 +134,7 @@ factor = 3
   for (double later : {5.0, 10.0, 15.0}) {
     const auto now = estimate_now(until(changed, at + later), with_handle());
     ASSERT_TRUE(now) << now.error().line();
-    EXPECT_TRUE(warns_of_a_change(now->measured)) << later;
+    EXPECT_TRUE(warns_of(now->measured, WarningCode::stiffness_changes)) << later;
     EXPECT_NEAR(now->from, at + later - 5.0, 0.1);
     for (Index i : {0, 1}) {
       EXPECT_NEAR(now->measured.identification.model.K(i, i), 3.0 * K(i, i), 0.2 * 3.0 * K(i, i)) << later;

@@ -45,9 +45,8 @@ bool stiffness_differs(const Identification& now, const Identification& all) {
          (difference.array().abs() > kBeyondChance * chance.array()).any();
 }
 
-}  // namespace
-
-Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options) {
+/// The perturbation in it, as far as its readings have come.
+Result<Recording> perturbation_of(const journal::Journal& journal) {
   auto recording = journal::to_recording(journal);
   if (!recording) return tl::unexpected(recording.error());
   const auto holds = [&](const char* name) {
@@ -55,18 +54,27 @@ Result<Measurement> estimate(const journal::Journal& journal, const measurement:
   };
   if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
   if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
-  const Recording window = preprocess::perturbation_only(std::move(*recording));
-  return measurement::measure({&window, 1}, options);
+  return preprocess::perturbation_only(std::move(*recording));
+}
+
+}  // namespace
+
+Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options) {
+  const auto perturbation = perturbation_of(journal);
+  if (!perturbation) return tl::unexpected(perturbation.error());
+  return measurement::measure({&*perturbation, 1}, options);
 }
 
 Result<Recent> estimate_now(const journal::Journal& journal, const measurement::Options& options) {
-  auto whole = estimate(journal, options);
+  const auto perturbation = perturbation_of(journal);
+  if (!perturbation) return tl::unexpected(perturbation.error());
+  auto whole = measurement::measure({&*perturbation, 1}, options);
   if (!whole) return tl::unexpected(whole.error());
   const double from = perturbed(journal) - kRecent;
   if (from < kRecent) return Recent{0.0, std::move(*whole)};
   measurement::Options last = options;
   last.preprocess.window.from_s = from;
-  auto recent = estimate(journal, last);
+  auto recent = measurement::measure({&*perturbation, 1}, last);
   if (!recent) return Recent{0.0, std::move(*whole)};
   const Identification& all = whole->identification;
   Identification& now = recent->identification;

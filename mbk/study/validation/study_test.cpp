@@ -91,7 +91,7 @@ TEST(PassivityStudy, NeverCallsARelaxedArmActiveAndHearsTheEnergyOfOneThatActs) 
 }
 
 TEST(LiveEstimate, ItsIntervalsHoldTheTruth) {
-  const auto table = live_estimate_study({.runs = 30, .seed = 5});  // `mbk validate live-estimate` takes 200
+  const auto table = live_estimate_study({.runs = 30, .seed = 5});  // `mbk validate live-estimate` takes 500
   expect_nothing_refuted(table);
   ASSERT_EQ(table->rows.size(), 4u * 13 + 1);
   ASSERT_TRUE(table->rows.back().judged());

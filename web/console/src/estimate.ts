@@ -54,8 +54,9 @@ export class EstimatePanel {
       return;
     }
     const units = unitsOf(result);
-    const history = this.tightening.add(result.standard_error as unknown as Record<string, Value[][]>);
     const from = estimate.from_s ?? 0;
+    // those of a few seconds are wider than those of all: they did not narrow
+    const history = from > 0 ? [] : this.tightening.add(result.standard_error as unknown as Record<string, Value[][]>);
     const seconds = ((estimate.perturbed_s ?? 0) - from).toFixed(0);
     const span = estimate.final ? ` of the whole perturbation, ${seconds} s` : from > 0 ? ` of the last ${seconds} s: the stiffness changed` : ` so far, from ${seconds} s`;
     const ellipses = ellipsePanels(result);
