@@ -27,6 +27,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # std::string's, and members of a std::variant that nothing set, where there are none.
   target_compile_options(mbk_settings INTERFACE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow
                          -Wno-restrict -Wno-maybe-uninitialized)
+  # Its garbage is left lying until a gigabyte of it is there, which saves a tenth of the time of compiling.
+  target_compile_options(mbk_settings INTERFACE --param=ggc-min-heapsize=1048576)
 endif()
 if(MBK_WARNINGS_AS_ERRORS)
   target_compile_options(mbk_settings INTERFACE -Werror)

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """mbk manual: every command has a page that man reads, and the page says what --help says."""
 
+import functools
+import pathlib
 import re
 import shutil
 import subprocess
+import tempfile
 import unittest
 
-from command import WRONG_USAGE, Case, main
+from command import FINE, WRONG_USAGE, Case, main, run
 from help_tree import every_command
 
 SECTIONS = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "SEE ALSO"]
@@ -29,27 +32,30 @@ def squeezed(text):
     return re.sub(r"\s+", " ", text)
 
 
-class Manual(Case):
-    def pages(self):
-        """Each command's page as a file, as a package installs them."""
-        folder = self.folder / "man1"
-        self.fine("manual", "--pages", folder)
-        return {command: folder / f"{command.name}.1" for command in every_command()}
+@functools.lru_cache(maxsize=None)
+def pages():
+    """Each command's page as a file, as a package installs them."""
+    folder = tempfile.TemporaryDirectory(prefix="mbk-manual-")
+    unittest.addModuleCleanup(folder.cleanup)
+    if run("manual", "--pages", folder.name).code != FINE:
+        raise AssertionError("the pages cannot be written")
+    return {command: pathlib.Path(folder.name) / f"{command.name}.1" for command in every_command()}
 
+
+class Manual(Case):
     def ran(self, *command):
         process = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
         return process.stdout + process.stderr
 
     def test_there_is_one_page_for_each_command_and_no_other(self):
-        pages = self.pages()
-        self.assertEqual(sorted(path.name for path in (self.folder / "man1").iterdir()),
-                         sorted(path.name for path in pages.values()))
-        for command, path in pages.items():
+        self.assertEqual(sorted(path.name for path in pages()[every_command()[0]].parent.iterdir()),
+                         sorted(path.name for path in pages().values()))
+        for command, path in pages().items():
             self.assertEqual(self.fine("manual", *command.path).out, path.read_text())
 
     def test_every_option_stands_in_its_page(self):
-        for command in every_command():
-            page = plain(self.fine("manual", *command.path).out)
+        for command, path in pages().items():
+            page = plain(path.read_text())
             for name, value in command.options.items():
                 with self.subTest(command=command.name, option=name):
                     self.assertRegex(page, rf"(?m)^(-\w, )?{re.escape(name)}(, --[-\w]+)?"
@@ -66,9 +72,9 @@ class Manual(Case):
             self.assertIn(words, page)
 
     def test_sections_stand_in_their_order(self):
-        for command in every_command():
+        for command, path in pages().items():
             with self.subTest(command.name):
-                found = re.findall(r"(?m)^\.SH (.*)$", self.fine("manual", *command.path).out)
+                found = re.findall(r"(?m)^\.SH (.*)$", path.read_text())
                 self.assertEqual([one for one in found if one in SECTIONS], SECTIONS)
                 if "Example" in command.text:
                     self.assertIn("EXAMPLES", found)
@@ -86,39 +92,39 @@ class Manual(Case):
         self.assertIn("\\fB4\\fR\ncomputed but not usable\n", self.fine("manual", "measure").out)
 
     def test_a_line_of_text_is_never_taken_for_a_request(self):
-        for command in every_command():
-            for line in self.fine("manual", *command.path).out.splitlines():
+        for path in pages().values():
+            for line in path.read_text().splitlines():
                 if line.startswith((".", "'")):
                     self.assertRegex(line, r"^\.(TH|SH|SS|TP|PP|EX|EE|RS|RE)\b")
 
     def test_every_page_that_is_referred_to_exists(self):
-        pages = {path.name for path in self.pages().values()}
-        for command in every_command():
-            for name in re.findall(r"([-a-z]+)\(1\)", plain(self.fine("manual", *command.path).out)):
-                self.assertIn(f"{name}.1", pages, command.name)
+        names = {path.name for path in pages().values()}
+        for command, path in pages().items():
+            for name in re.findall(r"([-a-z]+)\(1\)", plain(path.read_text())):
+                self.assertIn(f"{name}.1", names, command.name)
 
     @needs("mandoc")
     def test_mandoc_finds_nothing_wrong(self):
-        complaints = self.ran("mandoc", "-T", "lint", "-W", "warning", *self.pages().values()).splitlines()
+        complaints = self.ran("mandoc", "-T", "lint", "-W", "warning", *pages().values()).splitlines()
         # A page belongs to a version and not to a day: the same sources give the same bytes.
         self.assertEqual([one for one in complaints if "missing date" not in one], [])
 
     @needs("lexgrog")
     def test_lexgrog_finds_name_and_summary(self):
-        for command, path in self.pages().items():
+        for command, path in pages().items():
             said = self.ran("lexgrog", path)
             self.assertIn(f'"{command.name} - ', said)
 
     @needs("man")
     def test_man_prints_it_without_a_warning(self):
-        for path in self.pages().values():
+        for path in pages().values():
             process = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", path], timeout=60, check=True,
                                      capture_output=True, text=True, env={"LC_ALL": "C.UTF-8", "PATH": "/usr/bin:/bin"})
             self.assertEqual(process.stderr, "", path)
             self.assertIn("\nSEE ALSO\n", re.sub(".\x08", "", process.stdout))  # bold is a sign printed over itself
 
     def test_pages_that_are_there_are_kept(self):
-        self.pages()
+        self.fine("manual", "--pages", self.folder / "man1")
         self.refused(WRONG_USAGE, "manual", "--pages", self.folder / "man1", says="--overwrite")
         self.fine("manual", "--pages", self.folder / "man1", "--overwrite")
 

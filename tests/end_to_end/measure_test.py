@@ -198,5 +198,30 @@ class Repeatability(Case):
         self.assertEqual(renamed, plain)
 
 
+class JitteringClock(Case):
+    """Stamps that deviate by a tenth of an interval: the recorded times are the times, or the message says why not."""
+
+    def measured(self, scenario, stamps):
+        experiment = self.file("jitter.toml", run("simulate", "--show", scenario).out + stamps)
+        self.fine("simulate", experiment, "--out", self.folder / "trial.h5", "--quiet", "--overwrite")
+        return results_of(self.folder / "trial.h5")
+
+    def test_it_changes_neither_protocol_nor_model(self):
+        for scenario in ("relaxed_sinusoidal", "relaxed_underdamped"):
+            steady = self.measured(scenario, "")
+            for stamps, said in (("actual", "sampled at the recorded times"), ("nominal", None)):
+                with self.subTest(scenario, stamps=stamps):
+                    found = self.measured(scenario, f'\n[sensors.clock]\njitter_us = 100\ntimestamps = "{stamps}"\n')
+                    self.assertEqual(found["protocol"], steady["protocol"])
+                    for matrix in "MBK":
+                        for one, other, se in zip(flat(found["model"][matrix]), flat(steady["model"][matrix]),
+                                                  flat(steady["standard_error"][matrix])):
+                            self.assertLess(abs(one - other), 0.5 * se, matrix)
+                    messages = [one["message"] for one in found["warnings"] if one["code"] == "clock-jitter"]
+                    self.assertEqual(len(messages), 1 if said else 0, "stamps as planned show nothing")
+                    if said:
+                        self.assertIn(said, messages[0])
+
+
 if __name__ == "__main__":
     main()

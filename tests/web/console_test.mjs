@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, open, pictures, scrollThrough, start, startDouble, violations } from "./browser.mjs";
+import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, pictures, scrollThrough, start, startDouble, violations } from "./browser.mjs";
 
 after(() => {
   endPrograms(); // of tests that failed
@@ -424,13 +424,11 @@ test("a report that the console serves is drawn under the policy of its own scri
   const { operator, tell, has, code } = await robotReports();
   tell(`report ${file}`);
   await has(".trials", "Open the report");
-  const served = await open(await operator.page.getByRole("link", { name: "Open the report" }).evaluate((link) => link.href));
-  await scrollThrough(served.page);
-  await served.page.locator("[_echarts_instance_] svg, [_echarts_instance_] canvas").first().waitFor(); // drawn by its script
-  assert.deepEqual(served.said, []);
-  assert.deepEqual(served.outside(), []);
-  await take(served.page, "console-report");
-  await served.close();
+  await onPage(await operator.page.getByRole("link", { name: "Open the report" }).evaluate((link) => link.href), async (page) => {
+    await scrollThrough(page);
+    await page.locator("[_echarts_instance_] svg, [_echarts_instance_] canvas").first().waitFor(); // drawn by its script
+    await take(page, "console-report");
+  });
   tell("quit");
   assert.equal(await ended(operator, { code }), 0);
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, makeLog, measure, numbers, open, scrollThrough, simulate, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, makeLog, measure, numbers, onPage, scrollThrough, simulate, violations } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -18,13 +18,6 @@ const active = measure("active", pushed);
 const oneAxis = measure("one-axis", joint, "--bootstrap", "60");
 const several = measure("several", rigid, pushed);
 const all = { undecided, active, oneAxis };
-
-async function onPage(file, look) {
-  const { page, said, close: done } = await open(file);
-  await look(page);
-  assert.deepEqual(said, []);
-  await done();
-}
 
 /** Value and both ends, as withInterval writes them. */
 function assertInterval(read, name, value, [low, high]) {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
 import { withDiagnostics } from "./diagnostics.mjs";
 
 after(closeBrowser);
@@ -96,17 +96,13 @@ test("the arm of a simulated participant lies under the ellipses, its links in t
   await done();
 });
 
-test("the page is quiet, asks no network for anything and holds its licences", async () => {
-  const { page, said, outside, close: done } = await open(onePage);
+test("the page is quiet, asks no network for anything and holds its licences", () => onPage(onePage, async (page) => {
   await scrollThrough(page);
-  assert.deepEqual(said, []);
-  assert.deepEqual(outside(), []);
   const licences = await page.$eval(".licences", (element) => element.textContent);
   for (const words of ["Apache License", "Copyright 2017-2026 The Apache Software Foundation", "Baidu Inc.", "Microsoft Corporation", "Mike Bostock"]) {
     assert.ok(licences.includes(words), words);
   }
-  await done();
-});
+}));
 
 for (const [what, file, prepare] of [
   ["one recording with every data table open", onePage, (page) => page.$$eval("details", (all) => all.forEach((d) => (d.open = true)))],
@@ -114,14 +110,11 @@ for (const [what, file, prepare] of [
   ["a result that is not usable", withPlots(unusable, "unusable-plots"), undefined],
   ["several recordings, all open", withPlots(several, "several-plots"), (page) => page.$$eval("details.trial", (all) => all.forEach((d) => (d.open = true)))],
 ]) {
-  test(`axe finds no violation: ${what}`, async () => {
-    const { page, said, close: done } = await open(file);
+  test(`axe finds no violation: ${what}`, () => onPage(file, async (page) => {
     await prepare?.(page);
     await scrollThrough(page);
     assert.deepEqual(await violations(page), []);
-    assert.deepEqual(said, []);
-    await done();
-  });
+  }));
 }
 
 test("the keyboard reaches the content first, zooms a chart and shows all again", async () => {
@@ -299,14 +292,13 @@ test("undefined numbers are said to be undefined", async () => {
     result.excitation.rank = 3;
     document.trials[0].diagnostics = none(document.trials[0].diagnostics);
   });
-  const { page, said, close: done } = await open(file);
-  await scrollThrough(page);
-  assert.deepEqual(said, []);
-  const read = await numbers(page, "#trial-1-model");
-  assert.equal(read.K00.shown, "undefined");
-  assert.doesNotMatch(await page.textContent("main"), /NaN(?! throughout)|null|Infinity|\[object/);
-  assert.deepEqual(await violations(page), []);
-  await done();
+  await onPage(file, async (page) => {
+    await scrollThrough(page);
+    const read = await numbers(page, "#trial-1-model");
+    assert.equal(read.K00.shown, "undefined");
+    assert.doesNotMatch(await page.textContent("main"), /NaN(?! throughout)|null|Infinity|\[object/);
+    assert.deepEqual(await violations(page), []);
+  });
 });
 
 test("a report without diagnostics, and a pooled one, are whole", async () => {
@@ -345,11 +337,10 @@ test("the same inputs and options give the same bytes", () => {
 
 test("pictures of each kind of report, to be looked at", async () => {
   for (const [name, file] of [["one", onePage], ["relaxed", withPlots(measure("relaxed2", relaxed), "relaxed-plots")], ["one-axis", withPlots(oneAxis, "joint-plots")], ["unusable", withPlots(unusable, "unusable-plots")], ["several", withPlots(several, "several-plots")]]) {
-    const { page, said, close: done } = await open(file);
-    const pdf = await picture(page, name);
-    const pages = pdf.toString("latin1").match(/\/Type \/Page\b/g).length;
-    assert.ok(pages >= 4 && pages <= (name === "several" ? 40 : 14), `${name}: ${pages} pages`);
-    assert.deepEqual(said, []);
-    await done();
+    await onPage(file, async (page) => {
+      const pdf = await picture(page, name);
+      const pages = pdf.toString("latin1").match(/\/Type \/Page\b/g).length;
+      assert.ok(pages >= 4 && pages <= (name === "several" ? 40 : 14), `${name}: ${pages} pages`);
+    });
   }
 });

@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, mbk, numbers, open, picture, pictures, scrollThrough, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, mbk, numbers, onPage, open, picture, pictures, scrollThrough, violations } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -73,14 +73,6 @@ const every = changed(real.file, "every", (page) => {
   page.drawings["figure-4.3"] = ["#0072b2", "#d55e00", "#009e73"].map((colour, k) => drawing(`${["First", "Second", "Third"][k]} pulse`, colour));
   page.drawings["figure-3.1"] = [drawing("Only one", "#0072b2")];
 });
-
-async function onPage(file, look, options = {}) {
-  const { page, said, outside, close: done } = await open(file, options);
-  await look(page);
-  assert.deepEqual(said, []);
-  assert.deepEqual(outside(), []);
-  await done();
-}
 
 const openAll = (page) => page.$$eval("details", (all) => all.forEach((one) => (one.open = true)));
 const shownArticles = (page) => page.$$eval("article", (all) => all.filter((one) => !one.hidden).map(({ id }) => id));

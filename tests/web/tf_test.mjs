@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, folder, makeLog, mbk, numbers, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, folder, makeLog, mbk, numbers, onPage, picture, scrollThrough, simulate, violations } from "./browser.mjs";
 import { join } from "node:path";
 
 after(closeBrowser);
@@ -31,16 +31,12 @@ const discrete = changed(chosen.file, "discrete", ({ result }) => {
   result.denominator = [1, -1.5, 0.75];
 });
 
-async function onPage(file, look) {
-  const { page, said, outside, close: done } = await open(file);
+const onWholePage = (file, look) => onPage(file, async (page) => {
   await scrollThrough(page);
   await look(page);
-  assert.deepEqual(said, []);
-  assert.deepEqual(outside(), []);
-  await done();
-}
+});
 
-test("coefficients, poles, zeros and gain are those of --json", () => onPage(chosen.file, async (page) => {
+test("coefficients, poles, zeros and gain are those of --json", () => onWholePage(chosen.file, async (page) => {
   const { json } = chosen;
   const read = await numbers(page, "main");
   for (const { name, value, standard_error } of json.parameters) {
@@ -59,12 +55,12 @@ test("coefficients, poles, zeros and gain are those of --json", () => onPage(cho
 }));
 
 test("the formula is the model, in s with a delay and in q", async () => {
-  await onPage(inverted.file, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(s\) = \([\d.]+\) \/ \(s² \+ [\d.]+ s \+ [\d.]+\)/));
-  await onPage(chosen.file, async (page) => assert.match(await page.textContent(".formula"), /e−0\.002 s/));
-  await onPage(discrete, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(q\) = \(0\.25 q⁻¹\) \/ \(1 − 1\.5 q⁻¹ \+ 0\.75 q⁻²\)/));
+  await onWholePage(inverted.file, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(s\) = \([\d.]+\) \/ \(s² \+ [\d.]+ s \+ [\d.]+\)/));
+  await onWholePage(chosen.file, async (page) => assert.match(await page.textContent(".formula"), /e−0\.002 s/));
+  await onWholePage(discrete, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(q\) = \(0\.25 q⁻¹\) \/ \(1 − 1\.5 q⁻¹ \+ 0\.75 q⁻²\)/));
 });
 
-test("the impedance has the M, B, K of --json", () => onPage(inverted.file, async (page) => {
+test("the impedance has the M, B, K of --json", () => onWholePage(inverted.file, async (page) => {
   const read = await numbers(page, "#impedance");
   for (const name of ["M", "B", "K"]) {
     const { value, standard_error } = inverted.json.impedance[name];
@@ -74,13 +70,13 @@ test("the impedance has the M, B, K of --json", () => onPage(inverted.file, asyn
   assert.match(await page.textContent("#impedance"), /N·m·s\/rad/);
 }));
 
-test("the table of orders has every model and says which was chosen", () => onPage(chosen.file, async (page) => {
+test("the table of orders has every model and says which was chosen", () => onWholePage(chosen.file, async (page) => {
   const rows = await page.$$eval("#orders tbody tr", (all) => all.map((row) => row.textContent));
   assert.equal(rows.length, chosen.json.orders.length);
   rows.forEach((row, k) => assert.equal(/chosen/.test(row), chosen.json.orders[k].chosen, row));
 }));
 
-test("the Bode plot holds the response and both ends of its interval", () => onPage(chosen.file, async (page) => {
+test("the Bode plot holds the response and both ends of its interval", () => onWholePage(chosen.file, async (page) => {
   const figure = page.locator("figure.chart-figure", { has: page.locator("#bode") });
   await figure.locator("details.data-table summary").focus();
   await page.keyboard.press("Enter");
@@ -94,7 +90,7 @@ test("the Bode plot holds the response and both ends of its interval", () => onP
   assert.equal(await figure.locator(".legend", { hasText: "excited band" }).count(), 1);
 }));
 
-test("the Nyquist plot has one scale, its marks on the curve, and an ellipse for each frequency of the band", () => onPage(chosen.file, async (page) => {
+test("the Nyquist plot has one scale, its marks on the curve, and an ellipse for each frequency of the band", () => onWholePage(chosen.file, async (page) => {
   const { frequency_response: r, excited_band_hz: [low, high] } = chosen.json;
   const drawn = await page.$eval("svg.nyquist[role=img]", (svg) => ({
     ellipses: [...svg.querySelectorAll(".region ellipse")].map((e) => [Number(e.getAttribute("rx")), Number(e.getAttribute("ry")), e.getAttribute("transform")]),
@@ -112,7 +108,7 @@ test("the Nyquist plot has one scale, its marks on the curve, and an ellipse for
 }));
 
 for (const [name, file] of Object.entries({ inverted: inverted.file, chosen: chosen.file, discrete })) {
-  test(`axe finds no violation: ${name}`, () => onPage(file, async (page) => {
+  test(`axe finds no violation: ${name}`, () => onWholePage(file, async (page) => {
     await page.$$eval("details", (all) => all.forEach((one) => (one.open = true)));
     assert.deepEqual(await violations(page), []);
   }));
@@ -126,7 +122,7 @@ test("undefined numbers are said to be undefined, and nothing to draw is no erro
     document.simulation = { held_out: false, time_s: [], measured: [], simulated: [] };
     result.usable = false;
   });
-  return onPage(file, async (page) => {
+  return onWholePage(file, async (page) => {
     assert.match(await page.textContent(".verdict"), /Not usable/);
     assert.doesNotMatch(await page.textContent("main"), /NaN|null|Infinity|\[object/);
     assert.deepEqual(await violations(page), []);
@@ -137,7 +133,7 @@ test("what stands in a recording or an option stays text, and the same options g
   const hostile = "</script><img src=x onerror=\"document.title='owned'\">";
   const args = [joint, "--input=-F", "--output", "x", "--poles", "2", "--zeros", "0", "--report-note", hostile];
   const one = identify("hostile", ...args);
-  await onPage(one.file, async (page) => {
+  await onWholePage(one.file, async (page) => {
     assert.equal(await page.textContent(".note"), hostile);
     assert.notEqual(await page.title(), "owned");
   });
@@ -149,7 +145,7 @@ test("what stands in a recording or an option stays text, and the same options g
 
 test("pictures of each kind, and A4 pages on which nothing is too wide", async () => {
   for (const [name, file] of Object.entries({ "tf-inverted": inverted.file, "tf-orders": chosen.file, "tf-discrete": discrete })) {
-    await onPage(file, async (page) => {
+    await onWholePage(file, async (page) => {
       const pages = (await picture(page, name)).toString("latin1").match(/\/Type \/Page\b/g).length;
       assert.ok(pages >= 3 && pages <= 10, `${name}: ${pages} pages`);
       await page.emulateMedia({ media: "print" });

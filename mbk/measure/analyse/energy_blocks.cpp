@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -19,24 +18,24 @@ namespace {
 
 constexpr std::size_t kEnoughBlocks = 6;  ///< that they agree in sign by chance: 2⁻⁶ = 1.6 % < 2.5 %
 
-/// b does not stand above the line from a to c, as points (S, −E).
+/// b does not stand above the line from a to c, as points (S, −E); where a and b have the same S, not above a.
 bool below_line(const EnergySums& a, const EnergySums& b, const EnergySums& c) {
+  if (a.squared_velocity == b.squared_velocity) return b.absorbed >= a.absorbed;
   const double ab_s = b.squared_velocity - a.squared_velocity, ab_e = a.absorbed - b.absorbed,
                ac_s = c.squared_velocity - a.squared_velocity, ac_e = a.absorbed - c.absorbed;
   return ab_e * ac_s <= ac_e * ab_s;
 }
 
-std::vector<EnergySums> upper_hull(const std::vector<EnergySums>& points) {
-  std::vector<EnergySums> hull;
-  for (const EnergySums& point : points) {
-    if (!hull.empty() && hull.back().squared_velocity == point.squared_velocity) {
-      if (point.absorbed >= hull.back().absorbed) continue;
-      hull.pop_back();
-    }
-    while (hull.size() > 1 && below_line(hull[hull.size() - 2], hull.back(), point)) hull.pop_back();
-    hull.push_back(point);
+/// For each point the next vertex of the upper hull of the points from it on; its own number where there is none.
+std::vector<std::size_t> next_vertices(const std::vector<EnergySums>& points) {
+  std::vector<std::size_t> next(points.size());
+  std::iota(next.begin(), next.end(), 0U);
+  for (std::size_t i = points.size() - 1; i-- > 0;) {
+    std::size_t vertex = i + 1;
+    while (next[vertex] != vertex && below_line(points[i], points[vertex], points[next[vertex]])) vertex = next[vertex];
+    next[i] = vertex;
   }
-  return hull;
+  return next;
 }
 
 /// What a bootstrap is about.
@@ -120,34 +119,41 @@ void decide(bool perturbations, EnergyAccount& account) {
 }  // namespace
 
 EnergyBlock energy_block(double duration, std::vector<EnergySums> sums) {
-  std::vector<EnergySums> hull = upper_hull(sums);
-  return {duration, std::move(sums), std::move(hull)};
+  std::vector<std::size_t> next = next_vertices(sums);
+  return {duration, std::move(sums), std::move(next)};
 }
 
 double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
                         double first_share) {
   double end = 0.0;
   for (const std::size_t k : order) end += blocks[k].sums.back().squared_velocity;
+  if (!(end > 0.0)) return kNaN;
   const double first = first_share * end;
   double largest = kNaN;
   EnergySums before;
   for (const std::size_t k : order) {
-    const EnergyBlock& block = blocks[k];
-    const EnergySums& own = block.sums.back();
-    std::span<const EnergySums> points;
-    if (before.squared_velocity > 0.0 && before.squared_velocity >= first) {
-      points = block.hull;
-    } else if (before.squared_velocity + own.squared_velocity >= first) {
-      points = block.sums;  // only some of them count, and the hull is that of all
+    const std::vector<EnergySums>& sums = blocks[k].sums;
+    const std::vector<std::size_t>& next = blocks[k].next;
+    const auto too_early = [&](const EnergySums& sum) {
+      return before.squared_velocity + sum.squared_velocity < first;
+    };
+    const auto shortage = [&](std::size_t i) {
+      return -(before.absorbed + sums[i].absorbed) / (before.squared_velocity + sums[i].squared_velocity);
+    };
+    auto vertex = static_cast<std::size_t>(std::ranges::partition_point(sums, too_early) - sums.begin());
+    if (vertex < sums.size()) {
+      double highest = shortage(vertex);
+      // Along the hull the slope rises to the vertex that the steepest line touches, and falls from there on.
+      while (next[vertex] != vertex) {
+        vertex = next[vertex];
+        const double following = shortage(vertex);
+        if (following < highest) break;
+        highest = following;
+      }
+      if (!(highest <= largest)) largest = highest;
     }
-    for (const EnergySums& point : points) {
-      const double s = before.squared_velocity + point.squared_velocity;
-      if (!(s >= first && s > 0.0)) continue;
-      const double shortage = -(before.absorbed + point.absorbed) / s;
-      if (!(shortage <= largest)) largest = shortage;
-    }
-    before.squared_velocity += own.squared_velocity;
-    before.absorbed += own.absorbed;
+    before.squared_velocity += sums.back().squared_velocity;
+    before.absorbed += sums.back().absorbed;
   }
   return largest;
 }

@@ -16,13 +16,14 @@ struct EnergySums {
 
 /// One block of a window: the sums at each of its samples, since its begin.
 struct EnergyBlock {
-  double duration = 0;           ///< [s]
-  std::vector<EnergySums> sums;  ///< after each interval; S never falls. The last are those of the block.
-  std::vector<EnergySums> hull;  ///< those of `sums` at which λ can be largest, whatever went before
+  double duration = 0;            ///< [s]
+  std::vector<EnergySums> sums;   ///< after each interval; S never falls. The last are those of the block.
+  std::vector<std::size_t> next;  ///< for each of `sums` the next at which λ can be larger; the last vertex has its own
 };
 
-/// A block with its hull: the vertices of the upper hull of the points (S, −E). λ = (−E₀ − E)/(S₀ + S) is the slope of
-/// the line from (−S₀, E₀), to the left of them all, and a line from there touches the upper hull at a vertex.
+/// A block with the upper hulls of its points (S, −E): of all of them, and of those from any one on. Before the block
+/// are S₀ and E₀. λ = (−E₀ − E)/(S₀ + S) is the slope of the line from (−S₀, E₀), to the left of them all, and the
+/// steepest such line touches the upper hull at a vertex.
 /// @param sums  not empty
 [[nodiscard]] EnergyBlock energy_block(double duration, std::vector<EnergySums> sums);
 

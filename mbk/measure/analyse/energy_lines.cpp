@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "mbk/base/dsp/autocorrelation.h"
+#include "mbk/base/dsp/fourier.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -63,6 +65,25 @@ double unlike_itself(const Matrix& signal, Index lag, Index step, double varianc
   return sum / (2.0 * variance * static_cast<double>(count));
 }
 
+/// The same of every sample for each lag from 0 to `last`: Σ |x(i + l) − x(i)|² is two sums of squares less twice the
+/// autocorrelation.
+Vector unlike_by_lag(const Matrix& signal, Index last, double variance) {
+  const Matrix centred = signal.rowwise() - signal.colwise().mean();
+  const Vector squares = centred.rowwise().squaredNorm();
+  std::vector<Vector> axes;
+  for (Index axis = 0; axis < centred.cols(); ++axis) axes.emplace_back(centred.col(axis));
+  const Vector alike = squares.sum() * dsp::autocorrelation(axes, last);
+  Vector unlike(last + 1);
+  double earlier = squares.sum(), later = earlier;  // Σ |x(i)|² and Σ |x(i + l)|²
+  for (Index lag = 0; lag <= last; ++lag) {
+    const Index count = signal.rows() - lag;
+    unlike[lag] = (earlier + later - 2.0 * alike[lag]) / (2.0 * variance * static_cast<double>(count));
+    earlier -= squares[count - 1];
+    later -= squares[lag];
+  }
+  return unlike;
+}
+
 /// Whole periods of a signal, one after another.
 struct Periods {
   Index begin = 0, length = 0, count = 0;  ///< [samples], [samples]
@@ -87,13 +108,14 @@ std::optional<Periods> periods_of(const Matrix& reference, double rate) {
   if (!(variance > 0.0)) return std::nullopt;
   const Index step = std::max<Index>(1, static_cast<Index>(rate / kSearchRate));
   const Index longest = reference.rows() / kMinPeriods;
+  const Vector coarse =
+      unlike_by_lag(reference(Eigen::seq(0, Eigen::last, step), Eigen::all), longest / step, variance);
   bool went_away = false;
   for (Index lag = step; lag <= longest; lag += step) {
-    const double unlike = unlike_itself(reference, lag, step, variance);
-    went_away = went_away || unlike > kUnlike;
-    if (!went_away || unlike > kNearlyRepeats) continue;
+    went_away = went_away || coarse[lag / step] > kUnlike;
+    if (!went_away || coarse[lag / step] > kNearlyRepeats) continue;
     Index best = lag;
-    double least = unlike;
+    double least = unlike_itself(reference, lag, step, variance);
     for (Index near = lag - step; near <= std::min(best + 2 * step, longest); ++near) {  // down to the bottom
       const double here = unlike_itself(reference, near, step, variance);
       if (here < least) std::tie(best, least) = std::pair{near, here};
@@ -104,48 +126,40 @@ std::optional<Periods> periods_of(const Matrix& reference, double rate) {
   return std::nullopt;
 }
 
-/// Cosine and sine of 2π i/period, i = 0 … period − 1, as e^(−2πj i/period).
-Eigen::VectorXcd unit_circle(Index period) {
-  Eigen::VectorXcd circle(period);
-  for (Index i = 0; i < period; ++i) {
-    circle[i] = std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(period));
-  }
-  return circle;
-}
-
-/// Complex amplitude of a harmonic in each column of one period: x = Re(X e^(jωt)).
-Eigen::RowVectorXcd amplitude(const Matrix& signal, Index harmonic, const Eigen::VectorXcd& circle) {
-  const Index period = circle.size();
-  Eigen::RowVectorXcd sum = Eigen::RowVectorXcd::Zero(signal.cols());
-  for (Index i = 0, at = 0; i < period; ++i, at = (at + harmonic) % period) sum += circle[at] * signal.row(i);
-  return sum * (2.0 / static_cast<double>(period));
+/// Complex amplitudes of the harmonics 0, 1 … (rows) in each column of one period: x = Re(X e^(jωt)).
+Eigen::MatrixXcd amplitudes(const Matrix& period) {
+  Eigen::MatrixXcd all(period.rows() / 2 + 1, period.cols());
+  for (Index axis = 0; axis < period.cols(); ++axis) all.col(axis) = dsp::fourier_transform(period.col(axis));
+  return all * (2.0 / static_cast<double>(period.rows()));
 }
 
 std::vector<Index> harmonics_of(const Matrix& whole, const Periods& periods, double rate) {
-  const Index period = periods.length;
-  const Matrix reference = whole.middleRows(periods.begin, period);
-  const Eigen::VectorXcd circle = unit_circle(period);
+  const Matrix reference = whole.middleRows(periods.begin, periods.length);
   const Matrix one = reference.rowwise() - reference.colwise().mean();
+  const Eigen::RowVectorXd variance = one.colwise().squaredNorm() / static_cast<double>(periods.length);
+  const Eigen::MatrixXcd lines = amplitudes(one);
   const double highest = std::min(kHighestLine, 0.25 * rate);
   std::vector<Index> harmonics;
-  for (Index h = 1; static_cast<double>(h) * rate / static_cast<double>(period) <= highest; ++h) {
-    const Eigen::RowVectorXcd lines = amplitude(one, h, circle);
+  for (Index h = 1; static_cast<double>(h) * rate / static_cast<double>(periods.length) <= highest; ++h) {
+    bool stands_out = false;
     for (Index axis = 0; axis < one.cols(); ++axis) {
-      const double variance = one.col(axis).squaredNorm() / static_cast<double>(period);
-      if (0.5 * std::norm(lines[axis]) < kShareOfLine * variance || variance == 0.0) continue;
-      harmonics.push_back(h);
-      break;
+      stands_out |= variance[axis] > 0.0 && 0.5 * std::norm(lines(h, axis)) >= kShareOfLine * variance[axis];
     }
+    if (stands_out) harmonics.push_back(h);
   }
   return harmonics;
 }
 
-/// −∫ F·v dt of one harmonic over one period: −T/2 Re(F* jωX), summed over the axes.
-double absorbed_at(const Matrix& position, const Matrix& force, Index harmonic, const Eigen::VectorXcd& circle) {
-  const Eigen::RowVectorXcd X = amplitude(position, harmonic, circle), F = amplitude(force, harmonic, circle);
-  // T ω = 2π harmonic
-  const std::complex<double> work = F.conjugate().cwiseProduct(std::complex<double>(0.0, 1.0) * X).sum();
-  return -std::numbers::pi * static_cast<double>(harmonic) * work.real();
+/// −∫ F·v dt of each of those harmonics over one period: −T/2 Re(F* jωX), summed over the axes.
+std::vector<double> absorbed_at(const std::vector<Index>& harmonics, const Matrix& position, const Matrix& force) {
+  const Eigen::MatrixXcd X = amplitudes(position), F = amplitudes(force);
+  std::vector<double> absorbed;
+  for (const Index h : harmonics) {  // T ω = 2π h
+    const std::complex<double> work =
+        F.row(h).conjugate().cwiseProduct(std::complex<double>(0.0, 1.0) * X.row(h)).sum();
+    absorbed.push_back(-std::numbers::pi * static_cast<double>(h) * work.real());
+  }
+  return absorbed;
 }
 
 }  // namespace
@@ -166,13 +180,10 @@ std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recording
     length = found->length;
     rate = window->rate;
     harmonics = std::move(own);
-    const Eigen::VectorXcd circle = unit_circle(length);
     for (Index one = 0; one < found->count; ++one) {
-      const Matrix x = window->position.middleRows(found->begin + one * length, length),
-                   F = window->force.middleRows(found->begin + one * length, length);
-      std::vector<double> of_period;
-      for (const Index h : harmonics) of_period.push_back(absorbed_at(x, F, h, circle));
-      absorbed.push_back(std::move(of_period));
+      const Index begin = found->begin + one * length;
+      absorbed.push_back(
+          absorbed_at(harmonics, window->position.middleRows(begin, length), window->force.middleRows(begin, length)));
     }
   }
   const auto periods = static_cast<Index>(absorbed.size());

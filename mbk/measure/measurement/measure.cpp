@@ -25,6 +25,7 @@
 #include "mbk/measure/analyse/tremor.h"
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/force_delay.h"
+#include "mbk/measure/preprocess/jittered_clock.h"
 #include "mbk/measure/preprocess/resample.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -68,7 +69,8 @@ struct Source {
   const Recording* given = nullptr;
   Inspection recorded;            ///< of `given`
   std::optional<Recording> even;  ///< or with a force that was put where it belongs
-  std::optional<Hertz> clock;     ///< of `even`
+  std::optional<Hertz> clock;     ///< of `even`, where one was chosen
+  std::optional<Warning> jitter;  ///< of the recorded clock, where `even` is its cure
   std::optional<preprocess::VirtualForce> computed;
 
   [[nodiscard]] const Recording& recording() const {
@@ -100,7 +102,7 @@ std::optional<Hertz> clock_across_missed_ticks(const Recording& recording, const
 }
 
 Result<Source> make_ready(const Recording& recording, const Options& options) {
-  Source source{&recording, recording::inspect(recording), {}, options.resample, {}};
+  Source source{&recording, recording::inspect(recording), {}, options.resample, {}, {}};
   if (!source.clock && options.preprocess.mode == Mode::default_mode) {
     source.clock = clock_across_missed_ticks(recording, source.recorded);
   }
@@ -108,6 +110,11 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
     auto even = preprocess::resample(recording, *source.clock);
     if (!even) return tl::unexpected(even.error());
     source.even = std::move(*even);
+  } else if (options.preprocess.mode == Mode::default_mode && preprocess::jitters_only(source.recorded)) {
+    auto even = preprocess::on_even_clock(recording, source.recorded);
+    if (!even) return tl::unexpected(even.error());
+    source.even = std::move(even->recording);
+    source.jitter = std::move(even->warning);
   }
   if (options.force_delay != 0.0) {
     auto in_time = preprocess::undo_force_delay(source.recording(), options.force_delay);
@@ -155,6 +162,7 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
     trial->notes.push_back(fmt::format("the force was moved {:g} ms earlier, as asked", 1e3 * options.force_delay));
   }
   if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
+  if (source.jitter) trial->warnings.push_back(*source.jitter);
   return trial;
 }
 

@@ -3,10 +3,27 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <vector>
 
 #include "mbk/measure/preprocess/straight_lines.h"
+#include "mbk/measure/preprocess/windows.h"
+#include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
+namespace {
+
+/// A reference that is constant but for some steps: between two samples it is what was commanded last.
+bool is_held(const Channel& channel) {
+  for (const int axes : {1, 2}) {
+    for (Index axis = 0; axis < axes; ++axis) {
+      if (channel.name == kReferenceChannels.name(axes, axis))
+        return detect_protocol(channel.values).protocol == Protocol::underdamped;
+    }
+  }
+  return false;
+}
+
+}  // namespace
 
 Result<Recording> resample(const Recording& recording, Hertz rate) {
   const Index n = recording.samples();
@@ -32,13 +49,16 @@ Result<Recording> resample(const Recording& recording, Hertz rate) {
   Recording even = recording;
   even.time.resize(count);
   for (Channel& channel : even.channels) channel.values.resize(count);
+  std::vector<bool> held;
+  for (const Channel& channel : recording.channels) held.push_back(is_held(channel));
   StraightLines between(recording.time);
   for (Index i = 0; i < count; ++i) {
     const double t = first + static_cast<double>(i) / rate.value;
     between.move_to(t);
     even.time[i] = t;
     for (std::size_t c = 0; c < even.channels.size(); ++c) {
-      even.channels[c].values[i] = between.value_of(recording.channels[c].values);
+      const Vector& recorded = recording.channels[c].values;
+      even.channels[c].values[i] = held[c] ? between.held_value_of(recorded) : between.value_of(recorded);
     }
   }
   return even;

@@ -49,6 +49,24 @@ TEST(Resample, AtItsOwnRateChangesNothing) {
   EXPECT_LE((even.channels[0].values - recording.channels[0].values).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// Else a pulse would have two steps, and the perturbation would be taken for one that varies continuously.
+TEST(Resample, AReferenceThatIsConstantButForStepsKeepsItsValues) {
+  Recording recording = line(1000);
+  recording.channels.push_back({"reference_x", "m", "base", Vector::Constant(1000, 0.1)});
+  recording.channels.push_back({"force_x", "N", "base", Vector::Constant(1000, 0.3)});
+  recording.channels[1].values.segment(300, 200).setConstant(0.13);
+  const Recording even = resample(recording, Hertz(777.0)).value();
+  Index steps = 0;
+  for (Index i = 1; i < even.samples(); ++i) {
+    const Vector& reference = even.channels[1].values;
+    steps += reference[i] != reference[i - 1] ? 1 : 0;
+    ASSERT_EQ(even.channels[2].values[i], 0.3) << "a constant stays constant to the last digit, at " << i;
+    const bool displaced = even.time[i] >= recording.time[300] && even.time[i] < recording.time[500];
+    ASSERT_EQ(reference[i], displaced ? 0.13 : 0.1) << i;
+  }
+  EXPECT_EQ(steps, 2);
+}
+
 TEST(Resample, KeepsEventsAndMetadata) {
   Recording recording = line(100);
   recording.events.push_back({0.05, "onset", 1.0});

@@ -16,9 +16,13 @@ class StraightLines {
     weight_ = (when - time_[left_]) / (time_[left_ + 1] - time_[left_]);
   }
 
+  /// A signal that is the same at both samples is exactly that between them.
   [[nodiscard]] double value_of(const Vector& signal) const {
-    return weight_ == 0.0 ? signal[left_] : (1.0 - weight_) * signal[left_] + weight_ * signal[left_ + 1];
+    return weight_ == 0.0 ? signal[left_] : signal[left_] + weight_ * (signal[left_ + 1] - signal[left_]);
   }
+
+  /// Of a signal that keeps its value until the next sample.
+  [[nodiscard]] double held_value_of(const Vector& signal) const { return signal[weight_ < 1.0 ? left_ : left_ + 1]; }
 
  private:
   const Vector& time_;

@@ -99,7 +99,7 @@ export const plainWarnings: PlainWarnings = {
   },
   "clock-jitter": {
     title: "The clock of the recording was not steady",
-    meaning: "The samples were taken as evenly spaced all the same.",
+    meaning: "The samples were put on an even clock by straight lines between them, or taken as even where the motion shows that they were; the message says which.",
   },
   resampled: {
     title: "The recording was put on an even clock first",
