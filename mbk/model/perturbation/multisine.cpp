@@ -6,11 +6,45 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "mbk/base/numeric/random.h"
 #include "mbk/model/perturbation/largest_value.h"
 
 namespace mbk::perturbation {
+namespace {
+
+/// Cosine and sine of an angle.
+struct Turn {
+  double cosine = 1.0, sine = 0.0;
+
+  [[nodiscard]] Turn and_then(const Turn& other) const {
+    return {cosine * other.cosine - sine * other.sine, sine * other.cosine + cosine * other.sine};
+  }
+};
+
+/// That turn `times` times.
+Turn repeated(Turn turn, int times) {
+  Turn all;
+  for (; times > 0; times /= 2) {
+    if (times % 2 == 1) all = all.and_then(turn);
+    turn = turn.and_then(turn);
+  }
+  return all;
+}
+
+}  // namespace
+
+Multisine::Multisine(double period, std::vector<Line> lines) : period_(period), lines_(std::move(lines)) {
+  std::vector<Line> sorted = lines_;
+  std::ranges::sort(sorted, {}, &Line::harmonic);
+  int before = 0;
+  for (const Line& line : sorted) {
+    steps_.push_back({line.harmonic - before, 2.0 * std::numbers::pi * line.harmonic / period,
+                      line.amplitude * std::cos(line.phase), line.amplitude * std::sin(line.phase)});
+    before = line.harmonic;
+  }
+}
 
 Result<Multisine> Multisine::create(double period, std::vector<Line> lines) {
   if (!(period > 0.0 && std::isfinite(period))) return bad_usage(fmt::format("period {} s is not above 0", period));
@@ -46,15 +80,16 @@ Result<Multisine> Multisine::with_random_phases(double period, const std::vector
 }
 
 Jet<double> Multisine::at(double t) const {
-  const double turns = std::fmod(t, period_) / period_;  // of the base period: keeps the sine's argument small
+  const double angle = 2.0 * std::numbers::pi * (std::fmod(t, period_) / period_);
+  const Turn base{std::cos(angle), std::sin(angle)};
+  Turn turn;
   Jet<double> sum{0.0, 0.0, 0.0};
-  for (const Line& line : lines_) {
-    const double omega = 2.0 * std::numbers::pi * line.harmonic / period_;
-    const double angle = 2.0 * std::numbers::pi * line.harmonic * turns + line.phase;
-    const double sine = line.amplitude * std::sin(angle);
+  for (const Step& step : steps_) {
+    turn = turn.and_then(step.rise == 1 ? base : repeated(base, step.rise));
+    const double sine = step.in_phase * turn.sine + step.ahead * turn.cosine;
     sum.value += sine;
-    sum.first += omega * line.amplitude * std::cos(angle);
-    sum.second -= omega * omega * sine;
+    sum.first += step.omega * (step.in_phase * turn.cosine - step.ahead * turn.sine);
+    sum.second -= step.omega * step.omega * sine;
   }
   return sum;
 }
@@ -82,9 +117,9 @@ double Multisine::crest_factor() const {
 }
 
 Multisine Multisine::scaled(double factor) const {
-  Multisine other = *this;
-  for (Line& line : other.lines_) line.amplitude *= factor;
-  return other;
+  std::vector<Line> lines = lines_;
+  for (Line& line : lines) line.amplitude *= factor;
+  return Multisine(period_, std::move(lines));
 }
 
 }  // namespace mbk::perturbation

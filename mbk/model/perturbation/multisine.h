@@ -51,10 +51,18 @@ class Multisine {
   [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
 
  private:
-  Multisine(double period, std::vector<Line> lines) : period_(period), lines_(std::move(lines)) {}
+  /// A line as `at` takes it, one after another by harmonic: e^(jωt) is that of the line before times e^(2πj t/T)^rise.
+  struct Step {
+    int rise = 0;
+    double omega = 0.0;                  ///< [rad/s]
+    double in_phase = 0.0, ahead = 0.0;  ///< a cos φ, a sin φ [u]
+  };
+
+  Multisine(double period, std::vector<Line> lines);
 
   double period_;
   std::vector<Line> lines_;
+  std::vector<Step> steps_;
 };
 
 }  // namespace mbk::perturbation

@@ -31,6 +31,39 @@ TEST(Multisine, DerivativesAgreeWithCentralDifferences) {
   }
 }
 
+// The slow plain twin: each sine by itself. Harmonics in any order, close together, far apart and as high as they may
+// be.
+TEST(Multisine, IsTheSumOfItsSines) {
+  constexpr double kPeriod = 7.0;
+  const std::vector<Multisine::Line> lines = {
+      {40, 0.2, 1.1}, {1, 0.5, 0.3}, {2, -0.1, 5.9}, {977, 0.05, 2.2}, {Multisine::kHighestHarmonic, 0.01, 4.0}};
+  const Multisine signal = Multisine::create(kPeriod, lines).value();
+  for (const double t : {0.0, 0.3, 3.5, 6.999, -2.2, 1000.7}) {
+    const double turns = std::fmod(t, kPeriod) / kPeriod;
+    for (const auto& [harmonic, amplitude, phase] : lines) {
+      const Multisine one = Multisine::create(kPeriod, {{harmonic, amplitude, phase}}).value();
+      const double omega = 2.0 * kPi * harmonic / kPeriod;
+      const double angle = 2.0 * kPi * std::fmod(harmonic * turns, 1.0) + phase;
+      const double rounding = 16 * kEps * harmonic * std::abs(amplitude);  // of the angle
+      EXPECT_NEAR(one.at(t).value, amplitude * std::sin(angle), rounding) << harmonic << " at " << t;
+      EXPECT_NEAR(one.at(t).first, omega * amplitude * std::cos(angle), omega * rounding);
+      EXPECT_NEAR(one.at(t).second, -omega * omega * amplitude * std::sin(angle), omega * omega * rounding);
+    }
+    Jet<double> sum{0.0, 0.0, 0.0};
+    for (const Multisine::Line& line : lines) {
+      const Jet<double> one = Multisine::create(kPeriod, {line}).value().at(t);
+      sum.value += one.value;
+      sum.first += one.first;
+      sum.second += one.second;
+    }
+    const double rounding = 64 * kEps * Multisine::kHighestHarmonic * 0.01;
+    const double highest = 2.0 * kPi * Multisine::kHighestHarmonic / kPeriod;
+    EXPECT_NEAR(signal.at(t).value, sum.value, rounding) << t;
+    EXPECT_NEAR(signal.at(t).first, sum.first, highest * rounding) << t;
+    EXPECT_NEAR(signal.at(t).second, sum.second, highest * highest * rounding) << t;
+  }
+}
+
 TEST(Multisine, RepeatsAfterItsPeriod) {
   const Multisine signal = Multisine::with_random_phases(10.0, {1, 29}, {1.0, 1.0}, 4).value();
   EXPECT_NEAR(signal.at(1234567.25 * 10.0).value, signal.at(2.5).value, 1e-9);
