@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "mbk/base/lti/test_polynomials.h"
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::lti {
 namespace positive_real_test {
@@ -114,7 +114,7 @@ TEST(PositiveReal, OfAnImpedanceNeedsThreeSemidefiniteMatrices) {
     EXPECT_TRUE(judged(M, B, K).holds()) << "trial " << trial;
     // a little less than the smallest eigenvalue is too little
     const auto lowered = [](const Matrix& matrix) {
-      const double smallest = Eigen::SelfAdjointEigenSolver<Matrix>((matrix + matrix.transpose()) / 2).eigenvalues()[0];
+      const double smallest = numeric::symmetric_eigenvalues((matrix + matrix.transpose()) / 2)[0];
       return Matrix(matrix - (smallest + 1e-9) * Matrix::Identity(matrix.rows(), matrix.cols()));
     };
     EXPECT_EQ(violated(judged(lowered(M), B, K)), only(residues)) << "trial " << trial;
@@ -257,7 +257,7 @@ TEST(PositiveReal, AgreesWithADenseGridOnTheAxis) {
       const double omega = std::pow(10.0, -3 + 6 * i / 399.0);
       const Eigen::MatrixXcd value = Z(RadPerSec(omega));
       const Eigen::MatrixXcd part = value + value.adjoint();
-      const double smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(part).eigenvalues()[0];
+      const double smallest = numeric::hermitian_eigenvalues(part)[0];
       if (std::abs(smallest) < 1e-9 * value.norm()) continue;  // a double cannot tell
       const bool listed = std::any_of(bands.begin(), bands.end(), [&](const FrequencyBand& band) {
         return omega > band.low.value && omega < band.high.value;

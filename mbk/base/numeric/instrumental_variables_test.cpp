@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::numeric {
@@ -76,7 +75,7 @@ TEST(InstrumentalVariables, SolveTheirEquationsTiedAndFree) {
     const auto fit = fit_instrumental_variables(data.Z, data.R, Y, S);
     ASSERT_TRUE(fit);
     const Matrix system = S.transpose() * both * S;
-    const Vector phi = system.fullPivLu().solve(S.transpose() * Vector((data.R.transpose() * Y).reshaped()));
+    const Vector phi = FullyPivotedLu(system).solve(S.transpose() * Vector((data.R.transpose() * Y).reshaped()));
     EXPECT_LT(scaled_difference(fit->free, phi), 1e-8);  // the plain twin is not scaled
     EXPECT_LT(scaled_difference(Vector(fit->coefficients.reshaped()), S * phi), 1e-8);
     EXPECT_LT((fit->inverse * system - Matrix::Identity(S.cols(), S.cols())).cwiseAbs().maxCoeff(), 1e-3);
@@ -205,8 +204,8 @@ double plain_strength(const Matrix& Z, const Matrix& R, Index j) {
   for (Index i = 0, k = 0; i <= m; ++i) {
     if (i != j) others.col(k++) = Z.col(i);
   }
-  const auto projected = [&](const Matrix& Y) { return Matrix(R * R.colPivHouseholderQr().solve(Y)); };
-  const Vector own = Z.col(j) - others * projected(others).colPivHouseholderQr().solve(Z.col(j));
+  const auto projected = [&](const Matrix& Y) { return Matrix(R * PivotedQr(R).solve(Y)); };
+  const Vector own = Z.col(j) - others * PivotedQr(projected(others)).solve(Z.col(j));
   const Vector left = own - projected(own);
   const double explained = (own.array() - own.mean()).square().sum() - left.squaredNorm();
   return explained / static_cast<double>(excluded - m + 1) /

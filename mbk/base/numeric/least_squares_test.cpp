@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
 namespace {
@@ -37,7 +37,7 @@ TEST(LeastSquares, SolvesItsNormalEquations) {
   const auto fit = fit_least_squares(Z, Y);
   ASSERT_TRUE(fit);
   EXPECT_LT((Z.transpose() * (Y - Z * fit->coefficients)).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_TRUE((fit->inverse_gram.topLeftCorner(5, 5)).isApprox((Z.transpose() * Z).inverse(), 1e-10));
+  EXPECT_TRUE((fit->inverse_gram.topLeftCorner(5, 5)).isApprox(inverse(Z.transpose() * Z), 1e-10));
 }
 
 TEST(LeastSquares, ImposesAStructure) {
@@ -58,7 +58,7 @@ TEST(LeastSquares, ImposesAStructure) {
   const Matrix tied = big * S;
   Vector y(800);
   y << Y.col(0), Y.col(1);
-  const Vector twin = (tied.transpose() * tied).ldlt().solve(tied.transpose() * y);
+  const Vector twin = PivotedCholesky(tied.transpose() * tied).solve(tied.transpose() * y);
   EXPECT_TRUE(fit->free.isApprox(twin, 1e-11));
 }
 
@@ -141,7 +141,7 @@ TEST(NeweyWest, FittedWideningGivesBackWhatTheCoefficientsTook) {
     const Matrix all = noise(kRows, kColumns + 1, run);
     const Matrix Z = all.leftCols(kColumns);
     const Vector y = all.col(kColumns);
-    sum += (y - Z * (Z.transpose() * Z).ldlt().solve(Z.transpose() * y)).squaredNorm() / (kRows * kVariance);
+    sum += (y - Z * PivotedCholesky(Z.transpose() * Z).solve(Z.transpose() * y)).squaredNorm() / (kRows * kVariance);
   }
   EXPECT_NEAR(std::sqrt(kRuns / sum), fitted_widening(kRows, kColumns), 0.01);
 }

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <limits>
 #include <optional>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::numeric {
@@ -56,7 +56,7 @@ double lowest_by_active_sets(const QuadraticProgram& q) {
       kkt.block(n + p + i, 0, 1, n) = q.G.row(active[static_cast<std::size_t>(i)]);
       right[n + p + i] = q.h[active[static_cast<std::size_t>(i)]];
     }
-    const Vector z = kkt.completeOrthogonalDecomposition().solve(right).head(n);
+    const Vector z = CompleteOrthogonal(kkt).solve(right).head(n);
     const bool allowed = (q.G * z - q.h).maxCoeff() < 1e-9 && (q.C * z - q.b).norm() < 1e-9;
     if (allowed) best = std::min(best, 0.5 * z.dot(q.H * z) + q.g.dot(z));
   }

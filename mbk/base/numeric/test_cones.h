@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "mbk/base/numeric/cone_program.h"
 #include "mbk/base/numeric/random.h"
@@ -35,56 +36,81 @@ inline Matrix symmetric_matrix(const SemidefiniteCone& cone, const Vector& x) {
   return 0.5 * (S + S.transpose());
 }
 
+using Real = long double;
+using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+/// L of L Lᵀ = A; absent where A is not positive definite.
+inline std::optional<RealMatrix> lower_factor(RealMatrix A) {
+  for (Index j = 0; j < A.rows(); ++j) {
+    const Index below = A.rows() - j;
+    for (Index k = 0; k < j; ++k) A.col(j).tail(below) -= A(j, k) * A.col(k).tail(below);
+    if (!(A(j, j) > 0)) return std::nullopt;
+    A.col(j).tail(below) /= std::sqrt(A(j, j));
+    A.col(j).head(j).setZero();
+  }
+  return A;
+}
+
+/// X of L Lᵀ X = B.
+inline RealMatrix solved(const RealMatrix& L, RealMatrix B) {
+  for (Index i = 0; i < L.rows(); ++i) {
+    for (Index k = 0; k < i; ++k) B.row(i) -= L(i, k) * B.row(k);
+    B.row(i) /= L(i, i);
+  }
+  for (Index i = L.rows(); i-- > 0;) {
+    for (Index k = i + 1; k < L.rows(); ++k) B.row(i) -= L(k, i) * B.row(k);
+    B.row(i) /= L(i, i);
+  }
+  return B;
+}
+
 /// The slow plain twin, which shares nothing with the solver but the statement: the barrier method
 ///   minimise ½ xᵀP x + qᵀx − μ Σ log det S_k(x),   μ → 0,
 /// in 64-bit mantissas, from a point strictly inside. The minimum lies at most μ Σ n_k lower.
 inline Vector minimum_by_barrier(const ConeProgram& program, const Vector& inside) {
-  using Real = long double;
-  using Matrix_ = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
-  using Vector_ = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   const Index v = inside.size();
-  const Matrix_ P = program.P.cast<Real>();
-  const Vector_ q = program.q.cast<Real>();
-  std::vector<std::vector<Matrix_>> parts;  // of each cone: S = parts[0] + Σ x_i parts[i + 1]
+  const RealMatrix P = program.P.cast<Real>();
+  const RealVector q = program.q.cast<Real>();
+  std::vector<std::vector<RealMatrix>> parts;  // of each cone: S = parts[0] + Σ x_i parts[i + 1]
   for (const SemidefiniteCone& cone : program.cones) {
     const auto n = std::llround(std::sqrt(static_cast<double>(cone.b.size())));
-    std::vector<Matrix_> part;
+    std::vector<RealMatrix> part;
     const auto add = [&](const Vector& column) {
-      const Matrix_ S = Matrix(column.reshaped(n, n)).cast<Real>();
+      const RealMatrix S = Matrix(column.reshaped(n, n)).cast<Real>();
       part.push_back(Real(0.5) * (S + S.transpose()));
     };
     add(cone.b);
     for (Index i = 0; i < v; ++i) add(cone.A.col(i));
     parts.push_back(part);
   }
-  Vector_ x = inside.cast<Real>();
-  const auto at = [&](const std::vector<Matrix_>& part, const Vector_& y) {
-    Matrix_ S = part[0];
+  RealVector x = inside.cast<Real>();
+  const auto at = [&](const std::vector<RealMatrix>& part, const RealVector& y) {
+    RealMatrix S = part[0];
     for (Index i = 0; i < v; ++i) S += y[i] * part[static_cast<std::size_t>(i) + 1];
     return S;
   };
-  const auto barrier = [&](const Vector_& y, Real mu, bool& allowed) {
-    Real value = Real(0.5) * y.dot(P * y) + q.dot(y);
+  const auto barrier = [&](const RealVector& y, Real mu, bool& allowed) {
+    Real value = Real(0.5) * y.dot(P.lazyProduct(y)) + q.dot(y);
     allowed = true;
     for (const auto& part : parts) {
-      const Eigen::LLT<Matrix_> factor(at(part, y));
-      if (factor.info() != Eigen::Success) {
+      const std::optional<RealMatrix> L = lower_factor(at(part, y));
+      if (!L) {
         allowed = false;
         return value;
       }
-      const Matrix_ L = factor.matrixL();
-      value -= 2 * mu * L.diagonal().array().log().sum();
+      for (const Real pivot : L->diagonal()) value -= 2 * mu * std::log(pivot);
     }
     return value;
   };
   for (Real mu = 10; mu > Real(1e-15); mu *= Real(0.4)) {
     for (int step = 0; step < 100; ++step) {
-      Vector_ gradient = P * x + q;
-      Matrix_ hessian = P;
+      RealVector gradient = P.lazyProduct(x) + q;
+      RealMatrix hessian = P;
       for (const auto& part : parts) {
-        const Matrix_ inverse = at(part, x).inverse();
-        std::vector<Matrix_> SA;
-        for (Index i = 0; i < v; ++i) SA.push_back(inverse * part[static_cast<std::size_t>(i) + 1]);
+        const RealMatrix L = lower_factor(at(part, x)).value();
+        std::vector<RealMatrix> SA;
+        for (Index i = 0; i < v; ++i) SA.push_back(solved(L, part[static_cast<std::size_t>(i) + 1]));
         for (Index i = 0; i < v; ++i) {
           const auto& a = SA[static_cast<std::size_t>(i)];
           gradient[i] -= mu * a.trace();
@@ -93,7 +119,7 @@ inline Vector minimum_by_barrier(const ConeProgram& program, const Vector& insid
           }
         }
       }
-      const Vector_ direction = -hessian.ldlt().solve(gradient);
+      const RealVector direction = -solved(lower_factor(hessian).value(), gradient);
       const Real decrement = -gradient.dot(direction);
       if (decrement < Real(1e-8) * mu) break;
       bool allowed = false;

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
 
@@ -81,7 +81,7 @@ TEST(FrequencyResponse, IntervalsAreThoseOfMonteCarlo) {
   const Uncertain uncertain;
   const Vector frequency = grid(0.1, 10.0, 15);
   const FrequencyResponse response = frequency_response(uncertain.model, uncertain.covariance, frequency);
-  const Matrix root = uncertain.covariance.llt().matrixL();
+  const Matrix root = numeric::Cholesky(uncertain.covariance).upper().transpose();
   numeric::Random random(5);
   constexpr int kDraws = 4000;
   constexpr double kChance = 4.0 * 0.0035, kWide = 0.06;  // of 0.95 in so many draws; of a standard deviation

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/passivity_index.h"
@@ -124,7 +124,7 @@ TEST(ModelPassivity, PropagatesTheCovarianceAsManyDrawsDo) {
   mixing(5, 9) = 0.02;
   id.covariance = (mixing * id.covariance * mixing.transpose()).eval();
   const ModelPassivity model = judged(id, {Hertz(0.2), Hertz(3.0), ""});
-  const Matrix root = id.covariance.llt().matrixL();
+  const Matrix root = numeric::Cholesky(id.covariance).upper().transpose();
   Random random(2);
   constexpr int kDraws = 20'000;
   const double omega = 2.0 * std::numbers::pi * model.smallest_at.value;

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/test_cones.h"
 #include "mbk/measure/identify/impedance_fit.h"
 #include "mbk/measure/identify/regression.h"
@@ -27,12 +26,12 @@ Matrix symmetric(const Matrix& X) {
 }
 
 Matrix clipped(const Matrix& X) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(symmetric(X));
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+  const auto [values, vectors] = numeric::symmetric_eigen(symmetric(X));
+  return vectors * values.cwiseMax(0.0).asDiagonal() * vectors.transpose();
 }
 
 double smallest(const Matrix& X) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric(X)).eigenvalues()[0];
+  return numeric::symmetric_eigenvalues(symmetric(X))[0];
 }
 
 /// M, B or K of two axes.
@@ -217,7 +216,7 @@ TEST(ConsistentModel, WithoutStiffnessOnOneAxisIsTheRegressionWithoutPosition) {
   const Matrix Z = rows_of(r.Z, r.identification), Y = rows_of(r.Y, r.identification);
   Matrix rest(Z.rows(), 3);
   rest << Z.leftCols(2), Z.rightCols(1);
-  const Vector slow = rest.colPivHouseholderQr().solve(Y.col(0));
+  const Vector slow = numeric::PivotedQr(rest).solve(Y.col(0));
   EXPECT_NEAR(found->model.M(0, 0), slow[0], 1e-9);
   EXPECT_NEAR(found->model.B(0, 0), slow[1], 1e-9);
   EXPECT_NEAR(found->model.K(0, 0), 0.0, 1e-9);

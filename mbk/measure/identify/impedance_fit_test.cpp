@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/measure/identify/test_trials.h"
 
@@ -109,7 +109,7 @@ TEST(IdentifyImpedance, AddsTheUncertaintyOfARobotToThatOfTheNoise) {
 TEST(IdentifyImpedance, SpreadsOverRobotsAsItsStandardErrorSays) {
   const PreparedTrial made = of_robot(true);
   const Vector said = flat(identified({made}).standard_error_of_robot.value());
-  const Matrix root = made.robot_covariance.llt().matrixL();
+  const Matrix root = numeric::Cholesky(made.robot_covariance).upper().transpose();
   numeric::Random random(3);
   constexpr int kRobots = 300;
   Vector squares = Vector::Zero(14);

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/measure/identify/srivc.h"
 
@@ -131,7 +131,7 @@ class PlainTwin {
         const Vector move = h * Vector::Unit(theta.size(), k);
         J.col(k) = (innovations(theta + move) - innovations(theta - move)) / (2.0 * h);
       }
-      const Vector step = -J.colPivHouseholderQr().solve(e);
+      const Vector step = -numeric::PivotedQr(J).solve(e);
       double share = 1.0;
       while (share > 1e-6 && !(innovations(theta + share * step).squaredNorm() < e.squaredNorm())) share *= 0.5;
       theta += share * step;

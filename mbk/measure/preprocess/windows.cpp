@@ -23,20 +23,17 @@ std::vector<Segment> displacements(const Matrix& reference, Index rest, Index fi
   return runs;
 }
 
-/// A sample at which the reference rests: it has there the value that it keeps for the longest time. Between pulses it
-/// returns to that, whereas the first sample of a window may lie inside a pulse.
-Index longest_rest(const Matrix& reference, Index from, Index to) {
-  Index rest = from, longest = 0;
+/// Where the reference rests: the samples in which it keeps one value for the longest time. Between pulses it returns
+/// to that, whereas the first sample of a window may lie inside a pulse.
+Segment longest_rest(const Matrix& reference, Index from, Index to) {
+  Segment longest{from, from, Purpose::identification};
   for (Index begin = from; begin < to;) {
     Index end = begin + 1;
     while (end < to && !differs(reference, end, begin)) ++end;
-    if (end - begin > longest) {
-      longest = end - begin;
-      rest = begin;
-    }
+    if (end - begin > longest.size()) longest = {begin, end, Purpose::identification};
     begin = end;
   }
-  return rest;
+  return longest;
 }
 
 /// Limits in samples, checked against the recording.
@@ -175,8 +172,14 @@ Result<WindowPlan> default_windows(Protocol protocol, const Matrix& reference, c
   if (!range) return tl::unexpected(range.error());
   WindowPlan plan;
   if (protocol == Protocol::underdamped) {
-    const Index rest = longest_rest(reference, range->from, range->to);
-    const std::vector<Segment> runs = displacements(reference, rest, range->from, range->to);
+    constexpr Index kShortest = 8;  // samples; noise alone does not stay the same for so long
+    const Segment rest = longest_rest(reference, range->from, range->to);
+    if (rest.size() < kShortest) {
+      return bad_data(fmt::format("the reference rests nowhere: it keeps no value for {} samples", kShortest),
+                      "omit --protocol where it varies continuously; name the reference that was commanded, not one "
+                      "that was measured");
+    }
+    const std::vector<Segment> runs = displacements(reference, rest.begin, range->from, range->to);
     if (runs.empty()) {
       return bad_data("the reference is not displaced anywhere in the window", "choose --from and --to, or --protocol");
     }

@@ -233,6 +233,15 @@ TEST(DefaultWindows, RefusesAWindowWithoutADisplacement) {
   EXPECT_EQ(plan.error().message, "the reference is not displaced anywhere in the window");
 }
 
+TEST(DefaultWindows, RefusesAReferenceThatNeverRests) {
+  Matrix varying(20000, 1);
+  for (Index i = 0; i < varying.rows(); ++i) varying(i, 0) = std::sin(0.01 * static_cast<double>(i));
+  const auto plan = default_windows(Protocol::underdamped, varying, clock(20000), {});
+  ASSERT_FALSE(plan);
+  EXPECT_THAT(plan.error().message, HasSubstr("the reference rests nowhere"));
+  EXPECT_THAT(plan.error().remedy, HasSubstr("omit --protocol"));
+}
+
 TEST(DefaultWindows, FreeTakesEverything) {
   const WindowPlan plan = default_windows(Protocol::free, Matrix(), clock(10000), {}).value();
   EXPECT_EQ(plan.cuts[0].begin, 0);

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <random>
 #include <string>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::impedance {
@@ -47,7 +47,7 @@ Model participant1(double k_a) {
 double slow_index(const Model& model, double omega) {
   const std::complex<double> s(0.0, omega);
   const Eigen::MatrixXcd Z = s * model.M + model.B + model.K / s;
-  return 0.5 * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(Z + Z.adjoint()).eigenvalues().minCoeff();
+  return 0.5 * numeric::hermitian_eigenvalues(Z + Z.adjoint()).minCoeff();
 }
 
 double largest_number(const Model& model, double omega) {
