@@ -359,13 +359,13 @@ void RobotFitter::check_inertia(RobotIdentification& found) const {
     found.inertia.smallest = smallest;
     found.inertia.where.assign(q.data(), q.data() + q.size());
   }
-  // The middle of the motion: what the hand feels there distinguishes units.
+  // What the hand feels distinguishes units.
   for (const robot::JointVector& q : postures) {
     const auto back = robot::hand_from_joints(mechanism, q);
     if (!back) continue;
     const Matrix at_hand = Matrix(*back) * inertia_at(q) * Matrix(*back).transpose();
     const double mass = at_hand.diagonal().minCoeff();
-    found.inertia.largest_mass = found.inertia.largest_mass == 0.0 ? mass : std::min(found.inertia.largest_mass, mass);
+    if (!(found.inertia.mass_at_hand <= mass)) found.inertia.mass_at_hand = mass;
   }
 }
 
@@ -383,12 +383,12 @@ void warn(RobotIdentification& found) {
   }
   constexpr double kHeaviest = 300.0, kLightest = 1e-3;  // [kg] of a robot that a person can hold
   if (found.model.mechanism->hand_axes() == 2 && found.inertia.smallest > 0.0 &&
-      (found.inertia.largest_mass > kHeaviest || found.inertia.largest_mass < kLightest)) {
-    const bool heavy = found.inertia.largest_mass > kHeaviest;
+      (found.inertia.mass_at_hand > kHeaviest || found.inertia.mass_at_hand < kLightest)) {
+    const bool heavy = found.inertia.mass_at_hand > kHeaviest;
     warnings.push_back({WarningCode::torque_unit,
                         fmt::format("moved at its hand, this robot would weigh at least {:.3g} kg: its torques are "
                                     "probably not in N·m but in {}",
-                                    found.inertia.largest_mass, heavy ? "N·mm" : "kN·m"),
+                                    found.inertia.mass_at_hand, heavy ? "N·mm" : "kN·m"),
                         heavy ? "say so in --channels, as in tau1=14:N.mm,tau2=15:N.mm" : "check the torques' unit"});
     found.usable = false;
   }

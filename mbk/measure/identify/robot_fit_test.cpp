@@ -240,6 +240,10 @@ TEST(RobotFit, SaysWhichCoefficientHoldsOneThatCannotBeToldApart) {
   EXPECT_EQ(held.value, 0.0);
   EXPECT_TRUE(std::isnan(held.standard_error));
   EXPECT_NEAR(found.fit[0].vaf, 100.0, 1e-9);
+  // The hand lies on the lower joint: every posture is singular, so that no mass at the hand tells of units.
+  EXPECT_TRUE(std::isnan(found.inertia.mass_at_hand));
+  EXPECT_TRUE(found.usable);
+  EXPECT_EQ(codes(found), std::vector<WarningCode>{});
 }
 
 TEST(RobotFit, KeepsWhatIsFixedAndFindsTheRest) {

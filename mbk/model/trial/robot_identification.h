@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/words.h"
 #include "mbk/model/robot/dynamic_model.h"
 #include "mbk/model/trial/identification.h"
@@ -47,7 +48,7 @@ struct TorqueFit {
 struct InertiaCheck {
   double smallest = 0;        ///< eigenvalue over the postures [kg·m²; kg]
   std::vector<double> where;  ///< the joints there
-  double largest_mass = 0;    ///< that the hand feels in the middle of the workspace [kg; kg·m²]
+  double mass_at_hand = kNaN;  ///< the least that the hand feels over the postures [kg]; NaN where all are singular
 };
 
 /// The dynamics of a robot, how sure they are and how well they hold.
