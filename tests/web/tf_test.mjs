@@ -54,6 +54,25 @@ test("coefficients, poles, zeros and gain are those of --json", () => onWholePag
   for (const [name, number] of Object.entries(read)) if (name !== "explained") assertShown(number, name);
 }));
 
+test("a delay that was found has its interval, and what the input does between samples is said", async () => {
+  await onWholePage(chosen.file, async (page) => {
+    assert.match(await page.textContent("#summary"), /a delay of 0\.002 s\. The model/);
+    assert.match(await page.textContent("#hold"), chosen.json.hold === "zero" ? /zero-order hold/ : /first-order hold/);
+  });
+  const found = changed(chosen.file, "found-delay", ({ result }) => Object.assign(result, { delay_found: true, delay_standard_error_s: 1e-4, hold: "zero", hold_found: true }));
+  await onWholePage(found, async (page) => {
+    const read = await numbers(page, "#summary");
+    close(read.delay.value, 0.002, "delay");
+    close(read["delay-half"].value, normal95 * 1e-4, "± delay");
+    assert.match(await page.textContent("#hold"), /zero-order hold\), as its steps show/);
+  });
+  const asked = changed(chosen.file, "asked-hold", ({ result }) => Object.assign(result, { delay_found: true, hold: "first", hold_found: false }));
+  await onWholePage(changed(asked, "no-interval", ({ result }) => delete result.delay_standard_error_s), async (page) => {
+    assert.match(await page.textContent("#summary"), /counts as known in the intervals/);
+    assert.match(await page.textContent("#hold"), /first-order hold\), as asked/);
+  });
+});
+
 test("the formula is the model, in s with a delay and in q", async () => {
   await onWholePage(inverted.file, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(s\) = \([\d.]+\) \/ \(s² \+ [\d.]+ s \+ [\d.]+\)/));
   await onWholePage(chosen.file, async (page) => assert.match(await page.textContent(".formula"), /e−0\.002 s/));

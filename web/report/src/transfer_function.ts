@@ -89,8 +89,21 @@ function summary(report: TransferFunctionReport): HTMLElement {
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
       h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
     formula(result),
-    h("p", {}, `From ${result.input.name} to ${result.output.name}: ${count(result.denominator.length - 1, "pole")}, ${count(result.numerator.length - 1, "zero")}${result.delay_s > 0 ? `, a delay of ${plain(result.delay_s)} s${result.delay_found ? ", which was found" : ""}` : ""}. The model explains `,
-      data(explained, explained === null ? "an undefined share" : `${fixed(100 * explained, 2)} %`, "explained"), ` ${where}.`));
+    h("p", {}, `From ${result.input.name} to ${result.output.name}: ${count(result.denominator.length - 1, "pole")}, ${count(result.numerator.length - 1, "zero")}`, ...delayWords(result), ". The model explains ",
+      data(explained, explained === null ? "an undefined share" : `${fixed(100 * explained, 2)} %`, "explained"), ` ${where}.`),
+    result.hold ? h("p", { id: "hold" }, holdWords(result.hold, result.hold_found === true)) : "");
+}
+
+function delayWords({ delay_s: delay, delay_found: found, delay_standard_error_s: error }: TransferFunction): (Node | string)[] {
+  if (!(delay > 0)) return [];
+  if (!found) return [`, a delay of ${plain(delay)} s`];
+  if (error === undefined) return [`, a delay of ${plain(delay)} s, which was found and counts as known in the intervals`];
+  return [", a delay of ", withHalfWidth(delay, error, "delay"), " s, which was found"];
+}
+
+function holdWords(hold: "zero" | "first", found: boolean): string {
+  const [what, because] = hold === "zero" ? ["keeps its value (zero-order hold)", "as its steps show"] : ["follows straight lines (first-order hold)", "as it shows no steps"];
+  return `Between samples the input ${what}${found ? `, ${because}` : ", as asked"}.`;
 }
 
 const count = (n: number, word: string): string => `${n} ${word}${n === 1 ? "" : "s"}`;
