@@ -1,6 +1,6 @@
 # The outside headers that most files include, read once for each way of compiling instead of once for each file:
-# cmake/precompiled/library.h, and with GoogleTest tests.h. Every file still includes what it uses, which clang-tidy,
-# that compiles without them, confirms. docs/guide/build.md shows what it saves.
+# cmake/precompiled/library.h, with GoogleTest tests.h, with CLI11 program.h. Every file still includes what it uses,
+# which clang-tidy, that compiles without them, confirms. docs/guide/build.md shows what it saves.
 option(MBK_PRECOMPILE "Precompile the outside headers that most files include" ON)
 
 set(MBK_PRECOMPILED_FOLDER ${CMAKE_CURRENT_LIST_DIR}/precompiled)
@@ -13,7 +13,8 @@ if(MBK_PRECOMPILE)
 
   add_executable(mbk_precompiled_program ${MBK_PRECOMPILED_FOLDER}/program.cpp)
   target_compile_options(mbk_precompiled_program PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(mbk_precompiled_program PRIVATE ${MBK_PRECOMPILED_FOLDER}/library.h)
+  target_link_libraries(mbk_precompiled_program PRIVATE CLI11::CLI11)
+  target_precompile_headers(mbk_precompiled_program PRIVATE ${MBK_PRECOMPILED_FOLDER}/program.h)
   set(holders mbk_precompiled_library mbk_precompiled_program)
 
   if(MBK_BUILD_TESTS)

@@ -117,10 +117,11 @@ Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, c
   return found;
 }
 
-/// The work of `measure` and `identify`, which differ only in whether the ellipses are shown.
+/// The work of `measure` and `identify`, which leaves out ellipses, passivity and what they take to compute.
 int run(const MeasureCommandArguments& arguments, const std::string& typed, bool with_findings) {
-  const auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
+  auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
   if (!options) return report_error(options.error());
+  options->passivity = with_findings;
   if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok)
     return report_error(ok.error());
   auto found = arguments.pool ? measure_pooled(arguments, *options) : measure_apart(arguments, *options);
@@ -129,10 +130,7 @@ int run(const MeasureCommandArguments& arguments, const std::string& typed, bool
   for (const Error& error : found->together.failed) code = std::max(code, report_error(error));
   if (found->measured.empty()) return code;
   for (Measurement& one : found->measured) {
-    if (!with_findings) {
-      one.findings.reset();
-      one.passivity.reset();
-    }
+    if (!with_findings) one.findings.reset();
     if (code == kFine && !one.identification.usable) code = kNotUsable;
   }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mbk/files/recording/inspect.h"
@@ -261,15 +262,8 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
   return analyse::pooled_energy(recordings_of(sources), trials);
 }
 
-/// What happened in the trial, and what the model predicts.
-Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
-                                  const Options& options, Measurement& measured) {
-  auto energy = account_for_energy(sources, trials, measured);
-  if (!energy) return tl::unexpected(energy.error());
-  Passivity passivity;
-  passivity.band = analyse::coherent_band(trials);
-  PassivityBand band = passivity.band.value_or(analyse::excited_band(trials));
-  if (options.band) band = analyse::asked_band(options.band->first, options.band->second, passivity.band);
+/// What one method found and, or null, what the other did: first the one that is to be believed.
+std::pair<const Identification*, const Identification*> both_methods(const Measurement& measured) {
   const Identification* first = &measured.identification;
   const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
   const bool by_instruments = first->method == Method::instrumental_variables;
@@ -278,12 +272,30 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
       (instrumental == other) == analyse::instruments_speak(*instrumental, measured.disagreement)) {
     std::swap(first, other);
   }
-  auto consistent = identify::consistent_model(trials, *first);
+  return {first, other};
+}
+
+/// The nearest model that a passive limb can have.
+Result<void> add_consistent_model(const std::vector<PreparedTrial>& trials, Measurement& measured) {
+  auto consistent = identify::consistent_model(trials, *both_methods(measured).first);
   if (consistent) {
     measured.consistent = std::move(*consistent);
   } else if (consistent.error().kind != ErrorKind::not_usable) {  // there is a model, but none that it could be near
     return tl::unexpected(consistent.error());
   }
+  return {};
+}
+
+/// What happened in the trial, and what the model predicts.
+Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
+                                  const Options& options, Measurement& measured) {
+  const auto [first, other] = both_methods(measured);
+  auto energy = account_for_energy(sources, trials, measured);
+  if (!energy) return tl::unexpected(energy.error());
+  Passivity passivity;
+  passivity.band = analyse::coherent_band(trials);
+  PassivityBand band = passivity.band.value_or(analyse::excited_band(trials));
+  if (options.band) band = analyse::asked_band(options.band->first, options.band->second, passivity.band);
   auto models = analyse::model_passivities({first, other}, band);
   if (!models) return tl::unexpected(models.error());
   passivity.models = std::move(*models);
@@ -393,6 +405,7 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     if (!joints) return tl::unexpected(joints.error());
     measured.joints = std::move(*joints);
   }
+  if (auto ok = add_consistent_model(trials, measured); !ok) return sources[0].in_file(ok.error());
   if (options.passivity) {
     auto passivity = judge_passivity(sources, trials, options, measured);
     if (!passivity) {

@@ -46,8 +46,8 @@ struct TorqueFit {
 
 /// Whether the inertia matrix is one in every posture.
 struct InertiaCheck {
-  double smallest = 0;        ///< eigenvalue over the postures [kg·m²; kg]
-  std::vector<double> where;  ///< the joints there
+  double smallest = 0;         ///< eigenvalue over the postures [kg·m²; kg]
+  std::vector<double> where;   ///< the joints there
   double mass_at_hand = kNaN;  ///< the least that the hand feels over the postures [kg]; NaN where all are singular
 };
 
