@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mbk/base/core/result.h"
 #include "mbk/model/trial/inspection.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/warning.h"
