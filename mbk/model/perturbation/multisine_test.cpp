@@ -84,7 +84,7 @@ TEST(Multisine, RefusesWhatIsNoSumOfHarmonics) {
   EXPECT_FALSE(Multisine::create(1.0, {{0, 1.0, 0.0}}));
   EXPECT_FALSE(Multisine::create(1.0, {{100'001, 1.0, 0.0}}));
   EXPECT_FALSE(Multisine::create(1.0, {{2, 1.0, 0.0}, {2, 1.0, 0.0}}));
-  EXPECT_FALSE(Multisine::create(1.0, {{1, NAN, 0.0}}));
+  EXPECT_FALSE(Multisine::create(1.0, {{1, std::numeric_limits<double>::quiet_NaN(), 0.0}}));
   EXPECT_FALSE(Multisine::with_random_phases(1.0, {1, 2}, {1.0}, 1));
 }
 
