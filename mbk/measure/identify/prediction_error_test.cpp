@@ -127,9 +127,9 @@ class PlainTwin {
       const Vector e = innovations(theta);
       Matrix J(e.size(), theta.size());
       for (Index k = 0; k < theta.size(); ++k) {
-        constexpr double h = 1e-6;
-        const Vector move = h * Vector::Unit(theta.size(), k);
-        J.col(k) = (innovations(theta + move) - innovations(theta - move)) / (2.0 * h);
+        constexpr double kStep = 1e-6;
+        const Vector move = kStep * Vector::Unit(theta.size(), k);
+        J.col(k) = (innovations(theta + move) - innovations(theta - move)) / (2.0 * kStep);
       }
       const Vector step = -numeric::PivotedQr(J).solve(e);
       double share = 1.0;

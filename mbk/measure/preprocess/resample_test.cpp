@@ -25,9 +25,9 @@ Recording line(Index samples) {
 
 TEST(Resample, ALineStaysALine) {
   const Recording even = resample(line(1000), Hertz(777.0)).value();
-  const double kRounding = 8 * std::numeric_limits<double>::epsilon() * 5.0;  // values stay below 5
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * 5.0;  // values stay below 5
   for (Index i = 0; i < even.samples(); ++i) {
-    ASSERT_NEAR(even.channels[0].values[i], 2.0 + 3.0 * even.time[i], kRounding) << i;
+    ASSERT_NEAR(even.channels[0].values[i], 2.0 + 3.0 * even.time[i], rounding) << i;
   }
 }
 
