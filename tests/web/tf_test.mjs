@@ -66,6 +66,8 @@ test("a delay that was found has its interval, and what the input does between s
     close(read["delay-half"].value, normal95 * 1e-4, "± delay");
     assert.match(await page.textContent("#hold"), /zero-order hold\), as its steps show/);
   });
+  const none = changed(found, "no-delay", ({ result }) => Object.assign(result, { delay_s: 0 }));
+  await onWholePage(none, async (page) => close((await numbers(page, "#summary")).delay.value, 0, "a delay of zero that was found has its interval"));
   const asked = changed(chosen.file, "asked-hold", ({ result }) => Object.assign(result, { delay_found: true, hold: "first", hold_found: false }));
   await onWholePage(changed(asked, "no-interval", ({ result }) => delete result.delay_standard_error_s), async (page) => {
     assert.match(await page.textContent("#summary"), /counts as known in the intervals/);

@@ -95,10 +95,9 @@ function summary(report: TransferFunctionReport): HTMLElement {
 }
 
 function delayWords({ delay_s: delay, delay_found: found, delay_standard_error_s: error }: TransferFunction): (Node | string)[] {
+  if (found && error !== undefined) return [", a delay of ", withHalfWidth(delay, error, "delay"), " s, which was found"]; // 0 ± 3 ms is an answer too
   if (!(delay > 0)) return [];
-  if (!found) return [`, a delay of ${plain(delay)} s`];
-  if (error === undefined) return [`, a delay of ${plain(delay)} s, which was found and counts as known in the intervals`];
-  return [", a delay of ", withHalfWidth(delay, error, "delay"), " s, which was found"];
+  return [`, a delay of ${plain(delay)} s${found ? ", which was found and counts as known in the intervals" : ""}`];
 }
 
 function holdWords(hold: "zero" | "first", found: boolean): string {
