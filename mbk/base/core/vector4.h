@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 /// @file
 /// Four doubles at a time, for inner loops. A body is written once with these and compiled twice:
 /// for every processor, and with MBK_X86_64_V3 for those that have AVX2 and fused multiply-add (x86-64-v3, 2013 and
@@ -44,5 +46,19 @@ inline bool has_x86_64_v3() {
 [[gnu::always_inline]] inline const Unaligned8& eight(const double* at) {
   return *reinterpret_cast<const Unaligned8*>(at);
 }
+
+/// How many go together, for bodies that are written once for four and for eight.
+struct Four {
+  using V = Vector4;
+  static constexpr std::ptrdiff_t kWidth = 4;
+  [[gnu::always_inline]] static Unaligned4& at(double* p) { return four(p); }
+  [[gnu::always_inline]] static const Unaligned4& at(const double* p) { return four(p); }
+};
+struct Eight {
+  using V = Vector8;
+  static constexpr std::ptrdiff_t kWidth = 8;
+  [[gnu::always_inline]] static Unaligned8& at(double* p) { return eight(p); }
+  [[gnu::always_inline]] static const Unaligned8& at(const double* p) { return eight(p); }
+};
 
 }  // namespace mbk

@@ -12,8 +12,6 @@
 namespace mbk::dsp {
 namespace {
 
-using FourColumns = std::array<const double*, kLanes>;
-
 /// Columns that go side by side, and what is made of them.
 struct Batch {
   std::vector<Index> columns;    ///< at most kLanes
@@ -78,31 +76,24 @@ double continued(Extension how, double end, double inside) {
   return end;
 }
 
-/// Rows with room for the padding before and after them.
+/// Smoothed rows with room for the padding before and after them.
 struct Padded {
   Interleaved rows;
   Index padding;
-  Padded(Index count, Index padding_samples) : rows(count + 2 * padding_samples), padding(padding_samples) {}
+  Padded(Index count, Index padding_samples, Index width)
+      : rows(count + 2 * padding_samples, width), padding(padding_samples) {}
   [[nodiscard]] Index count() const { return rows.rows() - 2 * padding; }
-  [[nodiscard]] double* data() { return rows.row(padding); }
+  [[nodiscard]] double* row(Index i) { return rows.row(padding + i); }
 
-  /// Continues the rows beyond their ends about the values there.
-  void extend(Extension how, const FourValues& first, const FourValues& last) {
+  /// Continues the rows beyond the end at row `end`, to the side on which `outward` (1 or −1) points.
+  void extend(Extension how, Index end, Index outward) {
     for (Index i = 1; i <= padding; ++i) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        data()[4 * -i + static_cast<Index>(lane)] = continued(how, first[lane], rows.row(padding + i)[lane]);
-        rows.row(padding + count() - 1 + i)[lane] =
-            continued(how, last[lane], rows.row(padding + count() - 1 - i)[lane]);
+      for (Index lane = 0; lane < rows.width(); ++lane) {
+        row(end + outward * i)[lane] = continued(how, row(end)[lane], row(end - outward * i)[lane]);
       }
     }
   }
 };
-
-FourValues row_of(const Interleaved& rows, Index i) {
-  FourValues values{};
-  std::copy_n(rows.row(i), kLanes, values.begin());
-  return values;
-}
 
 Result<Index> length_of(std::span<const Column> columns) {
   const Index length = columns.empty() ? 0 : columns.front().size();
@@ -132,23 +123,39 @@ Result<Index> smoothed_length(const FilterChain& chain, Index length) {
 
 /// Where the outputs of a batch go, in fours: columns of the answer, and constants to add to them.
 struct Group {
-  std::array<std::size_t, kLanes> from{};
   std::array<double*, kLanes> to{};
   FourValues plus{};
 };
 
-std::vector<Group> groups_of(const Batch& batch, const FourValues& reference, Matrix& answer) {
+/// What a row of outputs is made of, in whole groups of four, and where it goes.
+struct Layout {
+  std::vector<std::size_t> picks;  ///< 4·derivative + lane
   std::vector<Group> groups;
-  for (std::size_t k = 0; k < batch.outputs.size(); ++k) {
-    const auto& [from, to] = batch.outputs[k];
-    if (k % kLanes == 0) groups.emplace_back().from.fill(from);
-    Group& group = groups.back();
-    group.from[k % kLanes] = from;
-    group.to[k % kLanes] = answer.col(to).data();
-    if (batch.derivatives[from / kLanes] == 0) group.plus[k % kLanes] = reference[from % kLanes];
+
+  Layout(const Batch& batch, const FourValues& reference, Matrix& answer) {
+    for (const auto& [from, to] : batch.outputs) {
+      const std::size_t place = picks.size() % kLanes;
+      if (place == 0) groups.emplace_back();
+      picks.push_back(from);
+      groups.back().to[place] = answer.col(to).data();
+      if (batch.derivatives[from / kLanes] == 0) groups.back().plus[place] = reference[from % kLanes];
+    }
+    while (picks.size() % kLanes != 0) {  // whatever keeps pairs of lanes together
+      const bool second = picks.size() % 2 != 0 && picks.back() % 2 == 0;
+      picks.push_back(second ? picks.back() + 1 : picks.front() / 2 * 2);
+    }
   }
-  return groups;
-}
+  [[nodiscard]] Index width() const { return static_cast<Index>(picks.size()); }
+
+  /// Rows [first, first + count) into the answer.
+  void take_out(Padded& rows, Index first, Index count, double gain) const {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      std::array<double*, kLanes> to = groups[g].to;
+      for (double*& column : to) column = column == nullptr ? nullptr : column + first;
+      separate(rows.row(first) + kLanes * g, width(), count, gain, groups[g].plus, to);
+    }
+  }
+};
 
 /// Each output separately: where there are no running sums.
 Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column> columns,
@@ -165,40 +172,116 @@ Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column>
   return filter_zero_phase(chain.lowpass, smoothed, chain.padding);
 }
 
+/// Columns with `window` − 1 rows before the present chunk, in the first cache.
+class RollingRows {
+ public:
+  RollingRows(FourColumns columns, const FourValues& less, double gain, Index window, Index chunk)
+      : columns_(columns), less_(less), gain_(gain), before_(window - 1), chunk_(chunk), rows_(before_ + chunk) {
+    read(before_, rows_.row(0));
+  }
+  /// The rows of `count` positions of the window from where it stands; all but the last time as many as the chunk.
+  const double* next(Index count) {
+    if (moved_) std::copy_n(rows_.row(chunk_), rows_.width() * before_, rows_.row(0));
+    moved_ = true;
+    read(count, rows_.row(before_));
+    return rows_.row(0);
+  }
+
+ private:
+  void read(Index count, double* to) {
+    interleave(columns_, count, less_, gain_, to);
+    for (const double*& column : columns_) column += count;
+  }
+  FourColumns columns_;
+  FourValues less_;
+  double gain_;
+  Index before_, chunk_;
+  Interleaved rows_;
+  bool moved_ = false;
+};
+
+/// Every row of one batch. What has been smoothed goes on to the low-pass while it is still in the first cache; the
+/// last rows wait until they have been continued beyond the end.
+void filter_batch(const FilterChain& chain, const RunningSums& sums, const FourColumns& columns, Index count,
+                  const FourValues& reference, const Layout& layout) {
+  constexpr Index kAtLeast = 256;
+  const Index chunk = 2 * sums.half * (kAtLeast / (2 * sums.half) + 1);
+  const bool lowpass = !chain.lowpass.empty();
+  const double gain = OneWay::gain(chain.lowpass);
+  RollingRows raw(columns, reference, gain, chain.smoothing.window, chunk);
+  Padded rows(count, lowpass ? chain.padding.samples : 0, layout.width());
+  OneWay forward(chain.lowpass, layout.width());
+  Index filtered = -rows.padding;
+  bool begun = false;
+  for (Index done = 0; done < count;) {
+    const Index some = std::min(chunk, count - done);
+    smooth(sums, raw.next(some), some, layout.picks, rows.row(done));
+    done += some;
+    if (!lowpass) {
+      layout.take_out(rows, done - some, some, 1.0);
+      continue;
+    }
+    if (done <= rows.padding) continue;
+    if (!begun) {
+      rows.extend(chain.padding.extension, 0, -1);
+      forward.settle(rows.row(-rows.padding));
+      begun = true;
+    }
+    Index end = done - rows.padding - 1;
+    if (done == count) {
+      rows.extend(chain.padding.extension, count - 1, 1);
+      end = count + rows.padding;
+    }
+    if (end > filtered) forward.run(rows.row(filtered), end - filtered, 1);
+    filtered = std::max(filtered, end);
+  }
+  if (!lowpass) return;
+
+  OneWay backward(chain.lowpass, layout.width());
+  backward.settle(rows.row(filtered - 1));
+  backward.run(rows.row(filtered - 1), rows.padding, -1);
+  for (Index end = count; end > 0; end -= chunk) {
+    const Index begin = std::max<Index>(0, end - chunk);
+    backward.run(rows.row(end - 1), end - begin, -1);
+    layout.take_out(rows, begin, end - begin, gain);
+  }
+}
+
 /// Every row.
 Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> columns,
                           std::span<const FilterOutput> outputs, Hertz rate) {
-  if (!has_running_sums(chain.smoothing)) return smooth_directly(chain, columns, outputs, rate);
-  const Index length = columns.front().size(), count = length - chain.smoothing.window + 1;
-
+  if (!has_running_sums(chain.smoothing) || !OneWay::can_run(chain.lowpass)) {
+    return smooth_directly(chain, columns, outputs, rate);
+  }
+  const Index count = columns.front().size() - chain.smoothing.window + 1;
   Matrix answer(count, static_cast<Index>(outputs.size()));
-  const Index padding = chain.lowpass.empty() ? 0 : chain.padding.samples;
   for (const Batch& batch : batches_of(outputs)) {
     const auto sums = running_sums(chain.smoothing, batch.derivatives, rate.value);
     if (!sums) return tl::unexpected(sums.error());
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);  // sums of differences keep the digits that sums of values lose
-    Interleaved rows(length);
-    interleave(lanes, rows.rows(), reference, rows.row(0));
-
-    const std::vector<Group> groups = groups_of(batch, reference, answer);
-    std::vector<Padded> smoothed;
-    std::vector<Destination> destinations;
-    for (const Group& group : groups) {
-      smoothed.emplace_back(count, padding);
-      destinations.push_back({smoothed.back().data(), group.from});
-    }
-    smooth(*sums, rows.row(0), count, destinations);
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      Padded& one = smoothed[g];
-      if (!chain.lowpass.empty()) {
-        one.extend(chain.padding.extension, row_of(one.rows, padding), row_of(one.rows, padding + count - 1));
-        filter_both_ways(chain.lowpass, one.rows.row(0), one.rows.rows(), row_of(one.rows, 0));
-      }
-      separate(one.data(), count, groups[g].plus, groups[g].to);
-    }
+    filter_batch(chain, *sums, lanes, count, reference, Layout(batch, reference, answer));
   }
   return answer;
+}
+
+/// Forward and backward from rest, without the gains.
+Interleaved lowpassed(const SectionCascade& filter, const FourColumns& columns, Index length,
+                      const FourValues& reference) {
+  constexpr Index kChunk = 512;
+  Interleaved rows(length);
+  const double gain = OneWay::gain(filter);
+  OneWay forward(filter, rows.width()), backward(filter, rows.width());
+  FourColumns at = columns;
+  for (Index begin = 0; begin < length; begin += kChunk) {
+    const Index some = std::min(kChunk, length - begin);
+    interleave(at, some, reference, gain, rows.row(begin));
+    forward.run(rows.row(begin), some, 1);
+    for (const double*& column : at) column += some;
+  }
+  backward.settle(rows.row(length - 1));
+  backward.run(rows.row(length - 1), length, -1);
+  return rows;
 }
 
 /// Low-pass first, then the smoothing where it is asked for: right wherever the low-pass has forgotten the ends.
@@ -212,14 +295,12 @@ Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Colum
     for (const int derivative : batch.derivatives) {
       auto one = savitzky_golay_weights(chain.smoothing, derivative);
       if (!one) return tl::unexpected(one.error());
-      *one *= std::pow(rate.value, derivative);
+      *one *= std::pow(rate.value, derivative) * OneWay::gain(chain.lowpass);
       weights.insert(weights.end(), one->begin(), one->end());
     }
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);
-    Interleaved rows(length);
-    interleave(lanes, length, reference, rows.row(0));
-    filter_both_ways(chain.lowpass, rows.row(0), length, {});
+    const Interleaved rows = lowpassed(chain.lowpass, lanes, length, reference);
     const std::size_t derivatives = batch.derivatives.size();
     std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(end - first));
     correlate_every(weights, derivatives, rows.row(first * every), every, end - first, values.data());
@@ -252,7 +333,7 @@ Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Col
   const Index memory = memory_of(chain.lowpass, kForgotten);
   // An end is `memory` rows long, and another `memory` behind it to forget where the piece was cut off.
   const Index piece = 2 * memory + chain.smoothing.window + chain.padding.samples;
-  if (every == 1 || *length < 2 * piece) {
+  if (every == 1 || *length < 2 * piece || !OneWay::can_run(chain.lowpass)) {
     auto all = filter_all(chain, columns, outputs, sample_rate);
     if (!all || every == 1) return all;
     return Matrix((*all)(Eigen::seqN(0, count, every), Eigen::all));

@@ -13,20 +13,9 @@
 namespace mbk::dsp {
 namespace {
 
-struct Four {
-  using V = Vector4;
-  static constexpr Index kWidth = 4;
-  static constexpr int kTile = 3;  // rows and columns of products that fit the registers
-  [[gnu::always_inline]] static Unaligned4& at(double* p) { return four(p); }
-  [[gnu::always_inline]] static const Unaligned4& at(const double* p) { return four(p); }
-};
-struct Eight {
-  using V = Vector8;
-  static constexpr Index kWidth = 8;
-  static constexpr int kTile = 4;
-  [[gnu::always_inline]] static Unaligned8& at(double* p) { return eight(p); }
-  [[gnu::always_inline]] static const Unaligned8& at(const double* p) { return eight(p); }
-};
+/// Rows and columns of products that fit the registers.
+template <class Lanes>
+constexpr int kTileOf = Lanes::kWidth == Eight::kWidth ? 4 : 3;
 
 /// @param state  n rows of 16, then the last input    N is n, or 0: any up to kMaxStates
 constexpr Index kMaxStates = 32;
@@ -137,7 +126,7 @@ template <class Lanes, int Left, int Right>
 }
 template <class Lanes, int Left>
 [[gnu::always_inline]] inline void tiles_across(Rows left, Rows right, Index across, Index columns, double* sums) {
-  constexpr int kTile = Lanes::kTile;
+  constexpr int kTile = kTileOf<Lanes>;
   Index j = 0;
   for (; j + kTile <= across; j += kTile) {
     tile<Lanes, Left, kTile>(left, {right.row(j), right.stride}, columns, sums + 8 * j, across);
@@ -157,7 +146,7 @@ template <class Lanes, int Left>
 template <class Lanes>
 [[gnu::always_inline]] inline void products_body(Rows left, Index down, Rows right, Index across, Index columns,
                                                  double* sums) {
-  constexpr int kTile = Lanes::kTile;
+  constexpr int kTile = kTileOf<Lanes>;
   Index i = 0;
   for (; i + kTile <= down; i += kTile) {
     tiles_across<Lanes, kTile>({left.row(i), left.stride}, right, across, columns, sums + 8 * i * across);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "mbk/base/core/vector4.h"
@@ -26,290 +25,179 @@ namespace {
 }
 
 [[gnu::always_inline]] inline void interleave_body(const double* const* columns, Index count, const double* less,
-                                                   double* to) {
+                                                   double gain, double* to) {
   const Vector4 subtract = four(less);
   Index i = 0;
   for (; i + 4 <= count; i += 4, to += 16) {
     Vector4 a = four(columns[0] + i), b = four(columns[1] + i), c = four(columns[2] + i), d = four(columns[3] + i);
     transpose(a, b, c, d);
-    four(to) = a - subtract;
-    four(to + 4) = b - subtract;
-    four(to + 8) = c - subtract;
-    four(to + 12) = d - subtract;
+    four(to) = (a - subtract) * gain;
+    four(to + 4) = (b - subtract) * gain;
+    four(to + 8) = (c - subtract) * gain;
+    four(to + 12) = (d - subtract) * gain;
   }
   for (; i < count; ++i, to += 4) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) to[lane] = columns[lane][i] - less[lane];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) to[lane] = (columns[lane][i] - less[lane]) * gain;
   }
 }
-MBK_X86_64_V3 void interleave_v3(const double* const* columns, Index count, const double* less, double* to) {
-  interleave_body(columns, count, less, to);
+void interleave_any(const double* const* columns, Index count, const double* less, double gain, double* to) {
+  interleave_body(columns, count, less, gain, to);
+}
+MBK_X86_64_V3 void interleave_v3(const double* const* columns, Index count, const double* less, double gain,
+                                 double* to) {
+  interleave_body(columns, count, less, gain, to);
 }
 
-[[gnu::always_inline]] inline void separate_body(const double* from, Index count, const double* plus,
-                                                 double* const* columns) {
+[[gnu::always_inline]] inline void separate_body(const double* from, Index width, Index count, double gain,
+                                                 const double* plus, double* const* columns) {
   const Vector4 add = four(plus);
   Index i = 0;
-  for (; i + 4 <= count; i += 4, from += 16) {
-    Vector4 a = four(from) + add, b = four(from + 4) + add, c = four(from + 8) + add, d = four(from + 12) + add;
+  for (; i + 4 <= count; i += 4, from += 4 * width) {
+    Vector4 a = four(from), b = four(from + width), c = four(from + 2 * width), d = four(from + 3 * width);
+    a = a * gain + add;
+    b = b * gain + add;
+    c = c * gain + add;
+    d = d * gain + add;
     transpose(a, b, c, d);
     four(columns[0] + i) = a;
     four(columns[1] + i) = b;
     four(columns[2] + i) = c;
     four(columns[3] + i) = d;
   }
-  for (; i < count; ++i, from += 4) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) columns[lane][i] = from[lane] + plus[lane];
+  for (; i < count; ++i, from += width) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) columns[lane][i] = from[lane] * gain + plus[lane];
   }
 }
-void separate_any(const double* from, Index count, const double* plus, double* const* columns) {
-  separate_body(from, count, plus, columns);
+void separate_any(const double* from, Index width, Index count, double gain, const double* plus,
+                  double* const* columns) {
+  separate_body(from, width, count, gain, plus, columns);
 }
-MBK_X86_64_V3 void separate_v3(const double* from, Index count, const double* plus, double* const* columns) {
-  separate_body(from, count, plus, columns);
-}
-
-// ---- the low-pass, both ways ----
-
-/// A section as s1 ← (b1 − a1 b0) u + s2 − a1 s1, s2 ← (b2 − a2 b0) u − a2 s1, y = b0 u + s1: transposed direct form II
-/// with the output put in, so that each sample waits for one product only.
-struct Section {
-  double b0, c1, c2, a1, a2;
-};
-constexpr std::size_t kSectionsAtOnce = 4;
-
-template <std::size_t Count>
-struct State {
-  Vector4 s1[Count], s2[Count];
-};
-
-template <std::size_t Count>
-[[gnu::always_inline]] inline State<Count> settle(const Section* sections, Vector4 input) {
-  State<Count> state;
-  for (std::size_t k = 0; k < Count; ++k) {
-    const Section& s = sections[k];
-    // From s1 = c1 u + s2 − a1 s1 and s2 = c2 u − a2 s1.
-    state.s1[k] = (s.c1 + s.c2) / (1.0 + s.a1 + s.a2) * input;
-    state.s2[k] = s.c2 * input - s.a2 * state.s1[k];
-    input = s.b0 * input + state.s1[k];
-  }
-  return state;
-}
-
-template <std::size_t Count>
-[[gnu::always_inline]] inline Vector4 step(const Section* sections, State<Count>& state, Vector4 input) {
-  for (std::size_t k = 0; k < Count; ++k) {
-    const Section& s = sections[k];
-    const Vector4 s1 = state.s1[k];
-    state.s1[k] = s.c1 * input + state.s2[k] - s.a1 * s1;
-    state.s2[k] = s.c2 * input - s.a2 * s1;
-    input = s.b0 * input + s1;
-  }
-  return input;
-}
-
-/// One direction; `stride` is +4 or −4 doubles.
-template <std::size_t Count>
-[[gnu::always_inline]] inline void run_body(const Section* given, double* at, Index count, Index stride,
-                                            const double* settled) {
-  Section sections[Count];
-  std::copy_n(given, Count, sections);
-  State<Count> state = settle<Count>(sections, four(settled));
-  for (Index i = 0; i < count; ++i, at += stride) four(at) = step<Count>(sections, state, four(at));
-}
-template <std::size_t Count>
-void run(const Section* sections, double* at, Index count, Index stride, const double* settled) {
-  run_body<Count>(sections, at, count, stride, settled);
-}
-template <std::size_t Count>
-MBK_X86_64_V3 void run_v3(const Section* sections, double* at, Index count, Index stride, const double* settled) {
-  run_body<Count>(sections, at, count, stride, settled);
-}
-
-void run_sections(std::span<const Section> sections, double* at, Index count, Index stride, FourValues settled) {
-  const bool v3 = has_x86_64_v3();
-  for (std::size_t first = 0; first < sections.size(); first += kSectionsAtOnce) {
-    const std::span<const Section> some = sections.subspan(first, std::min(kSectionsAtOnce, sections.size() - first));
-    using Run = void (*)(const Section*, double*, Index, Index, const double*);
-    static constexpr Run kRuns[][kSectionsAtOnce] = {{run<1>, run<2>, run<3>, run<4>},
-                                                     {run_v3<1>, run_v3<2>, run_v3<3>, run_v3<4>}};
-    kRuns[v3 ? 1 : 0][some.size() - 1](some.data(), at, count, stride, settled.data());
-    for (const Section& s : some) {
-      for (double& value : settled) value *= s.b0 + (s.c1 + s.c2) / (1.0 + s.a1 + s.a2);
-    }
-  }
+MBK_X86_64_V3 void separate_v3(const double* from, Index width, Index count, double gain, const double* plus,
+                               double* const* columns) {
+  separate_body(from, width, count, gain, plus, columns);
 }
 
 // ---- Savitzky–Golay by running sums ----
 
-/// Sums M_k over the window that begins at `row`, from nothing.
-template <std::size_t Sums>
-[[gnu::always_inline]] inline void start_sums(const RunningSums& f, const double* row, Vector4 (&sum)[Sums]) {
-  for (Vector4& one : sum) one = Vector4{};
-  const double* weight = f.binomial.data();
-  for (Index j = 0; j <= 2 * f.half; ++j, weight += Sums, row += kLanes) {
-    const Vector4 x = four(row);
-    for (std::size_t k = 0; k < Sums; ++k) sum[k] += weight[k] * x;
+/// The four values at `row`, or beside them the four of the stretch that runs at the same time, `apart` doubles on.
+template <class Lanes>
+[[gnu::always_inline]] inline typename Lanes::V abreast(const double* row, Index apart) {
+  if constexpr (Lanes::kWidth == Eight::kWidth) {
+    return __builtin_shufflevector(Vector4(four(row)), Vector4(four(row + apart)), 0, 1, 2, 3, 4, 5, 6, 7);
+  } else {
+    return four(row);
   }
 }
 
-/// The same one sample later; `row` begins the window so far.
-template <std::size_t Sums>
-[[gnu::always_inline]] inline void move_sums(const double* enter, const double* leave, const double* row, Index window,
-                                             Vector4 (&sum)[Sums]) {
-  const Vector4 old = four(row), young = four(row + 4 * window);
-  sum[0] += young - old;
-  for (std::size_t k = 1; k < Sums; ++k) sum[k] += enter[k] * young - leave[k] * old - sum[k - 1];
-}
-
-/// Two lanes of one derivative beside two of another: the halves of a row that most outputs are made of.
-struct Pairs {
-  double* to;
-  int halves;                                   ///< 2·(half of the sums for the first pair) + that for the second
-  std::array<double, kLanes * kMaxSums> share;  ///< of each sum, four values: what it contributes to each lane
+/// What a row is made of: pieces of `size` values of the results, which lie derivative by derivative.
+struct Pieces {
+  const std::size_t* from;
+  std::size_t count;
+  bool pairs;  ///< of two values, else of one
 };
 
-template <std::size_t Sums>
-[[gnu::always_inline]] inline Vector4 combined(const double* share, const Vector4 (&sum)[Sums], int halves) {
-  Vector4 value = {};
-  switch (halves) {
-    case 0:
-      for (std::size_t k = 0; k < Sums; ++k) {
-        value += four(share + kLanes * k) * __builtin_shufflevector(sum[k], sum[k], 0, 1, 0, 1);
-      }
-      break;
-    case 1:
-      for (std::size_t k = 0; k < Sums; ++k) value += four(share + kLanes * k) * sum[k];
-      break;
-    case 2:
-      for (std::size_t k = 0; k < Sums; ++k) {
-        value += four(share + kLanes * k) * __builtin_shufflevector(sum[k], sum[k], 2, 3, 0, 1);
-      }
-      break;
-    default:
-      for (std::size_t k = 0; k < Sums; ++k) {
-        value += four(share + kLanes * k) * __builtin_shufflevector(sum[k], sum[k], 2, 3, 2, 3);
-      }
+template <class Lanes>
+[[gnu::always_inline]] inline void put(const double* results, const Pieces& pieces, double* to) {
+  if (pieces.pairs) {
+    for (std::size_t k = 0; k < pieces.count; ++k) std::copy_n(results + pieces.from[k], 2, to + 2 * k);
+  } else {
+    for (std::size_t k = 0; k < pieces.count; ++k) to[k] = results[pieces.from[k]];
   }
-  return value;
 }
 
-template <std::size_t Sums>
-[[gnu::always_inline]] inline void smooth_pairs_body(const RunningSums& f, const double* rows, Index count,
-                                                     const Pairs* outputs, std::size_t groups) {
-  const Index window = 2 * f.half + 1;
+/// At most `half` rows of one stretch, or of two side by side, which lie `half` rows apart.
+template <class Lanes, std::size_t Sums, std::size_t Derivatives>
+[[gnu::always_inline]] inline void smooth_body(const RunningSums& f, const double* row, Index count,
+                                               const Pieces& pieces, double* to, Index width) {
+  using V = typename Lanes::V;
+  constexpr auto kWidth = static_cast<std::size_t>(Lanes::kWidth);
+  const Index window = 2 * f.half + 1, apart = 4 * f.half;
   const double* const leave = f.binomial.data();                                // C(−h, k)
   const double* const enter = leave + Sums * static_cast<std::size_t>(window);  // C(h + 1, k)
-  for (Index begin = 0; begin < count; begin += f.half) {
-    const Index end = std::min(count, begin + f.half);
-    Vector4 sum[Sums];
-    start_sums<Sums>(f, rows + 4 * begin, sum);
-    for (Index i = begin;; ++i) {
-      for (std::size_t g = 0; g < groups; ++g) {
-        four(outputs[g].to + 4 * i) = combined<Sums>(outputs[g].share.data(), sum, outputs[g].halves);
-      }
-      if (i + 1 == end) break;
-      move_sums<Sums>(enter, leave, rows + 4 * i, window, sum);
-    }
-  }
-}
-template <std::size_t Sums>
-void smooth_pairs(const RunningSums& f, const double* rows, Index count, const Pairs* outputs, std::size_t groups) {
-  smooth_pairs_body<Sums>(f, rows, count, outputs, groups);
-}
-template <std::size_t Sums>
-MBK_X86_64_V3 void smooth_pairs_v3(const RunningSums& f, const double* rows, Index count, const Pairs* outputs,
-                                   std::size_t groups) {
-  smooth_pairs_body<Sums>(f, rows, count, outputs, groups);
-}
-
-/// The destinations as pairs, or nothing where one of them is made of other lanes.
-std::optional<std::vector<Pairs>> as_pairs(const RunningSums& f, std::span<const Destination> destinations) {
-  std::vector<Pairs> all;
-  for (const auto& [to, from] : destinations) {
-    const bool paired = from[0] % 2 == 0 && from[1] == from[0] + 1 && from[2] % 2 == 0 && from[3] == from[2] + 1;
-    if (!paired) return std::nullopt;
-    const auto half = [](std::size_t place) { return static_cast<int>(place % kLanes / 2); };
-    Pairs& one = all.emplace_back(Pairs{to, 2 * half(from[0]) + half(from[2]), {}});
-    for (std::size_t k = 0; k < f.sums; ++k) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        one.share[kLanes * k + lane] = f.shares[from[lane] / kLanes * f.sums + k];
-      }
-    }
-  }
-  return all;
-}
-
-template <std::size_t Sums, std::size_t Derivatives>
-[[gnu::always_inline]] inline void smooth_body(const RunningSums& f, const double* rows, Index count,
-                                               const Destination* destinations, std::size_t groups) {
-  const Index window = 2 * f.half + 1;
-  const double* const leaving = f.binomial.data();                                   // C(−h, k)
-  const double* const entering = leaving + Sums * static_cast<std::size_t>(window);  // C(h + 1, k)
   double share[Derivatives][Sums];
   for (std::size_t d = 0; d < Derivatives; ++d) std::copy_n(f.shares.data() + d * Sums, Sums, share[d]);
 
-  for (Index begin = 0; begin < count; begin += f.half) {
-    const Index end = std::min(count, begin + f.half);
-    Vector4 sum[Sums];
-    start_sums<Sums>(f, rows + 4 * begin, sum);
-    for (Index i = begin; i < end; ++i) {
-      alignas(32) double result[Derivatives * kLanes];
-      for (std::size_t d = 0; d < Derivatives; ++d) {
-        Vector4 value = share[d][0] * sum[0];
-        for (std::size_t k = 1; k < Sums; ++k) value += share[d][k] * sum[k];
-        four(result + kLanes * d) = value;
-      }
-      for (std::size_t g = 0; g < groups; ++g) {
-        const auto& from = destinations[g].from;
-        four(destinations[g].to + 4 * i) = Vector4{result[from[0]], result[from[1]], result[from[2]], result[from[3]]};
-      }
-      if (i + 1 == end) break;
-      move_sums<Sums>(entering, leaving, rows + 4 * i, window, sum);
+  V sum[Sums] = {};
+  const double* weight = f.binomial.data();
+  for (Index j = 0; j < window; ++j, weight += Sums) {
+    const V x = abreast<Lanes>(row + 4 * j, apart);
+    for (std::size_t k = 0; k < Sums; ++k) sum[k] += weight[k] * x;
+  }
+  for (Index i = 0;; row += 4, to += width) {
+    alignas(64) double results[Derivatives * kWidth];
+    for (std::size_t d = 0; d < Derivatives; ++d) {
+      V value = share[d][0] * sum[0];
+      for (std::size_t k = 1; k < Sums; ++k) value += share[d][k] * sum[k];
+      Lanes::at(results + kWidth * d) = value;
     }
+    put<Lanes>(results, pieces, to);
+    if constexpr (kWidth > kLanes) put<Lanes>(results + kLanes, pieces, to + width * f.half);
+    if (++i == count) return;
+    const V old = abreast<Lanes>(row, apart), young = abreast<Lanes>(row + 4 * window, apart);
+    sum[0] += young - old;
+    for (std::size_t k = 1; k < Sums; ++k) sum[k] += enter[k] * young - leave[k] * old - sum[k - 1];
   }
 }
 template <std::size_t Sums, std::size_t Derivatives>
-void smooth_any(const RunningSums& f, const double* rows, Index count, const Destination* to, std::size_t groups) {
-  smooth_body<Sums, Derivatives>(f, rows, count, to, groups);
+void smooth_any(const RunningSums& f, const double* row, Index count, const Pieces& pieces, double* to, Index width) {
+  smooth_body<Four, Sums, Derivatives>(f, row, count, pieces, to, width);
 }
 template <std::size_t Sums, std::size_t Derivatives>
-MBK_X86_64_V3 void smooth_v3(const RunningSums& f, const double* rows, Index count, const Destination* to,
-                             std::size_t groups) {
-  smooth_body<Sums, Derivatives>(f, rows, count, to, groups);
+MBK_X86_64_V3 void smooth_v3(const RunningSums& f, const double* row, Index count, const Pieces& pieces, double* to,
+                             Index width) {
+  smooth_body<Four, Sums, Derivatives>(f, row, count, pieces, to, width);
+}
+template <std::size_t Sums, std::size_t Derivatives>
+MBK_X86_64_V4 void smooth_v4(const RunningSums& f, const double* row, Index count, const Pieces& pieces, double* to,
+                             Index width) {
+  smooth_body<Eight, Sums, Derivatives>(f, row, count, pieces, to, width);
 }
 
 // ---- every step-th sample ----
 
-template <std::size_t Derivatives>
+/// One row of results, or two at a time.
+template <class Lanes, std::size_t Derivatives>
 [[gnu::always_inline]] inline void correlate_body(const double* weights, Index window, const double* rows, Index step,
                                                   Index count, double* to) {
+  using V = typename Lanes::V;
   constexpr Index kAtOnce = 4;  // sums that do not wait for each other
-  for (Index i = 0; i < count; ++i, rows += 4 * step, to += kLanes * Derivatives) {
-    Vector4 sum[Derivatives][kAtOnce] = {};
+  constexpr Index kRows = Lanes::kWidth / static_cast<Index>(kLanes);
+  constexpr std::size_t kResults = kLanes * Derivatives;
+  for (Index i = 0; i + kRows <= count; i += kRows, rows += 4 * step * kRows, to += kResults * kRows) {
+    V sum[Derivatives][kAtOnce] = {};
     Index j = 0;
     for (; j + kAtOnce <= window; j += kAtOnce) {
       for (Index a = 0; a < kAtOnce; ++a) {
-        const Vector4 x = four(rows + 4 * (j + a));
+        const V x = abreast<Lanes>(rows + 4 * (j + a), 4 * step);
         for (std::size_t d = 0; d < Derivatives; ++d) sum[d][a] += weights[static_cast<Index>(d) * window + j + a] * x;
       }
     }
     for (; j < window; ++j) {
-      const Vector4 x = four(rows + 4 * j);
+      const V x = abreast<Lanes>(rows + 4 * j, 4 * step);
       for (std::size_t d = 0; d < Derivatives; ++d) sum[d][0] += weights[static_cast<Index>(d) * window + j] * x;
     }
     for (std::size_t d = 0; d < Derivatives; ++d) {
-      four(to + kLanes * d) = (sum[d][0] + sum[d][1]) + (sum[d][2] + sum[d][3]);
+      alignas(64) double total[Lanes::kWidth];
+      Lanes::at(total) = (sum[d][0] + sum[d][1]) + (sum[d][2] + sum[d][3]);
+      for (Index r = 0; r < kRows; ++r) {
+        std::copy_n(total + 4 * r, kLanes, to + kResults * static_cast<std::size_t>(r) + kLanes * d);
+      }
     }
   }
 }
 template <std::size_t Derivatives>
 void correlate_any(const double* weights, Index window, const double* rows, Index step, Index count, double* to) {
-  correlate_body<Derivatives>(weights, window, rows, step, count, to);
+  correlate_body<Four, Derivatives>(weights, window, rows, step, count, to);
 }
 template <std::size_t Derivatives>
 MBK_X86_64_V3 void correlate_v3(const double* weights, Index window, const double* rows, Index step, Index count,
                                 double* to) {
-  correlate_body<Derivatives>(weights, window, rows, step, count, to);
+  correlate_body<Four, Derivatives>(weights, window, rows, step, count, to);
+}
+template <std::size_t Derivatives>
+MBK_X86_64_V4 void correlate_v4(const double* weights, Index window, const double* rows, Index step, Index count,
+                                double* to) {
+  correlate_body<Eight, Derivatives>(weights, window, rows, step, count, to);
 }
 
 /// Stirling numbers of the second kind times k!: jᵐ = Σ_k S(m, k) k! C(j, k).
@@ -320,36 +208,150 @@ double power_in_binomials(int m, int k) {
 
 }  // namespace
 
-void interleave(const std::array<const double*, kLanes>& columns, Index count, const FourValues& less, double* to) {
-  if (has_x86_64_v3()) {
-    interleave_v3(columns.data(), count, less.data(), to);
-  } else {
-    interleave_body(columns.data(), count, less.data(), to);
-  }
+void interleave(const FourColumns& columns, Index count, const FourValues& less, double gain, double* to) {
+  (has_x86_64_v3() ? interleave_v3 : interleave_any)(columns.data(), count, less.data(), gain, to);
 }
 
-void separate(const double* from, Index count, const FourValues& plus, const std::array<double*, kLanes>& columns) {
+void separate(const double* from, Index width, Index count, double gain, const FourValues& plus,
+              const std::array<double*, kLanes>& columns) {
   if (std::ranges::find(columns, nullptr) == columns.end()) {
-    (has_x86_64_v3() ? separate_v3 : separate_any)(from, count, plus.data(), columns.data());
+    (has_x86_64_v3() ? separate_v3 : separate_any)(from, width, count, gain, plus.data(), columns.data());
     return;
   }
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     if (columns[lane] == nullptr) continue;
-    for (Index i = 0; i < count; ++i) columns[lane][i] = from[4 * i + static_cast<Index>(lane)] + plus[lane];
+    const double* value = from + lane;
+    for (Index i = 0; i < count; ++i, value += width) columns[lane][i] = *value * gain + plus[lane];
   }
 }
 
-void filter_both_ways(const SectionCascade& filter, double* rows, Index count, const FourValues& settled) {
-  std::vector<Section> sections;
-  for (const SecondOrderSection& s : filter) {
-    sections.push_back({s.b0, s.b1 - s.a1 * s.b0, s.b2 - s.a2 * s.b0, s.a1, s.a2});
+// ---- the low-pass ----
+
+struct OneWayLoops {
+  using Section = OneWay::Section;
+
+  /// @param state  of the lanes of this part; `width` doubles from one of its rows to the next    @param stride doubles
+  template <class Lanes, std::size_t Count, bool Short>
+  [[gnu::always_inline]] static void body(const Section* given, double* state, Index width, double* at, Index count,
+                                          Index stride) {
+    using V = typename Lanes::V;
+    Section sections[Count];
+    std::copy_n(given, Count, sections);
+    V w1[Count], w2[Count];
+    for (std::size_t k = 0; k < Count; ++k) {
+      w1[k] = Lanes::at(state + 2 * static_cast<Index>(k) * width);
+      w2[k] = Lanes::at(state + (2 * static_cast<Index>(k) + 1) * width);
+    }
+    for (Index i = 0; i < count; ++i, at += stride) {
+      V value = Lanes::at(at);
+      for (std::size_t k = 0; k < Count; ++k) {
+        const Section& s = sections[k];
+        if (Short && k == 0) {
+          const V w = value - s.a1 * w1[k];
+          value = w + s.n1 * w1[k];
+          w1[k] = w;
+        } else {
+          const V w = value - s.a2 * w2[k] - s.a1 * w1[k];
+          value = w + s.n1 * w1[k] + s.n2 * w2[k];
+          w2[k] = w1[k];
+          w1[k] = w;
+        }
+      }
+      Lanes::at(at) = value;
+    }
+    for (std::size_t k = 0; k < Count; ++k) {
+      Lanes::at(state + 2 * static_cast<Index>(k) * width) = w1[k];
+      Lanes::at(state + (2 * static_cast<Index>(k) + 1) * width) = w2[k];
+    }
   }
-  run_sections(sections, rows, count, 4, settled);
-  double* const last = rows + 4 * (count - 1);
-  FourValues end{};
-  std::copy_n(last, kLanes, end.begin());
-  run_sections(sections, last, count, -4, end);
+  template <std::size_t Count, bool Short>
+  static void any(const Section* sections, double* state, Index width, double* at, Index count, Index stride) {
+    body<Four, Count, Short>(sections, state, width, at, count, stride);
+  }
+  template <std::size_t Count, bool Short>
+  MBK_X86_64_V3 static void v3(const Section* sections, double* state, Index width, double* at, Index count,
+                               Index stride) {
+    body<Four, Count, Short>(sections, state, width, at, count, stride);
+  }
+  template <std::size_t Count, bool Short>
+  MBK_X86_64_V4 static void v4(const Section* sections, double* state, Index width, double* at, Index count,
+                               Index stride) {
+    body<Eight, Count, Short>(sections, state, width, at, count, stride);
+  }
+};
+
+namespace {
+
+constexpr std::size_t kSectionsAtOnce = 4;
+using OneWayRun = void (*)(const OneWayLoops::Section*, double*, Index, double*, Index, Index);
+using OneWayRuns = std::array<std::array<OneWayRun, 2>, kSectionsAtOnce>;  // by sections, whether the first is short
+constexpr OneWayRuns kOneWayAny = {{{OneWayLoops::any<1, false>, OneWayLoops::any<1, true>},
+                                    {OneWayLoops::any<2, false>, OneWayLoops::any<2, true>},
+                                    {OneWayLoops::any<3, false>, OneWayLoops::any<3, true>},
+                                    {OneWayLoops::any<4, false>, OneWayLoops::any<4, true>}}};
+constexpr OneWayRuns kOneWayV3 = {{{OneWayLoops::v3<1, false>, OneWayLoops::v3<1, true>},
+                                   {OneWayLoops::v3<2, false>, OneWayLoops::v3<2, true>},
+                                   {OneWayLoops::v3<3, false>, OneWayLoops::v3<3, true>},
+                                   {OneWayLoops::v3<4, false>, OneWayLoops::v3<4, true>}}};
+constexpr OneWayRuns kOneWayV4 = {{{OneWayLoops::v4<1, false>, OneWayLoops::v4<1, true>},
+                                   {OneWayLoops::v4<2, false>, OneWayLoops::v4<2, true>},
+                                   {OneWayLoops::v4<3, false>, OneWayLoops::v4<3, true>},
+                                   {OneWayLoops::v4<4, false>, OneWayLoops::v4<4, true>}}};
+
+bool is_short(const SecondOrderSection& s) {
+  return s.a2 == 0.0 && s.b2 == 0.0;
 }
+
+}  // namespace
+
+bool OneWay::can_run(const SectionCascade& filter) {
+  return std::ranges::none_of(filter, [](const SecondOrderSection& s) { return s.b0 == 0.0; });
+}
+
+double OneWay::gain(const SectionCascade& filter) {
+  double gain = 1.0;
+  for (const SecondOrderSection& s : filter) gain *= s.b0;
+  return gain;
+}
+
+OneWay::OneWay(const SectionCascade& filter, Index width)
+    : state_(2 * filter.size() * static_cast<std::size_t>(width)), width_(width) {
+  for (const bool now_short : {true, false}) {
+    for (const SecondOrderSection& s : filter) {
+      if (is_short(s) == now_short) sections_.push_back({s.a1, s.a2, s.b1 / s.b0, s.b2 / s.b0});
+    }
+    if (now_short) first_is_short_ = !sections_.empty();
+  }
+}
+
+void OneWay::settle(const double* row) {
+  for (Index lane = 0; lane < width_; ++lane) {
+    double value = row[lane];
+    double* state = state_.data() + lane;
+    for (const Section& s : sections_) {
+      const double w = value / (1.0 + s.a1 + s.a2);
+      state[0] = state[width_] = w;
+      value = w * (1.0 + s.n1 + s.n2);
+      state += 2 * width_;
+    }
+  }
+}
+
+void OneWay::run(double* at, Index count, Index step) {
+  for (std::size_t first = 0; first < sections_.size(); first += kSectionsAtOnce) {
+    const std::size_t some = std::min(kSectionsAtOnce, sections_.size() - first);
+    const std::size_t is_first_short = first == 0 && first_is_short_ ? 1 : 0;
+    double* const state = state_.data() + 2 * static_cast<Index>(first) * width_;
+    for (Index lane = 0; lane < width_;) {
+      const bool eight = has_x86_64_v4() && lane + 8 <= width_;
+      const OneWayRuns& runs = eight ? kOneWayV4 : has_x86_64_v3() ? kOneWayV3 : kOneWayAny;
+      runs[some - 1][is_first_short](sections_.data() + first, state + lane, width_, at + lane, count, step * width_);
+      lane += eight ? 8 : 4;
+    }
+  }
+}
+
+// ---- running sums ----
 
 bool has_running_sums(const SavitzkyGolay& filter) {
   constexpr int kShortest = 31;  // shorter ones are as quick directly, and lose digits
@@ -380,32 +382,52 @@ Result<RunningSums> running_sums(const SavitzkyGolay& filter, std::span<const in
   return f;
 }
 
-void smooth(const RunningSums& f, const double* rows, Index count, std::span<const Destination> destinations) {
-  const std::size_t order = f.sums / 2 - 1;
-  if (const auto pairs = as_pairs(f, destinations)) {
-    using SmoothPairs = void (*)(const RunningSums&, const double*, Index, const Pairs*, std::size_t);
-    static constexpr SmoothPairs kPairs[2][3] = {{smooth_pairs<3>, smooth_pairs<5>, smooth_pairs<7>},
-                                                 {smooth_pairs_v3<3>, smooth_pairs_v3<5>, smooth_pairs_v3<7>}};
-    return kPairs[has_x86_64_v3() ? 1 : 0][order](f, rows, count, pairs->data(), pairs->size());
-  }
-  using Smooth = void (*)(const RunningSums&, const double*, Index, const Destination*, std::size_t);
-  static constexpr Smooth kSmooth[2][3][kMaxDerivatives] = {{{smooth_any<3, 1>, smooth_any<3, 2>, smooth_any<3, 3>},
+void smooth(const RunningSums& f, const double* rows, Index count, std::span<const std::size_t> picks, double* to) {
+  using Smooth = void (*)(const RunningSums&, const double*, Index, const Pieces&, double*, Index);
+  static constexpr Smooth kSmooth[3][3][kMaxDerivatives] = {{{smooth_any<3, 1>, smooth_any<3, 2>, smooth_any<3, 3>},
                                                              {smooth_any<5, 1>, smooth_any<5, 2>, smooth_any<5, 3>},
                                                              {smooth_any<7, 1>, smooth_any<7, 2>, smooth_any<7, 3>}},
                                                             {{smooth_v3<3, 1>, smooth_v3<3, 2>, smooth_v3<3, 3>},
                                                              {smooth_v3<5, 1>, smooth_v3<5, 2>, smooth_v3<5, 3>},
-                                                             {smooth_v3<7, 1>, smooth_v3<7, 2>, smooth_v3<7, 3>}}};
-  const std::size_t derivatives = f.shares.size() / f.sums;
-  kSmooth[has_x86_64_v3() ? 1 : 0][order][derivatives - 1](f, rows, count, destinations.data(), destinations.size());
+                                                             {smooth_v3<7, 1>, smooth_v3<7, 2>, smooth_v3<7, 3>}},
+                                                            {{smooth_v4<3, 1>, smooth_v4<3, 2>, smooth_v4<3, 3>},
+                                                             {smooth_v4<5, 1>, smooth_v4<5, 2>, smooth_v4<5, 3>},
+                                                             {smooth_v4<7, 1>, smooth_v4<7, 2>, smooth_v4<7, 3>}}};
+  const std::size_t order = f.sums / 2 - 1, derivative = f.shares.size() / f.sums - 1;
+  const auto width = static_cast<Index>(picks.size());
+  bool pairs = true;
+  for (std::size_t k = 0; k < picks.size(); k += 2) {
+    pairs = pairs && picks[k] % 2 == 0 && picks[k + 1] == picks[k] + 1;
+  }
+  const auto run = [&](std::size_t kind, std::size_t abreast, Index first, Index length) {
+    std::array<std::size_t, kLanes * kMaxDerivatives> from{};
+    Pieces pieces{from.data(), 0, pairs};
+    for (std::size_t k = 0; k < picks.size(); k += pairs ? 2 : 1) {
+      from[pieces.count++] = abreast * (picks[k] / kLanes * kLanes) + picks[k] % kLanes;
+    }
+    kSmooth[kind][order][derivative](f, rows + 4 * first, length, pieces, to + width * first, width);
+  };
+  Index i = 0;
+  if (has_x86_64_v4()) {
+    for (; i + 2 * f.half <= count; i += 2 * f.half) run(2, 2, i, f.half);
+  }
+  for (; i < count; i += f.half) run(has_x86_64_v3() ? 1 : 0, 1, i, std::min(f.half, count - i));
 }
 
 void correlate_every(std::span<const double> weights, std::size_t derivatives, const double* rows, Index step,
                      Index count, double* to) {
   using Correlate = void (*)(const double*, Index, const double*, Index, Index, double*);
-  static constexpr Correlate kCorrelate[2][kMaxDerivatives] = {{correlate_any<1>, correlate_any<2>, correlate_any<3>},
-                                                               {correlate_v3<1>, correlate_v3<2>, correlate_v3<3>}};
+  static constexpr Correlate kCorrelate[3][kMaxDerivatives] = {{correlate_any<1>, correlate_any<2>, correlate_any<3>},
+                                                               {correlate_v3<1>, correlate_v3<2>, correlate_v3<3>},
+                                                               {correlate_v4<1>, correlate_v4<2>, correlate_v4<3>}};
   const auto window = static_cast<Index>(weights.size() / derivatives);
-  kCorrelate[has_x86_64_v3() ? 1 : 0][derivatives - 1](weights.data(), window, rows, step, count, to);
+  const auto run = [&](std::size_t kind, Index first, Index rows_of_results) {
+    kCorrelate[kind][derivatives - 1](weights.data(), window, rows + 4 * step * first, step, rows_of_results,
+                                      to + static_cast<Index>(kLanes * derivatives) * first);
+  };
+  const Index twos = has_x86_64_v4() ? count / 2 * 2 : 0;
+  run(2, 0, twos);
+  run(has_x86_64_v3() ? 1 : 0, twos, count - twos);
 }
 
 }  // namespace mbk::dsp

@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -17,39 +18,136 @@ namespace mbk::numeric {
 
 namespace {
 
-/// Dot products of columns, block by block, so that a block stays in the first cache while all pairs are taken.
+// ---- dot products of columns ----
+
+constexpr Index kBlock = 256;  // rows that stay in the first cache while all pairs of columns are taken
+constexpr Index kTile = 3;     // a tile of 3×3 dot products fills the registers, and none waits for another
+
+/// aᵢᵀ bⱼ of a tile over `rows` rows, added to `to` + i + stride·j.
+template <class Lanes>
+[[gnu::always_inline]] inline void dot_tile(const double* const* a, const double* const* b, Index rows, double* to,
+                                            Index stride) {
+  typename Lanes::V sum[kTile][kTile] = {};
+  Index t = 0;
+  for (; t + Lanes::kWidth <= rows; t += Lanes::kWidth) {
+    typename Lanes::V left[kTile];
+    for (Index i = 0; i < kTile; ++i) left[i] = Lanes::at(a[i] + t);
+    for (Index j = 0; j < kTile; ++j) {
+      const typename Lanes::V right = Lanes::at(b[j] + t);
+      for (Index i = 0; i < kTile; ++i) sum[j][i] += left[i] * right;
+    }
+  }
+  for (Index j = 0; j < kTile; ++j) {
+    for (Index i = 0; i < kTile; ++i) {
+      double rest = 0.0;
+      for (Index k = 0; k < Lanes::kWidth; ++k) rest += sum[j][i][k];
+      for (Index r = t; r < rows; ++r) rest += a[i][r] * b[j][r];
+      to[i + stride * j] += rest;
+    }
+  }
+}
+
+/// Columns of equal length, in whole tiles: the last one is repeated.
+std::vector<const double*> in_tiles(std::initializer_list<const Matrix*> matrices) {
+  std::vector<const double*> columns;
+  for (const Matrix* matrix : matrices) {
+    for (Index j = 0; j < matrix->cols(); ++j) columns.push_back(matrix->col(j).data());
+  }
+  while (static_cast<Index>(columns.size()) % kTile != 0) columns.push_back(columns.back());
+  return columns;
+}
+
+template <class Lanes>
 [[gnu::always_inline]] inline void gram_body(const double* const* columns, Index count, Index rows, double* gram) {
-  constexpr Index kBlock = 256;
+  const double *a[kTile], *b[kTile];
   for (Index begin = 0; begin < rows; begin += kBlock) {
-    const Index end = std::min(rows, begin + kBlock), fours = begin + (end - begin) / 4 * 4;
-    for (Index j = 0; j < count; ++j) {
-      for (Index i = 0; i <= j; ++i) {
-        const double *a = columns[i], *b = columns[j];
-        Vector4 sum = {};
-        for (Index t = begin; t < fours; t += 4) sum += four(a + t) * four(b + t);
-        double rest = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-        for (Index t = fours; t < end; ++t) rest += a[t] * b[t];
-        gram[j * count + i] += rest;
+    const Index size = std::min(rows - begin, kBlock);
+    for (Index j = 0; j < count; j += kTile) {
+      for (Index k = 0; k < kTile; ++k) b[k] = columns[j + k] + begin;
+      for (Index i = 0; i <= j; i += kTile) {
+        for (Index k = 0; k < kTile; ++k) a[k] = columns[i + k] + begin;
+        dot_tile<Lanes>(a, b, size, gram + i + count * j, count);
       }
     }
   }
 }
 void gram_any(const double* const* columns, Index count, Index rows, double* gram) {
-  gram_body(columns, count, rows, gram);
+  gram_body<Four>(columns, count, rows, gram);
 }
 MBK_X86_64_V3 void gram_v3(const double* const* columns, Index count, Index rows, double* gram) {
-  gram_body(columns, count, rows, gram);
+  gram_body<Four>(columns, count, rows, gram);
+}
+MBK_X86_64_V4 void gram_v4(const double* const* columns, Index count, Index rows, double* gram) {
+  gram_body<Eight>(columns, count, rows, gram);
 }
 
 /// [Z Y]ᵀ[Z Y].
 Matrix gram_matrix(const Matrix& Z, const Matrix& Y) {
-  std::vector<const double*> columns;
-  for (Index j = 0; j < Z.cols(); ++j) columns.push_back(Z.col(j).data());
-  for (Index j = 0; j < Y.cols(); ++j) columns.push_back(Y.col(j).data());
-  const auto count = static_cast<Index>(columns.size());
-  Matrix gram = Matrix::Zero(count, count);
-  (has_x86_64_v3() ? gram_v3 : gram_any)(columns.data(), count, Z.rows(), gram.data());
-  return gram.selfadjointView<Eigen::Upper>();
+  const std::vector<const double*> columns = in_tiles({&Z, &Y});
+  const auto padded = static_cast<Index>(columns.size()), count = Z.cols() + Y.cols();
+  Matrix gram = Matrix::Zero(padded, padded);
+  const auto add_up = has_x86_64_v4() ? gram_v4 : has_x86_64_v3() ? gram_v3 : gram_any;
+  add_up(columns.data(), padded, Z.rows(), gram.data());
+  return Matrix(gram.topLeftCorner(count, count)).selfadjointView<Eigen::Upper>();
+}
+
+/// Where the residuals of a block of rows lie while their products with the regressors are taken.
+struct Residuals {
+  const double* const* regressors;  ///< in whole tiles
+  const double* const* outputs;
+  const double* coefficients;  ///< p×q
+  Index p, q, rows;
+};
+
+template <class Lanes>
+[[gnu::always_inline]] inline void project_body(const Residuals& of, double* block, double* products, Index stride) {
+  const double *a[kTile], *b[kTile];
+  for (Index begin = 0; begin < of.rows; begin += kBlock) {
+    const Index size = std::min(of.rows - begin, kBlock);
+    for (Index j = 0; j < of.q; ++j) {
+      const double *y = of.outputs[j] + begin, *c = of.coefficients + j * of.p;
+      double* residual = block + kBlock * j;
+      Index t = 0;
+      for (; t + Lanes::kWidth <= size; t += Lanes::kWidth) {
+        typename Lanes::V rest = Lanes::at(y + t);
+        for (Index k = 0; k < of.p; ++k) rest -= c[k] * Lanes::at(of.regressors[k] + begin + t);
+        Lanes::at(residual + t) = rest;
+      }
+      for (; t < size; ++t) {
+        double rest = y[t];
+        for (Index k = 0; k < of.p; ++k) rest -= c[k] * of.regressors[k][begin + t];
+        residual[t] = rest;
+      }
+    }
+    for (Index j = 0; j < of.q; j += kTile) {
+      for (Index k = 0; k < kTile; ++k) b[k] = block + kBlock * std::min(j + k, of.q - 1);
+      for (Index i = 0; i < of.p; i += kTile) {
+        for (Index k = 0; k < kTile; ++k) a[k] = of.regressors[i + k] + begin;
+        dot_tile<Lanes>(a, b, size, products + i + stride * j, stride);
+      }
+    }
+  }
+}
+void project_any(const Residuals& of, double* block, double* products, Index stride) {
+  project_body<Four>(of, block, products, stride);
+}
+MBK_X86_64_V3 void project_v3(const Residuals& of, double* block, double* products, Index stride) {
+  project_body<Four>(of, block, products, stride);
+}
+MBK_X86_64_V4 void project_v4(const Residuals& of, double* block, double* products, Index stride) {
+  project_body<Eight>(of, block, products, stride);
+}
+
+/// Zᵀ(Y − Z θ), p×q, in one pass and without the residuals in memory.
+Matrix projected_residuals(const Matrix& Z, const Matrix& Y, const Matrix& theta) {
+  const std::vector<const double*> regressors = in_tiles({&Z}), outputs = in_tiles({&Y});
+  const auto height = static_cast<Index>(regressors.size()), width = static_cast<Index>(outputs.size());
+  Matrix products = Matrix::Zero(height, width);
+  std::vector<double> block(static_cast<std::size_t>(kBlock * Y.cols()));
+  const auto project = has_x86_64_v4() ? project_v4 : has_x86_64_v3() ? project_v3 : project_any;
+  project({regressors.data(), outputs.data(), theta.data(), Z.cols(), Y.cols(), Z.rows()}, block.data(),
+          products.data(), height);
+  return products.topLeftCorner(Z.cols(), Y.cols());
 }
 
 /// What a QR decomposition of Z Λ⁻¹ leaves of the problem: R, p×p, and Qᵀ Y, p×q.
@@ -76,8 +174,7 @@ Triangle reduce(const Matrix& Z, const Matrix& Y, const Matrix& gram, const Vect
   if (!(eigenvalues[0] > kModerate * eigenvalues[p - 1])) return reduce_by_householder(Z, Y, length);
   const Cholesky cholesky(G);
   Matrix scaled = cholesky.solve(inverse.asDiagonal() * gram.topRightCorner(p, q));
-  const Matrix residual = Y - Z * (inverse.asDiagonal() * scaled);
-  scaled += cholesky.solve(inverse.asDiagonal() * (Z.transpose() * residual));
+  scaled += cholesky.solve(inverse.asDiagonal() * projected_residuals(Z, Y, inverse.asDiagonal() * scaled));
   const Matrix R = cholesky.upper();
   return {R, R * scaled};
 }
