@@ -5,6 +5,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -42,7 +43,11 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
     const unsigned wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::jthread> workers;
     for (unsigned k = 1; k < std::min(wanted, static_cast<unsigned>(std::max(count, 0))); ++k) {
-      workers.emplace_back(take_turns);
+      try {
+        workers.emplace_back(take_turns);
+      } catch (const std::system_error&) {
+        break;  // there are no more threads; those that run do what there is to do
+      }
     }
     take_turns();
   }

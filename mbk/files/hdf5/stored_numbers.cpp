@@ -1,15 +1,15 @@
 #include "mbk/files/hdf5/stored_numbers.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <string_view>
 #include <type_traits>
+
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/files/hdf5/deflate.h"
 
 namespace mbk::hdf5 {
 namespace {
@@ -75,18 +75,6 @@ std::string shuffled(std::string_view bytes, std::size_t size) {
   return out;
 }
 
-std::string deflated(const std::string& bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string out(size, '\0');
-  // It has room enough: what can be missing is memory of its own.
-  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
-                kDeflateLevel) != Z_OK) {
-    throw std::bad_alloc();
-  }
-  out.resize(size);
-  return out;
-}
-
 }  // namespace
 
 std::size_t size_of(Stored stored) {
@@ -133,16 +121,22 @@ Chunks pack(const std::string& bytes, const std::vector<std::uint64_t>& shape, s
   const std::uint64_t row = run / chunks.shape[cut] * size;  // bytes of one step along the cut dimension
   for (std::size_t begin = 0; begin < bytes.size();) {
     const std::uint64_t steps = std::min(chunks.shape[cut], shape[cut] - offset[cut]);
-    std::string piece = bytes.substr(begin, steps * row);
-    begin += piece.size();
-    piece.resize(run * size, '\0');
-    chunks.pieces.push_back({offset, deflated(shuffled(piece, size))});
+    chunks.pieces.push_back({offset, bytes.substr(begin, steps * row)});
+    begin += chunks.pieces.back().packed.size();
     offset[cut] += chunks.shape[cut];
     for (std::size_t d = cut; d > 0 && offset[d] >= shape[d]; --d) {
       offset[d] = 0;
       ++offset[d - 1];
     }
   }
+  constexpr unsigned kThreads = 2;
+  const auto packed = numeric::parallel_for(static_cast<int>(chunks.pieces.size()), kThreads, [&](int i) {
+    std::string& piece = chunks.pieces[static_cast<std::size_t>(i)].packed;
+    piece.resize(run * size, '\0');
+    piece = deflated(shuffled(piece, size));
+    return Result<void>();
+  });
+  static_cast<void>(packed);  // no piece fails but for want of memory, which is thrown
   return chunks;
 }
 

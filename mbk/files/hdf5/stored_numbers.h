@@ -31,8 +31,6 @@ struct Chunks {
   std::vector<Piece> pieces;  ///< in the order of the file
 };
 
-inline constexpr unsigned kDeflateLevel = 4;
-
 /// @param shape  not empty, of as many numbers as there are bytes for
 [[nodiscard]] Chunks pack(const std::string& bytes, const std::vector<std::uint64_t>& shape, std::size_t size);
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "mbk/files/hdf5/deflate.h"
 #include "mbk/files/hdf5/output.h"
 #include "mbk/files/hdf5/stored_numbers.h"
 #include "mbk/files/hdf5/writable.h"

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <new>
 
+#include "mbk/files/hdf5/deflate.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/mat_variables.h"
@@ -88,18 +87,6 @@ std::string encoded(const std::string& name, const MatVariable::Structure& field
                 element(kInt32, raw(static_cast<std::int32_t>(length))) + element(kInt8, names) + values);
 }
 
-std::string compressed(const std::string& bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string packed(size, '\0');
-  // It has room enough: what can be missing is memory of its own.
-  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                bytes.size(), Z_BEST_SPEED) != Z_OK) {
-    throw std::bad_alloc();
-  }
-  packed.resize(size);
-  return packed;
-}
-
 std::string header() {
   std::string text = "MATLAB 5.0 MAT-file, written by mbk";
   text.resize(kHeaderText, ' ');
@@ -119,7 +106,7 @@ Result<std::string> encode_mat_level5(const Recording& recording) {
   if (!variables) return tl::unexpected(variables.error());
   std::string file = header();
   for (const MatVariable& variable : *variables) {
-    file += element(kCompressed, compressed(std::visit([&](const auto& value) { return encoded(variable.name, value); },
+    file += element(kCompressed, hdf5::deflated(std::visit([&](const auto& value) { return encoded(variable.name, value); },
                                                        variable.value)));
   }
   return file;
