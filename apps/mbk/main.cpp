@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -17,7 +18,9 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/process.h"
+#include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
+#include "mbk/base/core/words.h"
 #include "mbk/present/report/text.h"
 
 namespace {
@@ -88,6 +91,12 @@ constexpr std::string_view kNoMemory =
 
 int run(int argc, char** argv) {
   mbk::app::prefer_large_pages();
+  const char* const simd = std::getenv("MBK_SIMD");
+  if (simd != nullptr && !mbk::value_of<mbk::Simd>(simd)) {
+    mbk::app::say_text(fmt::format("mbk: MBK_SIMD is '{}', which is none of {}; unset it for what this processor has\n",
+                                   simd, fmt::join(mbk::kWordList<mbk::Simd>, ", ")));
+    return mbk::app::kWrongUsage;
+  }
   CLI::App app{
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"

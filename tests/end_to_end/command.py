@@ -49,11 +49,13 @@ def program(variable):
     return path
 
 
-def run(*arguments, folder=None, timeout=120, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE):
-    """mbk with these arguments, in `folder`. A JSON document that it prints or writes has to fit its schema."""
+def run(*arguments, folder=None, timeout=120, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, environment=None):
+    """mbk with these arguments, in `folder`, with `environment` beside what is set. A JSON document that it prints or
+    writes has to fit its schema."""
     arguments = [argument if isinstance(argument, bytes) else str(argument) for argument in arguments]
     process = subprocess.run([program("MBK"), *arguments], cwd=folder, stdin=stdin, stdout=stdout,
-                             stderr=subprocess.PIPE, timeout=timeout, check=False)
+                             stderr=subprocess.PIPE, timeout=timeout, check=False,
+                             env=None if environment is None else {**os.environ, **environment})
     if process.stdout is None:
         process.stdout = b""
     ran = Ran(process, "mbk " + " ".join(map(str, arguments)))

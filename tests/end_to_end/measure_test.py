@@ -5,7 +5,7 @@ import itertools
 import math
 import statistics
 
-from command import NOT_USABLE, Case, copy, flat, main, make_log, run
+from command import NOT_USABLE, WRONG_USAGE, Case, copy, flat, main, make_log, run
 
 NORMAL95 = 1.96
 SLACK = 1.8  # a dozen intervals of 95 % at once hold the truth all together only when each is this much wider
@@ -189,6 +189,19 @@ class Repeatability(Case):
         for options in ([], ["--json"], ["--json", "--pool"]):
             outputs = {run("measure", *logs, *options, "--threads", n).bytes for n in (1, 2, 5)}
             self.assertEqual(len(outputs), 1)
+
+    def test_vector_instructions_change_no_more_than_the_last_digits(self):
+        log = make_log("sinusoidal").path
+        here = results_of(log)["model"]
+        for simd in ("any", "v3", "v4"):  # more than the processor has is what it has
+            other = run("measure", "--json", log, environment={"MBK_SIMD": simd}).json["model"]
+            for key in ("M", "B", "K"):
+                largest = max(map(abs, flat(here[key])))
+                for one, two in zip(flat(here[key]), flat(other[key])):
+                    self.assertLess(abs(one - two), 1e-9 * largest)
+        refused = run("measure", log, environment={"MBK_SIMD": "v9"})
+        self.assertEqual(refused.code, WRONG_USAGE)
+        self.assertIn("none of any, v3, v4", refused.err)
 
     def test_the_name_of_the_file_does_not_matter(self):
         odd = copy(make_log().path, self.folder / "Versuch 3 (späß), neu.csv")

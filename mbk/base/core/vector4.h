@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+
+#include "mbk/base/core/words.h"
 
 /// @file
 /// Four doubles at a time, for inner loops. A body is written once with these and compiled twice:
@@ -15,24 +18,30 @@ typedef double Unaligned8 __attribute__((vector_size(64), aligned(8), may_alias)
 
 #if defined(__x86_64__)
 #define MBK_X86_64_V3 [[gnu::target("avx2,fma")]]
-inline bool has_x86_64_v3() {
-  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-}
 #define MBK_X86_64_V4 [[gnu::target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]]
-inline bool has_x86_64_v4() {
-  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
-         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0 && has_x86_64_v3();
-}
 #else
 #define MBK_X86_64_V3
 #define MBK_X86_64_V4
-inline bool has_x86_64_v4() {
-  return false;
-}
-inline bool has_x86_64_v3() {
-  return false;
-}
 #endif
+
+/// Which of the bodies run.
+enum class Simd { any, v3, v4 };
+
+[[nodiscard]] constexpr auto word_table(Simd) {
+  using enum Simd;
+  return std::to_array<Word<Simd>>({{any, "any"}, {v3, "v3"}, {v4, "v4"}});
+}
+
+/// What this processor has, or less where the environment variable MBK_SIMD asks for it: then processors of different
+/// kinds compute the same to the last digit. What is no word of Simd counts as not there; `mbk` refuses it.
+[[nodiscard]] Simd simd();
+
+inline bool has_x86_64_v3() {
+  return simd() >= Simd::v3;
+}
+inline bool has_x86_64_v4() {
+  return simd() >= Simd::v4;
+}
 
 [[gnu::always_inline]] inline Unaligned4& four(double* at) {
   return *reinterpret_cast<Unaligned4*>(at);

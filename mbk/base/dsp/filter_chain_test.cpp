@@ -57,7 +57,7 @@ double largest(const Vector& values) {
 }
 
 TEST(FilterChain, AgreesWithOneFilterAfterTheOther) {
-  constexpr double kTolerance = 1e-10;  // of the largest value
+  constexpr double kTolerance = 1.5e-10;  // of the largest value; the least windows lose most, without FMA 1.06e-10
   const auto all = signals(3000, 4, 1);
   for (const SavitzkyGolay smoothing :
        {SavitzkyGolay{6, 101}, {6, 151}, {6, 31}, {4, 99}, {2, 41}, {3, 101}, {6, 21}}) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
@@ -40,8 +41,8 @@ Result<InstrumentalFit> fit_instrumental_variables(const Matrix& Z, const Matrix
   InstrumentalFit fit;
   fit.structure = S.size() > 0 ? S : Matrix(Matrix::Identity(p * q, p * q));
   const Vector unit_Z = scaling(Z), unit_R = scaling(R);
-  const Matrix cross = unit_R.asDiagonal() * (R.transpose() * Z) * unit_Z.asDiagonal();
-  const Matrix right = unit_R.asDiagonal() * (R.transpose() * Y);
+  const Matrix cross = unit_R.asDiagonal() * products_of(R, Z) * unit_Z.asDiagonal();
+  const Matrix right = unit_R.asDiagonal() * products_of(R, Y);
   const double threshold = static_cast<double>(p) * std::numeric_limits<double>::epsilon() * 1e3;
   fit.rank = static_cast<int>(PivotedQr(cross, threshold).rank());
   const Index k = fit.structure.cols();
@@ -80,27 +81,35 @@ Matrix newey_west_covariance(const InstrumentalFit& fit, const Matrix& R, const 
 Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<RowRange>& ranges, Index lags) {
   const Index m = Z.cols() - 1, excluded = R.cols() - 1;
   const auto freedom = static_cast<double>(excluded - m + 1);
-  const Matrix scaled_R = R * scaling(R).asDiagonal(), scaled_Z = Z * scaling(Z).asDiagonal();
-  const PivotedQr gram(scaled_R.transpose() * scaled_R);
-  if (gram.rank() < R.cols()) return Vector::Zero(m);
-  const Matrix inverse = gram.inverse();
-  const Matrix first = inverse * (scaled_R.transpose() * scaled_Z);  // R first ≈ Z
-  const Matrix predicted = scaled_R * first;
+  // All that is needed but the residuals follows from products of columns, each scaled to unit length.
+  const Matrix gram = gram_of({R, Z});
+  const Vector unit = (gram.diagonal().array() > 0.0).select(gram.diagonal().cwiseSqrt().cwiseInverse(), 1.0);
+  const Vector unit_R = unit.head(R.cols()), unit_Z = unit.tail(Z.cols());
+  const Matrix RR = unit_R.asDiagonal() * gram.topLeftCorner(R.cols(), R.cols()) * unit_R.asDiagonal();
+  const Matrix RZ = unit_R.asDiagonal() * gram.topRightCorner(R.cols(), Z.cols()) * unit_Z.asDiagonal();
+  const PivotedQr instruments(RR);
+  if (instruments.rank() < R.cols()) return Vector::Zero(m);
+  const Matrix inverse = instruments.inverse();
+  const Matrix predicted = RZ.transpose() * inverse * RZ;  // products of R (RᵀR)⁻¹RᵀZ
+  constexpr double kDependent = 1e-11;                     // of products that were added up
   Vector strength = Vector::Zero(m);
   for (Index j = 0; j < m; ++j) {
     std::vector<Index> others;
     for (Index i = 0; i <= m; ++i) {
       if (i != j) others.push_back(i);
     }
-    const Matrix E = scaled_Z(Eigen::all, others), hat = predicted(Eigen::all, others);
-    const PivotedQr second(hat.transpose() * hat);
+    const PivotedQr second(predicted(others, others), kDependent);
     if (second.rank() < m) continue;
-    const Vector own = scaled_Z.col(j) - E * second.solve(hat.transpose() * scaled_Z.col(j));
-    const Vector coefficients = inverse * (scaled_R.transpose() * own);
-    const Matrix left = own - scaled_R * coefficients;
-    const Matrix omega = long_run_covariance(R.cols(), ranges, lags, [&](const RowRange& range) {
-      return regression_scores(scaled_R, left, Matrix::Identity(R.cols(), R.cols()), range);
+    Vector own = Vector::Unit(Z.cols(), j);  // z_j without what the others explain of it
+    own(others) = -second.solve(predicted(others, j));
+    const Vector coefficients = inverse * (RZ * own);
+    const Vector of_Z = unit_Z.cwiseProduct(own), of_R = unit_R.cwiseProduct(coefficients);
+    Matrix omega = long_run_covariance(R.cols(), ranges, lags, [&](const RowRange& range) {
+      const auto rows = R.middleRows(range.begin, range.size());
+      const Vector left = Z.middleRows(range.begin, range.size()) * of_Z - rows * of_R;
+      return Matrix(rows.array().colwise() * left.array());
     });
+    omega = unit_R.asDiagonal() * omega * unit_R.asDiagonal();
     const Matrix V = (inverse * omega * inverse).topLeftCorner(excluded, excluded);
     const Vector slope = coefficients.head(excluded);
     const double wald = slope.dot(CompleteOrthogonal(V).solve(slope));

@@ -7,148 +7,15 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <initializer_list>
 #include <limits>
 #include <vector>
 
-#include "mbk/base/core/vector4.h"
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::numeric {
 
 namespace {
-
-// ---- dot products of columns ----
-
-constexpr Index kBlock = 256;  // rows that stay in the first cache while all pairs of columns are taken
-constexpr Index kTile = 3;     // a tile of 3×3 dot products fills the registers, and none waits for another
-
-/// aᵢᵀ bⱼ of a tile over `rows` rows, added to `to` + i + stride·j.
-template <class Lanes>
-[[gnu::always_inline]] inline void dot_tile(const double* const* a, const double* const* b, Index rows, double* to,
-                                            Index stride) {
-  typename Lanes::V sum[kTile][kTile] = {};
-  Index t = 0;
-  for (; t + Lanes::kWidth <= rows; t += Lanes::kWidth) {
-    typename Lanes::V left[kTile];
-    for (Index i = 0; i < kTile; ++i) left[i] = Lanes::at(a[i] + t);
-    for (Index j = 0; j < kTile; ++j) {
-      const typename Lanes::V right = Lanes::at(b[j] + t);
-      for (Index i = 0; i < kTile; ++i) sum[j][i] += left[i] * right;
-    }
-  }
-  for (Index j = 0; j < kTile; ++j) {
-    for (Index i = 0; i < kTile; ++i) {
-      double rest = 0.0;
-      for (Index k = 0; k < Lanes::kWidth; ++k) rest += sum[j][i][k];
-      for (Index r = t; r < rows; ++r) rest += a[i][r] * b[j][r];
-      to[i + stride * j] += rest;
-    }
-  }
-}
-
-/// Columns of equal length, in whole tiles: the last one is repeated.
-std::vector<const double*> in_tiles(std::initializer_list<const Matrix*> matrices) {
-  std::vector<const double*> columns;
-  for (const Matrix* matrix : matrices) {
-    for (Index j = 0; j < matrix->cols(); ++j) columns.push_back(matrix->col(j).data());
-  }
-  while (static_cast<Index>(columns.size()) % kTile != 0) columns.push_back(columns.back());
-  return columns;
-}
-
-template <class Lanes>
-[[gnu::always_inline]] inline void gram_body(const double* const* columns, Index count, Index rows, double* gram) {
-  const double *a[kTile], *b[kTile];
-  for (Index begin = 0; begin < rows; begin += kBlock) {
-    const Index size = std::min(rows - begin, kBlock);
-    for (Index j = 0; j < count; j += kTile) {
-      for (Index k = 0; k < kTile; ++k) b[k] = columns[j + k] + begin;
-      for (Index i = 0; i <= j; i += kTile) {
-        for (Index k = 0; k < kTile; ++k) a[k] = columns[i + k] + begin;
-        dot_tile<Lanes>(a, b, size, gram + i + count * j, count);
-      }
-    }
-  }
-}
-void gram_any(const double* const* columns, Index count, Index rows, double* gram) {
-  gram_body<Four>(columns, count, rows, gram);
-}
-MBK_X86_64_V3 void gram_v3(const double* const* columns, Index count, Index rows, double* gram) {
-  gram_body<Four>(columns, count, rows, gram);
-}
-MBK_X86_64_V4 void gram_v4(const double* const* columns, Index count, Index rows, double* gram) {
-  gram_body<Eight>(columns, count, rows, gram);
-}
-
-/// [Z Y]ᵀ[Z Y].
-Matrix gram_matrix(const Matrix& Z, const Matrix& Y) {
-  const std::vector<const double*> columns = in_tiles({&Z, &Y});
-  const auto padded = static_cast<Index>(columns.size()), count = Z.cols() + Y.cols();
-  Matrix gram = Matrix::Zero(padded, padded);
-  const auto add_up = has_x86_64_v4() ? gram_v4 : has_x86_64_v3() ? gram_v3 : gram_any;
-  add_up(columns.data(), padded, Z.rows(), gram.data());
-  return Matrix(gram.topLeftCorner(count, count)).selfadjointView<Eigen::Upper>();
-}
-
-/// Where the residuals of a block of rows lie while their products with the regressors are taken.
-struct Residuals {
-  const double* const* regressors;  ///< in whole tiles
-  const double* const* outputs;
-  const double* coefficients;  ///< p×q
-  Index p, q, rows;
-};
-
-template <class Lanes>
-[[gnu::always_inline]] inline void project_body(const Residuals& of, double* block, double* products, Index stride) {
-  const double *a[kTile], *b[kTile];
-  for (Index begin = 0; begin < of.rows; begin += kBlock) {
-    const Index size = std::min(of.rows - begin, kBlock);
-    for (Index j = 0; j < of.q; ++j) {
-      const double *y = of.outputs[j] + begin, *c = of.coefficients + j * of.p;
-      double* residual = block + kBlock * j;
-      Index t = 0;
-      for (; t + Lanes::kWidth <= size; t += Lanes::kWidth) {
-        typename Lanes::V rest = Lanes::at(y + t);
-        for (Index k = 0; k < of.p; ++k) rest -= c[k] * Lanes::at(of.regressors[k] + begin + t);
-        Lanes::at(residual + t) = rest;
-      }
-      for (; t < size; ++t) {
-        double rest = y[t];
-        for (Index k = 0; k < of.p; ++k) rest -= c[k] * of.regressors[k][begin + t];
-        residual[t] = rest;
-      }
-    }
-    for (Index j = 0; j < of.q; j += kTile) {
-      for (Index k = 0; k < kTile; ++k) b[k] = block + kBlock * std::min(j + k, of.q - 1);
-      for (Index i = 0; i < of.p; i += kTile) {
-        for (Index k = 0; k < kTile; ++k) a[k] = of.regressors[i + k] + begin;
-        dot_tile<Lanes>(a, b, size, products + i + stride * j, stride);
-      }
-    }
-  }
-}
-void project_any(const Residuals& of, double* block, double* products, Index stride) {
-  project_body<Four>(of, block, products, stride);
-}
-MBK_X86_64_V3 void project_v3(const Residuals& of, double* block, double* products, Index stride) {
-  project_body<Four>(of, block, products, stride);
-}
-MBK_X86_64_V4 void project_v4(const Residuals& of, double* block, double* products, Index stride) {
-  project_body<Eight>(of, block, products, stride);
-}
-
-/// Zᵀ(Y − Z θ), p×q, in one pass and without the residuals in memory.
-Matrix projected_residuals(const Matrix& Z, const Matrix& Y, const Matrix& theta) {
-  const std::vector<const double*> regressors = in_tiles({&Z}), outputs = in_tiles({&Y});
-  const auto height = static_cast<Index>(regressors.size()), width = static_cast<Index>(outputs.size());
-  Matrix products = Matrix::Zero(height, width);
-  std::vector<double> block(static_cast<std::size_t>(kBlock * Y.cols()));
-  const auto project = has_x86_64_v4() ? project_v4 : has_x86_64_v3() ? project_v3 : project_any;
-  project({regressors.data(), outputs.data(), theta.data(), Z.cols(), Y.cols(), Z.rows()}, block.data(),
-          products.data(), height);
-  return products.topLeftCorner(Z.cols(), Y.cols());
-}
 
 /// What a QR decomposition of Z Λ⁻¹ leaves of the problem: R, p×p, and Qᵀ Y, p×q.
 struct Triangle {
@@ -188,7 +55,7 @@ Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matr
         fmt::format("regression shapes differ: Z is {}×{}, Y {}×{}, S {}×{}", n, p, Y.rows(), q, S.rows(), S.cols()));
   }
   if (n < p) return bad_data(fmt::format("{} samples cannot determine {} parameters per axis", n, p), "record longer");
-  const auto gram = gram_matrix(Z, Y);
+  const Matrix gram = gram_of({Z, Y});
   if (!gram.allFinite()) {
     for (Index row = 0; row < n; ++row) {
       if (Z.row(row).allFinite() && Y.row(row).allFinite()) continue;
@@ -224,41 +91,62 @@ Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matr
   return fit;
 }
 
+namespace {
+
+/// Sums over a window that moves along `Count` columns: sum += enters − leaves, row by row.
+template <int Count>
+void move_window(const Matrix& scores, Index first, Index rows, Index before, Vector& sums, Matrix& windows) {
+  const double *enters[Count], *leaves[Count];
+  double *to[Count], sum[Count];
+  for (int j = 0; j < Count; ++j) {
+    leaves[j] = scores.col(first + j).data();
+    enters[j] = leaves[j] + before;
+    to[j] = windows.col(first + j).data();
+    sum[j] = sums[first + j];
+  }
+  for (Index i = 0; i < rows; ++i) {
+    for (int j = 0; j < Count; ++j) to[j][i] = sum[j] += enters[j][i] - leaves[j][i];
+  }
+  for (int j = 0; j < Count; ++j) sums[first + j] = sum[j];
+}
+
+}  // namespace
+
 Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
                            const std::function<Matrix(const RowRange&)>& scores_of) {
   Matrix omega = Matrix::Zero(k, k);
-  constexpr Index kBlock = 512;  // window sums are collected in blocks and added to Ω by one matrix product
-  Matrix block(k, kBlock);
+  constexpr Index kAtLeast = 256;
+  const Index before = lags + 1, block = std::max(kAtLeast, before);
+  Matrix scores(before + block, k), windows(block, k);  // scores: those that are to leave the window, and a block
   for (const RowRange& range : ranges) {
-    const Index n = range.size();
-    const Matrix scores = scores_of(range);
-    Vector sum = Vector::Zero(k);
-    Index filled = 0;
-    for (Index t = 0; t < n + lags; ++t) {  // the window [t − lags, t], clipped to the range
-      if (t < n) sum += scores.col(t);
-      if (t - lags - 1 >= 0) sum -= scores.col(t - lags - 1);
-      block.col(filled++) = sum;
-      if (filled == kBlock || t + 1 == n + lags) {
-        omega.selfadjointView<Eigen::Lower>().rankUpdate(block.leftCols(filled));
-        filled = 0;
+    scores.topRows(before).setZero();
+    Vector sums = Vector::Zero(k);
+    const Index end = range.size() + lags;  // the window [t − lags, t], clipped to the range
+    for (Index t = 0; t < end; t += block) {
+      const Index rows = std::min(block, end - t), given = std::clamp<Index>(range.size() - t, 0, rows);
+      if (given > 0) {
+        scores.middleRows(before, given) = scores_of({range.begin + t, range.begin + t + given});
       }
+      scores.middleRows(before + given, rows - given).setZero();
+      Index column = 0;
+      for (; column + 4 <= k; column += 4) move_window<4>(scores, column, rows, before, sums, windows);
+      for (; column < k; ++column) move_window<1>(scores, column, rows, before, sums, windows);
+      omega += gram_of({windows.topRows(rows)});
+      if (rows == block) scores.topRows(before) = scores.middleRows(block, before).eval();
     }
   }
-  omega /= static_cast<double>(lags + 1);
-  return omega.selfadjointView<Eigen::Lower>();
+  return omega / static_cast<double>(before);
 }
 
 Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix& structure, const RowRange& range) {
   const Index p = R.cols(), q = residuals.cols(), n = range.size();
-  Matrix full(p * q, n);
+  Matrix full(n, p * q);
   for (Index j = 0; j < q; ++j) {
-    full.middleRows(j * p, p) =
-        (R.middleRows(range.begin, n).array().colwise() * residuals.col(j).segment(range.begin, n).array())
-            .matrix()
-            .transpose();
+    full.middleCols(j * p, p) =
+        R.middleRows(range.begin, n).array().colwise() * residuals.col(j).segment(range.begin, n).array();
   }
   const bool tied = structure.rows() != structure.cols() || !structure.isIdentity(0.0);
-  return tied ? Matrix(structure.transpose() * full) : full;
+  return tied ? Matrix(full * structure) : full;
 }
 
 Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,

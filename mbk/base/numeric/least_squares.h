@@ -37,11 +37,11 @@ struct LinearFit {
 /// autocorrelation of a rectangle, so that Ω = Σ_t g_t g_tᵀ/(L + 1) with g the sums of s over L + 1 consecutive
 /// samples: one pass, and positive semidefinite by construction. Products never cross a break.
 /// @param k scores of a sample    @param lags L ≥ 0, samples
-/// @param scores_of the scores of a range, k×n; asked for once for each range, in order
+/// @param scores_of the scores of some rows of a range, n×k; asked for once for each row, in order
 [[nodiscard]] Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
                                          const std::function<Matrix(const RowRange&)>& scores_of);
 
-/// s_t = Sᵀ(e_t ⊗ r_t) of the rows of a range, k×n.
+/// s_t = Sᵀ(e_t ⊗ r_t) of the rows of a range, n×k.
 /// @param R N×p, regressors or instruments    @param residuals N×q    @param structure S, pq×k
 [[nodiscard]] Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix& structure,
                                        const RowRange& range);

@@ -106,8 +106,9 @@ Result<std::string> encode_mat_level5(const Recording& recording) {
   if (!variables) return tl::unexpected(variables.error());
   std::string file = header();
   for (const MatVariable& variable : *variables) {
-    file += element(kCompressed, hdf5::deflated(std::visit([&](const auto& value) { return encoded(variable.name, value); },
-                                                       variable.value)));
+    file += element(
+        kCompressed,
+        hdf5::deflated(std::visit([&](const auto& value) { return encoded(variable.name, value); }, variable.value)));
   }
   return file;
 }

@@ -63,7 +63,8 @@ class Fitter {
   void describe(Identification& result) const;
 
   [[nodiscard]] Result<void> choose_handle_mass();
-  [[nodiscard]] UnmodelledResponse response_in(const Estimate& estimate) const;
+  /// @param fraction  what the instruments explain of the residual, axis by axis
+  [[nodiscard]] UnmodelledResponse response_in(const Matrix& residual, const Vector& fraction) const;
   [[nodiscard]] const std::vector<AssumptionTest>& assumptions_tested(Method method, const Estimate& estimate);
 
   const std::vector<PreparedTrial>& trials_;
@@ -181,7 +182,7 @@ Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& r
   const Matrix residual =
       r_.Y.middleRows(range.begin, range.size()) - r_.Z.middleRows(range.begin, range.size()) * estimate.coefficients;
   const Matrix R = instruments(method).middleRows(range.begin, range.size());
-  return estimate.bread * numeric::regression_scores(R, residual, estimate.structure, {0, range.size()});
+  return numeric::regression_scores(R, residual, estimate.structure, {0, range.size()});
 }
 
 /// What the coefficients of the robot, on which the force rests, leave open of φ: D V Dᵀ with D = ∂φ/∂θ, found by the
@@ -196,7 +197,8 @@ Matrix Fitter::covariance_of_robot(Method method, const Estimate& estimate) cons
       for (Index axis = 0; axis < n; ++axis) {
         change.col(axis) = -r_.force_sensitivity.col(axis * p + k).segment(range.begin, range.size());
       }
-      D.col(k) += numeric::regression_scores(R, change, estimate.structure, {0, range.size()}).rowwise().sum();
+      D.col(k) +=
+          numeric::regression_scores(R, change, estimate.structure, {0, range.size()}).colwise().sum().transpose();
     }
   }
   D = estimate.bread * D;
@@ -257,8 +259,9 @@ Result<Identification> Fitter::identify(Method method) {
   const auto count = static_cast<Index>(result.parameters.size());
   result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
   if (is_full(*fit)) {
-    const Matrix V = numeric::long_run_covariance(fit->bread.rows(), ranges_, lags_,
-                                                  [&](const RowRange& range) { return scores(method, *fit, range); });
+    const Matrix omega = numeric::long_run_covariance(
+        fit->bread.rows(), ranges_, lags_, [&](const RowRange& range) { return scores(method, *fit, range); });
+    const Matrix V = fit->bread * omega * fit->bread.transpose();
     result.covariance = model_covariance(fit->structure, widening_ * widening_ * V, result.model, r_.centre);
     errors_[static_cast<std::size_t>(method)] =
         widening_ * (fit->structure * V * fit->structure.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -272,12 +275,13 @@ Result<Identification> Fitter::identify(Method method) {
   result.standard_error = impedance::unstacked(result.covariance.diagonal().cwiseSqrt(), n);
   if (method == Method::instrumental_variables) {
     result.instrument = InstrumentCheck{instruments_->from, instruments_->strength, Vector::Constant(n, std::nan(""))};
-    if (is_full(*fit)) {
-      result.instrument->coherent_residual =
-          coherent_residual_fraction(r_, *instruments_, r_.Y - r_.Z * fit->coefficients, ranges_);
-    }
   }
-  if (instruments_ && is_full(*fit)) result.response = response_in(*fit);
+  if (instruments_ && is_full(*fit)) {
+    const Matrix residual = r_.Y - r_.Z * fit->coefficients;
+    const Vector fraction = coherent_residual_fraction(r_, *instruments_, residual, ranges_);
+    if (result.instrument) result.instrument->coherent_residual = fraction;
+    result.response = response_in(residual, fraction);
+  }
   if (is_full(*fit)) result.assumptions = assumptions_tested(method, *fit);
   if (options_.bootstrap > 0 && is_full(*fit)) {
     auto replicates = resample(method);
@@ -319,11 +323,9 @@ Result<Replicates> Fitter::resample(Method method) const {
   return result;
 }
 
-UnmodelledResponse Fitter::response_in(const Estimate& estimate) const {
+UnmodelledResponse Fitter::response_in(const Matrix& residual, const Vector& fraction) const {
   const Index n = r_.axes();
-  const Matrix residual = r_.Y - r_.Z * estimate.coefficients;
   const Matrix left = rows_of(residual, ranges_), force = rows_of(r_.Y, ranges_);
-  const Vector fraction = coherent_residual_fraction(r_, *instruments_, residual, ranges_);
   Vector at_rest = Vector::Zero(n);
   double weight = 0.0;
   for (const PreparedTrial& trial : trials_) {
@@ -358,9 +360,15 @@ Disagreement Fitter::compare() const {
   Disagreement result;
   if (!ls || !iv || !is_full(*ls) || !is_full(*iv)) return result;
   const Index n = r_.axes(), p = 3 * n + 1;
-  const Matrix V = numeric::long_run_covariance(iv->bread.rows(), ranges_, lags_, [&](const RowRange& range) {
-    return Matrix(scores(kIv, *iv, range) - scores(kLs, *ls, range));
+  const Index k = iv->bread.rows();
+  const Matrix omega = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
+    Matrix both(range.size(), 2 * k);
+    both << scores(kIv, *iv, range), scores(kLs, *ls, range);
+    return both;
   });
+  Matrix bread(k, 2 * k);
+  bread << iv->bread, -ls->bread;
+  const Matrix V = bread * omega * bread.transpose();
   const Vector variance = (iv->structure * V * iv->structure.transpose()).diagonal();
   const std::vector<std::string> names = parameter_names(static_cast<int>(n));
   double largest = -std::numeric_limits<double>::infinity();

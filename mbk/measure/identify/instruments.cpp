@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -153,24 +154,36 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
                                   const std::vector<RowRange>& ranges) {
   const Index n = r.axes(), p = instruments.R.cols();
   const Index every = std::max<Index>(1, std::llround(kReach / (r.sample_time * static_cast<double>(kLagsOfAnswer))));
-  const Index reach = every * kLagsOfAnswer;
-  std::vector<Index> rows;
+  const Index reach = every * kLagsOfAnswer, columns = p + n * kLagsOfAnswer;
+  std::vector<RowRange> rows;  // of ranges, without those that have no whole past
+  Index count = 0;
   for (const RowRange& range : ranges) {
-    for (Index i = range.begin + reach; i < range.end; ++i) rows.push_back(i);
+    if (range.size() <= reach) continue;
+    rows.push_back({range.begin + reach, range.end});
+    count += rows.back().size();
   }
-  const Index columns = p + n * kLagsOfAnswer;
-  if (static_cast<Index>(rows.size()) < 2 * columns) return Vector::Constant(n, std::nan(""));
-  Matrix X(static_cast<Index>(rows.size()), columns), Y(X.rows(), n);
-  for (Index k = 0; k < X.rows(); ++k) {
-    const Index i = rows[static_cast<std::size_t>(k)];
-    X.row(k).head(p) = instruments.R.row(i);
+  if (count < 2 * columns) return Vector::Constant(n, std::nan(""));
+  Matrix gram = Matrix::Zero(columns + n, columns + n);  // of [R | the reference before | residual]
+  for (const RowRange& range : rows) {
+    std::vector<numeric::Columns> parts = {instruments.R.middleRows(range.begin, range.size())};
     for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) {
-      X.row(k).segment(p + (lag - 1) * n, n) = r.reference.row(i - lag * every).tail(n);
+      parts.emplace_back(r.reference.rightCols(n).middleRows(range.begin - lag * every, range.size()));
     }
-    Y.row(k) = residual.row(i);
+    parts.emplace_back(residual.middleRows(range.begin, range.size()));
+    gram += numeric::gram_of(parts);
   }
-  Y.rowwise() -= Y.colwise().mean().eval();
-  const Matrix left = Y - X * numeric::PivotedQr(X).solve(Y);
+  Matrix Y = rows_of(residual, rows);
+  const Vector mean = Y.colwise().mean();
+  Y.rowwise() -= mean.transpose();
+  // R has a column of ones, behind the motion.
+  const Matrix to_Y = gram.topRightCorner(columns, n) - gram.col(p - 1).head(columns) * mean.transpose();
+  Vector unit = gram.diagonal().head(columns);
+  unit = (unit.array() > 0.0).select(unit.cwiseSqrt().cwiseInverse(), 1.0);
+  const auto [values, vectors] =
+      numeric::symmetric_eigen(unit.asDiagonal() * gram.topLeftCorner(columns, columns) * unit.asDiagonal());
+  constexpr double kDependent = 1e-12;
+  const Vector weights = (values.array() > kDependent * values.maxCoeff()).select(values.cwiseInverse(), 0.0);
+  const Matrix along = vectors.transpose() * unit.asDiagonal() * to_Y;
   // Independent samples: those of the residual's own correlation.
   Vector share(n);
   for (Index j = 0; j < n; ++j) {
@@ -181,8 +194,8 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
       if (one < 0.1) break;
       memory += 2.0 * one;
     }
-    const double chance = static_cast<double>(columns - 1) * memory / static_cast<double>(Y.rows());
-    const double explained = power > 0.0 ? 1.0 - left.col(j).squaredNorm() / power : 0.0;
+    const double chance = static_cast<double>(columns - 1) * memory / static_cast<double>(count);
+    const double explained = power > 0.0 ? weights.dot(along.col(j).cwiseAbs2()) / power : 0.0;
     share[j] = chance < 1.0 ? std::clamp((explained - chance) / (1.0 - chance), 0.0, 1.0) : std::nan("");
   }
   return share;

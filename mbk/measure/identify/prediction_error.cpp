@@ -606,7 +606,7 @@ void Fitter::take_covariance(const Model& at, PredictionErrorFit& made) const {
     }
     const Index lags = std::min(static_cast<Index>(std::llround(options_.hac_lag_s / step_)), samples_ / 10);
     const Matrix middle = numeric::long_run_covariance(all, ranges, lags, [&](const numeric::RowRange& range) {
-      return Matrix(scores.middleCols(range.begin, range.size()));
+      return Matrix(scores.middleCols(range.begin, range.size()).transpose());
     });
     const double widening = numeric::newey_west_widening(static_cast<double>(lags) / static_cast<double>(samples_));
     covariance = widening * widening * bread * middle * bread.transpose();

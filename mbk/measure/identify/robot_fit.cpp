@@ -260,16 +260,15 @@ void RobotFitter::take_covariance() {
   const Index k = bread_.rows();
   const std::vector<Matrix>& of_scores = by_instruments() ? rows_.R : rows_.W;
   const Matrix omega = numeric::long_run_covariance(k, rows_.ranges, lags_, [&](const RowRange& range) {
-    Matrix scores = Matrix::Zero(k, range.size());
+    Matrix scores = Matrix::Zero(range.size(), k);
     for (Index joint = 0; joint < n_; ++joint) {
       const Vector e = residuals_.col(joint).segment(range.begin, range.size()) / (sigma_[joint] * sigma_[joint]);
       const Matrix& W = of_scores[static_cast<std::size_t>(joint)];
       for (std::size_t c = 0; c < kept_.size(); ++c) {
-        scores.row(static_cast<Index>(c)) +=
-            W.col(kept_[c]).segment(range.begin, range.size()).cwiseProduct(e).transpose();
+        scores.col(static_cast<Index>(c)) += W.col(kept_[c]).segment(range.begin, range.size()).cwiseProduct(e);
       }
       if (rate != nullptr) {
-        scores.row(k - 1) += rate->col(joint).segment(range.begin, range.size()).cwiseProduct(e).transpose();
+        scores.col(k - 1) += rate->col(joint).segment(range.begin, range.size()).cwiseProduct(e);
       }
     }
     return scores;

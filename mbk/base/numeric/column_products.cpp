@@ -1,0 +1,159 @@
+#include "mbk/base/numeric/column_products.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "mbk/base/core/vector4.h"
+
+namespace mbk::numeric {
+namespace {
+
+constexpr Index kBlock = 256;  // rows that stay in the first cache while all pairs of columns are taken
+constexpr Index kTile = 3;     // a tile of 3×3 dot products fills the registers, and none waits for another
+
+/// aᵢᵀ bⱼ of a tile over `rows` rows, added to `to` + i + stride·j.
+template <class Lanes>
+[[gnu::always_inline]] inline void dot_tile(const double* const* a, const double* const* b, Index rows, double* to,
+                                            Index stride) {
+  typename Lanes::V sum[kTile][kTile] = {};
+  Index t = 0;
+  for (; t + Lanes::kWidth <= rows; t += Lanes::kWidth) {
+    typename Lanes::V left[kTile];
+    for (Index i = 0; i < kTile; ++i) left[i] = Lanes::at(a[i] + t);
+    for (Index j = 0; j < kTile; ++j) {
+      const typename Lanes::V right = Lanes::at(b[j] + t);
+      for (Index i = 0; i < kTile; ++i) sum[j][i] += left[i] * right;
+    }
+  }
+  for (Index j = 0; j < kTile; ++j) {
+    for (Index i = 0; i < kTile; ++i) {
+      double rest = 0.0;
+      for (Index k = 0; k < Lanes::kWidth; ++k) rest += sum[j][i][k];
+      for (Index r = t; r < rows; ++r) rest += a[i][r] * b[j][r];
+      to[i + stride * j] += rest;
+    }
+  }
+}
+
+/// Columns in whole tiles: the last one is repeated.
+class Tiled {
+ public:
+  explicit Tiled(const std::vector<Columns>& side_by_side) {
+    for (const Columns& part : side_by_side) {
+      rows_ = part.rows();
+      for (Index j = 0; j < part.cols(); ++j) columns_.push_back(part.data() + j * part.outerStride());
+    }
+    count_ = static_cast<Index>(columns_.size());
+    while (!columns_.empty() && columns_.size() % kTile != 0) columns_.push_back(columns_.back());
+  }
+  [[nodiscard]] const double* const* data() const { return columns_.data(); }
+  [[nodiscard]] Index rows() const { return rows_; }
+  [[nodiscard]] Index count() const { return count_; }  ///< without those repeated
+  [[nodiscard]] Index padded() const { return static_cast<Index>(columns_.size()); }
+
+ private:
+  std::vector<const double*> columns_;
+  Index rows_ = 0, count_ = 0;
+};
+
+/// left×right products, `left` of them from one column of `to` to the next; both in whole tiles.
+struct Task {
+  const double* const* left;
+  Index left_count;
+  const double* const* right;
+  Index right_count;
+  Index rows;
+  bool upper;  ///< left and right are the same, and what is below the diagonal is not needed
+};
+
+template <class Lanes>
+[[gnu::always_inline]] inline void products_body(const Task& task, double* to) {
+  const double *a[kTile], *b[kTile];
+  for (Index begin = 0; begin < task.rows; begin += kBlock) {
+    const Index size = std::min(task.rows - begin, kBlock);
+    for (Index j = 0; j < task.right_count; j += kTile) {
+      for (Index k = 0; k < kTile; ++k) b[k] = task.right[j + k] + begin;
+      const Index end = task.upper ? j + kTile : task.left_count;
+      for (Index i = 0; i < end; i += kTile) {
+        for (Index k = 0; k < kTile; ++k) a[k] = task.left[i + k] + begin;
+        dot_tile<Lanes>(a, b, size, to + i + task.left_count * j, task.left_count);
+      }
+    }
+  }
+}
+void products_any(const Task& task, double* to) {
+  products_body<Four>(task, to);
+}
+MBK_X86_64_V3 void products_v3(const Task& task, double* to) {
+  products_body<Four>(task, to);
+}
+MBK_X86_64_V4 void products_v4(const Task& task, double* to) {
+  products_body<Eight>(task, to);
+}
+
+Matrix products(const Tiled& left, const Tiled& right, bool upper) {
+  Matrix all = Matrix::Zero(left.padded(), right.padded());
+  const auto run = has_x86_64_v4() ? products_v4 : has_x86_64_v3() ? products_v3 : products_any;
+  run({left.data(), left.padded(), right.data(), right.padded(), left.rows(), upper}, all.data());
+  return all;
+}
+
+/// y − Σ θ_k z_k over `rows` rows from `begin` on.
+template <class Lanes>
+[[gnu::always_inline]] inline void residual_body(const double* y, const double* const* z, const double* theta,
+                                                 Index count, Index begin, Index rows, double* to) {
+  Index t = begin;
+  const Index end = begin + rows;
+  for (; t + Lanes::kWidth <= end; t += Lanes::kWidth, to += Lanes::kWidth) {
+    typename Lanes::V rest = Lanes::at(y + t);
+    for (Index k = 0; k < count; ++k) rest -= theta[k] * Lanes::at(z[k] + t);
+    Lanes::at(to) = rest;
+  }
+  for (; t < end; ++t, ++to) {
+    double rest = y[t];
+    for (Index k = 0; k < count; ++k) rest -= theta[k] * z[k][t];
+    *to = rest;
+  }
+}
+void residual_any(const double* y, const double* const* z, const double* theta, Index count, Index begin, Index rows,
+                  double* to) {
+  residual_body<Four>(y, z, theta, count, begin, rows, to);
+}
+MBK_X86_64_V3 void residual_v3(const double* y, const double* const* z, const double* theta, Index count, Index begin,
+                               Index rows, double* to) {
+  residual_body<Four>(y, z, theta, count, begin, rows, to);
+}
+MBK_X86_64_V4 void residual_v4(const double* y, const double* const* z, const double* theta, Index count, Index begin,
+                               Index rows, double* to) {
+  residual_body<Eight>(y, z, theta, count, begin, rows, to);
+}
+
+}  // namespace
+
+Matrix gram_of(const std::vector<Columns>& side_by_side) {
+  const Tiled columns(side_by_side);
+  const Matrix all = products(columns, columns, true);
+  return Matrix(all.topLeftCorner(columns.count(), columns.count())).selfadjointView<Eigen::Upper>();
+}
+
+Matrix products_of(const Columns& A, const Columns& B) {
+  return products(Tiled({A}), Tiled({B}), false).topLeftCorner(A.cols(), B.cols());
+}
+
+Matrix projected_residuals(const Columns& Z, const Columns& Y, const Matrix& theta) {
+  const Tiled regressors({Z});
+  const auto run = has_x86_64_v4() ? residual_v4 : has_x86_64_v3() ? residual_v3 : residual_any;
+  constexpr Index kRows = 8 * kBlock;  // that stay in the second cache
+  Matrix projected = Matrix::Zero(Z.cols(), Y.cols()), block(std::min(kRows, Z.rows()), Y.cols());
+  for (Index begin = 0; begin < Z.rows(); begin += kRows) {
+    const Index rows = std::min(kRows, Z.rows() - begin);
+    for (Index j = 0; j < Y.cols(); ++j) {
+      run(Y.data() + j * Y.outerStride(), regressors.data(), theta.data() + j * theta.rows(), Z.cols(), begin, rows,
+          block.col(j).data());
+    }
+    projected += products_of(Z.middleRows(begin, rows), block.topRows(rows));
+  }
+  return projected;
+}
+
+}  // namespace mbk::numeric
