@@ -97,7 +97,13 @@ Matrix rows_of(const Matrix& all, const std::vector<RowRange>& ranges, Index ste
   Matrix rows(count, all.cols());
   Index row = 0;
   for (const RowRange& range : ranges) {
-    for (Index i = range.begin; i < range.end; i += step) rows.row(row++) = all.row(i);
+    const Index kept = (range.size() + step - 1) / step;
+    if (step == 1) {
+      rows.middleRows(row, kept) = all.middleRows(range.begin, kept);
+    } else {
+      rows.middleRows(row, kept) = all(Eigen::seqN(range.begin, kept, step), Eigen::all);
+    }
+    row += kept;
   }
   return rows;
 }
