@@ -207,6 +207,11 @@ Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Colum
                                  std::span<const FilterOutput> outputs, Index every, Hertz rate, Index first, Index end,
                                  Matrix& answer) {
   const Index length = columns.front().size();
+  // A long signal goes block by block, each with so much before and after it that nothing is left of where it was cut.
+  constexpr double kNothing = 1e-20;
+  constexpr Index kBlock = 1 << 20;
+  const Index lead = memory_of(chain.lowpass, kNothing);
+  const Index at_once = std::max<Index>(1, std::max(kBlock, 8 * lead) / every);
   for (const Batch& batch : batches_of(outputs)) {
     std::vector<double> weights;
     for (const int derivative : batch.derivatives) {
@@ -217,16 +222,23 @@ Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Colum
     }
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);
-    Interleaved rows(length);
-    interleave(lanes, length, reference, rows.row(0));
-    filter_both_ways(chain.lowpass, rows.row(0), length, {});
     const std::size_t derivatives = batch.derivatives.size();
-    std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(end - first));
-    correlate_every(weights, derivatives, rows.row(first * every), every, end - first, values.data());
-    for (const auto& [from, to] : batch.outputs) {
-      const double plus = batch.derivatives[from / kLanes] == 0 ? reference[from % kLanes] : 0.0;
-      const double* value = values.data() + from;
-      for (Index i = first; i < end; ++i, value += kLanes * derivatives) answer(i, to) = *value + plus;
+    for (Index begin = first; begin < end; begin += at_once) {
+      const Index behind = std::min(end, begin + at_once);
+      const Index from = std::max<Index>(0, begin * every - lead),
+                  to = std::min(length, (behind - 1) * every + chain.smoothing.window + lead);
+      FourColumns here = lanes;
+      for (const double*& lane : here) lane += from;
+      Interleaved rows(to - from);
+      interleave(here, to - from, reference, rows.row(0));
+      filter_both_ways(chain.lowpass, rows.row(0), to - from, from == 0 ? FourValues{} : row_of(rows, 0));
+      std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(behind - begin));
+      correlate_every(weights, derivatives, rows.row(begin * every - from), every, behind - begin, values.data());
+      for (const auto& [source, target] : batch.outputs) {
+        const double plus = batch.derivatives[source / kLanes] == 0 ? reference[source % kLanes] : 0.0;
+        const double* value = values.data() + source;
+        for (Index i = begin; i < behind; ++i, value += kLanes * derivatives) answer(i, target) = *value + plus;
+      }
     }
   }
   return {};

@@ -77,10 +77,13 @@ Matrix newey_west_covariance(const InstrumentalFit& fit, const Matrix& R, const 
   return fit.inverse * omega * fit.inverse.transpose();
 }
 
-Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<RowRange>& ranges, Index lags) {
+Vector first_stage_strength(Matrix Z, Matrix R, const std::vector<RowRange>& ranges, Index lags) {
+  // In place: of a long recording these are the largest matrices there are.
   const Index m = Z.cols() - 1, excluded = R.cols() - 1;
   const auto freedom = static_cast<double>(excluded - m + 1);
-  const Matrix scaled_R = R * scaling(R).asDiagonal(), scaled_Z = Z * scaling(Z).asDiagonal();
+  R *= scaling(R).asDiagonal();
+  Z *= scaling(Z).asDiagonal();
+  const Matrix &scaled_R = R, &scaled_Z = Z;
   const PivotedQr gram(scaled_R.transpose() * scaled_R);
   if (gram.rank() < R.cols()) return Vector::Zero(m);
   const Matrix inverse = gram.inverse();
@@ -92,10 +95,13 @@ Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<
     for (Index i = 0; i <= m; ++i) {
       if (i != j) others.push_back(i);
     }
-    const Matrix E = scaled_Z(Eigen::all, others), hat = predicted(Eigen::all, others);
-    const PivotedQr second(hat.transpose() * hat);
+    Matrix E = predicted(Eigen::all, others);
+    const PivotedQr second(E.transpose() * E);
     if (second.rank() < m) continue;
-    const Vector own = scaled_Z.col(j) - E * second.solve(hat.transpose() * scaled_Z.col(j));
+    const Vector by_others = second.solve(E.transpose() * scaled_Z.col(j));
+    E = scaled_Z(Eigen::all, others);
+    const Vector own = scaled_Z.col(j) - E * by_others;
+    E.resize(0, 0);
     const Vector coefficients = inverse * (scaled_R.transpose() * own);
     const Matrix left = own - scaled_R * coefficients;
     const Matrix omega = long_run_covariance(R.cols(), ranges, lags, [&](const RowRange& range) {

@@ -35,7 +35,6 @@ struct InstrumentalFit {
 /// towards least squares and its intervals mean little.
 /// @param Z N×p, R N×r with r ≥ p; the last column of both is the constant
 /// @returns p − 1 statistics; 0 where the instruments cannot tell the regressor from the others
-[[nodiscard]] Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<RowRange>& ranges,
-                                          Index lags);
+[[nodiscard]] Vector first_stage_strength(Matrix Z, Matrix R, const std::vector<RowRange>& ranges, Index lags);
 
 }  // namespace mbk::numeric
