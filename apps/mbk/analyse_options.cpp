@@ -55,11 +55,9 @@ void add_analyse_options(CLI::App& command, AnalyseArguments& arguments) {
       ->group("Model");
 }
 
-void add_arm(const AnalyseArguments& arguments, std::vector<Recording>& recordings) {
+void add_arm(const AnalyseArguments& arguments, Recording& recording) {
   const auto arm = arm_metadata(arguments.arm);
-  for (Recording& recording : recordings) {
-    for (const auto& [key, value] : arm.value_or(std::map<std::string, std::string>{})) recording.metadata[key] = value;
-  }
+  for (const auto& [key, value] : arm.value_or(std::map<std::string, std::string>{})) recording.metadata[key] = value;
 }
 
 }  // namespace mbk::app

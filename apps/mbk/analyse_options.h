@@ -26,7 +26,7 @@ struct AnalyseArguments {
 /// Adds --domain and --arm.
 void add_analyse_options(CLI::App& command, AnalyseArguments& arguments);
 
-/// With --arm the recordings' metadata hold that arm.
-void add_arm(const AnalyseArguments& arguments, std::vector<Recording>& recordings);
+/// With --arm the recording's metadata hold that arm.
+void add_arm(const AnalyseArguments& arguments, Recording& recording);
 
 }  // namespace mbk::app

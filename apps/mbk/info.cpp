@@ -45,10 +45,18 @@ Result<std::vector<Result<Recording>>> read_journal(const std::filesystem::path&
   return one;
 }
 
+Result<std::vector<Result<Recording>>> read_each(const InfoArguments& arguments) {
+  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
+  if (!reader) return tl::unexpected(reader.error());
+  std::vector<Result<Recording>> each;
+  for (int k = 0; k < reader->count(); ++k) each.push_back(reader->read(k));
+  return each;
+}
+
 int run(const InfoArguments& arguments) {
   if (auto ok = arguments.output.to.check(arguments.reading.files); !ok) return report_error(ok.error());
   const bool journal = arguments.reading.files.size() == 1 && journal::is_journal(arguments.reading.files.front());
-  auto each = journal ? read_journal(arguments.reading.files.front()) : read_each(arguments.reading, arguments.sensor);
+  auto each = journal ? read_journal(arguments.reading.files.front()) : read_each(arguments);
   if (!each) return report_error(each.error());
   if (each->size() == 1 && !each->front() && !journal) return list_unrecognised(arguments, each->front().error());
   int code = kFine;

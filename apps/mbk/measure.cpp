@@ -30,31 +30,44 @@ Result<Examined> measure_one(std::span<const Recording> recordings, const measur
   return Examined{std::move(*measured), {}};
 }
 
-/// One result per recording, several at a time; the order is that of the recordings.
-std::vector<Result<Examined>> measure_each(const std::vector<Recording>& recordings,
-                                           const measurement::Options& options,
-                                           const MeasureCommandArguments& arguments) {
-  std::vector<Result<Examined>> results(recordings.size(), bad_data("not measured"));
-  const int count = static_cast<int>(recordings.size());
+/// A recording that was read and measured; its samples are gone.
+struct MeasuredOne {
+  Examined examined;
+  result::RecordingFacts facts;
+};
+
+/// One result for each FILE, several at a time: of no more than are worked on at once are the samples in memory. The
+/// order is that of the files.
+std::vector<Result<MeasuredOne>> measure_each(const RecordingReader& reader, const measurement::Options& options,
+                                              const MeasureCommandArguments& arguments) {
+  const int count = reader.count();
+  std::vector<Result<MeasuredOne>> results(static_cast<std::size_t>(count), bad_data("not measured"));
+  const bool with_report = arguments.report.file.has_value();
+  const auto measured = [&](int i) -> Result<MeasuredOne> {
+    auto recording = reader.read_perturbation(i);
+    if (!recording) return tl::unexpected(recording.error());
+    add_arm(arguments.analyse, *recording);
+    auto one = measure_one({&*recording, 1}, options, with_report);
+    if (!one) return tl::unexpected(one.error());
+    result::RecordingFacts facts;
+    if (with_report) facts = facts_of(*recording, one->measured.identification);
+    return MeasuredOne{std::move(*one), std::move(facts)};
+  };
   Progress progress(arguments.output.quiet);
   int done = 0;
   std::ignore = numeric::parallel_for(
       count, arguments.threads,
       [&](int i) -> Result<void> {
-        const auto k = static_cast<std::size_t>(i);
-        results[k] = measure_one({&recordings[k], 1}, options, arguments.report.file.has_value());
+        results[static_cast<std::size_t>(i)] = measured(i);
         return {};
       },
-      [&](int i) {
-        const Recording& recording = recordings[static_cast<std::size_t>(i)];
-        progress.count(++done, count, recording.sources.empty() ? "" : recording.sources.front().path);
-      });  // a failure is kept with its recording
+      [&](int i) { progress.count(++done, count, reader.file(i).string()); });  // a failure is kept with its file
   return results;
 }
 
 /// Everything that a run of the command found.
 struct MeasuredTrials {
-  std::vector<Recording> recordings;  ///< those that are behind `measured`
+  std::vector<result::RecordingFacts> facts;  ///< of the recordings that are behind `measured`; for a report
   std::vector<Measurement> measured;
   std::vector<std::optional<Diagnostics>> diagnostics;  ///< one for each result
   bool several = false;                                 ///< more than one result was asked for
@@ -71,39 +84,30 @@ struct MeasuredTrials {
 Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
   auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return tl::unexpected(recordings.error());
-  MeasuredTrials found;
-  found.recordings = std::move(*recordings);
-  add_arm(arguments.analyse, found.recordings);
-  auto pooled = measure_one(found.recordings, options, arguments.report.file.has_value());
+  for (Recording& recording : *recordings) add_arm(arguments.analyse, recording);
+  auto pooled = measure_one(*recordings, options, arguments.report.file.has_value());
   if (!pooled) return tl::unexpected(pooled.error());
+  MeasuredTrials found;
+  for (std::size_t k = 0; arguments.report.file && k < recordings->size(); ++k) {
+    found.facts.push_back(facts_of((*recordings)[k], pooled->measured.identification, k));
+  }
   found.add(std::move(*pooled));
   return found;
 }
 
 /// One result for each: a recording that cannot be measured costs only itself.
 Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
-  auto each = read_each_perturbation(arguments.reading, arguments.sensor);
-  if (!each) return tl::unexpected(each.error());
+  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
+  if (!reader) return tl::unexpected(reader.error());
   MeasuredTrials found;
-  found.several = each->size() > 1;
-  std::vector<Error>& failed = found.together.failed;
-  std::vector<Recording> readable;
-  for (Result<Recording>& one : *each) {
-    if (one) {
-      readable.push_back(std::move(*one));
-    } else {
-      failed.push_back(one.error());
-    }
-  }
-  add_arm(arguments.analyse, readable);
-  std::vector<Result<Examined>> results = measure_each(readable, options, arguments);
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    if (!results[k]) {
-      failed.push_back(results[k].error());
+  found.several = reader->count() > 1;
+  for (Result<MeasuredOne>& one : measure_each(*reader, options, arguments)) {
+    if (!one) {
+      found.together.failed.push_back(one.error());
       continue;
     }
-    found.recordings.push_back(std::move(readable[k]));
-    found.add(std::move(*results[k]));
+    found.facts.push_back(std::move(one->facts));
+    found.add(std::move(one->examined));
   }
   if (!found.several || found.measured.empty()) return found;
   std::vector<Identification> identifications;
@@ -143,7 +147,7 @@ int run(const MeasureCommandArguments& arguments, const std::string& typed, bool
     if (found->several) text += "\n" + report::summary_text(found->together);
   }
   if (arguments.report.file) {
-    const std::string document = report_json(typed, arguments.report.note, found->recordings, found->measured,
+    const std::string document = report_json(typed, arguments.report.note, found->facts, found->measured,
                                              found->diagnostics, found->several ? &found->together : nullptr);
     if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document); !ok)
       return report_error(ok.error());

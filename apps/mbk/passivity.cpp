@@ -6,11 +6,13 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
+#include "mbk/base/numeric/parallel.h"
 #include "mbk/measure/analyse/judge_passivity.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/present/report/draw_chart.h"
@@ -62,26 +64,37 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
-  PassivityAnswers answers;
-  const auto answer = [&](std::span<const Recording> recordings) -> Result<void> {
+  const auto answer = [&](std::span<const Recording> recordings) -> Result<Answer> {
     auto measured = measurement::measure(recordings, *options);
     if (!measured) return tl::unexpected(measured.error());
     const Identification& id = measured->identification;
-    answers.found.push_back({id.sources, std::move(*measured->passivity), std::move(measured->energies),
-                             std::move(measured->consistent), id.motion});
-    return {};
+    return Answer{id.sources, std::move(*measured->passivity), std::move(measured->energies),
+                  std::move(measured->consistent), id.motion};
   };
+  PassivityAnswers answers;
   if (arguments.pool) {
     const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
     if (!recordings) return tl::unexpected(recordings.error());
-    if (auto ok = answer(*recordings); !ok) return tl::unexpected(ok.error());
+    auto pooled = answer(*recordings);
+    if (!pooled) return tl::unexpected(pooled.error());
+    answers.found.push_back(std::move(*pooled));
     return answers;
   }
-  const auto each = read_each_perturbation(arguments.reading, arguments.sensor);
-  if (!each) return tl::unexpected(each.error());
-  for (const Result<Recording>& one : *each) {
-    const Result<void> ok = one ? answer({&*one, 1}) : tl::unexpected(one.error());
-    if (!ok) answers.failed.push_back(ok.error());
+  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
+  if (!reader) return tl::unexpected(reader.error());
+  const int count = reader->count();
+  std::vector<Result<Answer>> each(static_cast<std::size_t>(count), bad_data("not measured"));
+  std::ignore = numeric::parallel_for(count, arguments.threads, [&](int i) -> Result<void> {
+    const auto recording = reader->read_perturbation(i);
+    each[static_cast<std::size_t>(i)] = recording ? answer({&*recording, 1}) : tl::unexpected(recording.error());
+    return {};
+  });  // a failure is kept with its file
+  for (Result<Answer>& one : each) {
+    if (one) {
+      answers.found.push_back(std::move(*one));
+    } else {
+      answers.failed.push_back(one.error());
+    }
   }
   return answers;
 }

@@ -26,6 +26,20 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   return options;
 }
 
+/// All of them, or the first error.
+Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const SensorArguments& with_sensor,
+                                      Result<Recording> (RecordingReader::*read)(int) const) {
+  const auto reader = RecordingReader::of(arguments, with_sensor);
+  if (!reader) return tl::unexpected(reader.error());
+  std::vector<Recording> recordings;
+  for (int k = 0; k < reader->count(); ++k) {
+    auto one = ((*reader).*read)(k);
+    if (!one) return tl::unexpected(one.error());
+    recordings.push_back(std::move(*one));
+  }
+  return recordings;
+}
+
 }  // namespace
 
 void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
@@ -52,70 +66,50 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
   command.add_flag("--parts", arguments.parts, "the FILEs are numbered parts of one record: join them");
 }
 
-Result<std::vector<Result<Recording>>> read_each(const ReadingArguments& arguments,
-                                                 const SensorArguments& with_sensor) {
-  const auto options = read_options(arguments);
+Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, const SensorArguments& with_sensor) {
+  auto options = read_options(arguments);
   if (!options) return tl::unexpected(options.error());
-  const auto sensor = sensor_use(with_sensor);
+  auto sensor = sensor_use(with_sensor);
   if (!sensor) return tl::unexpected(sensor.error());
-  std::vector<Result<Recording>> recordings;
-  const auto add = [&](Result<Recording> one, const std::filesystem::path& file) {
-    if (one && *sensor) {
-      one = calibration::force_from_voltage(std::move(*one), **sensor);
-      if (!one) one = tl::unexpected(one.error().in(file.string()));
-    }
-    recordings.push_back(std::move(one));
-  };
-  if (arguments.parts) {
-    add(recording::read_parts(arguments.files, *options), arguments.files.front());
-    return recordings;
-  }
-  for (const std::filesystem::path& file : arguments.files) {
-    if (journal::is_journal(file)) {
-      add(bad_data("is the journal of a session that was cut off, or still runs",
-                   fmt::format("'mbk recover {}' makes a recording of it", file.string()), file.string()),
-          file);
-    } else {
-      add(recording::read(file, *options), file);
-    }
-  }
-  return recordings;
+  RecordingReader reader;
+  reader.files_ = arguments.files;
+  reader.parts_ = arguments.parts;
+  reader.options_ = std::move(*options);
+  reader.sensor_ = std::move(*sensor);
+  return reader;
 }
 
-Result<std::vector<Result<Recording>>> read_each_perturbation(const ReadingArguments& arguments,
-                                                              const SensorArguments& with_sensor) {
-  auto recordings = read_each(arguments, with_sensor);
-  if (!recordings) return recordings;
-  for (Result<Recording>& recording : *recordings) {
-    if (!recording) continue;
-    const auto withdrawn = recording->metadata.find("withdrawn");
-    if (withdrawn != recording->metadata.end() && withdrawn->second == "yes") {
-      recording = bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
-                           recording->sources.empty() ? "" : recording->sources.front().path);
-    } else {
-      recording = preprocess::perturbation_only(std::move(*recording));
-    }
+Result<Recording> RecordingReader::read(int k) const {
+  if (!parts_ && journal::is_journal(file(k))) {
+    return bad_data("is the journal of a session that was cut off, or still runs",
+                    fmt::format("'mbk recover {}' makes a recording of it", file(k).string()), file(k).string());
   }
-  return recordings;
+  auto one = parts_ ? recording::read_parts(files_, options_) : recording::read(file(k), options_);
+  if (one && sensor_) {
+    one = calibration::force_from_voltage(std::move(*one), *sensor_);
+    if (!one) one = tl::unexpected(one.error().in(file(k).string()));
+  }
+  return one;
 }
 
-Result<std::vector<Recording>> all_of(Result<std::vector<Result<Recording>>> each) {
-  if (!each) return tl::unexpected(each.error());
-  std::vector<Recording> recordings;
-  for (Result<Recording>& one : *each) {
-    if (!one) return tl::unexpected(one.error());
-    recordings.push_back(std::move(*one));
+Result<Recording> RecordingReader::read_perturbation(int k) const {
+  auto one = read(k);
+  if (!one) return one;
+  const auto withdrawn = one->metadata.find("withdrawn");
+  if (withdrawn != one->metadata.end() && withdrawn->second == "yes") {
+    return bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
+                    one->sources.empty() ? "" : one->sources.front().path);
   }
-  return recordings;
+  return preprocess::perturbation_only(std::move(*one));
 }
 
 Result<std::vector<Recording>> read_recordings(const ReadingArguments& arguments, const SensorArguments& with_sensor) {
-  return all_of(read_each(arguments, with_sensor));
+  return all_of(arguments, with_sensor, &RecordingReader::read);
 }
 
 Result<std::vector<Recording>> read_perturbations(const ReadingArguments& arguments,
                                                   const SensorArguments& with_sensor) {
-  return all_of(read_each_perturbation(arguments, with_sensor));
+  return all_of(arguments, with_sensor, &RecordingReader::read_perturbation);
 }
 
 }  // namespace mbk::app

@@ -8,6 +8,8 @@
 
 #include "apps/mbk/sensor_options.h"
 #include "mbk/base/core/result.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/measure/calibration/sensor_force.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::app {
@@ -26,18 +28,30 @@ struct ReadingArguments {
 /// Adds FILE… and how to read it: --channels, --variable, --rate, --axes, --parts.
 void add_reading_options(CLI::App& command, ReadingArguments& arguments);
 
-/// Each FILE by itself: one that cannot be read costs only itself. Its error names it. With --parts all of them are
-/// one.
-/// @fails  usage: the options; the calibration of --sensor cannot be read.
-[[nodiscard]] Result<std::vector<Result<Recording>>> read_each(const ReadingArguments& arguments,
-                                                               const SensorArguments& with_sensor = {});
+/// Reads the FILEs one by one, also from several threads at once: only what is being worked on has to be in memory.
+class RecordingReader {
+ public:
+  /// @fails  usage: the options; the calibration of --sensor cannot be read.
+  [[nodiscard]] static Result<RecordingReader> of(const ReadingArguments& arguments,
+                                                  const SensorArguments& with_sensor = {});
 
-/// The same, of sessions' recordings only the perturbation; whose person has withdrawn is an error.
-[[nodiscard]] Result<std::vector<Result<Recording>>> read_each_perturbation(const ReadingArguments& arguments,
-                                                                            const SensorArguments& with_sensor = {});
+  /// Recordings: one for each FILE, with --parts one of all.
+  [[nodiscard]] int count() const { return parts_ ? 1 : static_cast<int>(files_.size()); }
+  /// FILE, or the first part.
+  [[nodiscard]] const std::filesystem::path& file(int k) const { return files_[static_cast<std::size_t>(k)]; }
 
-/// All of them, or the first error.
-[[nodiscard]] Result<std::vector<Recording>> all_of(Result<std::vector<Result<Recording>>> each);
+  /// Where --sensor is given, the force is that of its voltages.
+  /// @param k  0 … count() − 1    @fails  as recording::read; the error names the file.
+  [[nodiscard]] Result<Recording> read(int k) const;
+  /// The same, of a session's recording only the perturbation.   @fails  data: the person has withdrawn.
+  [[nodiscard]] Result<Recording> read_perturbation(int k) const;
+
+ private:
+  std::vector<std::filesystem::path> files_;
+  bool parts_ = false;
+  recording::ReadOptions options_;
+  std::optional<calibration::SensorUse> sensor_;
+};
 
 /// Every FILE as a recording; with --parts all of them as one. Where --sensor is given, the force is that of its
 /// voltages.

@@ -1,10 +1,11 @@
 #include "apps/mbk/report_file.h"
 
+#include <iterator>
+
 #include "apps/mbk/commands.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/present/report/html.h"
-#include "mbk/present/result/report_json.h"
 
 namespace mbk::app {
 namespace {
@@ -18,10 +19,6 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-result::RecordingFacts facts_of(const Recording& recording, const Preparation& how) {
-  return {recording.metadata, analyse::posture(recording, how.from_s, how.to_s)};
-}
-
 }  // namespace
 
 std::string command_line(int argc, char** argv) {
@@ -30,17 +27,22 @@ std::string command_line(int argc, char** argv) {
   return line;
 }
 
-std::string report_json(const std::string& typed, const std::string& note, const std::vector<Recording>& recordings,
-                        const std::vector<Measurement>& measured,
+result::RecordingFacts facts_of(const Recording& recording, const Identification& identification, std::size_t which) {
+  const Preparation& how = identification.preparations[which];
+  return {recording.metadata, analyse::posture(recording, how.from_s, how.to_s)};
+}
+
+std::string report_json(const std::string& typed, const std::string& note,
+                        const std::vector<result::RecordingFacts>& facts, const std::vector<Measurement>& measured,
                         const std::vector<std::optional<Diagnostics>>& diagnostics, const SeveralTrials* together) {
   result::Report report{{}, together == nullptr ? std::nullopt : std::optional(*together), typed, note};
-  auto recording = recordings.begin();
+  auto next = facts.begin();
   for (std::size_t k = 0; k < measured.size(); ++k) {
     const Measurement& one = measured[k];
     result::ReportedResult reported{one, {}, diagnostics[k]};
-    for (const Preparation& how : one.identification.preparations) {
-      reported.recordings.push_back(facts_of(*recording++, how));
-    }
+    const auto count = std::ssize(one.identification.preparations);
+    reported.recordings.assign(next, next + count);
+    next += count;
     report.results.push_back(std::move(reported));
   }
   return result::to_json(report);

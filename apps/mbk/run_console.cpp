@@ -72,7 +72,8 @@ Result<Measurement> RunConsole::measured(const Recording& recording) const {
   std::optional<Diagnostics> diagnostics;
   if (!examined->diagnostics.empty()) diagnostics = std::move(examined->diagnostics.front());
   const std::string typed = fmt::format("mbk measure {}", page_->recording().string());
-  auto html = report::page(report_json(typed, "", {recording}, {examined->measured}, {diagnostics}, nullptr));
+  auto html = report::page(report_json(typed, "", {facts_of(recording, examined->measured.identification)},
+                                       {examined->measured}, {diagnostics}, nullptr));
   console_->show_report(html ? std::move(*html) : "", html ? "" : html.error().line());
   return std::move(examined->measured);
 }

@@ -63,7 +63,42 @@ def run_and_weigh(*command):
     return (int(value) for value in ran.stdout.split())
 
 
+def table(minutes):
+    """The same motion as a table of seven columns at 1 kHz, whole periods of 10 s one after the other."""
+    period = []
+    for i in range(10_000):
+        angle = 2.0 * math.pi * i / 10_000
+        x, y = 0.01 * math.sin(3.0 * angle) + 0.004 * math.sin(11.0 * angle), 0.01 * math.sin(5.0 * angle + 1.0)
+        noise = math.sin(1e4 * math.sin(1e4 * i))
+        period.append(f",{x + 1e-7 * noise:.9f},{y - 1e-7 * noise:.9f},{-100.0 * x + 0.01 * noise:.6f},"
+                      f"{-80.0 * y + 0.01 * noise:.6f},{x:.9f},{y:.9f}\n")
+    yield "time,hand_x,hand_y,force_x,force_y,reference_x,reference_y\n"
+    for k in range(6 * minutes):
+        yield "".join(f"{10 * k + i // 1000}.{i % 1000:03}{line}" for i, line in enumerate(period))
+
+
 class Memory(Case):
+    def test_of_a_long_table_it_grows_by_less_than_twice_the_numbers(self):
+        columns, peaks = 7, []
+        for minutes in (10, 20):
+            path = self.folder / f"{minutes}.csv"
+            with path.open("w", encoding="utf-8") as file:
+                file.writelines(table(minutes))
+            code, peak = run_and_weigh(program("MBK"), "measure", path, "--json")
+            self.assertIn(code, (0, 4))
+            peaks.append(peak)
+        numbers = 10 * 60_000 * columns * 8
+        self.assertLessEqual(peaks[1] - peaks[0], 2 * numbers, peaks)
+        self.assertLessEqual(peaks[1], 2 * numbers * 2 + 64 * MIB, peaks)
+
+    def test_of_many_files_it_is_that_of_those_measured_at_a_time(self):
+        data = log(20_000)
+        content = header() + matrix(20_000, data)
+        few, many = ([self.file(f"{count}_{k}.mat", content) for k in range(count)] for count in (4, 40))
+        (_, little), (_, much) = (run_and_weigh(program("MBK"), "measure", *paths, "--json", "--quiet",
+                                                "--threads", "2") for paths in (few, many))
+        self.assertLessEqual(much - little, 3 * len(data), "36 files more take less than three of them")
+
     def test_at_most_three_times_the_numbers_and_32_MiB(self):
         data = log(200_000)
         for name, content in (("plain.mat", matrix(200_000, data)),

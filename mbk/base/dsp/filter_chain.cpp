@@ -265,9 +265,10 @@ Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> colu
   return answer;
 }
 
-/// Forward and backward from rest, without the gains.
+/// Forward and backward, without the gain of the way back.
+/// @param at_rest  begins at the reference, else as after a constant of the first value
 Interleaved lowpassed(const SectionCascade& filter, const FourColumns& columns, Index length,
-                      const FourValues& reference) {
+                      const FourValues& reference, bool at_rest) {
   constexpr Index kChunk = 512;
   Interleaved rows(length);
   const double gain = OneWay::gain(filter);
@@ -276,6 +277,7 @@ Interleaved lowpassed(const SectionCascade& filter, const FourColumns& columns, 
   for (Index begin = 0; begin < length; begin += kChunk) {
     const Index some = std::min(kChunk, length - begin);
     interleave(at, some, reference, gain, rows.row(begin));
+    if (begin == 0 && !at_rest) forward.settle(rows.row(0));
     forward.run(rows.row(begin), some, 1);
     for (const double*& column : at) column += some;
   }
@@ -290,6 +292,11 @@ Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Colum
                                  std::span<const FilterOutput> outputs, Index every, Hertz rate, Index first, Index end,
                                  Matrix& answer) {
   const Index length = columns.front().size();
+  // A long signal goes block by block, each with so much before and after it that nothing is left of where it was cut.
+  constexpr double kNothing = 1e-20;
+  constexpr Index kBlock = 1 << 20;
+  const Index lead = memory_of(chain.lowpass, kNothing);
+  const Index at_once = std::max<Index>(1, std::max(kBlock, 8 * lead) / every);
   for (const Batch& batch : batches_of(outputs)) {
     std::vector<double> weights;
     for (const int derivative : batch.derivatives) {
@@ -300,14 +307,21 @@ Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Colum
     }
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);
-    const Interleaved rows = lowpassed(chain.lowpass, lanes, length, reference);
     const std::size_t derivatives = batch.derivatives.size();
-    std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(end - first));
-    correlate_every(weights, derivatives, rows.row(first * every), every, end - first, values.data());
-    for (const auto& [from, to] : batch.outputs) {
-      const double plus = batch.derivatives[from / kLanes] == 0 ? reference[from % kLanes] : 0.0;
-      const double* value = values.data() + from;
-      for (Index i = first; i < end; ++i, value += kLanes * derivatives) answer(i, to) = *value + plus;
+    for (Index begin = first; begin < end; begin += at_once) {
+      const Index behind = std::min(end, begin + at_once);
+      const Index from = std::max<Index>(0, begin * every - lead),
+                  to = std::min(length, (behind - 1) * every + chain.smoothing.window + lead);
+      FourColumns here = lanes;
+      for (const double*& lane : here) lane += from;
+      const Interleaved rows = lowpassed(chain.lowpass, here, to - from, reference, from == 0);
+      std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(behind - begin));
+      correlate_every(weights, derivatives, rows.row(begin * every - from), every, behind - begin, values.data());
+      for (const auto& [source, target] : batch.outputs) {
+        const double plus = batch.derivatives[source / kLanes] == 0 ? reference[source % kLanes] : 0.0;
+        const double* value = values.data() + source;
+        for (Index i = begin; i < behind; ++i, value += kLanes * derivatives) answer(i, target) = *value + plus;
+      }
     }
   }
   return {};

@@ -40,7 +40,7 @@ Vector hann_window(Index length) {
   return window;
 }
 
-Result<Spectrum> welch(const Vector& signal, Hertz sample_rate, Hertz resolution) {
+Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate, Hertz resolution) {
   if (!(sample_rate.value > 0.0 && resolution.value > 0.0)) {
     return bad_usage(fmt::format("sample rate {:g} Hz and resolution {:g} Hz must be positive", sample_rate.value,
                                  resolution.value));

@@ -16,7 +16,7 @@ struct Spectrum {
 /// @param signal evenly sampled    @param resolution wanted spacing of lines; the segments are about rate/resolution
 /// samples long, shortened to the signal where it is shorter and rounded down to a length made of 2, 3 and 5.
 /// @fails fewer than 8 samples; resolution or rate not positive.
-[[nodiscard]] Result<Spectrum> welch(const Vector& signal, Hertz sample_rate, Hertz resolution);
+[[nodiscard]] Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate, Hertz resolution);
 
 /// The frequency below which that fraction of the power lies, looking only at lines up to `limit`.
 [[nodiscard]] Hertz power_quantile(const Spectrum& spectrum, double fraction, Hertz limit);

@@ -1,6 +1,8 @@
 #include "mbk/base/numeric/statistics.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/complement.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
@@ -8,6 +10,7 @@
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -87,6 +90,46 @@ double median(std::vector<double> values) {
   if (values.size() % 2 == 1 || values.empty()) return upper;
   const auto middle = values.begin() + std::ssize(values) / 2;
   return 0.5 * (upper + *std::max_element(values.begin(), middle));
+}
+
+double median_of_many(Index count, const EachBlock& each_block) {
+  constexpr Index kFew = 1 << 17;
+  if (count <= kFew) {
+    std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(count));
+    each_block([&](std::span<const double> block) { values.insert(values.end(), block.begin(), block.end()); });
+    return median(std::move(values));
+  }
+  // The bits of numbers that are not negative rise with them.
+  constexpr int kDigit = 16;
+  std::uint64_t known = 0;
+  Index rank = count / 2, below = 0;  // rank: among those that begin with the known bits
+  std::vector<Index> found(std::size_t{1} << kDigit);
+  for (int shift = 64 - kDigit; shift >= 0; shift -= kDigit) {
+    std::ranges::fill(found, 0);
+    const int seen = shift + kDigit;
+    each_block([&](std::span<const double> block) {
+      for (const double value : block) {
+        const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // −0 becomes 0
+        if (seen == 64 || bits >> seen == known) ++found[(bits >> shift) & (found.size() - 1)];
+      }
+    });
+    std::size_t digit = 0;
+    for (; rank >= found[digit]; ++digit) {
+      rank -= found[digit];
+      below += found[digit];
+    }
+    known = known << kDigit | digit;
+  }
+  const auto upper = std::bit_cast<double>(known);
+  if (count % 2 == 1 || below < count / 2) return upper;  // otherwise the one before is less
+  double lower = 0.0;
+  each_block([&](std::span<const double> block) {
+    for (const double value : block) {
+      if (value < upper) lower = std::max(lower, value);
+    }
+  });
+  return 0.5 * (upper + lower);
 }
 
 double upper_median(std::vector<double> values) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -51,6 +53,14 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 
 /// The value in the middle, or the mean of the two in the middle; NaN where there are none.
 [[nodiscard]] double median(std::vector<double> values);
+
+/// Hands all of some values to `use`, block by block; the same ones in the same order each time it is called.
+using EachBlock = std::function<void(const std::function<void(std::span<const double>)>& use)>;
+
+/// The same median of values that are too many to be copied, by counting them: in five passes, each of which settles 16
+/// bits of it.
+/// @param count  of the values    @param each_block  of values that are 0 or more, and finite
+[[nodiscard]] double median_of_many(Index count, const EachBlock& each_block);
 
 /// The value in the middle, the greater of two: one of those that are there. NaN where there are none.
 [[nodiscard]] double upper_median(std::vector<double> values);

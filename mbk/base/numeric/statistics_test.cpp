@@ -3,6 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "mbk/base/numeric/random.h"
 
 namespace mbk::numeric {
 namespace {
@@ -64,6 +70,26 @@ TEST(Statistics, TheMedianIsInTheMiddle) {
   EXPECT_EQ(median({7}), 7.0);
   EXPECT_TRUE(std::isnan(median({})));
   EXPECT_TRUE(std::isnan(upper_median({})));
+}
+
+TEST(Statistics, TheMedianOfManyIsTheSame) {
+  Random random(5);
+  for (const std::size_t count : {1U, 2U, 200'001U, 200'002U, 300'000U}) {
+    for (const double step : {0.0, 1e-3, 0.25}) {  // of what values are rounded to: the last leaves few different ones
+      std::vector<double> values(count);
+      for (double& value : values) {
+        value = 0.001 + random.uniform(0.0, 1.0);
+        if (step > 0.0) value = step * std::floor(value / step);
+      }
+      const auto in_three = [&](const std::function<void(std::span<const double>)>& use) {
+        const std::span<const double> all(values);
+        const std::size_t third = all.size() / 3;
+        for (std::size_t k = 0; k < 3; ++k) use(all.subspan(k * third, k < 2 ? third : all.size() - 2 * third));
+      };
+      EXPECT_EQ(median_of_many(static_cast<Index>(count), in_three), median(values)) << count << " values, " << step;
+    }
+  }
+  EXPECT_TRUE(std::isnan(median_of_many(0, [](const auto&) {})));
 }
 
 TEST(Statistics, BinomialIntervalIsClopperAndPearsons) {

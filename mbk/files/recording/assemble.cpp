@@ -6,6 +6,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "mbk/base/core/ordinal.h"
 #include "mbk/files/recording/annotations.h"
@@ -17,6 +19,7 @@ namespace {
 
 constexpr double kRateTolerance = 1e-3;  ///< relative: what clocks of two machines differ by at most
 constexpr std::size_t kMaxListed = 12;
+constexpr Index kLong = 1 << 20;  ///< samples, of which it counts how often they are in memory
 
 /// One row or column of an array.
 struct Line {
@@ -149,7 +152,7 @@ std::string_view leaf(std::string_view name) {
 
 class Assembler {
  public:
-  Assembler(const Contents& contents, const ReadOptions& options) : contents_(contents), options_(options) {}
+  Assembler(Contents contents, const ReadOptions& options) : contents_(std::move(contents)), options_(options) {}
 
   Result<Recording> run() {
     recording_.notes = contents_.notes;
@@ -591,15 +594,14 @@ class Assembler {
 
   void extract() {
     const Index samples = signals_.front().line.size();
-    std::vector<Vector> values(signals_.size(), Vector(samples));
-    // Blocks of samples, so that the rows of a wide matrix are gathered from memory that is still in the cache.
-    constexpr Index kBlock = 256;
-    for (Index begin = 0; begin < samples; begin += kBlock) {
-      const Index count = std::min(kBlock, samples - begin);
-      for (std::size_t s = 0; s < signals_.size(); ++s) {
-        const Line& line = signals_[s].line;
-        values[s].segment(begin, count) = line.samples(begin, count);
-      }
+    for (Array& array : contents_.arrays) {
+      if (std::ranges::none_of(signals_, [&](const Signal& s) { return s.line.array == &array; })) forget(array);
+    }
+    std::vector<Vector> values(signals_.size());
+    if (samples > kLong && std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
+      take_one_by_one(values);
+    } else {
+      take_together(values);
     }
     for (std::size_t s = 0; s < signals_.size(); ++s) {
       const Signal& signal = signals_[s];
@@ -619,6 +621,35 @@ class Assembler {
                                                         : signal.kind->default_unit();
       recording_.channels.push_back({std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame),
                                      std::move(channel), origin_of(signal)});
+    }
+  }
+
+  /// The numbers of an array that are needed no more.
+  static void forget(Array& array) { array.values.resize(0, 0); }
+
+  /// Each array goes when its channel is there, so that no more than one of them is in memory twice.
+  void take_one_by_one(std::vector<Vector>& values) {
+    for (std::size_t s = 0; s < signals_.size(); ++s) {
+      const Line& line = signals_[s].line;
+      values[s] = line.samples(0, line.size());
+      const auto later = std::span(signals_).subspan(s + 1);
+      if (std::ranges::any_of(later, [&](const Signal& other) { return other.line.array == line.array; })) continue;
+      for (Array& array : contents_.arrays) {
+        if (&array == line.array) forget(array);
+      }
+    }
+  }
+
+  /// Blocks of samples, so that the rows of a wide matrix are gathered from memory that is still in the cache.
+  void take_together(std::vector<Vector>& values) {
+    constexpr Index kBlock = 256;
+    const Index samples = signals_.front().line.size();
+    for (Vector& channel : values) channel.resize(samples);
+    for (Index begin = 0; begin < samples; begin += kBlock) {
+      const Index count = std::min(kBlock, samples - begin);
+      for (std::size_t s = 0; s < signals_.size(); ++s) {
+        values[s].segment(begin, count) = signals_[s].line.samples(begin, count);
+      }
     }
   }
 
@@ -694,7 +725,7 @@ class Assembler {
         "leave --rate out, or correct the unit of time (--channels time=…:ms)");
   }
 
-  const Contents& contents_;
+  Contents contents_;
   const ReadOptions& options_;
   std::vector<Signal> signals_;
   Recording recording_;
@@ -702,8 +733,8 @@ class Assembler {
 
 }  // namespace
 
-Result<Recording> assemble(const Contents& contents, const ReadOptions& options) {
-  return Assembler(contents, options).run();
+Result<Recording> assemble(Contents contents, const ReadOptions& options) {
+  return Assembler(std::move(contents), options).run();
 }
 
 }  // namespace mbk::recording

@@ -6,6 +6,6 @@
 namespace mbk::recording {
 
 /// Gives the arrays of a file their meaning: which is which channel, in SI. See `read` for the rules and failures.
-[[nodiscard]] Result<Recording> assemble(const Contents& contents, const ReadOptions& options);
+[[nodiscard]] Result<Recording> assemble(Contents contents, const ReadOptions& options);
 
 }  // namespace mbk::recording

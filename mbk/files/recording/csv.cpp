@@ -23,29 +23,68 @@ struct Line {
   bool terminated = true;
 };
 
-/// Walks through the lines that are neither empty nor comments.
+/// The text, all of it or as far as it was read.
+class CsvText {
+ public:
+  explicit CsvText(std::string_view all) : so_far_(all), size_(all.size()) {}
+  explicit CsvText(FileInPassing& file) : file_(&file), so_far_(file.text()), size_(file.size()) {}
+
+  [[nodiscard]] std::string_view so_far() const { return so_far_; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool is_complete() const { return so_far_.size() == size_; }
+  /// Whether there is more than before.
+  bool read_on() {
+    if (is_complete() || !status_) return false;
+    status_ = file_->read_on();
+    so_far_ = file_->text();
+    return status_.has_value();
+  }
+  void forget(std::size_t before) {
+    if (file_ != nullptr) file_->forget(before);
+  }
+  [[nodiscard]] const Result<void>& status() const { return status_; }
+
+ private:
+  FileInPassing* file_ = nullptr;
+  std::string_view so_far_;
+  std::size_t size_;
+  Result<void> status_;
+};
+
+/// Walks through the lines. Those before the last two need not stay in memory.
 class Lines {
  public:
-  explicit Lines(std::string_view text) : rest_(text) {
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+  explicit Lines(CsvText& text) : text_(text) {
+    if (text.so_far().starts_with("\xEF\xBB\xBF")) begin_ = 3;
   }
 
+  /// The next that is neither empty nor a comment.
   std::optional<Line> next() {
-    while (!rest_.empty()) {
-      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-      Line line{++number_, rest_.substr(0, end), end < rest_.size()};
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
-      if (line.text.ends_with('\r')) line.text.remove_suffix(1);
-      const auto first = line.text.find_first_not_of(" \t");
-      if (first == line.text.npos || line.text[first] == '#' || line.text[first] == '%') continue;
-      return line;
+    while (auto line = next_of_all()) {
+      const auto first = line->text.find_first_not_of(" \t");
+      if (first != line->text.npos && line->text[first] != '#' && line->text[first] != '%') return line;
     }
     return std::nullopt;
   }
 
+  std::optional<Line> next_of_all() {
+    std::size_t end = text_.so_far().find('\n', begin_);
+    for (std::size_t seen = text_.so_far().size(); end == std::string_view::npos && text_.read_on();
+         seen = text_.so_far().size()) {
+      end = text_.so_far().find('\n', seen);
+    }
+    const std::string_view text = text_.so_far();
+    end = std::min(end, text.size());
+    if (begin_ == text.size() || !text_.status()) return std::nullopt;
+    Line line{++number_, text.substr(begin_, end - begin_), end < text.size()};
+    begin_ = std::min(end + 1, text.size());
+    if (line.text.ends_with('\r')) line.text.remove_suffix(1);
+    return line;
+  }
+
  private:
-  std::string_view rest_;
-  std::size_t number_ = 0;
+  CsvText& text_;
+  std::size_t begin_ = 0, number_ = 0;
 };
 
 std::string_view trimmed(std::string_view cell) {
@@ -92,7 +131,7 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   return cells;
 }
 
-char separator_of(std::string_view text) {
+char separator_of(CsvText& text) {
   Lines lines(text);
   char found = ',';
   for (int i = 0; i < 3; ++i) {
@@ -131,14 +170,14 @@ std::optional<Event> event(std::string_view text) {
 }
 
 /// What our own writer says in the comments before the header (encode.h); of other files they are only comments.
-void take_comments(std::string_view text, Contents& contents) {
+void take_comments(CsvText& text, Contents& contents) {
   constexpr std::string_view kMark = "# ", kEvent = "event ";
-  if (!text.starts_with(fmt::format("{}{}", kMark, kLayout))) return;
-  for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
-    text.remove_prefix(end + 1);
-    if (!text.starts_with(kMark)) return;
-    std::string_view line = text.substr(kMark.size(), std::min(text.find('\n'), text.size()) - kMark.size());
-    if (line.ends_with('\r')) line.remove_suffix(1);
+  if (!text.so_far().starts_with(fmt::format("{}{}", kMark, kLayout))) return;
+  Lines lines(text);
+  lines.next_of_all();
+  while (const auto whole = lines.next_of_all()) {
+    if (!whole->text.starts_with(kMark)) return;
+    const std::string_view line = whole->text.substr(kMark.size());
     const auto colon = line.find(": ");
     if (line.starts_with(kEvent)) {
       if (const auto one = event(line.substr(kEvent.size()))) contents.events.push_back(*one);
@@ -152,7 +191,7 @@ class Table {
  public:
   Contents contents;
 
-  Result<void> read(std::string_view text) {
+  Result<void> read(CsvText& text) {
     contents.format = "CSV";
     contents.table = true;
     take_comments(text, contents);
@@ -160,16 +199,19 @@ class Table {
     Lines lines(text);
     std::optional<Line> line = lines.next();
     if (line && is_header(line->text)) {
-      header_ = cells_of(line->text, separator_);
+      for (const std::string_view cell : cells_of(line->text, separator_)) header_.emplace_back(cell);
       header_line_ = line->number;
       line = lines.next();
     }
+    if (!text.status()) return text.status();
     if (!line) return bad_data("the file holds no line of numbers", "nothing was recorded, or it is not a table");
     if (auto ok = find_columns(*line); !ok) return ok;
     make_room(text);
 
     for (; line; line = next_) {
+      text.forget(static_cast<std::size_t>(line->text.data() - text.so_far().data()));
       next_ = lines.next();
+      if (!text.status()) return text.status();
       if (auto ok = add(*line, !next_); !ok) return ok;
     }
     if (rows_ == 0) {
@@ -214,6 +256,7 @@ class Table {
 
   Result<void> add(const Line& line, bool last) {
     last_line_ = line.number;
+    if (rows_ == contents.arrays.front().values.rows()) make_rows(rows_ + rows_ / 4 + 1);
     std::size_t count = 0;
     std::string_view wrong;
     std::size_t wrong_column = 0;
@@ -255,21 +298,28 @@ class Table {
     }
     if (trailing_) contents.notes.emplace_back("every line ends with a separator, which was not taken as a column");
     for (std::size_t c = 0; c < columns_; ++c) {
-      if (!header_.empty()) contents.arrays[c].name = printable(std::string(header_[c]));
+      if (!header_.empty()) contents.arrays[c].name = printable(header_[c]);
       contents.arrays[c].values.conservativeResize(rows_, 1);
     }
   }
 
-  /// Columns long enough for every line that can come: one for each line end, and no line is shorter than its cells.
-  void make_room(std::string_view text) {
-    const auto ends = static_cast<std::size_t>(std::ranges::count(text, '\n'));
-    const auto rows = static_cast<Index>(std::min(ends, text.size() / columns_) + 1);
+  /// Columns long enough for every line that can come: one for each line end, and no line is shorter than its cells. Of
+  /// a text that is not all there, as many as its first part lets one expect.
+  void make_room(const CsvText& text) {
+    const std::string_view there = text.so_far();
+    const auto ends = static_cast<std::size_t>(std::ranges::count(there, '\n'));
+    const double parts = 1.02 * static_cast<double>(text.size()) / static_cast<double>(there.size());
+    const auto expected = text.is_complete() ? ends : static_cast<std::size_t>(static_cast<double>(ends) * parts);
     contents.arrays.resize(columns_);
-    for (Array& array : contents.arrays) array.values.resize(rows, 1);
+    make_rows(static_cast<Index>(std::min(expected, text.size() / columns_) + 1));
+  }
+
+  void make_rows(Index rows) {
+    for (Array& array : contents.arrays) array.values.conservativeResize(rows, 1);
   }
 
   char separator_ = ',';
-  std::vector<std::string_view> header_;
+  std::vector<std::string> header_;
   std::size_t header_line_ = 0;
   std::size_t columns_ = 0;
   bool trailing_ = false;  ///< every line ends with a separator
@@ -278,14 +328,20 @@ class Table {
   std::optional<Line> next_;
 };
 
+Result<Contents> decode_text(CsvText text) {
+  Table table;
+  if (auto ok = table.read(text); !ok) return tl::unexpected(ok.error());
+  return std::move(table.contents);
+}
+
 }  // namespace
 
 Result<Contents> decode_csv(std::span<const std::byte> file) {
-  Table table;
-  if (auto ok = table.read({reinterpret_cast<const char*>(file.data()), file.size()}); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  return std::move(table.contents);
+  return decode_text(CsvText({reinterpret_cast<const char*>(file.data()), file.size()}));
+}
+
+Result<Contents> decode_csv(FileInPassing& file) {
+  return decode_text(CsvText(file));
 }
 
 }  // namespace mbk::recording

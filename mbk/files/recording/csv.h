@@ -5,6 +5,7 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/files/recording/contents.h"
+#include "mbk/files/recording/file_bytes.h"
 
 namespace mbk::recording {
 
@@ -16,5 +17,10 @@ namespace mbk::recording {
 /// @fails  a line has more or fewer cells than the first; a header does not fit the columns; a cell is not a number;
 ///         decimal commas; no line of numbers.
 [[nodiscard]] Result<Contents> decode_csv(std::span<const std::byte> file);
+
+/// The same while the file is read, of which a part is enough in memory.
+/// @param file  of which at least one piece was read
+/// @fails  and where the rest of the file cannot be read.
+[[nodiscard]] Result<Contents> decode_csv(FileInPassing& file);
 
 }  // namespace mbk::recording

@@ -1,11 +1,17 @@
 #include "mbk/files/recording/csv.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <span>
+#include <string>
 
+#include "mbk/files/recording/file_bytes.h"
 #include "mbk/files/recording/read.h"
+#include "mbk/files/recording/sha256.h"
 #include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
@@ -153,6 +159,60 @@ TEST(DecodeCsv, CutAnywhereGivesAnErrorOrTheCompleteLines) {
     EXPECT_EQ(values.topRows(std::max<Index>(sure, 0)), all.topRows(std::max<Index>(sure, 0))) << n;
   }
   EXPECT_GT(read, 16);
+}
+
+/// A table of three columns with a header, of at least so many bytes; every third line is shorter.
+std::string long_table(std::size_t bytes, std::string_view first) {
+  std::string text(first);
+  for (int i = 0; text.size() < bytes; ++i) {
+    text += i % 3 == 0 ? fmt::format("{},1,-2\n", i) : fmt::format("{},{:.12f},{}\n", i, 0.001 * i, -7 * i);
+  }
+  return text;
+}
+
+TEST(DecodeCsv, OfAFileInPassingIsThatOfTheWholeText) {
+  const test::Folder folder;
+  constexpr std::size_t kPiece = FileInPassing::kPiece;
+  const std::string header = "# a comment\nt,x,\"F\"\n";
+  // The last: a first piece of long lines, which lets expect fewer of them than there are.
+  std::string wide = header;
+  while (wide.size() < kPiece) wide += fmt::format("{:.100f},{:.100f},3\n", 0.25, 0.5);
+  for (const std::string& text : {long_table(3 * kPiece + 100, header), long_table(2 * kPiece, header) + "12,5",
+                                  long_table(kPiece, header), std::string("1,2,3\n"), wide + long_table(kPiece, "")}) {
+    const auto file = folder.write("table.csv", text);
+    auto passing = FileInPassing::open(file).value();
+    ASSERT_TRUE(passing.read_on());
+    const Contents found = decode_csv(passing).value(), expected = csv(text).value();
+    EXPECT_EQ(passing.sha256(), sha256(std::as_bytes(std::span(text))));
+    EXPECT_EQ(found.notes, expected.notes);
+    ASSERT_EQ(found.arrays.size(), expected.arrays.size());
+    for (std::size_t k = 0; k < found.arrays.size(); ++k) {
+      EXPECT_EQ(found.arrays[k].name, expected.arrays[k].name);
+      EXPECT_EQ(found.arrays[k].values, expected.arrays[k].values);
+    }
+  }
+}
+
+TEST(DecodeCsv, OfAFileInPassingNamesTheLineOfAnErrorBehindTheFirstPiece) {
+  const test::Folder folder;
+  const std::string text = long_table(2 * FileInPassing::kPiece, "t,x,F\n") + "1,two,3\n4,5,6\n";
+  auto passing = FileInPassing::open(folder.write("table.csv", text)).value();
+  ASSERT_TRUE(passing.read_on());
+  const auto found = decode_csv(passing);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().line(), error_of(text).line());
+  EXPECT_THAT(found.error().message, HasSubstr("'two'"));
+}
+
+TEST(DecodeCsv, OfAFileThatBecomesShorterSaysSo) {
+  const test::Folder folder;
+  const auto file = folder.write("table.csv", long_table(3 * FileInPassing::kPiece, "t,x,F\n"));
+  auto passing = FileInPassing::open(file).value();
+  ASSERT_TRUE(passing.read_on());
+  std::filesystem::resize_file(file, FileInPassing::kPiece + 1000);
+  const auto found = decode_csv(passing);
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().message, HasSubstr("became shorter"));
 }
 
 TEST(DecodeCsv, KeepsEpochTimestamps) {

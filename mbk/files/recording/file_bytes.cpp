@@ -2,11 +2,15 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <new>
 #include <system_error>
+#include <utility>
 
 #include "mbk/files/recording/memory.h"
 
@@ -19,16 +23,24 @@ std::string reason(int code) {
 
 struct Descriptor {
   int number;
+  explicit Descriptor(int descriptor) : number(descriptor) {}
+  Descriptor(Descriptor&& other) noexcept : number(std::exchange(other.number, -1)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&&) = delete;
   ~Descriptor() {
     if (number >= 0) ::close(number);
   }
 };
 
-}  // namespace
+struct OpenFile {
+  Descriptor descriptor;
+  std::size_t size;
+};
 
-Result<Buffer> read_file(const std::filesystem::path& file) {
+Result<OpenFile> open_file(const std::filesystem::path& file) {
   // O_NONBLOCK: opening a pipe must not wait for its writer.
-  const Descriptor descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (descriptor.number < 0) {
     if (errno == ENOENT) return bad_data("there is no such file", "check the name and the folder");
     return bad_data(fmt::format("cannot be opened: {}", reason(errno)), "check its permissions");
@@ -42,18 +54,70 @@ Result<Buffer> read_file(const std::filesystem::path& file) {
     return bad_data(fmt::format("file size {} bytes is above the limit of {}", status.st_size, kLargestFile),
                     "split the recording into numbered parts");
   }
-  // The numbers in it take at least as much again, before its bytes can go.
-  if (auto ok = check_memory(2 * static_cast<std::uint64_t>(status.st_size)); !ok) return tl::unexpected(ok.error());
+  return OpenFile{std::move(descriptor), static_cast<std::size_t>(status.st_size)};
+}
 
-  Buffer buffer(static_cast<std::size_t>(status.st_size));
-  for (std::size_t done = 0; done < buffer.size;) {
-    const ssize_t got = ::read(descriptor.number, buffer.data.get() + done, buffer.size - done);
+/// Reads until all of it is there.
+Result<void> read_bytes(int descriptor, void* to, std::size_t count) {
+  for (std::size_t done = 0; done < count;) {
+    const ssize_t got = ::read(descriptor, static_cast<std::byte*>(to) + done, count - done);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
     if (got == 0) return bad_data("the file became shorter while it was read", "wait until it is written completely");
     done += static_cast<std::size_t>(got);
   }
+  return {};
+}
+
+}  // namespace
+
+Result<Buffer> read_file(const std::filesystem::path& file) {
+  const auto open = open_file(file);
+  if (!open) return tl::unexpected(open.error());
+  // The numbers in it take at least as much again, before its bytes can go.
+  if (auto ok = check_memory(2 * std::uint64_t{open->size}); !ok) return tl::unexpected(ok.error());
+  Buffer buffer(open->size);
+  if (auto ok = read_bytes(open->descriptor.number, buffer.data.get(), buffer.size); !ok) {
+    return tl::unexpected(ok.error());
+  }
   return buffer;
+}
+
+Result<FileInPassing> FileInPassing::open(const std::filesystem::path& file) {
+  auto open = open_file(file);
+  if (!open) return tl::unexpected(open.error());
+  void* const room =
+      ::mmap(nullptr, open->size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) throw std::bad_alloc();
+  return FileInPassing(std::exchange(open->descriptor.number, -1), open->size, static_cast<char*>(room));
+}
+
+FileInPassing::FileInPassing(FileInPassing&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_),
+      read_(other.read_),
+      forgotten_(other.forgotten_),
+      data_(std::exchange(other.data_, nullptr)),
+      sum_(other.sum_) {}
+
+FileInPassing::~FileInPassing() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (data_ != nullptr) ::munmap(data_, size_);
+}
+
+Result<void> FileInPassing::read_on() {
+  const std::size_t count = std::min(kPiece, size_ - read_);
+  if (auto ok = read_bytes(descriptor_, data_ + read_, count); !ok) return ok;
+  sum_.add(std::as_bytes(std::span(data_ + read_, count)));
+  read_ += count;
+  return {};
+}
+
+void FileInPassing::forget(std::size_t before) {
+  const std::size_t end = before / kPiece * kPiece;
+  if (end <= forgotten_) return;
+  ::madvise(data_ + forgotten_, end - forgotten_, MADV_DONTNEED);
+  forgotten_ = end;
 }
 
 }  // namespace mbk::recording

@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "mbk/base/core/result.h"
+#include "mbk/files/recording/sha256.h"
 
 namespace mbk::recording {
 
@@ -27,6 +30,40 @@ inline constexpr std::uint64_t kLargestFile = std::uint64_t{8} << 30;
 [[nodiscard]] constexpr std::uint64_t largest_claim(std::uint64_t bytes) {
   return 1100 * bytes + (1 << 20);
 }
+
+/// A file that is read from its begin to its end, of which only the part that is worked on is in memory. The bytes
+/// stand one behind the other, as if all of them were there.
+class FileInPassing {
+ public:
+  static constexpr std::size_t kPiece = std::size_t{4} << 20;  ///< that is read at a time
+
+  /// @fails  as read_file
+  [[nodiscard]] static Result<FileInPassing> open(const std::filesystem::path& file);
+  FileInPassing(FileInPassing&& other) noexcept;
+  FileInPassing(const FileInPassing&) = delete;
+  FileInPassing& operator=(const FileInPassing&) = delete;
+  FileInPassing& operator=(FileInPassing&&) = delete;
+  ~FileInPassing();
+
+  [[nodiscard]] std::size_t size() const { return size_; }  ///< of the file
+  /// What was read so far; what was forgotten of it is not to be read.
+  [[nodiscard]] std::string_view text() const { return {data_, read_}; }
+  /// Reads one piece more.
+  /// @fails  data: the file cannot be read, or became shorter
+  [[nodiscard]] Result<void> read_on();
+  /// The bytes before that place are needed no more, but for the first piece.
+  void forget(std::size_t before);
+  /// Of the whole file, which must have been read.
+  [[nodiscard]] std::string sha256() { return sum_.hex(); }
+
+ private:
+  FileInPassing(int descriptor, std::size_t size, char* data) : descriptor_(descriptor), size_(size), data_(data) {}
+
+  int descriptor_;
+  std::size_t size_, read_ = 0, forgotten_ = kPiece;
+  char* data_;  ///< as much room as the file needs, of which only what is written to takes memory
+  Sha256 sum_;
+};
 
 /// The whole file.
 /// @fails  data: missing, a directory or device, not readable, empty, larger than kLargestFile.

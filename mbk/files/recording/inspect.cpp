@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -93,46 +94,77 @@ std::vector<Gap> gaps_of_jittering(const Vector& time, double median) {
   return gaps;
 }
 
-/// @param intervals  those of `time` that are positive
-std::vector<Gap> find_gaps(const Vector& time, const std::vector<double>& intervals, double median) {
+/// What follows from the intervals of `time` that are positive, `from` of each, as blocks.
+template <class From>
+numeric::EachBlock each_interval(const Vector& time, const From& from) {
+  return [&time, from](const std::function<void(std::span<const double>)>& use) {
+    constexpr Index kBlock = 1 << 17;
+    std::vector<double> block;
+    for (Index begin = 1; begin < time.size(); begin += kBlock) {
+      const Index end = std::min(time.size(), begin + kBlock);
+      block.clear();
+      block.reserve(static_cast<std::size_t>(end - begin));
+      for (Index i = begin; i < end; ++i) {
+        const double interval = time[i] - time[i - 1];
+        if (interval > 0.0 && std::isfinite(interval)) block.push_back(from(interval));
+      }
+      use(block);
+    }
+  };
+}
+
+/// @param positive  number of intervals above zero
+std::vector<Gap> find_gaps(const Vector& time, Index positive, double median) {
   constexpr Index kMin = 256;
   constexpr double kNormal = 1.4826;  // standard deviations in a median absolute deviation
-  std::vector<double> deviations;
-  for (const double interval : intervals) deviations.push_back(std::abs(interval - median));
-  const bool jitters = kNormal * numeric::median(deviations) > kJitter * median;
+  const double deviation =
+      numeric::median_of_many(positive, each_interval(time, [=](double d) { return std::abs(d - median); }));
+  const bool jitters = kNormal * deviation > kJitter * median;
   if (!jitters || time.size() < kMin || !time.allFinite()) return long_intervals(time, kGap * median);
   return gaps_of_jittering(time, median);
 }
 
 void inspect_time(const Vector& time, Inspection& facts) {
   facts.duration = time.size() > 0 ? time[time.size() - 1] - time[0] : 0.0;
-  std::vector<double> intervals;
-  intervals.reserve(static_cast<std::size_t>(time.size()));
+  Index positive = 0;
   for (Index i = 1; i < time.size(); ++i) {
     const double interval = time[i] - time[i - 1];
     if (!std::isfinite(interval)) continue;
     if (interval > 0.0) {
-      intervals.push_back(interval);
+      ++positive;
     } else if (interval == 0.0) {
       if (facts.duplicated_times++ == 0) facts.first_duplicated = i;
     } else {
       if (facts.backward_times++ == 0) facts.first_backward = i;
     }
   }
-  facts.interval_median = numeric::median(intervals);
-  if (intervals.empty()) {
+  if (positive == 0) {
+    facts.interval_median = kNaN;
     facts.rate_hz = facts.interval_min = facts.interval_max = facts.interval_standard_deviation = kNaN;
     return;
   }
-  const Eigen::Map<const Vector> d(intervals.data(), static_cast<Index>(intervals.size()));
-  facts.interval_min = d.minCoeff();
-  facts.interval_max = d.maxCoeff();
-  const auto n = static_cast<double>(d.size());
-  facts.interval_standard_deviation = d.size() > 1 ? std::sqrt((d.array() - d.mean()).square().sum() / (n - 1.0)) : 0.0;
-  facts.gaps = find_gaps(time, intervals, facts.interval_median);
+  const auto as_they_are = each_interval(time, [](double interval) { return interval; });
+  facts.interval_median = numeric::median_of_many(positive, as_they_are);
+  const auto map = [](std::span<const double> block) {
+    return Eigen::Map<const Eigen::ArrayXd>(block.data(), std::ssize(block));
+  };
+  const auto n = static_cast<double>(positive);
+  double sum = 0.0, squares = 0.0;
+  facts.interval_min = std::numeric_limits<double>::infinity();
+  facts.interval_max = 0.0;
+  as_they_are([&](std::span<const double> block) {
+    if (block.empty()) return;
+    sum += map(block).sum();
+    facts.interval_min = std::min(facts.interval_min, map(block).minCoeff());
+    facts.interval_max = std::max(facts.interval_max, map(block).maxCoeff());
+  });
+  const double mean = sum / n;
+  as_they_are([&](std::span<const double> block) { squares += (map(block) - mean).square().sum(); });
+  facts.interval_standard_deviation = positive > 1 ? std::sqrt(squares / (n - 1.0)) : 0.0;
+  facts.gaps = find_gaps(time, positive, facts.interval_median);
   // The mean does not carry the rounding of single time stamps.
-  const bool unbroken = facts.gaps.empty() && static_cast<Index>(intervals.size()) + 1 == time.size();
-  facts.rate_hz = 1.0 / (unbroken ? d.mean() : facts.interval_median);
+  const bool unbroken = facts.gaps.empty() && positive + 1 == time.size();
+  facts.rate_hz = 1.0 / (unbroken ? mean : facts.interval_median);
 }
 
 bool can_clip(std::string_view name) {

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
+#include <span>
 #include <string_view>
+#include <utility>
 
 #include "mbk/files/hdf5/read_hdf5.h"
 #include "mbk/files/recording/annotations.h"
@@ -16,6 +19,7 @@
 #include "mbk/files/recording/hdf5_recording.h"
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
+#include "mbk/files/recording/memory.h"
 #include "mbk/files/recording/sha256.h"
 
 namespace mbk::recording {
@@ -30,15 +34,18 @@ bool is_text(std::string_view bytes) {
   });
 }
 
+bool has_mat_header(std::string_view text) {
+  return text.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
+}
+
 Result<Contents> decode(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const bool mat_header = bytes.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
   if (hdf5::looks_like_hdf5(bytes)) return decode_hdf5(bytes);
   if (text.starts_with("MATLAB 7.3")) {
     return bad_data("the MAT v7.3 header is not followed by HDF5 data",
                     "copy the file again from where it was recorded");
   }
-  if (mat_header || text.starts_with("MATLAB 5.0")) return decode_mat_level5(bytes);
+  if (has_mat_header(text) || text.starts_with("MATLAB 5.0")) return decode_mat_level5(bytes);
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
   if (is_text(text)) return decode_csv(bytes);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
@@ -51,7 +58,33 @@ struct Decoded {
   SourceFile source;
 };
 
+/// A long table, read in passing; nothing where the file is something else.
+Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& file) {
+  constexpr std::size_t kLong = 4 * FileInPassing::kPiece;
+  auto passing = FileInPassing::open(file);
+  if (!passing) return tl::unexpected(passing.error());
+  if (passing->size() < kLong) return std::nullopt;
+  if (auto ok = passing->read_on(); !ok) return tl::unexpected(ok.error());
+  const std::string_view begin = passing->text();
+  const auto bytes = std::as_bytes(std::span(begin));
+  if (!is_text(begin) || begin.starts_with("MATLAB ") || has_mat_header(begin) || looks_like_mat_level4(bytes)) {
+    return std::nullopt;
+  }
+  // A number of the usual ten digits takes less memory than its text.
+  if (auto ok = check_memory(passing->size()); !ok) return tl::unexpected(ok.error());
+  auto contents = decode_csv(*passing);
+  if (!contents) return tl::unexpected(contents.error());
+  SourceFile source{file.string(), contents->format, passing->sha256()};
+  return Decoded{std::move(*contents), std::move(source)};
+}
+
 Result<Decoded> decode_file(const std::filesystem::path& file) {
+  auto table = decode_long_table(file);
+  if (!table) return tl::unexpected(table.error());
+  if (*table) {
+    take_annotations((*table)->contents);
+    return std::move(**table);
+  }
   const auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
   auto contents = decode(bytes->bytes());
@@ -62,7 +95,7 @@ Result<Decoded> decode_file(const std::filesystem::path& file) {
 }
 
 Result<Recording> assemble_file(Decoded decoded, const ReadOptions& options) {
-  auto recording = assemble(decoded.contents, options);
+  auto recording = assemble(std::move(decoded.contents), options);
   if (recording) recording->sources = {std::move(decoded.source)};
   return recording;
 }

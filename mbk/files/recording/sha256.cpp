@@ -104,19 +104,23 @@ __attribute__((target("sha,sse4.1,ssse3"))) void compress_sha_instructions(State
 }
 #endif
 
-std::string digest(std::span<const std::byte> bytes, Compress compress) {
-  // First 32 bits of the fractional parts of the square roots of the first 8 primes (§5.3.3).
-  State state{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  const std::size_t whole = bytes.size() / kBlock;
-  compress(state, bytes.data(), whole);
+Compress fastest() {
+#if defined(__x86_64__)
+  static const bool kFast = has_sha_instructions();
+  if (kFast) return compress_sha_instructions;
+#endif
+  return compress_portable;
+}
 
+/// The last block of `bytes` bytes, of which `left` are not compressed yet, and the state as text.
+std::string finished(State state, const std::byte* left_bytes, std::size_t left, std::uint64_t bytes,
+                     Compress compress) {
   // Padding: a bit 1, zeros, and the length in bits as 64 bits (§5.1.1).
   std::array<std::byte, 2 * kBlock> tail{};
-  const std::size_t left = bytes.size() % kBlock;
-  if (left > 0) std::memcpy(tail.data(), bytes.data() + whole * kBlock, left);
+  if (left > 0) std::memcpy(tail.data(), left_bytes, left);
   tail[left] = std::byte{0x80};
   const std::size_t tail_size = left + 9 <= kBlock ? kBlock : 2 * kBlock;
-  const std::uint64_t bits = std::uint64_t{bytes.size()} * 8;
+  const std::uint64_t bits = bytes * 8;
   for (std::size_t i = 0; i < 8; ++i) tail[tail_size - 1 - i] = static_cast<std::byte>(bits >> (8 * i));
   compress(state, tail.data(), tail_size / kBlock);
 
@@ -130,16 +134,36 @@ std::string digest(std::span<const std::byte> bytes, Compress compress) {
 
 }  // namespace
 
+void Sha256::add(std::span<const std::byte> bytes) {
+  const auto pending = static_cast<std::size_t>(bytes_ % kBlock);
+  bytes_ += bytes.size();
+  if (pending > 0) {
+    const std::size_t missing = std::min(kBlock - pending, bytes.size());
+    std::memcpy(pending_.data() + pending, bytes.data(), missing);
+    bytes = bytes.subspan(missing);
+    if (pending + missing < kBlock) return;
+    fastest()(state_, pending_.data(), 1);
+  }
+  const std::size_t whole = bytes.size() / kBlock, left = bytes.size() % kBlock;
+  if (whole > 0) fastest()(state_, bytes.data(), whole);
+  if (left > 0) std::memcpy(pending_.data(), bytes.data() + whole * kBlock, left);
+}
+
+std::string Sha256::hex() {
+  return finished(state_, pending_.data(), static_cast<std::size_t>(bytes_ % kBlock), bytes_, fastest());
+}
+
 std::string sha256(std::span<const std::byte> bytes) {
-#if defined(__x86_64__)
-  static const bool kFast = has_sha_instructions();
-  if (kFast) return digest(bytes, compress_sha_instructions);
-#endif
-  return digest(bytes, compress_portable);
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.hex();
 }
 
 std::string detail::sha256_portable(std::span<const std::byte> bytes) {
-  return digest(bytes, compress_portable);
+  State state{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  const std::size_t whole = bytes.size() / kBlock;
+  compress_portable(state, bytes.data(), whole);
+  return finished(state, bytes.data() + whole * kBlock, bytes.size() % kBlock, bytes.size(), compress_portable);
 }
 
 }  // namespace mbk::recording

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -28,6 +29,22 @@ TEST(Sha256, InstructionsAndArithmeticAgreeAtEveryLength) {
   for (std::size_t n = 0; n <= bytes.size(); ++n) {
     const auto part = std::span(bytes).first(n);
     ASSERT_EQ(sha256(part), detail::sha256_portable(part)) << n << " bytes";
+  }
+}
+
+TEST(Sha256, OfPiecesIsThatOfTheWhole) {
+  std::mt19937 random(2);
+  std::vector<std::byte> bytes(1000);
+  for (std::byte& b : bytes) b = static_cast<std::byte>(random());
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto part = std::span(bytes).first(random() % 1001);
+    Sha256 sum;
+    for (auto rest = part; !rest.empty();) {
+      const std::size_t count = std::min<std::size_t>(rest.size(), 1 + random() % 150);
+      sum.add(rest.first(count));
+      rest = rest.subspan(count);
+    }
+    ASSERT_EQ(sum.hex(), sha256(part)) << part.size() << " bytes";
   }
 }
 

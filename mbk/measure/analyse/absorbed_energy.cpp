@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,26 +29,82 @@ struct Range {
 
 /// One recording and its window, sample by sample. Interval i lies between samples i and i + 1.
 struct Exchange {
-  Vector time;                 ///< [s] from the first sample
-  Matrix position;             ///< N×n
-  Matrix force;                ///< N×n, F_h
-  Matrix reference;            ///< N×n, or empty
+  const Vector* clock = nullptr;
+  Columns position;            ///< N×n
+  Columns force;               ///< N×n, F_h
+  Columns reference;           ///< N×n, or empty
   std::vector<bool> unbroken;  ///< intervals without a break
-  Vector absorbed;             ///< in each interval; 0 across a break
-  Matrix velocity;             ///< N×n; NaN where the smoothing does not reach
+  std::vector<Index> breaks;   ///< the others
+  dsp::SavitzkyGolay smoothing;
+  Hertz rate;
   Range window;
 
+  [[nodiscard]] Index samples() const { return clock->size(); }
+  [[nodiscard]] double time(Index i) const { return (*clock)[i] - (*clock)[0]; }  ///< [s] from the first sample
+  [[nodiscard]] double step(Index i) const { return time(i + 1) - time(i); }
+  /// −∫ F_h·dx, whether or not there is a break.
+  [[nodiscard]] double work(Index i) const {
+    double sum = 0.0;
+    for (Index k = 0; k < position.cols(); ++k) {
+      sum += -0.5 * (force(i, k) + force(i + 1, k)) * (position(i + 1, k) - position(i, k));
+    }
+    return sum;
+  }
+  /// 0 across a break.
+  [[nodiscard]] double absorbed(Index i) const { return unbroken[static_cast<std::size_t>(i)] ? work(i) : 0.0; }
+};
+
+/// First derivative of the position by the preparation's own smoothing, never across a break; made block by block, for
+/// whoever walks along the samples in their order.
+class Velocity {
+ public:
+  static constexpr Index kBlock = 1 << 19;
+  /// @param at_once  samples of a block
+  explicit Velocity(const Exchange& exchange, Index at_once = kBlock) : exchange_(exchange), at_once_(at_once) {}
+
+  /// N×n; NaN where the smoothing does not reach.
+  [[nodiscard]] auto row(Index i) {
+    if (i < begin_ || i >= begin_ + rows_.rows()) load(i);
+    return rows_.row(i - begin_);
+  }
   /// Whether energy and velocity are both known throughout an interval.
-  [[nodiscard]] bool is_known(Index i) const {
-    return unbroken[static_cast<std::size_t>(i)] && velocity.row(i).allFinite() && velocity.row(i + 1).allFinite();
+  [[nodiscard]] bool is_known(Index i) {
+    return exchange_.unbroken[static_cast<std::size_t>(i)] && row(i + 1).allFinite() && row(i).allFinite();
   }
-  [[nodiscard]] double step(Index i) const { return time[i + 1] - time[i]; }
-  [[nodiscard]] double squared_velocity(Index i) const {
-    return 0.5 * step(i) * (velocity.row(i).squaredNorm() + velocity.row(i + 1).squaredNorm());
+  [[nodiscard]] double squared(Index i) {
+    const double behind = row(i + 1).squaredNorm();
+    return 0.5 * exchange_.step(i) * (row(i).squaredNorm() + behind);
   }
-  [[nodiscard]] double path(Index i) const {
-    return 0.5 * step(i) * (velocity.row(i).norm() + velocity.row(i + 1).norm());
+  [[nodiscard]] double path(Index i) {
+    const double behind = row(i + 1).norm();
+    return 0.5 * exchange_.step(i) * (row(i).norm() + behind);
   }
+
+ private:
+  /// Rows from a little before sample i on, so that a few steps back need no other block; all of a short recording.
+  void load(Index i) {
+    const Index samples = exchange_.samples(), half = exchange_.smoothing.half_window();
+    begin_ = samples <= at_once_ ? 0 : std::max<Index>(0, i - std::max<Index>(1, at_once_ / 8));
+    const Index end = std::min(samples, begin_ + at_once_);
+    rows_.setConstant(end - begin_, exchange_.position.cols(), kNaN);
+    auto broken = std::ranges::lower_bound(exchange_.breaks, begin_);
+    Index first = broken == exchange_.breaks.begin() ? 0 : *std::prev(broken) + 1;  // of the samples without a break
+    while (first < end) {
+      const Index last = broken == exchange_.breaks.end() ? samples : *broken + 1;
+      const Index from = std::max(begin_, first + half), to = std::min(end, last - half);
+      if (last - first >= exchange_.smoothing.window && from < to) {
+        const auto piece = dsp::savitzky_golay(
+            exchange_.smoothing, 1, exchange_.position.middle_rows(from - half, to - from + 2 * half), exchange_.rate);
+        if (piece) rows_.middleRows(from - begin_, to - from) = *piece;  // such filters were tried
+      }
+      first = last;
+      if (broken != exchange_.breaks.end()) ++broken;
+    }
+  }
+
+  const Exchange& exchange_;
+  Index at_once_, begin_ = 0;
+  Matrix rows_;
 };
 
 Index last_sample(const Segment& segment, Index every) {
@@ -54,37 +112,19 @@ Index last_sample(const Segment& segment, Index every) {
 }
 
 /// The window of the trial, as samples of the recording that it says it was made from.
-Result<Range> window_of(const PreparedTrial& trial, const Vector& time) {
+Result<Range> window_of(const PreparedTrial& trial, const Exchange& exchange) {
   if (trial.segments.empty()) return bad_data("the trial has no row that counts");
   const Segment &first = trial.segments.front(), &last = trial.segments.back();
   const Range range{first.first_sample, last_sample(last, trial.preparation.every)};
   const auto is_row = [&](Index sample, Index row) {
-    return sample >= 0 && sample < time.size() && row >= 0 && row < trial.time.size() &&
-           std::abs(time[sample] - trial.time[row]) * trial.recording_rate < 0.5;
+    return sample >= 0 && sample < exchange.samples() && row >= 0 && row < trial.time.size() &&
+           std::abs(exchange.time(sample) - trial.time[row]) * trial.recording_rate < 0.5;
   };
   if (!is_row(range.first, first.begin) || !is_row(range.last, last.end - 1)) {
     return bad_data("the recording is not the one that the trial was prepared from");
   }
   if (range.last <= range.first) return bad_data("fewer than two samples count", "widen the window");
   return range;
-}
-
-/// First derivative by the preparation's own smoothing; never across a break.
-Result<Matrix> smoothed_velocity(const Exchange& exchange, const Preparation& how, Hertz rate) {
-  const dsp::SavitzkyGolay filter{how.smoothing_order, how.smoothing_window};
-  const Index samples = exchange.position.rows();
-  Matrix velocity = Matrix::Constant(samples, exchange.position.cols(), kNaN);
-  for (Index begin = 0; begin < samples;) {
-    Index end = begin + 1;
-    while (end < samples && exchange.unbroken[static_cast<std::size_t>(end - 1)]) ++end;
-    if (end - begin >= filter.window) {
-      auto piece = dsp::savitzky_golay(filter, 1, exchange.position.middleRows(begin, end - begin), rate);
-      if (!piece) return tl::unexpected(piece.error());
-      velocity.middleRows(begin + filter.half_window(), piece->rows()) = *piece;
-    }
-    begin = end;
-  }
-  return velocity;
 }
 
 Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& trial) {
@@ -94,32 +134,31 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
                     "record longer");
   }
   Exchange exchange;
-  exchange.position = recorded(recording, kPositionChannels, trial.axes);
-  exchange.force = recorded(recording, kForceChannels, trial.axes);
+  exchange.position = channels_of(recording, kPositionChannels, trial.axes);
+  exchange.force = channels_of(recording, kForceChannels, trial.axes);
   if (exchange.position.size() == 0) return bad_data("no position was recorded", "say where it is: --channels");
   if (exchange.force.size() == 0) {
     return bad_data("no force was recorded, without which there is no energy", "say where it is: --channels");
   }
-  exchange.reference = recorded(recording, kReferenceChannels, trial.axes);
-  exchange.time = recording.time.array() - recording.time[0];
-  auto window = window_of(trial, exchange.time);
+  exchange.reference = channels_of(recording, kReferenceChannels, trial.axes);
+  exchange.clock = &recording.time;
+  auto window = window_of(trial, exchange);
   if (!window) return tl::unexpected(window.error());
   exchange.window = *window;
 
   exchange.unbroken.resize(static_cast<std::size_t>(samples - 1));
-  exchange.absorbed = Vector::Zero(samples - 1);
   const double longest = 1.5 / trial.recording_rate;
   for (Index i = 0; i + 1 < samples; ++i) {
     const double step = exchange.step(i);
-    const double work = -0.5 * (exchange.force.row(i) + exchange.force.row(i + 1))
-                                   .dot(exchange.position.row(i + 1) - exchange.position.row(i));
-    const bool unbroken = step > 0.0 && step <= longest && std::isfinite(work);
+    const bool unbroken = step > 0.0 && step <= longest && std::isfinite(exchange.work(i));
     exchange.unbroken[static_cast<std::size_t>(i)] = unbroken;
-    if (unbroken) exchange.absorbed[i] = work;
+    if (!unbroken) exchange.breaks.push_back(i);
   }
-  auto velocity = smoothed_velocity(exchange, trial.preparation, Hertz(trial.recording_rate));
-  if (!velocity) return tl::unexpected(velocity.error());
-  exchange.velocity = std::move(*velocity);
+  exchange.smoothing = {trial.preparation.smoothing_order, trial.preparation.smoothing_window};
+  exchange.rate = Hertz(trial.recording_rate);
+  if (const auto weights = dsp::savitzky_golay_weights(exchange.smoothing, 1); !weights) {
+    return tl::unexpected(weights.error());
+  }
   return exchange;
 }
 
@@ -129,9 +168,14 @@ Range perturbation_of(const Exchange& exchange, const Preparation& how, const Se
   Range range{segment.first_sample, last_sample(segment, how.every)};
   const Index half = how.cut_before_filter ? (how.smoothing_window - 1) / 2 : 0, reach = half + how.every - 1;
   if (exchange.reference.size() == 0) return range;
-  const auto same = [&](Index a, Index b) { return exchange.reference.row(a) == exchange.reference.row(b); };
+  const auto same = [&](Index a, Index b) {
+    for (Index k = 0; k < exchange.reference.cols(); ++k) {
+      if (exchange.reference(a, k) != exchange.reference(b, k)) return false;
+    }
+    return true;
+  };
   const Index earliest = std::max<Index>(0, range.first - reach),
-              latest = std::min(exchange.time.size() - 1, range.last + reach);
+              latest = std::min(exchange.samples() - 1, range.last + reach);
   while (range.first > earliest && same(range.first - 1, range.first)) --range.first;
   while (range.last < latest && same(range.last, range.last + 1)) ++range.last;
   return range;
@@ -140,7 +184,7 @@ Range perturbation_of(const Exchange& exchange, const Preparation& how, const Se
 /// The window divided equally.
 std::vector<Range> equal_ranges(const Exchange& exchange, double block_s) {
   const auto& [first, last] = exchange.window;
-  const double duration = exchange.time[last] - exchange.time[first];
+  const double duration = exchange.time(last) - exchange.time(first);
   const Index count = std::clamp<Index>(static_cast<Index>(std::llround(duration / block_s)), 1, last - first);
   std::vector<Range> ranges;
   for (Index k = 0; k < count; ++k) {
@@ -149,35 +193,40 @@ std::vector<Range> equal_ranges(const Exchange& exchange, double block_s) {
   return ranges;
 }
 
-EnergyPart part_of(const Exchange& exchange, const Range& range) {
+EnergyPart part_of(const Exchange& exchange, Velocity& velocity, const Range& range) {
   EnergyPart part;
-  part.from_s = exchange.time[range.first];
-  part.to_s = exchange.time[range.last];
+  part.from_s = exchange.time(range.first);
+  part.to_s = exchange.time(range.last);
   for (Index i = range.first; i < range.last; ++i) {
-    const double distance = (exchange.position.row(i + 1) - exchange.position.row(range.first)).norm();
+    double distance = 0.0;
+    for (Index k = 0; k < exchange.position.cols(); ++k) {
+      const double away = exchange.position(i + 1, k) - exchange.position(range.first, k);
+      distance += away * away;
+    }
+    distance = std::sqrt(distance);
     if (distance > part.largest_displacement) part.largest_displacement = distance;
-    if (!exchange.is_known(i)) continue;
-    part.absorbed += exchange.absorbed[i];
-    part.path_length += exchange.path(i);
-    part.squared_velocity += exchange.squared_velocity(i);
+    if (!velocity.is_known(i)) continue;
+    part.absorbed += exchange.absorbed(i);
+    part.path_length += velocity.path(i);
+    part.squared_velocity += velocity.squared(i);
   }
   part.shortage = part.squared_velocity > 0.0 ? -part.absorbed / part.squared_velocity : kNaN;
   return part;
 }
 
-/// A block for the bootstrap, unless nothing in it is known.
-void add_block(const Exchange& exchange, const Range& range, std::vector<EnergyBlock>& blocks) {
+/// The sums of a range after each of its intervals that are known, and how long those are [s].
+std::pair<std::vector<EnergySums>, double> sums_of(const Exchange& exchange, Velocity& velocity, const Range& range) {
   double duration = 0.0;
   EnergySums sum;
   std::vector<EnergySums> sums;
   for (Index i = range.first; i < range.last; ++i) {
-    if (!exchange.is_known(i)) continue;
+    if (!velocity.is_known(i)) continue;
     duration += exchange.step(i);
-    sum.squared_velocity += exchange.squared_velocity(i);
-    sum.absorbed += exchange.absorbed[i];
+    sum.squared_velocity += velocity.squared(i);
+    sum.absorbed += exchange.absorbed(i);
     sums.push_back(sum);
   }
-  if (!sums.empty()) blocks.push_back(energy_block(duration, std::move(sums)));
+  return {std::move(sums), duration};
 }
 
 bool has_perturbations(const PreparedTrial& trial) {
@@ -194,80 +243,114 @@ std::vector<Range> parts_of(const Exchange& exchange, const PreparedTrial& trial
   return parts;
 }
 
-/// Blocks that divide the window: from one onset to the next, or the parts themselves.
-std::vector<EnergyBlock> blocks_of(const Exchange& exchange, std::vector<Range> parts, bool perturbations) {
-  if (perturbations) {
-    for (std::size_t k = 0; k + 1 < parts.size(); ++k) parts[k].last = parts[k + 1].first;
-    parts.front().first = exchange.window.first;
-    parts.back().last = exchange.window.last;
-  }
+/// The parts that are shown, and the blocks for the bootstrap, of each range in which something is known: the parts
+/// themselves or, with perturbations, from one onset to the next, so that they divide the window.
+struct Division {
+  std::vector<EnergyPart> parts;
   std::vector<EnergyBlock> blocks;
-  for (const Range& range : parts) add_block(exchange, range, blocks);
-  return blocks;
+};
+
+/// The first blocks are kept as they are; of what is beyond, in a long recording, only the outline: the bootstrap looks
+/// into few of them.
+Division divide(const std::shared_ptr<const Exchange>& exchange, Velocity& velocity, const PreparedTrial& trial,
+                double block_s) {
+  constexpr std::size_t kKept = std::size_t{1} << 20;  // sums
+  std::vector<Range> ranges = parts_of(*exchange, trial, block_s);
+  Division division;
+  if (has_perturbations(trial)) {
+    for (const Range& range : ranges) division.parts.push_back(part_of(*exchange, velocity, range));
+    for (std::size_t k = 0; k + 1 < ranges.size(); ++k) ranges[k].last = ranges[k + 1].first;
+    ranges.front().first = exchange->window.first;
+    ranges.back().last = exchange->window.last;
+  }
+  std::size_t kept = 0;
+  for (const Range& range : ranges) {
+    if (!has_perturbations(trial)) division.parts.push_back(part_of(*exchange, velocity, range));
+    auto [sums, duration] = sums_of(*exchange, velocity, range);
+    if (sums.empty()) continue;
+    kept += sums.size();
+    EnergyBlock block = energy_block(duration, std::move(sums));
+    if (kept > kKept) {
+      block = outline(std::move(block), [exchange, range] {
+        Velocity here(*exchange, 2 * (range.last - range.first + 2));
+        return sums_of(*exchange, here, range).first;
+      });
+    }
+    division.blocks.push_back(std::move(block));
+  }
+  return division;
 }
 
 Result<void> check_motion(const std::vector<EnergyBlock>& blocks) {
   double moved = 0.0;
-  for (const EnergyBlock& block : blocks) moved += block.sums.back().squared_velocity;
+  for (const EnergyBlock& block : blocks) moved += block.total.squared_velocity;
   if (moved > 0.0) return {};
   return bad_data("the limb never moves in the window, ∫ v·v dt = 0, so that no energy is exchanged",
                   "choose a window with motion");
 }
 
-/// When λ is largest, by the same rule as largest_shortage.
-double largest_at(const Exchange& exchange, double squared_velocity, double first_share) {
-  double s = 0.0, e = 0.0, largest = kNaN, at = kNaN;
-  for (Index i = exchange.window.first; i < exchange.window.last; ++i) {
-    if (!exchange.is_known(i)) continue;
-    s += exchange.squared_velocity(i);
-    e += exchange.absorbed[i];
-    if (!(s > 0.0 && s >= first_share * squared_velocity) || -e / s <= largest) continue;
-    largest = -e / s;
-    at = exchange.time[i + 1];
-  }
-  return at;
-}
-
 /// W = ∫ (K_a (x − x₀))·dx with K_a = k_a [0, 1; −1, 0], that is W = −k_a ∫ ((x − x₀) dy − (y − y₀) dx), in each
 /// interval; exact along straight lines.
-Vector curl_of(const Exchange& exchange, double k_a, const Vector& about) {
-  Vector work = Vector::Zero(exchange.absorbed.size());
-  for (Index i = 0; i < work.size(); ++i) {
-    if (!exchange.unbroken[static_cast<std::size_t>(i)]) continue;
-    const Vector a = exchange.position.row(i).transpose() - about, b = exchange.position.row(i + 1).transpose() - about;
-    work[i] = -k_a * (a[0] * b[1] - a[1] * b[0]);
-  }
-  return work;
-}
+struct Curl {
+  double k_a = 0;  ///< [N/m]
+  Vector about;    ///< x₀
 
-/// ∫ Ḟ·v dt over the window, by increments of the force.
-double added_per_delay(const Exchange& exchange) {
-  double sum = 0.0;
+  /// 0 across a break.
+  [[nodiscard]] double work(const Exchange& exchange, Index i) const {
+    if (!exchange.unbroken[static_cast<std::size_t>(i)]) return 0.0;
+    const auto from = [&](Index sample, Index axis) { return exchange.position(sample, axis) - about[axis]; };
+    return -k_a * (from(i, 0) * from(i + 1, 1) - from(i, 1) * from(i + 1, 0));
+  }
+};
+
+/// What a second walk along the window finds.
+struct Afterwards {
+  double largest_at = kNaN;      ///< when λ is largest, by the same rule as largest_shortage
+  double added_per_delay = 0.0;  ///< ∫ Ḟ·v dt, by increments of the force
+  double curl = 0.0;             ///< work of the antisymmetric stiffness
+};
+
+/// @param first  ∫ v·v dt from which on λ counts
+Afterwards walk_again(const Exchange& exchange, Velocity& velocity, double first, const std::optional<Curl>& curl) {
+  Afterwards found;
+  double s = 0.0, e = 0.0, largest = kNaN;
   for (Index i = exchange.window.first; i < exchange.window.last; ++i) {
-    if (!exchange.is_known(i)) continue;
-    sum += 0.5 * (exchange.velocity.row(i) + exchange.velocity.row(i + 1))
-                     .dot(exchange.force.row(i + 1) - exchange.force.row(i));
+    if (!velocity.is_known(i)) continue;
+    s += velocity.squared(i);
+    e += exchange.absorbed(i);
+    double product = 0.0;
+    for (Index k = 0; k < exchange.force.cols(); ++k) {
+      const double behind = velocity.row(i + 1)[k];
+      product += (velocity.row(i)[k] + behind) * (exchange.force(i + 1, k) - exchange.force(i, k));
+    }
+    found.added_per_delay += 0.5 * product;
+    if (curl) found.curl += curl->work(exchange, i);
+    if (!(s > 0.0 && s >= first) || -e / s <= largest) continue;
+    largest = -e / s;
+    found.largest_at = exchange.time(i + 1);
   }
-  return sum;
+  return found;
 }
 
-Vector running_sum(const Vector& increments) {
-  Vector sum(increments.size() + 1);
-  sum[0] = 0.0;
-  for (Index i = 0; i < increments.size(); ++i) sum[i + 1] = sum[i] + increments[i];
-  return sum;
-}
-
-EnergyCurve curve_of(const Exchange& exchange, const Vector& curl) {
-  Matrix sums(exchange.time.size(), curl.size() > 0 ? 2 : 1);
-  sums.col(0) = running_sum(exchange.absorbed);
-  if (curl.size() > 0) sums.col(1) = running_sum(curl);
-  Series shown = decimated(exchange.time, sums, pieces_between_gaps(exchange.time), Decimation::extremes);
+EnergyCurve curve_of(const Exchange& exchange, const std::optional<Curl>& curl) {
   EnergyCurve curve;
-  curve.time = std::move(shown.time);
+  double absorbed = 0.0, of_curl = 0.0;
+  const auto running = [&](Index begin, Eigen::Ref<Matrix> sums) {
+    for (Index row = 0; row < sums.rows(); ++row) {
+      if (begin + row > 0) {
+        absorbed += exchange.absorbed(begin + row - 1);
+        if (curl) of_curl += curl->work(exchange, begin + row - 1);
+      }
+      sums(row, 0) = absorbed;
+      if (curl) sums(row, 1) = of_curl;
+    }
+  };
+  Series shown = decimated_in_passing(*exchange.clock, curl ? 2 : 1, running, pieces_between_gaps(*exchange.clock),
+                                      Decimation::extremes);
+  curve.time = shown.time.array() - (*exchange.clock)[0];
   curve.absorbed = shown.values.col(0);
-  if (curl.size() > 0) curve.curl = shown.values.col(1);
-  curve.end = sums(sums.rows() - 1, 0);
+  if (curl) curve.curl = shown.values.col(1);
+  curve.end = absorbed;
   return curve;
 }
 
@@ -289,7 +372,9 @@ Result<void> check_options(const EnergyOptions& options) {
 Vector centre_of(const impedance::Model& model, const Exchange& exchange) {
   if (model.x0.size() == exchange.position.cols() && model.x0.allFinite()) return model.x0;
   const auto& [first, last] = exchange.window;
-  return exchange.position.middleRows(first, last - first + 1).colwise().mean();
+  Vector mean(exchange.position.cols());
+  for (Index k = 0; k < mean.size(); ++k) mean[k] = exchange.position.col(k).segment(first, last - first + 1).mean();
+  return mean;
 }
 
 }  // namespace
@@ -297,31 +382,30 @@ Vector centre_of(const impedance::Model& model, const Exchange& exchange) {
 Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& trial, const EnergyOptions& options,
                                const impedance::Model* model) {
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
-  const auto exchange = exchange_of(recording, trial);
-  if (!exchange) return tl::unexpected(exchange.error());
-  const std::vector<Range> parts = parts_of(*exchange, trial, options.block_s);
-  const std::vector<EnergyBlock> blocks = blocks_of(*exchange, parts, has_perturbations(trial));
+  auto made = exchange_of(recording, trial);
+  if (!made) return tl::unexpected(made.error());
+  const auto exchange = std::make_shared<const Exchange>(std::move(*made));
+  Velocity velocity(*exchange);
+  const auto [parts, blocks] = divide(exchange, velocity, trial, options.block_s);
   if (auto ok = check_motion(blocks); !ok) return tl::unexpected(ok.error());
 
   Energy energy;
   energy.account = account_of(blocks, has_perturbations(trial), options.first_share, options.replicates, options.seed);
-  energy.from_s = exchange->time[exchange->window.first];
-  energy.to_s = exchange->time[exchange->window.last];
+  std::optional<Curl> curl;
+  if (model != nullptr && trial.axes == 2 && model->K.rows() == 2 && model->K.allFinite()) {
+    curl = Curl{impedance::antisymmetric_part(model->K), centre_of(*model, *exchange)};
+  }
+  const Afterwards found = walk_again(*exchange, velocity, options.first_share * energy.account.squared_velocity, curl);
+  energy.from_s = exchange->time(exchange->window.first);
+  energy.to_s = exchange->time(exchange->window.last);
   energy.left_out_s = std::max(0.0, energy.to_s - energy.from_s - energy.account.duration);
-  energy.shortage_largest_at_s = largest_at(*exchange, energy.account.squared_velocity, options.first_share);
-  energy.added_per_delay = added_per_delay(*exchange);
+  energy.shortage_largest_at_s = found.largest_at;
+  energy.added_per_delay = found.added_per_delay;
   energy.delay_that_makes_it_up = energy.account.absorbed / energy.added_per_delay;
   energy.parts_are_perturbations = has_perturbations(trial);
-  for (const Range& range : parts) energy.parts.push_back(part_of(*exchange, range));
-
-  Vector curl;
-  if (model != nullptr && trial.axes == 2 && model->K.rows() == 2 && model->K.allFinite()) {
-    const double k_a = impedance::antisymmetric_part(model->K);
-    curl = curl_of(*exchange, k_a, centre_of(*model, *exchange));
-    energy.curl = CurlWork{k_a, 0.0, kNaN};
-    for (Index i = exchange->window.first; i < exchange->window.last; ++i) {
-      if (exchange->is_known(i)) energy.curl->absorbed += curl[i];
-    }
+  energy.parts = parts;
+  if (curl) {
+    energy.curl = CurlWork{curl->k_a, found.curl, kNaN};
     if (energy.account.absorbed != 0.0) energy.curl->share = energy.curl->absorbed / energy.account.absorbed;
   }
   energy.curve = curve_of(*exchange, curl);
@@ -342,11 +426,13 @@ Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings
       return bad_data("its axes or units are not those of the first file, so energies cannot be pooled",
                       "take it by itself", trials[k].sources.empty() ? "" : trials[k].sources.front().path);
     }
-    const auto exchange = exchange_of(*recordings[k], trials[k]);
-    if (!exchange) return tl::unexpected(exchange.error());
+    auto made = exchange_of(*recordings[k], trials[k]);
+    if (!made) return tl::unexpected(made.error());
+    const auto exchange = std::make_shared<const Exchange>(std::move(*made));
+    Velocity velocity(*exchange);
     const bool own = has_perturbations(trials[k]);
     perturbations = perturbations && own;
-    std::vector<EnergyBlock> more = blocks_of(*exchange, parts_of(*exchange, trials[k], options.block_s), own);
+    std::vector<EnergyBlock> more = divide(exchange, velocity, trials[k], options.block_s).blocks;
     std::ranges::move(more, std::back_inserter(blocks));
   }
   if (auto ok = check_motion(blocks); !ok) return tl::unexpected(ok.error());

@@ -101,6 +101,34 @@ TEST(AbsorbedEnergy, OfASineIsThatOfItsDamperUpToTheTrapezoids) {
   EXPECT_FALSE(energy.curl);
 }
 
+TEST(AbsorbedEnergy, OfALongRecordingIsThatOfItsParts) {
+  // More than the velocities and the sums of blocks that are in memory at once; whole periods, a gap in between.
+  constexpr Index kSamples = 1'200'001, kGap = 700'000;
+  Recording recording = record(kSamples, sine, force_on_sine);
+  recording.time.tail(kSamples - kGap).array() += 1.0;
+  const PreparedTrial trial = trial_of(recording, kBegin, kSamples - 501, 1);
+  const Energy energy = absorbed_energy(recording, trial).value();
+  const double seconds = static_cast<double>(kSamples - 1001) * kStep;
+  const double sum = std::sin(kOmega * kStep) / (kOmega * kStep);
+  constexpr double kLost = 0.05;  // [s] about the gap: the smoothing does not reach across it
+  constexpr double kLostWork = (2.0 * kPower + 7.0 * kAmplitude * kOmega) * kLost;  // the offset's too, there
+  EXPECT_NEAR(energy.account.duration, seconds, kLost);
+  EXPECT_GT(energy.left_out_s, 1.0);
+  EXPECT_NEAR(energy.account.absorbed, kPower * seconds * sum, kLostWork);
+  EXPECT_NEAR(energy.account.shortage_at_end, -kDamping, 1e-3 * kDamping);
+  EXPECT_NEAR(energy.curve.end, kPower * static_cast<double>(kSamples - 1) * kStep * sum, kLostWork);
+  EXPECT_EQ(energy.account.blocks, std::ssize(energy.parts));
+  double together = 0.0, squared = 0.0;
+  for (const EnergyPart& part : energy.parts) {
+    together += part.absorbed;
+    squared += part.squared_velocity;
+  }
+  EXPECT_NEAR(together, energy.account.absorbed, 1e-9 * together);
+  EXPECT_NEAR(squared, energy.account.squared_velocity, 1e-9 * squared);
+  EXPECT_LT(energy.account.shortage_largest95.first, energy.account.shortage_largest95.second);
+  EXPECT_NEAR(energy.account.shortage_largest95.first, -kDamping, 0.1 * kDamping);
+}
+
 TEST(AbsorbedEnergy, OfADamperIsAnExcessOfItsDamping) {
   const Recording recording = sine_recording();
   const Energy energy = absorbed_energy(recording, sine_trial(recording)).value();

@@ -57,7 +57,7 @@ std::vector<Rows> pieces_between_gaps(const Vector& time) {
   constexpr double kSeen = 1.0 / 500.0;  // of the plot's width
   const Index samples = time.size();
   if (samples == 0) return {};
-  const Vector steps = (time.tail(samples - 1) - time.head(samples - 1)).cwiseAbs();
+  const auto steps = (time.tail(samples - 1) - time.head(samples - 1)).cwiseAbs();
   const double usual = steps.size() > 0 ? steps.mean() : 0.0;
   const double seen = std::max(kSeen * steps.sum(), 2.0 * usual);
   std::vector<Rows> pieces = {{0, samples, 0}};
@@ -75,11 +75,13 @@ Decimation decimation_of(const PreparedTrial& trial, const std::vector<Rows>& pi
   return cutoff && 4.0 * step * cutoff->value <= 1.0 ? Decimation::every : Decimation::extremes;
 }
 
-Series decimated(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces, Decimation how) {
-  const Index bucket = bucket_of(total_of(pieces), how), columns = values.cols();
+Series decimated_in_passing(const Vector& time, Index columns, const MakeRows& make, const std::vector<Rows>& pieces,
+                            Decimation how) {
+  const Index bucket = bucket_of(total_of(pieces), how);
   const bool all = bucket == 1 || how == Decimation::every;
   const Index most = 2 * total_of(pieces) / bucket + 3 * static_cast<Index>(pieces.size());
   Series series{Vector(most), Matrix(most, columns)};
+  Matrix rows(bucket, columns);
   Index row = 0;
   for (const Rows& piece : pieces) {
     if (piece.size() <= 0) continue;
@@ -89,15 +91,15 @@ Series decimated(const Vector& time, const Matrix& values, const std::vector<Row
     }
     for (Index begin = piece.begin; begin < piece.end; begin += bucket) {
       const Index size = std::min(bucket, piece.end - begin);
+      make(begin, rows.topRows(size));
       series.time[row] = time[begin];
       if (all || size == 1) {
-        series.values.row(row++) = values.row(begin);
+        series.values.row(row++) = rows.row(0);
         continue;
       }
       series.time[row + 1] = time[begin + size / 2];
       for (Index column = 0; column < columns; ++column) {
-        std::tie(series.values(row, column), series.values(row + 1, column)) =
-            extremes_of(values.col(column).segment(begin, size));
+        std::tie(series.values(row, column), series.values(row + 1, column)) = extremes_of(rows.col(column).head(size));
       }
       row += 2;
     }
@@ -105,6 +107,11 @@ Series decimated(const Vector& time, const Matrix& values, const std::vector<Row
   series.time.conservativeResize(row);
   series.values.conservativeResize(row, Eigen::NoChange);
   return series;
+}
+
+Series decimated(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces, Decimation how) {
+  const auto copy = [&](Index begin, Eigen::Ref<Matrix> rows) { rows = values.middleRows(begin, rows.rows()); };
+  return decimated_in_passing(time, values.cols(), copy, pieces, how);
 }
 
 }  // namespace mbk::analyse

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,14 @@ enum class Decimation {
 [[nodiscard]] Series decimated(const Vector& time, const Matrix& values, const std::vector<Rows>& pieces,
                                Decimation how);
 inline constexpr Index kDrawnRows = 2000;
+
+/// Writes the rows from `begin` on, as many as there is room for; is asked for each row once, in their order.
+using MakeRows = std::function<void(Index begin, Eigen::Ref<Matrix> rows)>;
+
+/// The same of values that are made as they are needed, so that they are never all in memory.
+/// @param pieces  one behind the other, without a row between them that belongs to none
+[[nodiscard]] Series decimated_in_passing(const Vector& time, Index columns, const MakeRows& make,
+                                          const std::vector<Rows>& pieces, Decimation how);
 
 /// Which decimation is true to the signals of a trial: every Nth row where at least four are left in each period of
 /// the low-pass's cutoff (at twice the cutoff it passes 1/1000), otherwise the extremes.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -38,6 +39,15 @@ std::vector<std::size_t> next_vertices(const std::vector<EnergySums>& points) {
   return next;
 }
 
+/// Vertices of the upper hull of the samples from one on.
+std::vector<EnergySums> hull_from(const EnergyBlock& block, std::size_t vertex) {
+  std::vector<EnergySums> hull = {block.sums[vertex]};
+  for (; block.next[vertex] != vertex; vertex = block.next[vertex]) {
+    hull.push_back(block.sums[block.next[vertex]]);
+  }
+  return hull;
+}
+
 /// What a bootstrap is about.
 struct Totals {
   double duration = 0, squared_velocity = 0, absorbed = 0, shortage_largest = kNaN;
@@ -49,8 +59,8 @@ Totals totals_of(const std::vector<EnergyBlock>& blocks, const std::vector<std::
   Totals totals;
   for (const std::size_t k : order) {
     totals.duration += blocks[k].duration;
-    totals.squared_velocity += blocks[k].sums.back().squared_velocity;
-    totals.absorbed += blocks[k].sums.back().absorbed;
+    totals.squared_velocity += blocks[k].total.squared_velocity;
+    totals.absorbed += blocks[k].total.absorbed;
   }
   totals.shortage_largest = largest_shortage(blocks, order, first_share);
   return totals;
@@ -119,41 +129,56 @@ void decide(bool perturbations, EnergyAccount& account) {
 }  // namespace
 
 EnergyBlock energy_block(double duration, std::vector<EnergySums> sums) {
-  std::vector<std::size_t> next = next_vertices(sums);
-  return {duration, std::move(sums), std::move(next)};
+  EnergyBlock block;
+  block.duration = duration;
+  block.total = sums.back();
+  block.next = next_vertices(sums);
+  block.sums = std::move(sums);
+  block.hull = hull_from(block, 0);
+  return block;
+}
+
+EnergyBlock outline(EnergyBlock block, std::function<std::vector<EnergySums>()> again) {
+  block.again = std::move(again);
+  block.sums = std::vector<EnergySums>();  // which gives the memory back, where "= {}" keeps it
+  block.next = std::vector<std::size_t>();
+  return block;
 }
 
 double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
                         double first_share) {
   double end = 0.0;
-  for (const std::size_t k : order) end += blocks[k].sums.back().squared_velocity;
+  for (const std::size_t k : order) end += blocks[k].total.squared_velocity;
   if (!(end > 0.0)) return kNaN;
   const double first = first_share * end;
   double largest = kNaN;
   EnergySums before;
   for (const std::size_t k : order) {
-    const std::vector<EnergySums>& sums = blocks[k].sums;
-    const std::vector<std::size_t>& next = blocks[k].next;
+    const EnergyBlock& block = blocks[k];
     const auto too_early = [&](const EnergySums& sum) {
       return before.squared_velocity + sum.squared_velocity < first;
     };
-    const auto shortage = [&](std::size_t i) {
-      return -(before.absorbed + sums[i].absorbed) / (before.squared_velocity + sums[i].squared_velocity);
+    const auto shortage = [&](const EnergySums& sum) {
+      return -(before.absorbed + sum.absorbed) / (before.squared_velocity + sum.squared_velocity);
     };
-    auto vertex = static_cast<std::size_t>(std::ranges::partition_point(sums, too_early) - sums.begin());
-    if (vertex < sums.size()) {
-      double highest = shortage(vertex);
+    if (!too_early(block.total)) {
+      const bool cut = too_early(block.hull.front()), made = cut && block.sums.empty();
+      const EnergyBlock whole = made ? energy_block(block.duration, block.again()) : EnergyBlock();
+      const EnergyBlock& inside = made ? whole : block;
+      const auto vertex = cut ? std::ranges::partition_point(inside.sums, too_early) - inside.sums.begin() : 0;
+      const std::vector<EnergySums> part =
+          cut ? hull_from(inside, static_cast<std::size_t>(vertex)) : std::vector<EnergySums>();
       // Along the hull the slope rises to the vertex that the steepest line touches, and falls from there on.
-      while (next[vertex] != vertex) {
-        vertex = next[vertex];
-        const double following = shortage(vertex);
+      double highest = -std::numeric_limits<double>::infinity();
+      for (const EnergySums& sum : cut ? part : block.hull) {
+        const double following = shortage(sum);
         if (following < highest) break;
         highest = following;
       }
       if (!(highest <= largest)) largest = highest;
     }
-    before.squared_velocity += sums.back().squared_velocity;
-    before.absorbed += sums.back().absorbed;
+    before.squared_velocity += block.total.squared_velocity;
+    before.absorbed += block.total.absorbed;
   }
   return largest;
 }

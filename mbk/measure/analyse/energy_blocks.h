@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "mbk/model/trial/energy.h"
@@ -17,8 +18,11 @@ struct EnergySums {
 /// One block of a window: the sums at each of its samples, since its begin.
 struct EnergyBlock {
   double duration = 0;            ///< [s]
-  std::vector<EnergySums> sums;   ///< after each interval; S never falls. The last are those of the block.
+  EnergySums total;               ///< at its end
+  std::vector<EnergySums> hull;   ///< those of the samples that the upper hull of them all touches, the first included
+  std::vector<EnergySums> sums;   ///< after each interval; S never falls. Empty where `again` makes them.
   std::vector<std::size_t> next;  ///< for each of `sums` the next at which λ can be larger; the last vertex has its own
+  std::function<std::vector<EnergySums>()> again;  ///< makes `sums`; asked for where a bootstrap cuts the block in two
 };
 
 /// A block with the upper hulls of its points (S, −E): of all of them, and of those from any one on. Before the block
@@ -26,6 +30,9 @@ struct EnergyBlock {
 /// steepest such line touches the upper hull at a vertex.
 /// @param sums  not empty
 [[nodiscard]] EnergyBlock energy_block(double duration, std::vector<EnergySums> sums);
+
+/// The same block without the sums inside it, which `again` makes when they are needed.
+[[nodiscard]] EnergyBlock outline(EnergyBlock block, std::function<std::vector<EnergySums>()> again);
 
 /// The largest λ(t) = −E/S of blocks one after another, among all samples at which S has reached `first_share` of its
 /// end and is above 0; NaN where there is none.

@@ -67,6 +67,27 @@ TEST(LargestShortage, IsThatOfEverySample) {
   }
 }
 
+TEST(LargestShortage, IsTheSameWhereTheInsideOfBlocksIsMadeAgain) {
+  numeric::Random random(6);
+  int made = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<EnergyBlock> kept, outlined;
+    for (int k = 0; k < 6; ++k) {
+      kept.push_back(wandering(random, 1 + static_cast<int>(random.below(40)), 0.2));
+      outlined.push_back(outline(kept.back(), [sums = kept.back().sums, &made] {
+        ++made;
+        return sums;
+      }));
+      EXPECT_TRUE(outlined.back().sums.empty());
+    }
+    std::vector<std::size_t> order(8);
+    for (std::size_t& k : order) k = static_cast<std::size_t>(random.below(6));
+    EXPECT_EQ(largest_shortage(outlined, order, kShare), largest_shortage(kept, order, kShare)) << "trial " << trial;
+  }
+  EXPECT_GT(made, 0);
+  EXPECT_LE(made, 100);  // in no order is more than one block cut
+}
+
 TEST(LargestShortage, IsFoundOnAHullOfFewSamples) {
   numeric::Random random(4);
   const EnergyBlock one = wandering(random, 2500, 0.1);

@@ -26,8 +26,8 @@ constexpr double kShareOfLine = 0.005;  ///< of the variance of an axis
 
 /// The window of a recording, sample by sample.
 struct Window {
-  Matrix position, force, reference;  ///< N×n
-  double rate = 0;                    ///< [Hz]
+  Columns position, force, reference;  ///< N×n
+  double rate = 0;                     ///< [Hz]
 };
 
 /// Absent where a channel is missing, a value is not a number, or the clock has a gap.
@@ -36,47 +36,60 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
   const Segment &first = trial.segments.front(), &last = trial.segments.back();
   const Index begin = first.first_sample, end = last.first_sample + (last.size() - 1) * trial.preparation.every + 1;
   if (begin < 0 || end > recording.samples() || end - begin < 2) return std::nullopt;
-  const Vector time = recording.time.segment(begin, end - begin);
-  const Vector steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
+  const auto time = recording.time.segment(begin, end - begin);
+  const auto steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
   if (!(steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5)) return std::nullopt;
   Window window;
   window.rate = trial.recording_rate;
   for (const auto& [quantity, values] : {std::pair{&kPositionChannels, &window.position},
                                          {&kForceChannels, &window.force},
                                          {&kReferenceChannels, &window.reference}}) {
-    const Matrix all = recorded(recording, *quantity, trial.axes);
+    const Columns all = channels_of(recording, *quantity, trial.axes);
     if (all.size() == 0) return std::nullopt;
-    *values = all.middleRows(begin, end - begin);
-    if (!values->allFinite()) return std::nullopt;
+    *values = all.part(begin, end - begin);
+    for (Index axis = 0; axis < values->cols(); ++axis) {
+      if (!values->col(axis).allFinite()) return std::nullopt;
+    }
   }
   return window;
 }
 
-double total_variance(const Matrix& signal) {
-  return (signal.rowwise() - signal.colwise().mean()).squaredNorm() / static_cast<double>(signal.rows());
+double total_variance(const Columns& signal) {
+  double sum = 0.0;
+  for (Index axis = 0; axis < signal.cols(); ++axis) {
+    sum += (signal.col(axis).array() - signal.col(axis).mean()).square().sum();
+  }
+  return sum / static_cast<double>(signal.rows());
 }
 
 /// How far a signal is from itself `lag` samples later: 0 the same, about 1 nothing in common. Every `step`-th sample.
-double unlike_itself(const Matrix& signal, Index lag, Index step, double variance) {
+double unlike_itself(const Columns& signal, Index lag, Index step, double variance) {
   double sum = 0.0;
   Index count = 0;
-  for (Index i = 0; i + lag < signal.rows(); i += step, ++count)
-    sum += (signal.row(i + lag) - signal.row(i)).squaredNorm();
+  for (Index i = 0; i + lag < signal.rows(); i += step, ++count) {
+    double distance = 0.0;
+    for (Index axis = 0; axis < signal.cols(); ++axis) {
+      const double change = signal(i + lag, axis) - signal(i, axis);
+      distance += change * change;
+    }
+    sum += distance;
+  }
   return sum / (2.0 * variance * static_cast<double>(count));
 }
 
 /// The same of every sample for each lag from 0 to `last`: Σ |x(i + l) − x(i)|² is two sums of squares less twice the
 /// autocorrelation.
-Vector unlike_by_lag(const Matrix& signal, Index last, double variance) {
-  const Matrix centred = signal.rowwise() - signal.colwise().mean();
+Vector unlike_by_lag(Matrix centred, Index last, double variance) {
+  centred.rowwise() -= centred.colwise().mean().eval();
   const Vector squares = centred.rowwise().squaredNorm();
   std::vector<Vector> axes;
   for (Index axis = 0; axis < centred.cols(); ++axis) axes.emplace_back(centred.col(axis));
+  centred.resize(0, 0);
   const Vector alike = squares.sum() * dsp::autocorrelation(axes, last);
   Vector unlike(last + 1);
   double earlier = squares.sum(), later = earlier;  // Σ |x(i)|² and Σ |x(i + l)|²
   for (Index lag = 0; lag <= last; ++lag) {
-    const Index count = signal.rows() - lag;
+    const Index count = squares.size() - lag;
     unlike[lag] = (earlier + later - 2.0 * alike[lag]) / (2.0 * variance * static_cast<double>(count));
     earlier -= squares[count - 1];
     later -= squares[lag];
@@ -91,11 +104,10 @@ struct Periods {
 
 /// The periods of that length, counted from the end of the signal, in which it repeats itself; what comes before, as
 /// where the perturbation grows from rest, is left out.
-Periods periods_of(const Matrix& signal, Index length, double variance) {
+Periods periods_of(const Columns& signal, Index length, double variance) {
   Periods periods{signal.rows() - length, length, 1};
   while (periods.begin >= length) {
-    const Matrix two = signal.middleRows(periods.begin - length, 2 * length);
-    if (unlike_itself(two, length, 1, variance) > kRepeats) break;
+    if (unlike_itself(signal.part(periods.begin - length, 2 * length), length, 1, variance) > kRepeats) break;
     periods.begin -= length;
     ++periods.count;
   }
@@ -103,13 +115,16 @@ Periods periods_of(const Matrix& signal, Index length, double variance) {
 }
 
 /// Absent where the signal does not repeat itself kMinPeriods times.
-std::optional<Periods> periods_of(const Matrix& reference, double rate) {
+std::optional<Periods> periods_of(const Columns& reference, double rate) {
   const double variance = total_variance(reference);
   if (!(variance > 0.0)) return std::nullopt;
   const Index step = std::max<Index>(1, static_cast<Index>(rate / kSearchRate));
   const Index longest = reference.rows() / kMinPeriods;
-  const Vector coarse =
-      unlike_by_lag(reference(Eigen::seq(0, Eigen::last, step), Eigen::all), longest / step, variance);
+  Matrix some((reference.rows() - 1) / step + 1, reference.cols());
+  for (Index axis = 0; axis < some.cols(); ++axis) {
+    some.col(axis) = reference.col(axis)(Eigen::seqN(0, some.rows(), step));
+  }
+  const Vector coarse = unlike_by_lag(std::move(some), longest / step, variance);
   bool went_away = false;
   for (Index lag = step; lag <= longest; lag += step) {
     went_away = went_away || coarse[lag / step] > kUnlike;
@@ -133,8 +148,8 @@ Eigen::MatrixXcd amplitudes(const Matrix& period) {
   return all * (2.0 / static_cast<double>(period.rows()));
 }
 
-std::vector<Index> harmonics_of(const Matrix& whole, const Periods& periods, double rate) {
-  const Matrix reference = whole.middleRows(periods.begin, periods.length);
+std::vector<Index> harmonics_of(const Columns& whole, const Periods& periods, double rate) {
+  const Matrix reference = whole.middle_rows(periods.begin, periods.length);
   const Matrix one = reference.rowwise() - reference.colwise().mean();
   const Eigen::RowVectorXd variance = one.colwise().squaredNorm() / static_cast<double>(periods.length);
   const Eigen::MatrixXcd lines = amplitudes(one);
@@ -182,8 +197,8 @@ std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recording
     harmonics = std::move(own);
     for (Index one = 0; one < found->count; ++one) {
       const Index begin = found->begin + one * length;
-      absorbed.push_back(
-          absorbed_at(harmonics, window->position.middleRows(begin, length), window->force.middleRows(begin, length)));
+      absorbed.push_back(absorbed_at(harmonics, window->position.middle_rows(begin, length),
+                                     window->force.middle_rows(begin, length)));
     }
   }
   const auto periods = static_cast<Index>(absorbed.size());

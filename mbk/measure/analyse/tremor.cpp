@@ -58,7 +58,7 @@ double prominence(const dsp::Spectrum& spectrum, Index line) {
 }
 
 /// The clearest line of one axis.
-AssumptionTest line_of(const Vector& force, const Vector& reference, double rate) {
+AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<const Vector>& reference, double rate) {
   AssumptionTest result{Assumption::no_tremor};
   const auto of_force = dsp::welch(force, Hertz(rate), Hertz(kResolution)),
              of_reference = dsp::welch(reference, Hertz(rate), Hertz(kResolution));
@@ -99,17 +99,17 @@ std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> reco
     const Recording& recording = *recordings[k];
     const PreparedTrial& trial = trials[k];
     const double rate = trial.recording_rate;
-    const Matrix force = recorded(recording, kForceChannels, trial.axes),
-                 reference = recorded(recording, kReferenceChannels, trial.axes);
+    const Columns force = channels_of(recording, kForceChannels, trial.axes),
+                  reference = channels_of(recording, kReferenceChannels, trial.axes);
     if (force.size() == 0 || reference.size() == 0 || !(rate > 4.0 * kHighest)) continue;
     const Index begin = std::max<Index>(0, std::llround(trial.preparation.from_s * rate)),
                 end = std::min<Index>(recording.samples(), std::llround(trial.preparation.to_s * rate) + 1);
     if (static_cast<double>(end - begin) < kShortest * rate) continue;
-    const Vector time = recording.time.segment(begin, end - begin);
+    const auto time = recording.time.segment(begin, end - begin);
     if ((time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff() * rate > 1.5) continue;
     for (Index axis = 0; axis < trial.axes; ++axis) {
-      const Vector of_force = force.col(axis).segment(begin, end - begin),
-                   of_reference = reference.col(axis).segment(begin, end - begin);
+      const auto of_force = force.col(axis).segment(begin, end - begin),
+                 of_reference = reference.col(axis).segment(begin, end - begin);
       if (!of_force.allFinite() || !of_reference.allFinite()) continue;
       const AssumptionTest found = line_of(of_force, of_reference, rate);
       if (!clearest || found.p_value < clearest->p_value) clearest = found;

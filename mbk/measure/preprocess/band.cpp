@@ -12,7 +12,7 @@ namespace mbk::preprocess {
 namespace {
 
 /// Mean of the spectra of all columns and cuts, but for a factor.
-Result<dsp::Spectrum> spectrum_of(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate,
+Result<dsp::Spectrum> spectrum_of(const Columns& signals, const std::vector<Cut>& cuts, Hertz sample_rate,
                                   double finest = 0.1) {
   Index shortest = signals.rows();
   for (const Cut& cut : cuts) shortest = std::min(shortest, cut.end - cut.begin);
@@ -39,7 +39,7 @@ Hertz limit_of(Hertz sample_rate) {
 
 }  // namespace
 
-Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, Hertz sample_rate) {
+Result<Band> excited_band(const Columns& motion, const std::vector<Cut>& cuts, Hertz sample_rate) {
   const auto position = spectrum_of(motion, cuts, sample_rate);
   if (!position) return tl::unexpected(position.error());
   dsp::Spectrum velocity = *position;
@@ -48,7 +48,7 @@ Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, He
   return Band{dsp::power_quantile(*position, 0.05, limit), dsp::power_quantile(velocity, 0.95, limit)};
 }
 
-Result<Hertz> band_top(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate) {
+Result<Hertz> band_top(const Columns& signals, const std::vector<Cut>& cuts, Hertz sample_rate) {
   const auto spectrum = spectrum_of(signals, cuts, sample_rate);
   if (!spectrum) return tl::unexpected(spectrum.error());
   return dsp::power_quantile(*spectrum, 0.95, limit_of(sample_rate));

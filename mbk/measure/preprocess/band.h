@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "mbk/base/core/columns.h"
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
@@ -19,11 +20,11 @@ struct Band {
 /// lowest and the highest line.
 /// @param motion N×n, reference or hand position; each cut must lie inside it    @fails a cut is shorter than 8
 /// samples.
-[[nodiscard]] Result<Band> excited_band(const Matrix& motion, const std::vector<Cut>& cuts, Hertz sample_rate);
+[[nodiscard]] Result<Band> excited_band(const Columns& motion, const std::vector<Cut>& cuts, Hertz sample_rate);
 
 /// Where 95 % of a signal's own power lies below, looking up to a tenth of the sample rate.
 /// @fails  as excited_band.
-[[nodiscard]] Result<Hertz> band_top(const Matrix& signals, const std::vector<Cut>& cuts, Hertz sample_rate);
+[[nodiscard]] Result<Hertz> band_top(const Columns& signals, const std::vector<Cut>& cuts, Hertz sample_rate);
 
 /// Where a motion sinks into noise: the spectral density of its acceleration, 1 Hz fine, first falls below twice its
 /// floor, which is the median of the lines from the top of the excited band to `limit`. There signal and noise weigh

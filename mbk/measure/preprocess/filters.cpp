@@ -90,10 +90,10 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   const auto chain = chain_of(filters, padding, rate);
   if (!chain) return tl::unexpected(chain.error());
   std::vector<dsp::Column> columns;
-  std::vector<const Matrix*> quantities = {&signals.position, &signals.force_hand_on_robot, &signals.acceleration};
+  std::vector<const Columns*> quantities = {&signals.position, &signals.force_hand_on_robot, &signals.acceleration};
   if (with_reference) quantities.push_back(&signals.reference);
   quantities.push_back(&signals.force_sensitivity);
-  for (const Matrix* quantity : quantities) {
+  for (const Columns* quantity : quantities) {
     for (Index k = 0; k < quantity->cols(); ++k) {
       columns.emplace_back(quantity->col(k).data() + cut.begin + trim, length - 2 * trim);
     }

@@ -48,7 +48,7 @@ Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const Fi
       last_end = displaced.end;
       if (length <= 0) continue;
       const Cut rest{displaced.begin - length, displaced.begin, {}};
-      if (!signals.force_hand_on_robot.middleRows(rest.begin, length).allFinite()) continue;
+      if (!signals.force_hand_on_robot.middle_rows(rest.begin, length).allFinite()) continue;
       const auto filtered = filter_cut(signals, rest, filters, plan.trim, rate, padding, false);
       if (!filtered || filtered->rows() == 0) continue;  // too short for the filters
       pieces.emplace_back(filtered->middleCols(3 * n, n));
@@ -177,7 +177,9 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     if (trial.force_sensitivity.size() > 0) {
       trial.force_sensitivity.middleRows(row, rows) = piece.rightCols(trial.force_sensitivity.cols());
     }
-    if (trial.reference.size() > 0) trial.reference.middleRows(row, rows) = signals->reference(kept, Eigen::all);
+    for (Index axis = 0; axis < trial.reference.cols(); ++axis) {
+      trial.reference.col(axis).segment(row, rows) = signals->reference.col(axis)(kept);
+    }
     append_segments(cut, first, every, row, rows, trial.segments);
     row += rows;
   }

@@ -95,7 +95,7 @@ Result<void> check_reference(const Clock& clock, const Signals& signals, const W
 }
 
 Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan) {
-  const std::array<std::pair<QuantityChannels, const Matrix*>, 3> quantities = {
+  const std::array<std::pair<QuantityChannels, const Columns*>, 3> quantities = {
       {{kPositionChannels, &signals.position},
        {kForceChannels, &signals.force_hand_on_robot},
        {kAccelerationChannels, &signals.acceleration}}};
@@ -118,12 +118,13 @@ void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::v
   constexpr double kStepsEnough = 20.0;  // standard deviations of the motion in steps: the rounding is then 1.4 % of it
   double step = std::numeric_limits<double>::infinity(), motion = 0.0;
   for (const Cut& cut : plan.cuts) {
-    const Matrix piece = signals.position.middleRows(cut.begin, cut.end - cut.begin);
-    const Matrix centred = piece.rowwise() - piece.colwise().mean();
-    motion = std::max(motion, std::sqrt(centred.cwiseAbs2().colwise().mean().maxCoeff()));
-    const Matrix changes = (piece.bottomRows(piece.rows() - 1) - piece.topRows(piece.rows() - 1)).cwiseAbs();
-    for (const double change : changes.reshaped()) {
-      if (change > 0.0) step = std::min(step, change);
+    for (Index axis = 0; axis < signals.axes; ++axis) {
+      const auto piece = signals.position.col(axis).segment(cut.begin, cut.end - cut.begin);
+      motion = std::max(motion, std::sqrt((piece.array() - piece.mean()).square().mean()));
+      for (Index i = 1; i < piece.size(); ++i) {
+        const double change = std::abs(piece[i] - piece[i - 1]);
+        if (change > 0.0) step = std::min(step, change);
+      }
     }
   }
   if (motion < kStepsEnough * step) {
@@ -137,13 +138,13 @@ void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::v
 }
 
 Result<void> check_alive(const Signals& signals, const WindowPlan& plan) {
-  const auto constant = [&](const Matrix& columns, Index axis) {
+  const auto constant = [&](const Columns& columns, Index axis) {
     const double value = columns(plan.cuts.front().begin, axis);
     return std::ranges::all_of(plan.cuts, [&](const Cut& cut) {
       return (columns.col(axis).segment(cut.begin, cut.end - cut.begin).array() == value).all();
     });
   };
-  const auto refusal = [&](const QuantityChannels& quantity, const Matrix& columns, Index axis, const char* remedy) {
+  const auto refusal = [&](const QuantityChannels& quantity, const Columns& columns, Index axis, const char* remedy) {
     return bad_data(fmt::format("channel '{}' is {:g} throughout the window", quantity.name(signals.axes, axis),
                                 columns(plan.cuts.front().begin, axis)),
                     remedy);

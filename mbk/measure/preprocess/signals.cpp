@@ -9,8 +9,8 @@
 namespace mbk::preprocess {
 namespace {
 
-Result<Matrix> require(const Recording& recording, const QuantityChannels& quantity, int axes) {
-  Matrix columns = recorded(recording, quantity, axes);
+Result<Columns> require(const Recording& recording, const QuantityChannels& quantity, int axes) {
+  Columns columns = channels_of(recording, quantity, axes);
   if (columns.size() > 0) return columns;
   std::string missing, present, first;
   for (Index axis = 0; axis < axes; ++axis) {
@@ -50,7 +50,7 @@ Result<Signals> select_signals(const Recording& recording, int axes, bool accele
   Signals signals;
   const bool one_axis = recording.find("position") != nullptr || recording.find("reaction") != nullptr;
   signals.axes = axes != 0 ? axes : (one_axis ? 1 : 2);
-  const auto take = [&](const QuantityChannels& quantity, Matrix& target) -> Result<void> {
+  const auto take = [&](const QuantityChannels& quantity, Columns& target) -> Result<void> {
     auto columns = require(recording, quantity, signals.axes);
     if (!columns) return tl::unexpected(columns.error());
     target = std::move(*columns);
@@ -61,7 +61,7 @@ Result<Signals> select_signals(const Recording& recording, int axes, bool accele
   if (acceleration_from_sensor) {
     if (auto ok = take(kAccelerationChannels, signals.acceleration); !ok) return tl::unexpected(ok.error());
   }
-  signals.reference = recorded(recording, kReferenceChannels, signals.axes);
+  signals.reference = channels_of(recording, kReferenceChannels, signals.axes);
   signals.reference_quantity = reference_quantity(recording, signals.axes);
   const auto motion = motion_of(recording, signals.axes);
   if (!motion) return tl::unexpected(motion.error());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mbk/base/core/columns.h"
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/prepared_trial.h"
@@ -7,19 +8,19 @@
 
 namespace mbk::preprocess {
 
-/// The channels that a fit needs, side by side, as recorded.
+/// The channels that a fit needs, side by side, where they stand in the recording.
 struct Signals {
-  int axes = 2;                ///< n
-  Matrix position;             ///< N×n [m or rad]
-  Matrix force_hand_on_robot;  ///< N×n [N or N·m]
-  Matrix force_sensitivity;    ///< N×(n·p) of a force that was computed, or empty
-  Matrix reference;            ///< N×n; empty where none was recorded
+  int axes = 2;                 ///< n
+  Columns position;             ///< N×n [m or rad]
+  Columns force_hand_on_robot;  ///< N×n [N or N·m]
+  Columns force_sensitivity;    ///< N×(n·p) of a force that was computed, or empty
+  Columns reference;            ///< N×n; empty where none was recorded
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
-  Matrix acceleration;  ///< N×n [m/s² or rad/s²]; empty where it is not asked for
+  Columns acceleration;  ///< N×n [m/s² or rad/s²]; empty where it is not asked for
   Motion motion = Motion::translation;
 };
 
-/// Takes them out of a recording.
+/// Finds them in a recording, which must stay as long as they are used.
 /// @param axes 1, 2, or 0 = by the channels that are there
 /// @fails a channel is missing (it is named, with those that are there); with one axis, position and reaction in units
 /// that do not belong together.

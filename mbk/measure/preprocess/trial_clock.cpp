@@ -3,8 +3,8 @@
 namespace mbk::preprocess {
 
 double Clock::seconds(Index sample) const {
-  if (sample < samples()) return seconds_[sample];
-  return seconds_[samples() - 1] + static_cast<double>(sample - samples() + 1) / rate_.value;
+  if (sample < samples()) return time_[sample] - time_[0];
+  return time_[samples() - 1] - time_[0] + static_cast<double>(sample - samples() + 1) / rate_.value;
 }
 
 Index Clock::sample(double seconds) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/units.h"
 
@@ -10,9 +12,16 @@ namespace mbk::preprocess {
 class Clock {
  public:
   /// @param time as recorded [s], at least one sample    @param rate nominal sample rate, > 0
-  Clock(const Vector& time, Hertz rate) : seconds_(time.array() - time[0]), rate_(rate) {}
+  /// The time must not be gone before the clock.
+  Clock(const Vector& time, Hertz rate) : time_(time.data()), samples_(time.size()), rate_(rate) {}
+  Clock(Vector&& time, Hertz rate) : own_(std::move(time)), time_(own_.data()), samples_(own_.size()), rate_(rate) {}
+  Clock(Clock&&) = default;
+  Clock(const Clock&) = delete;
+  Clock& operator=(const Clock&) = delete;
+  Clock& operator=(Clock&&) = delete;
+  ~Clock() = default;
 
-  [[nodiscard]] Index samples() const { return seconds_.size(); }
+  [[nodiscard]] Index samples() const { return samples_; }
   [[nodiscard]] Hertz rate() const { return rate_; }
 
   /// When a sample was taken [s]; beyond the last one time goes on at the rate.
@@ -26,7 +35,9 @@ class Clock {
   [[nodiscard]] Index sample(double seconds) const;
 
  private:
-  Vector seconds_;
+  Vector own_;          ///< empty where the time stands elsewhere
+  const double* time_;  ///< [s], as recorded
+  Index samples_;
   Hertz rate_;
 };
 

@@ -8,12 +8,15 @@
 namespace mbk::preprocess {
 namespace {
 
-bool differs(const Matrix& reference, Index a, Index b) {
-  return (reference.row(a) != reference.row(b));
+bool differs(const Columns& reference, Index a, Index b) {
+  for (Index k = 0; k < reference.cols(); ++k) {
+    if (reference(a, k) != reference(b, k)) return true;
+  }
+  return false;
 }
 
 /// Maximal runs [begin, end) within [first, last) in which the reference differs from its value at `rest`.
-std::vector<Segment> displacements(const Matrix& reference, Index rest, Index first, Index last) {
+std::vector<Segment> displacements(const Columns& reference, Index rest, Index first, Index last) {
   std::vector<Segment> runs;
   for (Index i = first; i < last; ++i) {
     if (!differs(reference, i, rest)) continue;
@@ -25,7 +28,7 @@ std::vector<Segment> displacements(const Matrix& reference, Index rest, Index fi
 
 /// Where the reference rests: the samples in which it keeps one value for the longest time. Between pulses it returns
 /// to that, whereas the first sample of a window may lie inside a pulse.
-Segment longest_rest(const Matrix& reference, Index from, Index to) {
+Segment longest_rest(const Columns& reference, Index from, Index to) {
   Segment longest{from, from, Purpose::identification};
   for (Index begin = from; begin < to;) {
     Index end = begin + 1;
@@ -80,19 +83,28 @@ Cut divided(Index begin, Index end, Index split) {
 }
 
 /// Where a sustained perturbation begins and ends.
-std::pair<Index, Index> steady_range(const Matrix& reference, Index from, Index to) {
+std::pair<Index, Index> steady_range(const Columns& reference, Index from, Index to) {
   Index last = to - 1;
   while (last > from && !differs(reference, last, last - 1)) --last;
   Index first = from;
   while (first < last && !differs(reference, first, first + 1)) ++first;
   // The second half tells what the perturbation looks like; the way to it (moving in) is left out.
   const Index half = (first + last + 1) / 2;
-  const auto body = reference.middleRows(half, last + 1 - half);
-  const Vector low = body.colwise().minCoeff(), high = body.colwise().maxCoeff();
+  Vector low(reference.cols()), high(reference.cols());
+  for (Index k = 0; k < reference.cols(); ++k) {
+    const auto body = reference.col(k).segment(half, last + 1 - half);
+    low[k] = body.minCoeff();
+    high[k] = body.maxCoeff();
+  }
   const Vector margin = 0.25 * (high - low);
+  const auto outside = [&](Index i) {
+    for (Index k = 0; k < reference.cols(); ++k) {
+      if (reference(i, k) < low[k] - margin[k] || reference(i, k) > high[k] + margin[k]) return true;
+    }
+    return false;
+  };
   for (Index i = half; i-- > first;) {
-    const auto row = reference.row(i).transpose().array();
-    if ((row < (low - margin).array()).any() || (row > (high + margin).array()).any()) {
+    if (outside(i)) {
       first = i + 1;
       break;
     }
@@ -102,7 +114,7 @@ std::pair<Index, Index> steady_range(const Matrix& reference, Index from, Index 
 
 }  // namespace
 
-ProtocolFinding detect_protocol(const Matrix& reference) {
+ProtocolFinding detect_protocol(const Columns& reference) {
   if (reference.rows() < 2) return {Protocol::free, "no reference was recorded"};
   Index changes = 0;
   for (Index i = 1; i < reference.rows(); ++i) changes += differs(reference, i, i - 1) ? 1 : 0;
@@ -114,7 +126,7 @@ ProtocolFinding detect_protocol(const Matrix& reference) {
   return {Protocol::sinusoidal, "the reference varies continuously"};
 }
 
-Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+Result<WindowPlan> reference_windows(Protocol protocol, const Columns& reference, const Clock& clock,
                                      const WindowLimits& limits, Index half_window) {
   constexpr Index kSinusoidalBegin = 11999, kSinusoidalEnd = 62000, kUnderdampedBegin = 15999;
   constexpr Index kIdentificationSamples = 40000;
@@ -166,7 +178,7 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference,
   return plan;
 }
 
-Result<WindowPlan> default_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+Result<WindowPlan> default_windows(Protocol protocol, const Columns& reference, const Clock& clock,
                                    const WindowLimits& limits) {
   auto range = in_samples(limits, 0, clock.samples(), clock);
   if (!range) return tl::unexpected(range.error());

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/columns.h"
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 #include "mbk/measure/preprocess/options.h"
@@ -37,14 +38,14 @@ struct ProtocolFinding {
 /// Underdamped where the reference is constant but for steps (it changes at fewer than 2 % of the samples),
 /// sinusoidal where it varies continuously, free where there is none or it never changes.
 /// @param reference N×n, or empty
-[[nodiscard]] ProtocolFinding detect_protocol(const Matrix& reference);
+[[nodiscard]] ProtocolFinding detect_protocol(const Columns& reference);
 
 /// The published windows (Dyck 2013, appendix C): sinusoidal [11999, 62000) with 40,000 samples to identify;
 /// underdamped from 15999, the segments in which the reference is displaced, up to the ninth onset to identify; the
 /// whole log is filtered before anything is cut out. Limits, where given, replace them.
 /// @fails the recording is not at 1 kHz, where these numbers of samples mean something else; it ends before the window
 /// begins; limits as for default_windows.
-[[nodiscard]] Result<WindowPlan> reference_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+[[nodiscard]] Result<WindowPlan> reference_windows(Protocol protocol, const Columns& reference, const Clock& clock,
                                                    const WindowLimits& limits, Index half_window);
 
 /// mbk's own windows: what lies outside is cut away before any filter sees it.
@@ -52,7 +53,7 @@ struct ProtocolFinding {
 /// last change; underdamped: each displacement of the reference is a piece of its own, the first half of them to
 /// identify; free: everything. Sinusoidal and free identify on the first 80 %.
 /// @fails limits out of order or outside the recording; no displacement of the reference inside the limits.
-[[nodiscard]] Result<WindowPlan> default_windows(Protocol protocol, const Matrix& reference, const Clock& clock,
+[[nodiscard]] Result<WindowPlan> default_windows(Protocol protocol, const Columns& reference, const Clock& clock,
                                                  const WindowLimits& limits);
 
 /// The segments of a cut as rows of what was made of it, behind those that are there.

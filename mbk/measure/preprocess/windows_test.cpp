@@ -60,7 +60,7 @@ TEST(DetectProtocol, ASlowReferenceHeldForTenSamplesIsSinusoidal) {
 }
 
 TEST(DetectProtocol, AConstantReferenceIsNone) {
-  const ProtocolFinding found = detect_protocol(Matrix::Constant(1000, 2, 0.3));
+  const ProtocolFinding found = detect_protocol(Matrix(Matrix::Constant(1000, 2, 0.3)));
   EXPECT_EQ(found.protocol, Protocol::free);
   EXPECT_EQ(found.rule, "the reference never changes");
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "mbk/base/core/columns.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk {
@@ -29,15 +30,21 @@ inline constexpr QuantityChannels kAccelerationChannels = {
 inline constexpr QuantityChannels kJointChannels = {nullptr, {"joint_1", "joint_2"}, "rad", "joint"};
 inline constexpr QuantityChannels kTorqueChannels = {nullptr, {"torque_1", "torque_2"}, "N.m", "joint"};
 
-/// The channels of a quantity side by side, as recorded; nothing where one is missing.   @param axes 1 or 2
-[[nodiscard]] inline Matrix recorded(const Recording& recording, const QuantityChannels& quantity, int axes) {
-  Matrix columns(recording.samples(), axes);
+/// The channels of a quantity where they stand in the recording; nothing where one is missing.   @param axes 1 or 2
+[[nodiscard]] inline Columns channels_of(const Recording& recording, const QuantityChannels& quantity, int axes) {
+  Columns columns;
   for (Index axis = 0; axis < axes; ++axis) {
     const Channel* channel = recording.find(quantity.name(axes, axis));
     if (channel == nullptr) return {};
-    columns.col(axis) = channel->values;
+    columns.add(channel->values);
   }
   return columns;
+}
+
+/// The same as a copy.
+[[nodiscard]] inline Matrix recorded(const Recording& recording, const QuantityChannels& quantity, int axes) {
+  const Columns columns = channels_of(recording, quantity, axes);
+  return columns.middle_rows(0, columns.rows());
 }
 
 }  // namespace mbk
