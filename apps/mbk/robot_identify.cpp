@@ -30,6 +30,7 @@ struct RobotIdentifyArguments {
   OutputArguments output;
   std::optional<std::filesystem::path> robot;
   RobotMethod method = RobotMethod::weighted_least_squares;
+  bool consistent = false;
   double hac_lag_s = 1.0;
   std::vector<std::filesystem::path> held_out;
   std::string fixed, terms, delay = "auto", stribeck_velocity;
@@ -146,6 +147,7 @@ int run(const RobotIdentifyArguments& arguments) {
   options.preprocess.signals = *signals;
   if (arguments.motion_cutoff_hz) options.preprocess.motion_cutoff = Hertz(*arguments.motion_cutoff_hz);
   options.fit.method = arguments.method;
+  options.fit.consistent = arguments.consistent;
   options.fit.hac_lag_s = arguments.hac_lag_s;
   if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
 
@@ -178,7 +180,9 @@ Action add_robot_identify(CLI::App& group) {
       "      several recordings in one fit, another to judge it; robot.json is what a virtual force needs\n"
       "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml\n"
       "      your own robot, from its URDF\n"
-      "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n\n"
+      "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n"
+      "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml --consistent\n"
+      "      each link with a mass, a centre and an inertia that a body can have\n\n"
       "Record with nothing at the hand, every joint moving, fast and slow, through the places where you\n"
       "will measure. Torque and motion are filtered alike; what the data cannot distinguish is reported.\n\n"
       "Exit codes: " +
@@ -231,6 +235,11 @@ Action add_robot_identify(CLI::App& group) {
   add_choice(*command, "--method", arguments->method,
              "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
              "noise of the motion does not bias")
+      ->group(model);
+  command
+      ->add_flag("--consistent", arguments.consistent,
+                 "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
+                 "and drives that do not feed the motion; what the data leave open stays near the description")
       ->group(model);
   command
       ->add_option("--motion-cutoff", arguments->motion_cutoff_hz,

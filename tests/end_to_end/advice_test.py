@@ -148,6 +148,21 @@ def _(test):  # without --channels the file's own names are taken
     test.goes("other-column", raised, test.measured(path))
 
 
+@advice_of("consistent-fit-poor")
+def _(test):  # check the sign of each torque
+    arm, turned = two_links(test), two_links(test, turned=True)
+    raised = identified_robot(test, turned, "--consistent", "--terms", "motor_inertia,viscous,coulomb,offset")
+    test.assertIn("sign", hint_of(raised, "consistent-fit-poor"))
+    test.assertIs(raised.json["usable"], False)
+    followed = identified_robot(test, arm, "--consistent", "--terms", "motor_inertia,viscous,coulomb,offset")
+    test.goes("consistent-fit-poor", raised, followed)
+    test.assertIs(followed.json["usable"], True)
+    # and a term that is missing: the rotor of the second joint
+    raised = identified_robot(test, arm, "--consistent", "--terms", "viscous,coulomb,offset")
+    terms = first_options(hint_of(raised, "consistent-fit-poor"))
+    test.goes("consistent-fit-poor", raised, identified_robot(test, arm, "--consistent", *terms))
+
+
 @advice_of("handle-mass-too-large")
 def _(test):  # leave it out
     path = test.simulated("relaxed_sinusoidal")
@@ -171,6 +186,20 @@ def _(test):
     raised = test.measured("--cutoff", "0.3", path)
     test.assertIn("leave --cutoff out", hint_of(raised, code))
     test.goes(code, raised, test.measured(path))
+    # of a robot: rotors behind gears that nobody modelled
+    arm = two_links(test)
+    raised = identified_robot(test, arm, "--terms", "viscous,coulomb,offset")
+    terms = first_options(hint_of(raised, code))
+    test.assertEqual(terms, ("--terms", "motor_inertia,viscous,coulomb,offset"))
+    followed = identified_robot(test, arm, *terms)
+    test.goes(code, raised, followed)
+    test.assertIs(followed.json["usable"], True)
+    # and too little motion, of which bodies that can exist are found all the same
+    faint = two_links(test, rotor=0.0, noise=0.4)
+    raised = identified_robot(test, faint, "--terms", "viscous,coulomb,offset")
+    test.assertIn("--consistent", hint_of(raised, code))
+    followed = identified_robot(test, faint, "--terms", "viscous,coulomb,offset", "--consistent")
+    test.goes(code, raised, followed)
 
 
 @advice_of("stiffness-not-positive")
@@ -420,6 +449,52 @@ def _(test):  # choose a window without it
 
 
 # ---- mbk tf and mbk robot identify ----
+
+TWO_LINKS = """<robot name="two_links"><link name="base"/>
+<joint name="one" type="continuous"><parent link="base"/><child link="first"/><axis xyz="0 0 1"/></joint>
+<link name="first"><inertial><origin xyz="0.12 0 0"/><mass value="0.5"/>
+  <inertia ixx="0.001" iyy="0.003" izz="0.003" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="two" type="continuous"><parent link="first"/><child link="second"/><origin xyz="0.25 0 0"/>
+  <axis xyz="0 0 1"/></joint>
+<link name="second"><inertial><origin xyz="0.1 0 0"/><mass value="0.3"/>
+  <inertia ixx="0.001" iyy="0.002" izz="0.002" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="grip" type="fixed"><parent link="second"/><child link="hand"/><origin xyz="0.2 0 0"/></joint>
+<link name="hand"/></robot>
+"""
+
+
+def two_links(test, rotor=0.2, noise=0.002, turned=False):
+    """Two light links in a horizontal plane; behind a gear, the rotor of the second joint weighs as much as `rotor`
+    kg·m². Closed form of Lagrange's equations, sines of each joint."""
+    chance, rows = random.Random(1), []
+    first, second, length, centre = 0.003 + 0.5 * 0.12 ** 2, 0.002 + 0.3 * 0.1 ** 2, 0.25, 0.3 * 0.1
+    for i in range(30_000):
+        t, q, v, a = i / 500, [0.4, 0.9], [0.0, 0.0], [0.0, 0.0]
+        for joint in (0, 1):
+            for line in range(1, 7):
+                w = 2 * math.pi * (0.23 * line + 0.05 * joint)
+                angle, size = w * t + 1.7 * line * line + joint, 0.1
+                q[joint] += size * math.sin(angle)
+                v[joint] += size * w * math.cos(angle)
+                a[joint] -= size * w * w * math.sin(angle)
+        own, cross = first + 0.3 * length ** 2, length * centre
+        c, s = cross * math.cos(q[1]), cross * math.sin(q[1])
+        one = (own + second + 2 * c) * a[0] + (second + c) * a[1] - s * (2 * v[0] * v[1] + v[1] ** 2)
+        two = (second + c) * a[0] + (second + rotor) * a[1] + s * v[0] ** 2
+        one += 0.02 * v[0] + 0.03 * math.tanh(v[0] / 0.02)
+        two += 0.02 * v[1] + 0.03 * math.tanh(v[1] / 0.02)
+        rows.append((t, *q, one + chance.gauss(0, noise), (-1 if turned else 1) * two + chance.gauss(0, noise)))
+    test.file("two_links.urdf", TWO_LINKS)
+    test.file("two_links.toml", "[robot]\nkind = \"urdf\"\nfile = \"two_links.urdf\"\n"
+                                "[drive]\nterms = [\"viscous\", \"coulomb\", \"offset\"]\n")
+    name = f"two_links_{rotor}_{noise}_{turned}.csv"
+    return write_csv(test.folder / name, zip(*rows), ["time", "q1", "q2", "tau1", "tau2"])
+
+
+def identified_robot(test, path, *options):
+    return run("robot", "identify", "--json", "--quiet", path, "--robot", test.folder / "two_links.toml",
+               "--motor-delay", "0", *options)
+
 
 def tf(test, *options, rows=None):
     lines = ["time,force,motion"] + [",".join(f"{value:.12g}" for value in row) for row in rows or oscillator()]

@@ -136,6 +136,23 @@ class Simulated(Case):
         self.assert_is_the_robot(again)
 
 
+    def test_a_robot_that_can_exist_is_the_free_one_where_that_is_possible(self):
+        free, found = self.identify(free_motion()), self.identify(free_motion(), "--consistent")
+        self.assert_is_the_robot(found)
+        self.assertEqual(found["consistent"]["links"], [])  # two links whose angles are both against the base
+        self.assertEqual(found["consistent"]["free_fit"], free["fit"])
+        self.assertLess(max(found["consistent"]["VAF_lost"]), 1e-3)
+        self.assertEqual(found["covariance"], free["covariance"])
+
+    def test_force_takes_a_robot_that_can_exist(self):
+        stored = self.folder / "robot.json"
+        self.fine("robot", "identify", free_motion(), "--consistent", "--json", "--out", stored)
+        force = self.mbk("robot", "force", free_motion(2), "--robot", stored, "--json").json
+        self.assertLess(max(force["RMS"]), 0.2)  # nothing at the hand
+        again = self.identify(free_motion(2), "--robot", stored, "--consistent")
+        self.assert_is_the_robot(again)
+
+
 class Wrong(Case):
     def test_torques_in_another_unit_are_seen(self):
         for unit, factor in (("N·mm", "*1000"), ("kN·m", ":N.mm")):
@@ -188,6 +205,15 @@ class Emps(Case):
             self.assertAlmostEqual(values(found.json)[name], value, delta=share * value, msg=name)
         self.assertGreaterEqual(found.json["fit"][0]["VAF_in_sample"], 99.7)
 
+    def test_a_drive_that_can_exist_has_them_too(self):
+        arguments = ("robot", "identify", data_folder("emps", "DATA_EMPS.mat"), "--robot", ROBOTS / "emps.toml",
+                     "--channels", "q1=qm:m,tau1=vir*35.15065188:N,time=t", "--cutoff", "100", "--json")
+        free, found = run(*arguments), run(*arguments, "--consistent")
+        self.assertEqual(found.code, 0, found)
+        for name, value in values(free.json).items():
+            self.assertAlmostEqual(values(found.json)[name], value, delta=1e-3 * abs(value), msg=name)
+        self.assertLess(found.json["consistent"]["VAF_lost_in_sample"][0], 1e-3)
+
     def test_a_mass_that_nobody_stated_cannot_be_fixed(self):
         self.refused(WRONG_USAGE, "robot", "identify", data_folder("emps", "DATA_EMPS.mat"), "--robot",
                      ROBOTS / "emps.toml", "--fix", "mass", says=["--fix", "'mass'"])
@@ -213,6 +239,39 @@ class DoublePendulum(Case):
         one, two = (fit["VAF"] for fit in self.judged("--cutoff", "5"))
         self.assertGreaterEqual(one, 92)
         self.assertGreaterEqual(two, 95)
+
+    def test_links_that_can_exist_predict_as_well(self):
+        for band in ("5", "10"):
+            with self.subTest(band):
+                found = self.identify(*self.TRAINING, "--held-out", self.JUDGING, "--cutoff", band, "--consistent")
+                consistent = found["consistent"]
+                self.assertEqual([link["name"] for link in consistent["links"]], ["upper", "lower"])
+                for link in consistent["links"]:
+                    self.assertGreater(link["mass_kg"], 0)
+                    self.assertGreater(link["pseudo_inertia_smallest_eigenvalue"], 0)
+                    # no moment of inertia exceeds the sum of the others
+                    moments = [link["inertia_about_centre_kg_m2"][k][k] for k in range(3)]
+                    self.assertLess(max(moments), sum(moments) - max(moments))
+                self.assertEqual([link["centre_m"][0] for link in consistent["links"]], [0, 0])  # --fix
+                self.assertLess(max(consistent["VAF_lost"] + consistent["VAF_lost_in_sample"]), 0.5)
+                self.assertNotIn("consistent-fit-poor", codes(found))
+
+    def test_links_that_can_exist_contradict_a_torque_of_the_wrong_sign(self):
+        turned = "time=time,q1=pos_meas1,q2=pos_meas2,tau1=tau_meas1,tau2=-tau_meas2"
+        ran = self.mbk("robot", "identify", *self.TRAINING, "--robot", ROBOTS / "double_pendulum.toml", "--resample",
+                       "500", "--channels", turned, "--cutoff", "5", "--consistent", "--json",
+                       folder=data_folder("double_pendulum"), code=NOT_USABLE)
+        self.assertIn("consistent-fit-poor", codes(ran.json))
+        self.assertGreater(max(ran.json["consistent"]["VAF_lost_in_sample"]), 10)
+
+    def test_the_text_shows_links_and_says_what_is_open(self):
+        text = self.fine("robot", "identify", *self.TRAINING, "--robot", ROBOTS / "double_pendulum.toml", "--fix",
+                         "upper.mass_x,lower.mass_x", "--resample", "500", "--channels",
+                         "time=time,q1=pos_meas1,q2=pos_meas2,tau1=tau_meas1,tau2=tau_meas2", "--consistent",
+                         folder=data_folder("double_pendulum")).out
+        self.assert_lines_fit(text)
+        for words in ("mass kg", "one choice of many", "against the free fit", "of the free fit"):
+            self.assertIn(words, " ".join(text.split()))
 
     def test_noise_of_a_wide_band_biases_least_squares_and_not_instruments(self):
         by_squares = self.judged("--cutoff", "20")

@@ -14,6 +14,7 @@
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/base_parameters.h"
 #include "mbk/measure/identify/regression.h"
+#include "mbk/measure/identify/robot_consistency.h"
 
 namespace mbk::identify {
 namespace {
@@ -114,6 +115,8 @@ class RobotFitter {
   void judge(RobotIdentification& found) const;
   void describe(RobotIdentification& found) const;
   void check_inertia(RobotIdentification& found) const;
+  [[nodiscard]] FreeFit free_fit() const;
+  Result<void> make_consistent(RobotIdentification& found);
   [[nodiscard]] bool is_fixed(Index k) const { return std::ranges::find(options_.fixed, k) != options_.fixed.end(); }
   [[nodiscard]] bool by_instruments() const { return options_.method == RobotMethod::instrumental_variables; }
   /// Residuals of the rows, N×n.
@@ -280,9 +283,6 @@ void RobotFitter::take_covariance() {
 
 void RobotFitter::judge(RobotIdentification& found) const {
   const Stack other = judging_rows(trials_, held_out_);
-  for (const PreparedDynamics& trial : held_out_) {
-    for (const SourceFile& source : trial.sources) found.held_out_files.push_back(source.path);
-  }
   found.held_out = other.rows() > 0;
   const Stack& judged = found.held_out ? other : rows_;
   const Matrix e = residuals(judged);
@@ -304,17 +304,18 @@ void RobotFitter::describe(RobotIdentification& found) const {
   const std::vector<robot::Coefficient> names = model_.coefficients();
   found.coefficients.clear();
   for (Index k = 0; k < p_; ++k) {
-    found.coefficients.push_back({names[static_cast<std::size_t>(k)], fixed_[k], kUndefined, false, is_fixed(k), ""});
+    found.coefficients.push_back({names[static_cast<std::size_t>(k)], theta_[k], kUndefined, false, is_fixed(k), ""});
   }
   found.model.covariance = Matrix::Zero(p_, p_);
   const auto kept = static_cast<Index>(kept_.size());
   for (Index k = 0; k < kept; ++k) {
     const Index at = kept_[static_cast<std::size_t>(k)];
     RobotCoefficient& one = found.coefficients[static_cast<std::size_t>(at)];
-    one.value = theta_[at];
+    const std::string together_with = holds(columns_, k, free_names_);
+    if (found.consistent && !together_with.empty()) continue;  // its value is its own, and one of many
     one.standard_error = std::sqrt(std::max(0.0, covariance_(k, k)));
     one.identified = true;
-    one.together_with = holds(columns_, k, free_names_);
+    one.together_with = together_with;
   }
   found.model.covariance(kept_, kept_) = covariance_.topLeftCorner(kept, kept);
   found.rank = static_cast<int>(kept);
@@ -368,6 +369,114 @@ void RobotFitter::check_inertia(RobotIdentification& found) const {
   }
 }
 
+/// What a robot that can exist explains less than the free one.
+void compare(const std::vector<TorqueFit>& fit, std::vector<TorqueFit> of_free, ConsistentRobot& consistent) {
+  int counted = 0;
+  for (std::size_t joint = 0; joint < fit.size(); ++joint) {
+    consistent.vaf_lost.push_back(of_free[joint].vaf - fit[joint].vaf);
+    consistent.vaf_lost_in_sample.push_back(of_free[joint].vaf_in_sample - fit[joint].vaf_in_sample);
+    if (!std::isfinite(consistent.vaf_lost.back())) continue;
+    consistent.mean_vaf_lost += consistent.vaf_lost.back();
+    ++counted;
+  }
+  consistent.mean_vaf_lost /= std::max(counted, 1);
+  consistent.free_fit = std::move(of_free);
+}
+
+/// What the consistent fit begins with.
+FreeFit RobotFitter::free_fit() const {
+  FreeFit free{model_, options_.fixed, columns_, Vector(static_cast<Index>(kept_.size())), {}, Vector::Ones(p_)};
+  if (free.model.parameters.size() != p_) free.model.parameters = Vector::Zero(p_);
+  for (std::size_t k = 0; k < kept_.size(); ++k) free.base[static_cast<Index>(k)] = theta_[kept_[k]];
+  const Vector of_torque = rows_.torque.colwise().norm().transpose().cwiseQuotient(sigma_);
+  const Vector of_residual = residuals_.colwise().norm().transpose().cwiseQuotient(sigma_);
+  // What is explained to rounding is known to a billionth of itself.
+  const double unit =
+      std::max(of_residual.norm(), 1e-9 * of_torque.norm()) / std::sqrt(static_cast<double>(rows_.rows() * n_));
+  free.triangle =
+      numeric::householder_triangle(stacked(by_instruments() ? rows_.R : rows_.W, kept_, nullptr, sigma_)) / unit;
+  for (Index k = 0; k < p_; ++k) {
+    double square = 0.0;
+    for (Index joint = 0; joint < n_; ++joint) {
+      square += rows_.W[static_cast<std::size_t>(joint)].col(k).squaredNorm() / (sigma_[joint] * sigma_[joint]);
+    }
+    if (square > 0.0) free.typical[k] = of_torque.norm() / std::sqrt(square);
+  }
+  return free;
+}
+
+/// Puts a robot that can exist in the place of the free one, and remembers what that was.
+Result<void> RobotFitter::make_consistent(RobotIdentification& found) {
+  const FreeFit free = free_fit();
+  const auto nearest = nearest_robot(free);
+  if (!nearest) return tl::unexpected(nearest.error());
+  theta_ = nearest->parameters;
+  residuals_ = residuals(rows_);
+  ConsistentRobot made;
+  std::vector<std::pair<double, std::string>> pressing;
+  for (std::size_t k = 0; k < nearest->conditions.size(); ++k) {
+    const robot::PhysicalCondition& condition = nearest->conditions[k];
+    // Half a standard deviation of the residual, squared and halved: what one coefficient gains by chance.
+    constexpr double kPresses = 0.125;
+    const double pressure = nearest->solution.pressure[k];
+    if (pressure > kPresses) pressing.emplace_back(-pressure, condition.name);
+    if (!condition.pseudo_inertia) continue;
+    const Eigen::Matrix4d J = nearest->solution.matrices[k];
+    made.bodies.push_back({condition.name, robot::body_of(J), numeric::symmetric_eigenvalues(J)[0]});
+  }
+  std::ranges::sort(pressing);
+  for (auto& [pressure, name] : pressing) made.pressing.push_back(std::move(name));
+  Vector of_free(static_cast<Index>(free_names_.size()));
+  for (Index k = 0, i = 0; k < p_; ++k) {
+    if (!is_fixed(k)) of_free[i++] = theta_[k];
+  }
+  const Vector base = columns_.combination * of_free;
+  for (Index k = 0; k < base.size(); ++k) {
+    const robot::Coefficient& one = free_names_[static_cast<std::size_t>(columns_.kept[static_cast<std::size_t>(k)])];
+    made.combinations.push_back({one.name, one.unit, holds(columns_, k, free_names_), base[k], free.base[k],
+                                 std::sqrt(std::max(0.0, covariance_(k, k)))});
+  }
+  made.loss = nearest->solution.value;
+  made.gap = std::max(nearest->solution.last_change, 0.0);
+  made.newton_steps = nearest->solution.steps;
+  for (const std::string& link : nearest->replaced) {
+    found.notes.push_back(
+        fmt::format("the description states no body that can exist for {}: one near to it, or a ball, "
+                    "stands in where the data do not decide",
+                    link));
+  }
+  found.consistent = std::move(made);
+  return {};
+}
+
+/// Where no robot that can exist does nearly as well as the free fit.
+void warn_of_loss(RobotIdentification& found) {
+  constexpr double kMostLost = 0.5;  // [points of VAF]
+  const ConsistentRobot& consistent = *found.consistent;
+  std::size_t worst = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t joint = 0; joint < consistent.vaf_lost_in_sample.size(); ++joint) {
+    const double lost = consistent.vaf_lost_in_sample[joint];  // held-out data add their own noise
+    if (!(lost > most)) continue;
+    most = lost;
+    worst = joint;
+  }
+  if (!(most > kMostLost)) return;
+  constexpr std::size_t kNamed = 3;
+  std::string which;
+  for (std::size_t k = 0; k < std::min(kNamed, consistent.pressing.size()); ++k) {
+    which += (which.empty() ? "; what the data contradict most is " : ", ") + consistent.pressing[k];
+  }
+  found.warnings.push_back(
+      {WarningCode::consistent_fit_poor,
+       fmt::format("a robot that can exist explains {:.3g} points less of the torque of joint {} than the free fit{}",
+                   most, worst + 1, which),
+       "check the sign and the unit of each torque, the order of the joints and --fix; add drive terms that are "
+       "missing, "
+       "as in --terms motor_inertia,viscous,coulomb,offset"});
+  found.usable = false;
+}
+
 void warn(RobotIdentification& found) {
   std::vector<Warning>& warnings = found.warnings;
   if (!(found.inertia.smallest > 0.0)) {
@@ -377,7 +486,12 @@ void warn(RobotIdentification& found) {
                         fmt::format("the inertia matrix is not positive definite with the joints at [{}] (smallest "
                                     "eigenvalue {:.3g})",
                                     where, found.inertia.smallest),
-                        "move faster and over more of the workspace; check order and signs of the torques"});
+                        std::string(found.model.drive.motor_inertia
+                                        ? ""
+                                        : "where motors stand behind gears, add what their rotors weigh, --terms "
+                                          "motor_inertia,viscous,coulomb,offset; ") +
+                            "--consistent finds bodies that can exist; move faster and over more of the workspace; "
+                            "check order and signs of the torques"});
     found.usable = false;
   }
   constexpr double kHeaviest = 300.0, kLightest = 1e-3;  // [kg] of a robot that a person can hold
@@ -419,6 +533,7 @@ void warn(RobotIdentification& found) {
                         "look for terms that are missing (--terms), a delay (--motor-delay auto), a lower --cutoff, or "
                         "noise of the motion (--method iv)"});
   }
+  if (found.consistent) warn_of_loss(found);
   for (const RobotCoefficient& one : found.coefficients) {
     const bool positive = one.coefficient.name.starts_with("viscous") || one.coefficient.name.starts_with("coulomb");
     if (!one.identified || !positive || one.value + numeric::kNormal95 * one.standard_error >= 0.0) continue;
@@ -456,7 +571,18 @@ Result<RobotFit> RobotFitter::fit() {
     found.notes.insert(found.notes.end(), trial.notes.begin(), trial.notes.end());
     found.warnings.insert(found.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   }
+  for (const PreparedDynamics& trial : held_out_) {
+    for (const SourceFile& source : trial.sources) found.held_out_files.push_back(source.path);
+  }
   judge(found);
+  if (options_.consistent) {
+    std::vector<TorqueFit> of_free = std::move(found.fit);
+    found.fit.clear();
+    if (auto ok = make_consistent(found); !ok) return tl::unexpected(ok.error());
+    found.model.parameters = theta_;
+    judge(found);
+    compare(found.fit, std::move(of_free), *found.consistent);
+  }
   describe(found);
   check_inertia(found);
   warn(found);

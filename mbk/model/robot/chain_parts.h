@@ -5,11 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/model/robot/rigid_body.h"
 #include "mbk/model/robot/serial_chain.h"
 
 namespace mbk::robot {
-
-inline constexpr Index kCoefficientsPerBody = 10;
 
 /// A joint and the body beyond it. KDL::Joint remembers its last angle inside a const call, which two threads would
 /// race for; so the pose is made here.

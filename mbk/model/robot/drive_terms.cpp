@@ -23,6 +23,27 @@ std::vector<Coefficient> DriveTerms::coefficients(const Mechanism& mechanism) co
   return all;
 }
 
+std::vector<PhysicalCondition> DriveTerms::physical_conditions(const Mechanism& mechanism) const {
+  const std::vector<Coefficient> all = coefficients(mechanism);
+  const auto count = static_cast<Index>(all.size());
+  std::vector<PhysicalCondition> conditions;
+  Index coulomb_before = -1;
+  for (Index k = 0; k < count; ++k) {
+    const std::string& name = all[static_cast<std::size_t>(k)].name;
+    const bool dry = name.starts_with("coulomb"), growing = name.starts_with("stribeck");
+    if (dry) coulomb_before = k;
+    if (!dry && !growing && !name.starts_with("motor_inertia") && !name.starts_with("viscous")) continue;
+    PhysicalCondition one{name, Matrix::Zero(1, count)};
+    one.A(0, k) = 1.0;
+    if (growing && coulomb) {
+      one.A(0, coulomb_before) = 1.0;
+      one.name = all[static_cast<std::size_t>(coulomb_before)].name + " + " + name;
+    }
+    conditions.push_back(std::move(one));
+  }
+  return conditions;
+}
+
 int DriveTerms::per_joint() const {
   int count = 0;
   for (const bool wanted : {motor_inertia, viscous, coulomb, stribeck, cable, offset}) count += wanted ? 1 : 0;

@@ -25,6 +25,10 @@ struct DriveTerms {
   [[nodiscard]] std::vector<Coefficient> coefficients(const Mechanism& mechanism) const;
   [[nodiscard]] int per_joint() const;
 
+  /// What holds for the ψ of any drive that can exist: J_m, b and f_c above 0, and friction that opposes the motion
+  /// near standstill too, f_c + f_Δ > 0.
+  [[nodiscard]] std::vector<PhysicalCondition> physical_conditions(const Mechanism& mechanism) const;
+
   /// The terms of one joint, per_joint() of them.
   void regressor(double position, double velocity, double acceleration, double* row) const;
 

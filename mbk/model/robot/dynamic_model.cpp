@@ -28,6 +28,20 @@ std::vector<Coefficient> DynamicModel::coefficients() const {
   return all;
 }
 
+std::vector<PhysicalCondition> DynamicModel::physical_conditions() const {
+  const std::vector<PhysicalCondition> of_drives = drive.physical_conditions(*mechanism);
+  const Index all = bodies() + mechanism->joints() * drive.per_joint();
+  std::vector<PhysicalCondition> conditions = mechanism->physical_conditions();
+  for (PhysicalCondition& one : conditions) {
+    one.A.conservativeResizeLike(Matrix::Zero(one.A.rows(), all));
+  }
+  for (const PhysicalCondition& one : of_drives) {
+    conditions.push_back({one.name, Matrix::Zero(one.A.rows(), all)});
+    conditions.back().A.rightCols(one.A.cols()) = one.A;
+  }
+  return conditions;
+}
+
 std::vector<Matrix> DynamicModel::regressors(const JointMotion& motion) const {
   const Index terms = drive.per_joint(), n = mechanism->joints();
   std::vector<Matrix> W(static_cast<std::size_t>(n));

@@ -22,6 +22,9 @@ struct DynamicModel {
 
   [[nodiscard]] std::vector<Coefficient> coefficients() const;
 
+  /// What holds for the θ of any robot that can exist: of its bodies, then of its drives.
+  [[nodiscard]] std::vector<PhysicalCondition> physical_conditions() const;
+
   /// W of a motion, N×θ for each joint.
   [[nodiscard]] std::vector<Matrix> regressors(const JointMotion& motion) const;
 

@@ -9,6 +9,11 @@ std::string Mechanism::joint_name(int joint) const {
   return std::to_string(joint + 1);
 }
 
+const Vector& Mechanism::stated_coefficients() const {
+  static const Vector none;
+  return none;
+}
+
 std::vector<Matrix> Mechanism::regressors(const JointMotion& motion) const {
   const Index n = joints(), p = static_cast<Index>(coefficients().size()), samples = motion.samples();
   std::vector<Matrix> all(static_cast<std::size_t>(n), Matrix(samples, p));

@@ -38,6 +38,13 @@ struct JointRange {
   double high = 0.0;
 };
 
+/// A symmetric matrix, linear in the coefficients, that is positive definite for every robot that can exist.
+struct PhysicalCondition {
+  std::string name;             ///< of what it is a condition: a link, or a coefficient
+  Matrix A;                     ///< n²×(number of coefficients): A φ is the matrix, column by column
+  bool pseudo_inertia = false;  ///< it is the one of a rigid body (rigid_body.h)
+};
+
 /// I(q), Cᵀ(q, q̇) q̇ and g(q) in one state.
 struct JointTerms {
   JointMatrix inertia;              ///< n×n [kg·m²; kg where a joint slides]
@@ -66,6 +73,11 @@ class Mechanism {
   [[nodiscard]] virtual int hand_axes() const = 0;
   /// φ, p of them.
   [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;
+
+  /// What holds for the φ of any bodies that can exist; none where nothing is known of it.
+  [[nodiscard]] virtual std::vector<PhysicalCondition> physical_conditions() const { return {}; }
+  /// The φ that the robot's description states; empty where it states none.
+  [[nodiscard]] virtual const Vector& stated_coefficients() const;
 
   /// Y in one state, n×p.
   virtual void regressor(const JointVector& position, const JointVector& velocity, const JointVector& acceleration,

@@ -14,6 +14,13 @@ PlanarMechanism::PlanarMechanism(const Options& options) : options_(options) {
   }
 }
 
+std::vector<PhysicalCondition> PlanarMechanism::physical_conditions() const {
+  PhysicalCondition inertia{"the links", Matrix::Zero(4, static_cast<Index>(coefficients_.size()))};
+  inertia.A(0, 0) = inertia.A(3, 2) = 1.0;
+  inertia.A(1, 1) = inertia.A(2, 1) = 0.5;
+  return {std::move(inertia)};
+}
+
 JointRange PlanarMechanism::joint_range(int joint) const {
   const JointLimits& limits = options_.geometry.limits;
   return joint == 0 ? JointRange{limits.theta1_low, limits.theta1_high}

@@ -28,6 +28,8 @@ class PlanarMechanism : public Mechanism {
   [[nodiscard]] bool slides(int /*joint*/) const override { return false; }
   [[nodiscard]] int hand_axes() const override { return 2; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  /// [α₁ ½α₂; ½α₂ α₃]: with it the kinetic energy is positive in every posture.
+  [[nodiscard]] std::vector<PhysicalCondition> physical_conditions() const override;
   void regressor(const JointVector& position, const JointVector& velocity, const JointVector& acceleration,
                  Eigen::Ref<Matrix> Y) const override;
   [[nodiscard]] std::vector<Matrix> regressors(const JointMotion& motion) const override;

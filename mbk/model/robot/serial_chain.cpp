@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "mbk/model/robot/chain_parts.h"
+#include "mbk/model/robot/rigid_body.h"
 
 namespace mbk::robot {
 namespace {
@@ -88,9 +89,6 @@ SerialChain::~SerialChain() = default;
 const std::vector<SerialChain::Joint>& SerialChain::joint_descriptions() const {
   return parts_->descriptions;
 }
-const mbk::Vector& SerialChain::stated_coefficients() const {
-  return parts_->stated;
-}
 const std::string& SerialChain::base_link() const {
   return parts_->base_link;
 }
@@ -115,6 +113,23 @@ int SerialChain::hand_axes() const {
 }
 const std::vector<Coefficient>& SerialChain::coefficients() const {
   return parts_->coefficients;
+}
+std::vector<PhysicalCondition> SerialChain::physical_conditions() const {
+  std::vector<PhysicalCondition> all;
+  const auto bodies = static_cast<Index>(parts_->joints.size());
+  for (Index body = 0; body < bodies; ++body) {
+    PhysicalCondition one{parts_->descriptions[static_cast<std::size_t>(body)].link,
+                          Matrix::Zero(16, bodies * kCoefficientsPerBody), true};
+    for (Index k = 0; k < kCoefficientsPerBody; ++k) {
+      one.A.col(body * kCoefficientsPerBody + k) =
+          pseudo_inertia(Eigen::Matrix<double, kCoefficientsPerBody, 1>::Unit(k)).reshaped();
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+const mbk::Vector& SerialChain::stated_coefficients() const {
+  return parts_->stated;
 }
 
 /// The wrench that moves a body, with c = v̇ + ω × v of its origin less gravity and α = ω̇ (Newton–Euler; its linear form

@@ -54,8 +54,6 @@ class SerialChain : public Mechanism {
   ~SerialChain() override;
 
   [[nodiscard]] const std::vector<Joint>& joint_descriptions() const;
-  /// The φ that the URDF states.
-  [[nodiscard]] const Vector& stated_coefficients() const;
   /// Links at both ends, after defaults.
   [[nodiscard]] const std::string& base_link() const;
   [[nodiscard]] const std::string& tip_link() const;
@@ -66,6 +64,10 @@ class SerialChain : public Mechanism {
   [[nodiscard]] bool slides(int joint) const override;
   [[nodiscard]] int hand_axes() const override;
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override;
+  /// The pseudo-inertia of each body, by its link.
+  [[nodiscard]] std::vector<PhysicalCondition> physical_conditions() const override;
+  /// The φ that the URDF states.
+  [[nodiscard]] const Vector& stated_coefficients() const override;
   void regressor(const JointVector& position, const JointVector& velocity, const JointVector& acceleration,
                  Eigen::Ref<Matrix> Y) const override;
   [[nodiscard]] JointTerms terms(const JointVector& position, const JointVector& velocity,

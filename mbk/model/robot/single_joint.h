@@ -22,6 +22,9 @@ class SingleJoint : public Mechanism {
   [[nodiscard]] bool slides(int /*joint*/) const override { return options_.slides; }
   [[nodiscard]] int hand_axes() const override { return 1; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  [[nodiscard]] std::vector<PhysicalCondition> physical_conditions() const override {
+    return {{coefficients_.front().name, Matrix::Ones(1, 1)}};
+  }
   void regressor(const JointVector& position, const JointVector& velocity, const JointVector& acceleration,
                  Eigen::Ref<Matrix> Y) const override;
   [[nodiscard]] JointTerms terms(const JointVector& position, const JointVector& velocity,

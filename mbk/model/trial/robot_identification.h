@@ -8,8 +8,10 @@
 #include "mbk/base/core/nan.h"
 #include "mbk/base/core/words.h"
 #include "mbk/model/robot/dynamic_model.h"
+#include "mbk/model/trial/consistent_robot.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/prepared_dynamics.h"
+#include "mbk/model/trial/torque_fit.h"
 
 namespace mbk {
 
@@ -29,19 +31,13 @@ enum class RobotMethod {
 /// What a coefficient of the robot turned out to be.
 struct RobotCoefficient {
   robot::Coefficient coefficient;
-  double value = 0;           ///< 0 where it is not identified: its share is in those that are
+  /// Of a free fit 0 where it is not identified, since its share is in those that are; of a consistent one its own.
+  double value = 0;
   double standard_error = 0;  ///< NaN where it is not identified
-  bool identified = true;
-  bool fixed = false;  ///< taken as known
+  bool identified = true;     ///< of a consistent fit: stands by itself
+  bool fixed = false;         ///< taken as known
   /// What the value holds besides the coefficient itself, as in "+ 0.04·link_2.mass"; empty where it stands for itself.
   std::string together_with;
-};
-
-/// How well the torque of one joint is explained; NaN where no torque of it counts.
-struct TorqueFit {
-  double vaf = 0, rmse = 0;                      ///< [%], [N·m or N]; held out where anything was
-  double vaf_in_sample = 0, rmse_in_sample = 0;  ///< on the data behind the coefficients
-  std::optional<double> vaf_smoothed;            ///< of vaf's data, predicted from the smoothed motion
 };
 
 /// Whether the inertia matrix is one in every posture.
@@ -68,6 +64,7 @@ struct RobotIdentification {
   double condition = 0;                                 ///< of the regressors kept, each scaled to unit length
   std::vector<std::pair<std::string, double>> weakest;  ///< what is hardest to identify: coefficients with their shares
   InertiaCheck inertia;
+  std::optional<ConsistentRobot> consistent;  ///< where a robot that can exist was asked for: `model` is then that one
   double hac_lag_s = 0;
   Index samples = 0;
   std::string description, urdf;  ///< the files that say what robot it is, as they were; empty for the thesis's

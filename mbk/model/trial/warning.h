@@ -47,6 +47,7 @@ enum class WarningCode {
   same_column,
   other_column,
   handle_mass_too_large,
+  consistent_fit_poor,
 };
 
 /// Stable: scripts may test for these words.
@@ -91,6 +92,7 @@ enum class WarningCode {
       {same_column, "same-column"},
       {other_column, "other-column"},
       {handle_mass_too_large, "handle-mass-too-large"},
+      {consistent_fit_poor, "consistent-fit-poor"},
   });
 }
 

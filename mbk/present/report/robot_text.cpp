@@ -1,6 +1,7 @@
 #include "mbk/present/report/robot_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,10 +66,9 @@ std::string how_found(const RobotIdentification& found) {
   return text + table(rows);
 }
 
-}  // namespace
-
-std::string robot_text(const RobotIdentification& found) {
-  std::string text = how_found(found) + "\n";
+/// The coefficients of a free fit.
+std::string free_text(const RobotIdentification& found) {
+  std::string text;
   std::vector<std::vector<std::string>> rows;
   std::string nothing;
   bool combined = false;
@@ -92,8 +92,69 @@ std::string robot_text(const RobotIdentification& found) {
                       "parameters), and they are all that torque and force need.");
   }
   if (!nothing.empty()) text += paragraph("  not distinguishable, or without effect: ", nothing);
+  return text;
+}
 
-  rows = {{found.held_out ? "held out" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
+std::string points(double lost) {
+  return std::isfinite(lost) ? fmt::format("{:+.2f}", lost == 0.0 ? 0.0 : -lost) : "–";
+}
+
+/// The links, what the data decide of them, and what that costs.
+std::string consistent_text(const RobotIdentification& found, const ConsistentRobot& consistent) {
+  std::string text;
+  std::vector<std::vector<std::string>> rows;
+  if (!consistent.bodies.empty()) {
+    rows.push_back({"link", "mass kg", "centre mm", "inertia xx, yy, zz kg·m²", "smallest"});
+    for (const ConsistentBody& one : consistent.bodies) {
+      const Eigen::Vector3d c = 1e3 * one.body.centre;
+      const Eigen::Matrix3d& I = one.body.inertia;
+      rows.push_back({one.link, fmt::format("{:.4g}", one.body.mass),
+                      fmt::format("{:.1f}, {:.1f}, {:.1f}", c[0], c[1], c[2]),
+                      fmt::format("{:.3g}, {:.3g}, {:.3g}", I(0, 0), I(1, 1), I(2, 2)),
+                      fmt::format("{:.2g}", one.smallest_eigenvalue)});
+    }
+    text += table(rows);
+    text += paragraph("  ",
+                      "Bodies that can exist, in the frames of their links; inertia about the centre of mass (its "
+                      "products: --json); smallest: eigenvalue of the pseudo-inertia in SI units. They are one choice "
+                      "of many: other masses, centres and inertias move the robot alike as long as the sums below "
+                      "stay. What no torque shows is nearest to the description.");
+    for (const std::string& note : found.notes) text += paragraph("  ", note);
+    text += "\n";
+  }
+  rows = {{"", "consistent", "free fit", "unit", ""}};
+  for (const RobotCoefficient& one : found.coefficients) {
+    if (one.fixed)
+      rows.push_back({one.coefficient.name, fmt::format("{:.6g}", one.value), "given", one.coefficient.unit, ""});
+  }
+  for (const RobotCombination& one : consistent.combinations) {
+    rows.push_back({one.name, fmt::format("{:.5g}", one.value),
+                    with_interval(one.free, numeric::kNormal95 * one.standard_error), one.unit, one.together_with});
+  }
+  text += table(rows);
+  text += paragraph("  ",
+                    "These sums are what torque and motion decide, and all that torque and force need. ± is the 95 % "
+                    "interval of the free fit, which is not sure to be a possible robot; how much surer the conditions "
+                    "make it is not counted.");
+
+  rows = {{"VAF, points", found.held_out ? "held out" : "in sample", "in sample"}};
+  for (std::size_t joint = 0; joint < consistent.vaf_lost.size(); ++joint) {
+    rows.push_back({fmt::format("joint {} against the free fit", joint + 1), points(consistent.vaf_lost[joint]),
+                    points(consistent.vaf_lost_in_sample[joint])});
+  }
+  if (consistent.vaf_lost.size() > 1) rows.push_back({"mean of the joints", points(consistent.mean_vaf_lost), ""});
+  text += "\n" + table(rows);
+  if (!consistent.pressing.empty()) {
+    text += paragraph("  at the edge of what can exist, strongest first: ",
+                      fmt::format("{}", fmt::join(consistent.pressing, ", ")));
+  }
+  return text;
+}
+
+/// How well each joint's torque is explained.
+std::string fit_text(const RobotIdentification& found) {
+  std::vector<std::vector<std::string>> rows = {
+      {found.held_out ? "held out" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
   const bool smoothed =
       std::ranges::any_of(found.fit, [](const TorqueFit& fit) { return fit.vaf_smoothed.has_value(); });
   if (smoothed) rows.front().push_back(fmt::format("VAF %, motion smoothed at {:.3g} Hz", found.smoothed_cutoff));
@@ -105,7 +166,19 @@ std::string robot_text(const RobotIdentification& found) {
                     fmt::format("{:.3g} {}", fit.rmse_in_sample, unit)});
     if (fit.vaf_smoothed) rows.back().push_back(percent(*fit.vaf_smoothed));
   }
-  text += "\n" + table(rows);
+  return "\n" + table(rows);
+}
+
+}  // namespace
+
+std::string robot_text(const RobotIdentification& found) {
+  std::string text = how_found(found) + "\n";
+  if (found.consistent) {
+    text += consistent_text(found, *found.consistent);
+  } else {
+    text += free_text(found);
+  }
+  text += fit_text(found);
   if (found.inertia.smallest > 0.0) {
     text += fmt::format("  inertia matrix positive definite in every posture: smallest eigenvalue {:.3g}\n",
                         found.inertia.smallest);

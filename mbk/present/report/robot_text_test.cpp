@@ -96,6 +96,43 @@ TEST(RobotText, EndsWithWarningsAndWithAVerdict) {
   EXPECT_THAT(text, Not(HasSubstr("positive definite in every posture")));
 }
 
+RobotIdentification consistent() {
+  RobotIdentification found = identified();
+  ConsistentRobot one;
+  one.bodies.push_back(
+      {"forearm", {1.234, {0.01, 0.0, -0.12}, Eigen::Vector3d(0.02, 0.021, 0.003).asDiagonal()}, 4e-4});
+  one.combinations.push_back({"forearm.mass_z", "kg·m", "+ 0.25·hand.mass", 0.31, 0.3, 0.01});
+  one.free_fit = found.fit;
+  one.vaf_lost = {0.125};
+  one.vaf_lost_in_sample = {std::nan("")};
+  one.pressing = {"forearm", "viscous_1"};
+  found.consistent = std::move(one);
+  found.notes = {"a ball stands in"};
+  return found;
+}
+
+TEST(RobotText, OfAConsistentFitShowsLinksAndWhatTheDataDecide) {
+  const std::string text = robot_text(consistent());
+  EXPECT_THAT(text, ::testing::ContainsRegex("forearm +1.234 +10.0, 0.0, -120.0 +0.02, 0.021, 0.003 +0.0004\n"));
+  EXPECT_THAT(text, HasSubstr("one choice of many"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("forearm.mass_z +0.31 +0.300 ± 0.020 +kg·m +\\+ 0.25·hand.mass\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("viscous_1 +203.5 +given +N·s/m"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("joint 1 against the free fit +-0.1[23] +–\n"));
+  EXPECT_THAT(text, HasSubstr("strongest first: forearm, viscous_1"));
+  EXPECT_THAT(text, HasSubstr("a ball stands in"));
+  EXPECT_THAT(text, HasSubstr("of the free fit"));
+}
+
+TEST(RobotText, OfAConsistentFitWithoutLinksShowsNone) {
+  RobotIdentification found = consistent();
+  found.consistent->bodies.clear();
+  found.consistent->pressing.clear();
+  const std::string text = robot_text(found);
+  EXPECT_THAT(text, Not(HasSubstr("one choice of many")));
+  EXPECT_THAT(text, Not(HasSubstr("strongest first")));
+  EXPECT_THAT(text, HasSubstr("forearm.mass_z"));
+}
+
 ForceSummary force() {
   ForceSummary force;
   force.sources.push_back({"rig.h5", "HDF5", "abc"});

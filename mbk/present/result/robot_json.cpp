@@ -74,6 +74,50 @@ StoredRobot stored_from(const Json& json) {
   return stored;
 }
 
+Json fit_json(const std::vector<TorqueFit>& joints) {
+  Json json = Json::array();
+  for (const TorqueFit& fit : joints) {
+    Json entry = {{"VAF", number(fit.vaf)},
+                  {"RMSE", number(fit.rmse)},
+                  {"VAF_in_sample", number(fit.vaf_in_sample)},
+                  {"RMSE_in_sample", number(fit.rmse_in_sample)}};
+    if (fit.vaf_smoothed) entry["VAF_from_smoothed_motion"] = number(*fit.vaf_smoothed);
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json consistent_json(const ConsistentRobot& consistent) {
+  Json json = {{"links", Json::array()}, {"combinations", Json::array()}};
+  for (const ConsistentBody& one : consistent.bodies) {
+    json["links"].push_back({{"name", one.link},
+                             {"mass_kg", number(one.body.mass)},
+                             {"centre_m", list(one.body.centre)},
+                             {"inertia_about_centre_kg_m2", rows(one.body.inertia)},
+                             {"pseudo_inertia_smallest_eigenvalue", number(one.smallest_eigenvalue)}});
+  }
+  for (const RobotCombination& one : consistent.combinations) {
+    Json entry = {{"name", one.name},
+                  {"unit", one.unit},
+                  {"value", number(one.value)},
+                  {"free_value", number(one.free)},
+                  {"standard_error", number(one.standard_error)}};
+    if (!one.together_with.empty()) entry["together_with"] = one.together_with;
+    json["combinations"].push_back(std::move(entry));
+  }
+  json["free_fit"] = fit_json(consistent.free_fit);
+  json["VAF_lost"] = Json::array();
+  json["VAF_lost_in_sample"] = Json::array();
+  for (const double lost : consistent.vaf_lost) json["VAF_lost"].push_back(number(lost));
+  for (const double lost : consistent.vaf_lost_in_sample) json["VAF_lost_in_sample"].push_back(number(lost));
+  json["mean_VAF_lost"] = number(consistent.mean_vaf_lost);
+  json["loss"] = number(consistent.loss);
+  json["loss_gap"] = number(consistent.gap);
+  json["newton_steps"] = consistent.newton_steps;
+  json["pressing"] = consistent.pressing;
+  return json;
+}
+
 }  // namespace
 
 std::string to_json(const RobotIdentification& found) {
@@ -102,15 +146,7 @@ std::string to_json(const RobotIdentification& found) {
   json["motor_delay_s"] = found.model.delay;
   if (found.delay_standard_error) json["motor_delay_standard_error_s"] = number(*found.delay_standard_error);
   json["drive"] = drive_json(found.model.drive);
-  json["fit"] = Json::array();
-  for (const TorqueFit& fit : found.fit) {
-    Json entry = {{"VAF", number(fit.vaf)},
-                  {"RMSE", number(fit.rmse)},
-                  {"VAF_in_sample", number(fit.vaf_in_sample)},
-                  {"RMSE_in_sample", number(fit.rmse_in_sample)}};
-    if (fit.vaf_smoothed) entry["VAF_from_smoothed_motion"] = number(*fit.vaf_smoothed);
-    json["fit"].push_back(std::move(entry));
-  }
+  json["fit"] = fit_json(found.fit);
   if (found.smoothed_cutoff > 0.0) json["smoothed_motion_cutoff_hz"] = found.smoothed_cutoff;
   json["validated_on"] = validated_on(found.held_out);
   if (!found.held_out_files.empty()) json["held_out_files"] = found.held_out_files;
@@ -122,6 +158,7 @@ std::string to_json(const RobotIdentification& found) {
     json["excitation"]["weakest"].push_back({{"name", name}, {"share", number(share)}});
   }
   json["inertia"] = {{"smallest_eigenvalue", number(found.inertia.smallest)}, {"at", found.inertia.where}};
+  if (found.consistent) json["consistent"] = consistent_json(*found.consistent);
   json["samples"] = found.samples;
   json["hac_lag_s"] = found.hac_lag_s;
   json["preparation"] = Json::array();

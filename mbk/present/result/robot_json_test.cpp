@@ -95,6 +95,38 @@ TEST(RobotJson, SaysHowEachCoefficientWasFound) {
   EXPECT_FALSE(json.contains("instruments"));
 }
 
+TEST(RobotJson, HoldsTheRobotThatCanExist) {
+  RobotIdentification found = identified();
+  EXPECT_FALSE(schemas::parsed(to_json(found)).contains("consistent"));
+  ConsistentRobot one;
+  one.bodies.push_back({"forearm", {1.5, {0.01, 0.0, -0.12}, Eigen::Vector3d(0.02, 0.021, 0.003).asDiagonal()}, 4e-4});
+  one.combinations.push_back({"forearm.mass_z", "kg·m", "+ 0.25·hand.mass", 0.31, 0.3, 0.01});
+  one.combinations.push_back({"offset_1", "N", "", 0.2, 0.2, kNaN});
+  one.free_fit = found.fit;
+  one.vaf_lost = {0.125};
+  one.vaf_lost_in_sample = {kNaN};
+  one.mean_vaf_lost = 0.125;
+  one.loss = 1.5;
+  one.gap = 0.01;
+  one.newton_steps = 12;
+  one.pressing = {"forearm"};
+  found.consistent = std::move(one);
+  const Json json = schemas::parsed(to_json(found))["consistent"];
+  EXPECT_EQ(json["links"][0]["mass_kg"], 1.5);
+  EXPECT_EQ(json["links"][0]["centre_m"], Json::array({0.01, 0.0, -0.12}));
+  EXPECT_EQ(json["links"][0]["inertia_about_centre_kg_m2"][1][1], 0.021);
+  EXPECT_EQ(json["links"][0]["pseudo_inertia_smallest_eigenvalue"], 4e-4);
+  EXPECT_EQ(json["combinations"][0]["together_with"], "+ 0.25·hand.mass");
+  EXPECT_EQ(json["combinations"][0]["free_value"], 0.3);
+  EXPECT_FALSE(json["combinations"][1].contains("together_with"));
+  EXPECT_TRUE(json["combinations"][1]["standard_error"].is_null());
+  EXPECT_EQ(json["free_fit"][0]["VAF"], 98.5);
+  EXPECT_EQ(json["VAF_lost"], Json::array({0.125}));
+  EXPECT_TRUE(json["VAF_lost_in_sample"][0].is_null());
+  EXPECT_EQ(json["loss"], 1.5);
+  EXPECT_EQ(json["pressing"], Json::array({"forearm"}));
+}
+
 TEST(RobotJson, NamesTheInstrumentsWhereTheyWereUsed) {
   RobotIdentification found = identified();
   found.method = RobotMethod::instrumental_variables;

@@ -29,6 +29,10 @@ export const plainWarnings: PlainWarnings = {
     title: "A channel was read from a column with another name",
     meaning: "Check that the columns were named as the file means them.",
   },
+  "consistent-fit-poor": {
+    title: "No robot that can exist explains the torques as well",
+    meaning: "A torque was probably recorded with the opposite sign or in another unit, or part of the robot is missing from its description.",
+  },
   "handle-mass-too-large": {
     title: "More handle mass was subtracted than was measured",
     meaning: "The inertia that is left is not that of a limb.",
