@@ -27,14 +27,15 @@ class Failed(Exception):
 class Counted:
     """Instructions of one run.
 
-    total      of the whole process, without NOT_RUN_ELSEWHERE
+    total      of the process without NOT_RUN_ELSEWHERE
+    whole      of the process with it, as callers' inclusive costs hold it too
     functions  short name: (inclusive, self). Inclusive is what the function and all that it calls execute; where
                functions call each other in a ring, or several have the same short name, it may count twice what is
-               executed within, and is never more than the total.
+               executed within, and is never more than the whole.
     """
 
-    def __init__(self, total, functions):
-        self.total, self.functions = total, functions
+    def __init__(self, total, whole, functions):
+        self.total, self.whole, self.functions = total, whole, functions
 
 
 def short_name(name):
@@ -103,9 +104,9 @@ def read(text):
             total = int(line.split()[1])
     if not total or not own:
         raise Failed("callgrind's file holds no total or no function: it was not written to its end")
-    total -= sum(own.pop(name, 0) for name in NOT_RUN_ELSEWHERE)
-    return Counted(total, {name: (min(total, own.get(name, 0) + calls.get(name, 0)), own.get(name, 0))
-                           for name in own.keys() | calls.keys()})
+    functions = {name: (min(total, own.get(name, 0) + calls.get(name, 0)), own.get(name, 0))
+                 for name in own.keys() | calls.keys() if name not in NOT_RUN_ELSEWHERE}
+    return Counted(total - sum(own.get(name, 0) for name in NOT_RUN_ELSEWHERE), total, functions)
 
 
 def version():

@@ -98,7 +98,7 @@ def grew(figure, counted):
         found = []
         for name, both in counted.functions.items():
             before = figure["functions"].get(name)
-            if both[which] <= below * counted.total:
+            if both[which] <= below * counted.whole:
                 more = both[which] - (before[which] if before else min(least, both[which]))
                 if more > 0.001 * figure["instructions"]:
                     text = f"{before[which]:>15,}" if before else f"{'under':>4} {5 * least if which == 0 else least:>9,}"

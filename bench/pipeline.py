@@ -72,13 +72,13 @@ def by_numpy_convolve(signals, derivative):
 
 
 def scipy_pipeline(position, force, smooth):
-    start = time.perf_counter()
+    start = time.process_time()
     signals = np.vstack([smooth(position, 2), smooth(position, 1), smooth(position, 0), smooth(force, 0)])
     signals = sosfiltfilt(LOWPASS, signals, padlen=15)
-    filtered = time.perf_counter()
+    filtered = time.process_time()
     Z = np.vstack([signals[:6, :IDENTIFY], np.ones(IDENTIFY)]).T
     P = np.linalg.lstsq(Z, -signals[6:, :IDENTIFY].T, rcond=None)[0]
-    done = time.perf_counter()
+    done = time.process_time()
     return {"filters_s": filtered - start, "all_s": done - start,
             "M": P[0:2].T.tolist(), "B": P[2:4].T.tolist(), "K": P[4:6].T.tolist()}
 
@@ -146,7 +146,7 @@ def main():
         ways = [by_savgol_filter, by_convolve1d, by_oaconvolve, by_numpy_convolve]
         trial = {way: min(scipy_pipeline(position, force, way)["filters_s"] for _ in range(4)) for way in ways}
         fastest = min(trial, key=trial.get)
-        print(f"{END - BEGIN - 2} samples, {arguments.turns} turns, one core; ms\n")
+        print(f"{END - BEGIN - 2} samples, {arguments.turns} turns, one core; ms of CPU\n")
         print("  filters of SciPy, least of 4: " +
               ", ".join(f"{way.__name__[3:]} {1e3 * seconds:.1f}" for way, seconds in trial.items()))
         print(f"  {fastest.__name__[3:]} goes on (NumPy {np.__version__}, SciPy {scipy.__version__})\n")

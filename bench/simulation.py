@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """How long does a simulated trial take? 62.1 s at 1 kHz with controller, arm and all sensors, from starting the process
-to the recording on disk.
+to the recording on disk. Their floor is starting the process (`mbk --version`).
 
 Where numpy and scipy can be imported, plain_closed_loop.py moves the same robot and arm again from the recorded motor
 torques, in turns with mbk (A B A B ...); it does neither controller nor sensors, energies or file. Both must put the hand
 at the same places to 1e-9 m. Times are reported and never judged: the exit code is 0 unless a program fails or the
 answers differ.
 
-usage: simulation.py [--bin build/release/bin] [--runs 9] [--python /usr/bin/python3]
+usage: simulation.py [--bin build/bench/bin] [--runs 9] [--python /usr/bin/python3]
 """
 
 import json
@@ -16,7 +16,7 @@ import statistics
 import sys
 import tempfile
 
-from whole_command import HERE, arguments_of, has_scipy, row, run
+from whole_command import HERE, arguments_of, has_scipy, header, row, run
 
 AGREEMENT = 1e-9  # [m] and [N]
 
@@ -31,6 +31,8 @@ def main():
         end = ["--out", recording, "--overwrite", "--quiet"]
         scipy = has_scipy(arguments.python)
         ready, plain, twin = [], [], []
+        starts = [run([mbk, "--version"])[1:] for _ in range(arguments.runs)]
+        floor_wall, floor_cpu = (statistics.median(one[k] for one in starts) for k in (0, 1))
         for _ in range(arguments.runs + 1):  # the first one warms up
             ready.append(run([mbk, "simulate", "relaxed_sinusoidal", *end])[1:])
             plain.append(run([mbk, "simulate", HERE / "closed_loop.toml", *end])[1:])
@@ -38,10 +40,10 @@ def main():
                 text, *_ = run([arguments.python, HERE / "plain_closed_loop.py", recording])
                 twin.append(json.loads(text))
         print(f"62.1 s at 1 kHz, {arguments.runs} runs; whole process, in ms\n")
-        print(f"  {'':<34}{'least':>10}{'median':>10}{'greatest':>10}")
-        row("mbk simulate relaxed_sinusoidal, wall", [wall for wall, _ in ready[1:]])
-        row("  CPU", [cpu for _, cpu in ready[1:]])
-        row("mbk simulate closed_loop.toml, wall", [wall for wall, _ in plain[1:]])
+        header("floor")
+        row("mbk simulate relaxed_sinusoidal, wall", [wall for wall, _ in ready[1:]], floor_wall)
+        row("  CPU", [cpu for _, cpu in ready[1:]], floor_cpu)
+        row("mbk simulate closed_loop.toml, wall", [wall for wall, _ in plain[1:]], floor_wall)
     if not scipy:
         print(f"\n{arguments.python} has no numpy and scipy: nothing to compare with")
         return

@@ -52,6 +52,10 @@ def srivc(u, y, pole=20.0, tolerance=1e-4):
     raise SystemExit("SciPy: did not settle")
 
 
+def row(name, times, passes):
+    print(f"  {name:6} {min(times):8.2f} {statistics.median(times):8.2f} {max(times):8.2f}   {passes} passes")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--bin", type=pathlib.Path, required=True, help="where bench_transfer_function is")
@@ -80,8 +84,8 @@ def main():
     found = numpy.array([float(word) for word in words[2:]])
     found = numpy.r_[found[3::-1], found[:3:-1]]
     print(f"{arguments.samples} samples, 4 poles, {arguments.turns} turns, one thread; ms of CPU: least, median, greatest")
-    for name, times, count in (("mbk", ours, int(words[1])), ("SciPy", theirs, passes)):
-        print(f"  {name:6} {min(times):8.2f} {statistics.median(times):8.2f} {max(times):8.2f}   {count} passes")
+    row("mbk", ours, int(words[1]))
+    row("SciPy", theirs, passes)
     print(f"SciPy over mbk, pair by pair: median {statistics.median(ratios):.1f}, "
           f"{min(ratios):.1f} to {max(ratios):.1f}")
     print(f"coefficients differ by at most {numpy.max(numpy.abs(found / theta - 1)):.1e} of themselves")

@@ -4,10 +4,11 @@
 Makes the log with make_log, runs `mbk measure` on it and prints the least, median and greatest wall and CPU time.
 Where numpy and scipy can be imported, bench/numpy_pipeline.py does the same job in turns with mbk (A B A B ...), so
 that both meet the same state of the machine; the ratio is taken pair by pair. Both must give the same M, B and K to
-1e-6 of each matrix's largest element. Times are reported and never judged: the exit code is 0 unless a program fails
+1e-6 of each matrix's largest element. Beside each figure of mbk stands its floor: what starting the process, reading and
+inflating the file and its hash take by themselves (`mbk --version`, bench_floor). Times are reported and never judged: the exit code is 0 unless a program fails
 or the two answers differ.
 
-usage: whole_command.py [--bin build/release/bin] [--runs 9] [--python /usr/bin/python3]
+usage: whole_command.py [--bin build/bench/bin] [--runs 9] [--python /usr/bin/python3]
 """
 
 import argparse
@@ -38,9 +39,14 @@ def run(command):
         return out.read().decode(), wall, usage.ru_utime + usage.ru_stime
 
 
-def row(name, seconds):
-    values = [min(seconds), statistics.median(seconds), max(seconds)]
-    print(f"  {name:<34}" + "".join(f"{1e3 * value:10.1f}" for value in values))
+def header(*more):
+    print(f"  {'':<40}" + "".join(f"{name:>10}" for name in ("least", "median", "greatest", *more)))
+
+
+def row(name, seconds, *more):
+    """A row of the table [ms]."""
+    values = [min(seconds), statistics.median(seconds), max(seconds), *more]
+    print(f"  {name:<40}" + "".join(f"{1e3 * value:10.1f}" for value in values))
 
 
 def largest_difference(a, b):
@@ -52,6 +58,18 @@ def largest_difference(a, b):
     return worst
 
 
+class Floor:
+    """Processor time that no program that measures this file can do without [s]."""
+
+    def __init__(self, programs, log, turns):
+        starts = [run([programs / "mbk", "--version"]) for _ in range(turns)]
+        self.wall, self.start = (statistics.median(one[k] for one in starts) for k in (1, 2))
+        text, *_ = run([programs / "bench_floor", log, str(turns)])
+        found = json.loads(text)
+        self.reading, self.inflating, self.hashing = (found[key] for key in ("read_s", "inflate_s", "sha256_s"))
+        self.work = self.reading + self.inflating + self.hashing
+
+
 def has_scipy(python):
     check = [python, "-c", "import numpy, scipy.signal, scipy.io; print(numpy.__version__, scipy.__version__)"]
     found = subprocess.run(check, capture_output=True, text=True, check=False)
@@ -60,7 +78,7 @@ def has_scipy(python):
 
 def arguments_of(description):
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--bin", type=pathlib.Path, default=HERE.parent / "build/release/bin", help="folder of mbk")
+    parser.add_argument("--bin", type=pathlib.Path, default=HERE.parent / "build/bench/bin", help="folder of the programs")
     parser.add_argument("--runs", type=int, default=9, help="timed runs of each program (9)")
     parser.add_argument("--python", default=sys.executable, help="the Python that has numpy and scipy, if any")
     arguments = parser.parse_args()
@@ -72,7 +90,7 @@ def arguments_of(description):
 def main():
     arguments = arguments_of(__doc__)
     mbk, make_log = arguments.bin / "mbk", arguments.bin / "make_log"
-    for program in (mbk, make_log):
+    for program in (mbk, make_log, arguments.bin / "bench_floor"):
         if not program.exists():
             sys.exit(f"whole_command.py: {program} is not there; build first, or name its folder with --bin")
 
@@ -84,10 +102,12 @@ def main():
         scipy = has_scipy(arguments.python)
 
         print(f"62.1 s at 1 kHz, {log.stat().st_size / 1e6:.1f} MB, {arguments.runs} runs; whole process, in ms\n")
-        print(f"  {'':<34}{'least':>10}{'median':>10}{'greatest':>10}")
+        header("floor")
+        floor = Floor(arguments.bin, log, arguments.runs)
+        least_wall, least_cpu = floor.wall + floor.work, floor.start + floor.work
         default = [run([mbk, "measure", log])[1:] for _ in range(arguments.runs + 1)][1:]  # the first one warms up
-        row("mbk measure, wall", [wall for wall, _ in default])
-        row("mbk measure, CPU", [cpu for _, cpu in default])
+        row("mbk measure, wall", [wall for wall, _ in default], least_wall)
+        row("mbk measure, CPU", [cpu for _, cpu in default], least_cpu)
         run(published)
         if scipy:
             run(pipeline)
@@ -101,14 +121,17 @@ def main():
                 theirs.append(times)
                 other = json.loads(text)
                 own_time.append(other["seconds_after_imports"])
-        row("mbk measure --mode reference, wall", [wall for wall, _ in ours])
-        row("mbk measure --mode reference, CPU", [cpu for _, cpu in ours])
+        row("mbk measure --mode reference, wall", [wall for wall, _ in ours], least_wall)
+        row("mbk measure --mode reference, CPU", [cpu for _, cpu in ours], least_cpu)
+        if scipy:
+            row("numpy_pipeline.py, wall", [wall for wall, _ in theirs])
+            row("numpy_pipeline.py, CPU", [cpu for _, cpu in theirs])
+            row("  of this after the imports, wall", own_time)
+        print(f"\n  floor, CPU: starting the process {1e3 * floor.start:.1f}, reading {1e3 * floor.reading:.1f} and inflating "
+              f"the file {1e3 * floor.inflating:.1f}, its SHA-256 {1e3 * floor.hashing:.1f}")
         if not scipy:
             print(f"\n{arguments.python} has no numpy and scipy: nothing to compare with")
             return
-        row("numpy_pipeline.py, wall", [wall for wall, _ in theirs])
-        row("numpy_pipeline.py, CPU", [cpu for _, cpu in theirs])
-        row("  of this after the imports, wall", own_time)
 
     def ratios(name, pairs):
         values = [b / a for a, b in pairs]
