@@ -237,7 +237,7 @@ Action add_robot_identify(CLI::App& group) {
              "noise of the motion does not bias")
       ->group(model);
   command
-      ->add_flag("--consistent", arguments.consistent,
+      ->add_flag("--consistent", arguments->consistent,
                  "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
                  "and drives that do not feed the motion; what the data leave open stays near the description")
       ->group(model);

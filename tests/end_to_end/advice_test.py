@@ -463,17 +463,17 @@ TWO_LINKS = """<robot name="two_links"><link name="base"/>
 """
 
 
-def two_links(test, rotor=0.2, noise=0.002, turned=False):
+def two_links(test, rotor=0.1, noise=0.002, turned=False):
     """Two light links in a horizontal plane; behind a gear, the rotor of the second joint weighs as much as `rotor`
     kg·m². Closed form of Lagrange's equations, sines of each joint."""
     chance, rows = random.Random(1), []
     first, second, length, centre = 0.003 + 0.5 * 0.12 ** 2, 0.002 + 0.3 * 0.1 ** 2, 0.25, 0.3 * 0.1
     for i in range(30_000):
-        t, q, v, a = i / 500, [0.4, 0.9], [0.0, 0.0], [0.0, 0.0]
+        t, q, v, a = i / 500, [0.4, 1.5], [0.0, 0.0], [0.0, 0.0]
         for joint in (0, 1):
             for line in range(1, 7):
                 w = 2 * math.pi * (0.23 * line + 0.05 * joint)
-                angle, size = w * t + 1.7 * line * line + joint, 0.1
+                angle, size = w * t + 1.7 * line * line + joint, 0.1 + 0.3 * joint
                 q[joint] += size * math.sin(angle)
                 v[joint] += size * w * math.cos(angle)
                 a[joint] -= size * w * w * math.sin(angle)
