@@ -38,8 +38,8 @@ template <class Lanes>
 /// Columns in whole tiles: the last one is repeated.
 class Tiled {
  public:
-  explicit Tiled(const std::vector<Columns>& side_by_side) {
-    for (const Columns& part : side_by_side) {
+  explicit Tiled(const std::vector<MatrixPart>& side_by_side) {
+    for (const MatrixPart& part : side_by_side) {
       rows_ = part.rows();
       for (Index j = 0; j < part.cols(); ++j) columns_.push_back(part.data() + j * part.outerStride());
     }
@@ -130,17 +130,17 @@ MBK_X86_64_V4 void residual_v4(const double* y, const double* const* z, const do
 
 }  // namespace
 
-Matrix gram_of(const std::vector<Columns>& side_by_side) {
+Matrix gram_of(const std::vector<MatrixPart>& side_by_side) {
   const Tiled columns(side_by_side);
   const Matrix all = products(columns, columns, true);
   return Matrix(all.topLeftCorner(columns.count(), columns.count())).selfadjointView<Eigen::Upper>();
 }
 
-Matrix products_of(const Columns& A, const Columns& B) {
+Matrix products_of(const MatrixPart& A, const MatrixPart& B) {
   return products(Tiled({A}), Tiled({B}), false).topLeftCorner(A.cols(), B.cols());
 }
 
-Matrix projected_residuals(const Columns& Z, const Columns& Y, const Matrix& theta) {
+Matrix projected_residuals(const MatrixPart& Z, const MatrixPart& Y, const Matrix& theta) {
   const Tiled regressors({Z});
   const auto run = has_x86_64_v4() ? residual_v4 : has_x86_64_v3() ? residual_v3 : residual_any;
   constexpr Index kRows = 8 * kBlock;  // that stay in the second cache

@@ -9,15 +9,15 @@
 /// which runs is decided where the program runs.
 namespace mbk::numeric {
 
-using Columns = Eigen::Ref<const Matrix>;
+using MatrixPart = Eigen::Ref<const Matrix>;
 
 /// [A B …]ᵀ[A B …] of columns of equal length.
-[[nodiscard]] Matrix gram_of(const std::vector<Columns>& side_by_side);
+[[nodiscard]] Matrix gram_of(const std::vector<MatrixPart>& side_by_side);
 
 /// AᵀB.
-[[nodiscard]] Matrix products_of(const Columns& A, const Columns& B);
+[[nodiscard]] Matrix products_of(const MatrixPart& A, const MatrixPart& B);
 
 /// Zᵀ(Y − Z θ), p×q, in one pass and without the residuals in memory.   @param theta p×q
-[[nodiscard]] Matrix projected_residuals(const Columns& Z, const Columns& Y, const Matrix& theta);
+[[nodiscard]] Matrix projected_residuals(const MatrixPart& Z, const MatrixPart& Y, const Matrix& theta);
 
 }  // namespace mbk::numeric

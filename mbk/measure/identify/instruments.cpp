@@ -165,7 +165,7 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
   if (count < 2 * columns) return Vector::Constant(n, std::nan(""));
   Matrix gram = Matrix::Zero(columns + n, columns + n);  // of [R | the reference before | residual]
   for (const RowRange& range : rows) {
-    std::vector<numeric::Columns> parts = {instruments.R.middleRows(range.begin, range.size())};
+    std::vector<numeric::MatrixPart> parts = {instruments.R.middleRows(range.begin, range.size())};
     for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) {
       parts.emplace_back(r.reference.rightCols(n).middleRows(range.begin - lag * every, range.size()));
     }
