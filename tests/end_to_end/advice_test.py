@@ -195,11 +195,12 @@ def _(test):
     test.goes(code, raised, followed)
     test.assertIs(followed.json["usable"], True)
     # and too little motion, of which bodies that can exist are found all the same
-    faint = two_links(test, rotor=0.0, noise=0.4)
+    faint = two_links(test, rotor=0.0, noise=5.0)
     raised = identified_robot(test, faint, "--terms", "viscous,coulomb,offset")
     test.assertIn("--consistent", hint_of(raised, code))
     followed = identified_robot(test, faint, "--terms", "viscous,coulomb,offset", "--consistent")
     test.goes(code, raised, followed)
+    test.assertIs(followed.json["usable"], True)
 
 
 @advice_of("stiffness-not-positive")
@@ -330,6 +331,12 @@ def _(test):  # look for friction, and remove it
     path = departing(test, "[participant.departures]\ndry_friction_N = 0.5")
     raised = test.measured(path)
     test.goes("dry-friction", raised, test.measured(test.simulated("relaxed_sinusoidal")))
+    # of a robot: friction that grows near standstill
+    path = test.simulated("free_motion", (r"^\[robot\]$", "[robot]\nbreakaway_Nm = [0.06, 0.06]"))
+    raised = run("robot", "identify", "--json", "--quiet", path)
+    test.assertIn("--stribeck-velocity auto", hint_of(raised, "dry-friction"))
+    test.goes("dry-friction", raised, run("robot", "identify", "--json", "--quiet", path, "--terms",
+                                          "viscous,coulomb,stribeck,offset", "--stribeck-velocity", "auto"))
 
 
 @advice_of("stiffness-changes")

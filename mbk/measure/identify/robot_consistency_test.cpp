@@ -286,6 +286,22 @@ TEST(RobotConsistency, ContradictsATorqueOfTheWrongSign) {
   }
 }
 
+TEST(RobotConsistency, DoesNotBlameTheRobotForWhatNoiseDoes) {
+  const RandomRobot& robot = three_axes();
+  const robot::DynamicModel truth = model_of(robot.urdf(robot.truth)), model = model_of(robot.urdf(robot.stated));
+  int lost = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto found = fitted(trial(truth, model, motion_of(3, 1), 4.0, seed), model);
+    ASSERT_TRUE(found);
+    expect_possible(*found);
+    EXPECT_THAT(codes(*found), Not(Contains(WarningCode::consistent_fit_poor))) << seed;
+    if (largest(found->consistent->vaf_lost_in_sample) <= kMostLost) continue;
+    ++lost;
+    EXPECT_THAT(found->notes, Contains(HasSubstr("chance"))) << seed;
+  }
+  EXPECT_GT(lost, 5);  // or nothing was tested
+}
+
 TEST(RobotConsistency, KeepsWhatIsFixed) {
   const RandomRobot& robot = three_axes();
   robot::DynamicModel truth = model_of(robot.urdf(robot.truth)), model = model_of(robot.urdf(robot.stated));

@@ -140,6 +140,7 @@ class RobotFitter {
   Matrix bread_, covariance_;  ///< of the columns that are kept, and of the delay's where it is estimated
   Matrix residuals_;
   double delay_correction_ = 0;
+  double loss_by_chance_ = 0;                   ///< that the true robot stays below, by the free fit's covariance
   Vector fixed_;                                ///< p, the values that are known, 0 elsewhere
   std::vector<robot::Coefficient> free_names_;  ///< of those that are not
   numeric::IndependentColumns columns_;         ///< of those that are not
@@ -436,6 +437,12 @@ Result<void> RobotFitter::make_consistent(RobotIdentification& found) {
     made.combinations.push_back({one.name, one.unit, holds(columns_, k, free_names_), base[k], free.base[k],
                                  std::sqrt(std::max(0.0, covariance_(k, k)))});
   }
+  // The true robot is possible: the least loss is at most its own, ½ (θ − θ̂)ᵀRᵀR (θ − θ̂), a sum of squares of mean
+  // ½ tr(R V Rᵀ) and variance ½ tr((R V Rᵀ)²).
+  constexpr double kDeviations = 4.0;
+  const Index kept = base.size();
+  const Matrix spread = free.triangle * covariance_.topLeftCorner(kept, kept) * free.triangle.transpose();
+  loss_by_chance_ = 0.5 * spread.trace() + kDeviations * std::sqrt(0.5 * spread.squaredNorm());
   made.loss = nearest->solution.value;
   made.gap = std::max(nearest->solution.last_change, 0.0);
   made.newton_steps = nearest->solution.steps;
@@ -449,8 +456,8 @@ Result<void> RobotFitter::make_consistent(RobotIdentification& found) {
   return {};
 }
 
-/// Where no robot that can exist does nearly as well as the free fit.
-void warn_of_loss(RobotIdentification& found) {
+/// Where no robot that can exist does nearly as well as the free fit, and noise does not explain that.
+void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
   constexpr double kMostLost = 0.5;  // [points of VAF]
   const ConsistentRobot& consistent = *found.consistent;
   std::size_t worst = 0;
@@ -462,6 +469,15 @@ void warn_of_loss(RobotIdentification& found) {
     worst = joint;
   }
   if (!(most > kMostLost)) return;
+  constexpr double kMostByChance = 5.0;  // a wrong sign leaves a residual that looks like large noise
+  if (!(consistent.loss > loss_by_chance) && most < kMostByChance) {
+    found.notes.push_back(
+        fmt::format("a robot that can exist explains {:.3g} points less of the torque of joint {} than the free fit: "
+                    "with this much "
+                    "noise that is chance, since the free fit explains the noise too",
+                    most, worst + 1));
+    return;
+  }
   constexpr std::size_t kNamed = 3;
   std::string which;
   for (std::size_t k = 0; k < std::min(kNamed, consistent.pressing.size()); ++k) {
@@ -477,7 +493,7 @@ void warn_of_loss(RobotIdentification& found) {
   found.usable = false;
 }
 
-void warn(RobotIdentification& found) {
+void warn(RobotIdentification& found, double loss_by_chance) {
   std::vector<Warning>& warnings = found.warnings;
   if (!(found.inertia.smallest > 0.0)) {
     std::string where;
@@ -533,7 +549,7 @@ void warn(RobotIdentification& found) {
                         "look for terms that are missing (--terms), a delay (--motor-delay auto), a lower --cutoff, or "
                         "noise of the motion (--method iv)"});
   }
-  if (found.consistent) warn_of_loss(found);
+  if (found.consistent) warn_of_loss(found, loss_by_chance);
   for (const RobotCoefficient& one : found.coefficients) {
     const bool positive = one.coefficient.name.starts_with("viscous") || one.coefficient.name.starts_with("coulomb");
     if (!one.identified || !positive || one.value + numeric::kNormal95 * one.standard_error >= 0.0) continue;
@@ -585,7 +601,7 @@ Result<RobotFit> RobotFitter::fit() {
   }
   describe(found);
   check_inertia(found);
-  warn(found);
+  warn(found, loss_by_chance_);
   return made;
 }
 

@@ -1,12 +1,17 @@
 #include "mbk/measure/measurement/identify_robot.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/preprocess/resample.h"
 
@@ -101,6 +106,105 @@ Result<RobotIdentification> fit_delay(std::span<const Recording> recordings, std
   }
 }
 
+const RobotCoefficient* named(const RobotIdentification& found, const std::string& name) {
+  const auto one = std::ranges::find(found.coefficients, name, [](const auto& c) { return c.coefficient.name; });
+  return one != found.coefficients.end() && one->identified ? &*one : nullptr;
+}
+
+/// √2 times the root mean square of each joint's velocity, from its column of viscous friction [rad/s or m/s].
+Vector speeds(const std::vector<PreparedDynamics>& trials, const std::vector<robot::Coefficient>& coefficients) {
+  const Index joints = trials.front().torque.cols();
+  Vector squares = Vector::Zero(joints);
+  Index rows = 0;
+  for (const PreparedDynamics& trial : trials) rows += trial.torque.rows();
+  for (Index joint = 0; joint < joints; ++joint) {
+    const auto name = fmt::format("viscous_{}", joint + 1);
+    const auto at = std::ranges::find(coefficients, name, &robot::Coefficient::name) - coefficients.begin();
+    for (const PreparedDynamics& trial : trials) {
+      squares[joint] += trial.regressors[static_cast<std::size_t>(joint)].col(at).squaredNorm();
+    }
+  }
+  return (2.0 * squares / static_cast<double>(std::max<Index>(rows, 1))).cwiseSqrt();
+}
+
+double middle(Vector values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// Fits once more with a Stribeck term of a few velocities, at the delay that was found, and says so where friction
+/// grows again near standstill: where f_Δ is above 0 beyond chance, a fifth of the Coulomb friction beside it, and
+/// matters: the residual falls by a fifth, or Coulomb or viscous friction changes by more than its interval.
+void check_friction(std::span<const Recording> recordings, std::span<const Recording> held_out,
+                    const RobotOptions& options, RobotIdentification& found) {
+  constexpr double kBeyondChance = 4.5;  // standard errors
+  constexpr double kShare = 0.2;         // of the Coulomb friction
+  constexpr double kRest = 0.8;          // of the residual
+  constexpr double kSlow = 0.5;          // of the speed of the joint: below is near standstill
+  const std::vector<TorqueFit>& found_free = found.consistent ? found.consistent->free_fit : found.fit;
+  constexpr std::array kVelocities = {0.25, 0.0625, 0.015625};  // of the speed of the joint
+  RobotOptions once = options;
+  once.fit.delay = once.fit.consistent = false;
+  robot::DynamicModel model = found.model;
+  model.drive.stribeck = true;
+  const auto joints = static_cast<std::size_t>(model.mechanism->joints());
+  struct Growth {
+    double errors = 0, share = 0, velocity = 0;
+  };
+  std::vector<Growth> most(joints);
+  // What is fixed keeps its value among more coefficients.
+  const std::vector<robot::Coefficient> before = found.model.coefficients(), after = model.coefficients();
+  model.parameters = Vector::Zero(static_cast<Index>(after.size()));
+  once.fit.fixed.clear();
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const auto old = std::ranges::find(before, after[k].name, &robot::Coefficient::name);
+    if (old == before.end()) continue;
+    const Index at = old - before.begin();
+    model.parameters[static_cast<Index>(k)] = found.model.parameters[at];
+    const bool fixed = std::ranges::find(options.fit.fixed, at) != options.fit.fixed.end();
+    if (fixed) once.fit.fixed.push_back(static_cast<Index>(k));
+  }
+  const auto both = prepare_both(recordings, held_out, found.model, once.preprocess);
+  if (!both) return;
+  const Vector speed = speeds(both->trials, before);
+  for (const double factor : kVelocities) {
+    model.drive.stribeck_velocity = std::max(factor * middle(speed), 1.5 * model.drive.smoothing);
+    if (!(model.drive.stribeck_velocity > 0.0)) continue;
+    const auto more = fit_once(recordings, held_out, model, once);
+    if (!more) continue;  // too few rows for another term
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      if (!(model.drive.stribeck_velocity < kSlow * speed[static_cast<Index>(joint)])) continue;
+      const auto of = [&](const char* name, const RobotIdentification& where) {
+        return named(where, fmt::format("{}_{}", name, joint + 1));
+      };
+      const RobotIdentification& with = more->identification;
+      const RobotCoefficient *growth = of("stribeck", with), *dry = of("coulomb", with),
+                             *dry_before = of("coulomb", found);
+      if (growth == nullptr || dry == nullptr || dry_before == nullptr) continue;
+      const auto moved = [&](const char* name) {
+        const RobotCoefficient *a = of(name, found), *b = of(name, with);
+        return a != nullptr && b != nullptr && std::abs(a->value - b->value) > numeric::kNormal95 * a->standard_error;
+      };
+      const double errors = growth->value / growth->standard_error;
+      const double share = growth->value / std::max(std::abs(dry->value), 1e-300);
+      const bool explains = with.fit[joint].rmse_in_sample < kRest * found_free[joint].rmse_in_sample;
+      if (!(errors > kBeyondChance && share > kShare)) continue;
+      if (!explains && !moved("coulomb") && !moved("viscous")) continue;
+      if (errors > most[joint].errors) most[joint] = {errors, share, model.drive.stribeck_velocity};
+    }
+  }
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    if (!(most[joint].errors > 0.0)) continue;
+    found.warnings.push_back(
+        {WarningCode::dry_friction,
+         fmt::format("the friction of joint {} grows near standstill, by {:.0f} % of its Coulomb friction below about "
+                     "{:.2g} {}, and the model has no term for it",
+                     joint + 1, 100.0 * most[joint].share, most[joint].velocity,
+                     model.mechanism->slides(static_cast<int>(joint)) ? "m/s" : "rad/s"),
+         "add --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto"});
+  }
+}
+
 double unexplained(const RobotIdentification& found) {
   double sum = 0.0;
   for (const TorqueFit& fit : found.fit) sum += std::log(std::max(fit.rmse_in_sample, 1e-300));
@@ -121,7 +225,12 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
     if (!others) return tl::unexpected(others.error());
     return identify_robot(*trials, *others, model, all);
   }
-  if (!options.stribeck_velocity || !model.drive.stribeck) return fit_delay(recordings, held_out, model, all);
+  if (!options.stribeck_velocity || !model.drive.stribeck) {
+    auto found = fit_delay(recordings, held_out, model, all);
+    if (found && model.drive.coulomb && model.drive.viscous && !model.drive.stribeck)
+      check_friction(recordings, held_out, all, *found);
+    return found;
+  }
 
   // Between the velocity at which the sign is smooth and a hundred times that.
   const double low = std::log(std::max(1.5 * model.drive.smoothing, 1e-4)), high = low + std::log(100.0);

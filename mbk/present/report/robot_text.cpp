@@ -119,7 +119,6 @@ std::string consistent_text(const RobotIdentification& found, const ConsistentRo
                       "products: --json); smallest: eigenvalue of the pseudo-inertia in SI units. They are one choice "
                       "of many: other masses, centres and inertias move the robot alike as long as the sums below "
                       "stay. What no torque shows is nearest to the description.");
-    for (const std::string& note : found.notes) text += paragraph("  ", note);
     text += "\n";
   }
   rows = {{"", "consistent", "free fit", "unit", ""}};
@@ -148,6 +147,7 @@ std::string consistent_text(const RobotIdentification& found, const ConsistentRo
     text += paragraph("  at the edge of what can exist, strongest first: ",
                       fmt::format("{}", fmt::join(consistent.pressing, ", ")));
   }
+  for (const std::string& note : found.notes) text += paragraph("  ", note);
   return text;
 }
 

@@ -114,7 +114,7 @@ RobotIdentification consistent() {
 TEST(RobotText, OfAConsistentFitShowsLinksAndWhatTheDataDecide) {
   const std::string text = robot_text(consistent());
   EXPECT_THAT(text, ::testing::ContainsRegex("forearm +1.234 +10.0, 0.0, -120.0 +0.02, 0.021, 0.003 +0.0004\n"));
-  EXPECT_THAT(text, HasSubstr("one choice of many"));
+  EXPECT_THAT(text, HasSubstr("one choice of"));
   EXPECT_THAT(text, ::testing::ContainsRegex("forearm.mass_z +0.31 +0.300 ± 0.020 +kg·m +\\+ 0.25·hand.mass\n"));
   EXPECT_THAT(text, ::testing::ContainsRegex("viscous_1 +203.5 +given +N·s/m"));
   EXPECT_THAT(text, ::testing::ContainsRegex("joint 1 against the free fit +-0.1[23] +–\n"));
@@ -128,7 +128,7 @@ TEST(RobotText, OfAConsistentFitWithoutLinksShowsNone) {
   found.consistent->bodies.clear();
   found.consistent->pressing.clear();
   const std::string text = robot_text(found);
-  EXPECT_THAT(text, Not(HasSubstr("one choice of many")));
+  EXPECT_THAT(text, Not(HasSubstr("one choice of")));
   EXPECT_THAT(text, Not(HasSubstr("strongest first")));
   EXPECT_THAT(text, HasSubstr("forearm.mass_z"));
 }
