@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -295,6 +297,32 @@ Json info_json(const Recording& recording, const Inspection& inspection) {
   return json;
 }
 
+/// A document with its elements in the place of an empty list, as dumped() would write all of it: so no more than one
+/// element is there as a tree, which takes several times the memory of its text.
+/// @param document  dumped, with an empty list of that name on its first level
+template <class Element>
+std::string with_elements(const std::string& document, const std::string& name, std::size_t count,
+                          const Element& element) {
+  const std::string empty = fmt::format("\n  \"{}\": []", name);  // within a string there is no line end
+  const std::size_t place = document.find(empty);
+  if (count == 0 || place == std::string::npos) return document;
+  std::string text = document.substr(0, place + empty.size() - 1);
+  for (std::size_t k = 0; k < count; ++k) {
+    text += k > 0 ? ",\n    " : "\n    ";
+    std::string one = dumped(element(k));
+    one.pop_back();  // its line end
+    for (std::size_t begin = 0; begin < one.size();) {
+      const std::size_t end = std::min(one.find('\n', begin), one.size() - 1) + 1;
+      text.append(one, begin, end - begin);
+      if (end < one.size()) text += "    ";
+      begin = end;
+    }
+  }
+  text += "\n  ";
+  text.append(document, place + empty.size() - 1);
+  return text;
+}
+
 /// One document whatever their number: the only object itself, or all of them as `results` of another schema.
 std::string one_or_list(const char* schema_of_list, const std::vector<Json>& objects) {
   if (objects.size() == 1) return dumped(objects.front());
@@ -411,7 +439,6 @@ std::string to_json(const Measurement& measured) {
 std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together) {
   Json json = header(kResultsSchema);
   json["results"] = Json::array();
-  for (const Measurement& measured : results) json["results"].push_back(result_json(measured));
   if (const auto& summary = together.summary) {
     Json omitted = Json::array();
     for (const OmittedTrial& one : summary->omitted) omitted.push_back({{"file", one.file}, {"why", one.why}});
@@ -430,7 +457,7 @@ std::string to_json(const std::vector<Measurement>& results, const SeveralTrials
       json["failed"].push_back({{"file", error.where}, {"message", error.message}, {"try", error.remedy}});
     }
   }
-  return dumped(json);
+  return with_elements(dumped(json), "results", results.size(), [&](std::size_t k) { return result_json(results[k]); });
 }
 
 std::string to_json(const std::vector<Identification>& identifications, const std::vector<Findings>& findings) {

@@ -188,6 +188,17 @@ TEST(ToJson, SeveralResultsComeBackInTheirOrder) {
   EXPECT_EQ(back->at(1).axes, 2);
 }
 
+TEST(ToJson, SeveralResultsAreWrittenAsOneTreeWouldBe) {
+  std::vector<Measurement> all = {measured(1), measured(2)};
+  all[0].identification.notes = {"a note\nof two lines", "\n  \"results\": []"};
+  const SeveralTrials together{
+      {}, "\n  \"results\": []", {{ErrorKind::data, "no such file", "check the name", "d.mat"}}};
+  const std::string text = to_json(all, together);
+  EXPECT_EQ(nlohmann::ordered_json::parse(text).dump(2) + "\n", text);
+  const std::string none = to_json(std::vector<Measurement>(), together);
+  EXPECT_EQ(nlohmann::ordered_json::parse(none).dump(2) + "\n", none);
+}
+
 TEST(ToJson, ASummaryHasItsMeanAndError) {
   Summary summary;
   summary.trials = 2;
