@@ -32,7 +32,7 @@ struct ConsistentRobot {
   std::vector<RobotCombination> combinations;
   std::vector<TorqueFit> free_fit;         ///< of each joint, as RobotIdentification::fit
   std::vector<double> vaf_lost;            ///< of each joint, free fit less consistent one, as TorqueFit::vaf [points]
-  std::vector<double> vaf_lost_in_sample;  /// [points]
+  std::vector<double> vaf_lost_in_sample;  ///< [points]
   double mean_vaf_lost = 0;                ///< mean over the joints whose torque counts [points]
   double loss = 0;  ///< ½ Σ e²/σ² that the conditions add, σ² the variance of the free fit's residual
   double gap = 0;   ///< to which this is known to be the least, in the same unit

@@ -133,8 +133,7 @@ std::string consistent_text(const RobotIdentification& found, const ConsistentRo
   text += table(rows);
   text += paragraph("  ",
                     "These sums are what torque and motion decide, and all that torque and force need. ± is the 95 % "
-                    "interval of the free fit, which is not sure to be a possible robot; how much surer the conditions "
-                    "make it is not counted.");
+                    "interval of the free fit; by how much the conditions narrow it is not counted.");
 
   rows = {{"VAF, points", found.held_out ? "held out" : "in sample", "in sample"}};
   for (std::size_t joint = 0; joint < consistent.vaf_lost.size(); ++joint) {
