@@ -82,7 +82,6 @@ struct Padded {
   Index padding;
   Padded(Index count, Index padding_samples, Index width)
       : rows(count + 2 * padding_samples, width), padding(padding_samples) {}
-  [[nodiscard]] Index count() const { return rows.rows() - 2 * padding; }
   [[nodiscard]] double* row(Index i) { return rows.row(padding + i); }
 
   /// Continues the rows beyond the end at row `end`, to the side on which `outward` (1 or −1) points.

@@ -67,8 +67,7 @@ void correlate_any(const Vector& weights, double sign, const double* x, double* 
 
 void correlate(const Vector& weights, double sign, const double* x, double* out, Index count) {
 #if defined(__x86_64__)
-  static const bool kWide = has_x86_64_v3();
-  if (kWide) return correlate_avx2(weights, sign, x, out, count);
+  if (has_x86_64_v3()) return correlate_avx2(weights, sign, x, out, count);
 #endif
   correlate_any(weights, sign, x, out, count);
 }

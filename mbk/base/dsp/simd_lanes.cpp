@@ -96,7 +96,6 @@ struct Pieces {
   bool pairs;  ///< of two values, else of one
 };
 
-template <class Lanes>
 [[gnu::always_inline]] inline void put(const double* results, const Pieces& pieces, double* to) {
   if (pieces.pairs) {
     for (std::size_t k = 0; k < pieces.count; ++k) std::copy_n(results + pieces.from[k], 2, to + 2 * k);
@@ -130,8 +129,8 @@ template <class Lanes, std::size_t Sums, std::size_t Derivatives>
       for (std::size_t k = 1; k < Sums; ++k) value += share[d][k] * sum[k];
       Lanes::at(results + kWidth * d) = value;
     }
-    put<Lanes>(results, pieces, to);
-    if constexpr (kWidth > kLanes) put<Lanes>(results + kLanes, pieces, to + width * f.half);
+    put(results, pieces, to);
+    if constexpr (kWidth > kLanes) put(results + kLanes, pieces, to + width * f.half);
     if (++i == count) return;
     const V old = abreast<Lanes>(row, apart), young = abreast<Lanes>(row + 4 * window, apart);
     sum[0] += young - old;

@@ -488,8 +488,7 @@ void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
        fmt::format("a robot that can exist explains {:.3g} points less of the torque of joint {} than the free fit{}",
                    most, worst + 1, which),
        "check the sign and the unit of each torque, the order of the joints and --fix; add drive terms that are "
-       "missing, "
-       "as in --terms motor_inertia,viscous,coulomb,offset"});
+       "missing, as in --terms motor_inertia,viscous,coulomb,offset"});
   found.usable = false;
 }
 
