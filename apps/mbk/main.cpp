@@ -3,13 +3,17 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <new>
 #include <sstream>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/mbk/commands.h"
@@ -89,6 +93,47 @@ constexpr std::string_view kNoMemory =
   std::set_terminate(end_without_memory);
 }
 
+using Commands = std::vector<std::pair<std::string_view, std::function<mbk::app::Action(CLI::App&)>>>;
+
+/// Every command, in the order in which --help lists them.
+Commands all_commands(const std::string& typed) {
+  using namespace mbk::app;
+  return {
+      {"measure", [typed](CLI::App& app) { return add_measure(app, typed); }},
+      {"identify", add_identify},
+      {"tf", [typed](CLI::App& app) { return add_tf(app, typed); }},
+      {"ellipse", add_ellipse},
+      {"passivity", add_passivity},
+      {"compare", add_compare},
+      {"info", add_info},
+      {"convert", add_convert},
+      {"simulate", add_simulate},
+      {"run", add_run},
+      {"recover", add_recover},
+      {"springs", add_springs},
+      {"teleop", add_teleop},
+      {"sensor", add_sensor},
+      {"robot", add_robot},
+      {"validate", add_validate},
+      {"reproduce", add_reproduce},
+      {"completion", add_completion},
+      {"manual", add_manual},
+  };
+}
+
+/// The options of all commands are half of what it takes to start: where the first word on the command line names a
+/// command, only that one is made. `completion` and `manual` speak of all.
+mbk::app::Actions commands_for(std::string_view first, CLI::App& app, const std::string& typed) {
+  const Commands all = all_commands(typed);
+  const bool one = first != "completion" && first != "manual" &&
+                   std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });
+  mbk::app::Actions made;
+  for (const auto& [name, add] : all) {
+    if (!one || name == first) made.emplace_back(name, add(app));
+  }
+  return made;
+}
+
 int run(int argc, char** argv) {
   mbk::app::prefer_large_pages();
   const char* const simd = std::getenv("MBK_SIMD");
@@ -111,27 +156,8 @@ int run(int argc, char** argv) {
   app.formatter(std::make_shared<HelpFormatter>());
   app.failure_message(one_line);
 
-  const mbk::app::Actions commands = {
-      {"measure", mbk::app::add_measure(app, mbk::app::command_line(argc, argv))},
-      {"identify", mbk::app::add_identify(app)},
-      {"tf", mbk::app::add_tf(app, mbk::app::command_line(argc, argv))},
-      {"ellipse", mbk::app::add_ellipse(app)},
-      {"passivity", mbk::app::add_passivity(app)},
-      {"compare", mbk::app::add_compare(app)},
-      {"info", mbk::app::add_info(app)},
-      {"convert", mbk::app::add_convert(app)},
-      {"simulate", mbk::app::add_simulate(app)},
-      {"run", mbk::app::add_run(app)},
-      {"recover", mbk::app::add_recover(app)},
-      {"springs", mbk::app::add_springs(app)},
-      {"teleop", mbk::app::add_teleop(app)},
-      {"sensor", mbk::app::add_sensor(app)},
-      {"robot", mbk::app::add_robot(app)},
-      {"validate", mbk::app::add_validate(app)},
-      {"reproduce", mbk::app::add_reproduce(app)},
-      {"completion", mbk::app::add_completion(app)},
-      {"manual", mbk::app::add_manual(app)},
-  };
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  const mbk::app::Actions commands = commands_for(first, app, mbk::app::command_line(argc, argv));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,10 +4,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
-#include <unsupported/Eigen/FFT>
+#include <span>
 
+#include "mbk/base/dsp/complex_transform.h"
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/dense.h"
 
@@ -16,6 +19,83 @@ namespace {
 
 /// Below this 1 − γ² between two inputs of unit power is rounding.
 constexpr double kToldApart = 1e-12;
+
+/// Σ A_j A_k* over segments, line by line. They are transformed in pairs, the one as real part, the other as imaginary
+/// part; with Z = A + j B the lines of both follow from Z_k and Z_{n−k}.
+class SumsOverSegments {
+ public:
+  SumsOverSegments(Index signals, Index segment)
+      : signals_(signals),
+        lines_(segment / 2 + 1),
+        window_(hann_window(segment)),
+        transform_(segment),
+        real_{Matrix(lines_, signals), Matrix(lines_, signals)},
+        imaginary_{Matrix(lines_, signals), Matrix(lines_, signals)},
+        sums_(static_cast<std::size_t>(signals * signals), Eigen::VectorXcd::Zero(lines_)) {}
+
+  /// @param starts where one or two segments of `piece` begin
+  void add(const Matrix& piece, std::span<const Index> starts) {
+    for (Index j = 0; j < signals_; ++j) {
+      taper(piece, j, starts.front(), transform_.real());
+      if (starts.size() > 1) {
+        taper(piece, j, starts.back(), transform_.imaginary());
+      } else {
+        transform_.imaginary().setZero();
+      }
+      transform_.run();
+      take_apart(j);
+    }
+    for (std::size_t which = 0; which < starts.size(); ++which) {
+      for (Index k = 0; k < signals_; ++k) {
+        for (Index j = 0; j <= k; ++j) {
+          const auto a = real_[which].col(j).array(), b = imaginary_[which].col(j).array(),
+                     c = real_[which].col(k).array(), d = imaginary_[which].col(k).array();
+          Eigen::VectorXcd& sum = sums_[static_cast<std::size_t>(j + signals_ * k)];
+          sum.real().array() += a * c + b * d;
+          sum.imag().array() += b * c - a * d;
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<Eigen::MatrixXcd> of_lines() const {
+    std::vector<Eigen::MatrixXcd> matrices(static_cast<std::size_t>(lines_), Eigen::MatrixXcd(signals_, signals_));
+    for (Index k = 0; k < signals_; ++k) {
+      for (Index j = 0; j <= k; ++j) {
+        const Eigen::VectorXcd& sum = sums_[static_cast<std::size_t>(j + signals_ * k)];
+        for (Index line = 0; line < lines_; ++line) {
+          matrices[static_cast<std::size_t>(line)](j, k) = sum[line];
+          matrices[static_cast<std::size_t>(line)](k, j) = std::conj(sum[line]);
+        }
+      }
+    }
+    return matrices;
+  }
+
+ private:
+  void taper(const Matrix& piece, Index j, Index start, Vector& to) const {
+    const auto part = piece.col(j).segment(start, transform_.length());
+    to = (part.array() - part.mean()) * window_.array();
+  }
+
+  void take_apart(Index j) {
+    const Vector &re = transform_.real(), &im = transform_.imaginary();
+    const Index n = transform_.length();
+    for (Index k = 0; k < lines_; ++k) {
+      const Index mirror = k == 0 ? 0 : n - k;
+      real_[0](k, j) = 0.5 * (re[k] + re[mirror]);
+      imaginary_[0](k, j) = 0.5 * (im[k] - im[mirror]);
+      real_[1](k, j) = 0.5 * (im[k] + im[mirror]);
+      imaginary_[1](k, j) = 0.5 * (re[mirror] - re[k]);
+    }
+  }
+
+  Index signals_, lines_;
+  Vector window_;
+  ComplexTransform transform_;
+  std::array<Matrix, 2> real_, imaginary_;  // lines×signals, of the one segment and of the other
+  std::vector<Eigen::VectorXcd> sums_;      // of signals j ≤ k at j + signals·k
+};
 
 }  // namespace
 
@@ -33,33 +113,24 @@ Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz samp
   }
   if (longest < segment) return bad_data(fmt::format("{} samples are too few for a segment of {}", longest, segment));
 
-  const Vector window = hann_window(segment);
   const Index lines = segment / 2 + 1, signals = pieces.front().cols();
   CrossSpectra spectra;
   spectra.frequency =
       Vector::LinSpaced(lines, 0.0, sample_rate.value * static_cast<double>(lines - 1) / static_cast<double>(segment));
-  spectra.density.assign(static_cast<std::size_t>(lines), Eigen::MatrixXcd::Zero(signals, signals));
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  Vector tapered(segment);
-  Eigen::VectorXcd transform(lines);
-  Eigen::MatrixXcd transforms(signals, lines);
+  SumsOverSegments sums(signals, segment);
   Index overlaps = 0;
   for (const Matrix& piece : pieces) {
-    for (Index start = 0; start + segment <= piece.rows(); start += segment / 2, ++spectra.segments) {
-      if (start > 0) ++overlaps;
-      for (Index k = 0; k < signals; ++k) {
-        tapered = piece.col(k).segment(start, segment);
-        tapered = (tapered.array() - tapered.mean()) * window.array();
-        fft.fwd(transform, tapered);
-        transforms.row(k) = transform.head(lines).transpose();
-      }
-      for (Index line = 0; line < lines; ++line) {
-        spectra.density[static_cast<std::size_t>(line)] += transforms.col(line) * transforms.col(line).adjoint();
-      }
+    std::vector<Index> starts;
+    for (Index start = 0; start + segment <= piece.rows(); start += segment / 2) starts.push_back(start);
+    for (std::size_t k = 0; k < starts.size(); k += 2) {
+      sums.add(piece, std::span(starts).subspan(k, std::min<std::size_t>(2, starts.size() - k)));
     }
+    const auto count = static_cast<Index>(starts.size());
+    spectra.segments += count;
+    overlaps += std::max<Index>(count - 1, 0);
   }
-  const double scale = 1.0 / (sample_rate.value * window.squaredNorm() * static_cast<double>(spectra.segments));
+  spectra.density = sums.of_lines();
+  const double scale = 1.0 / (sample_rate.value * hann_window(segment).squaredNorm() * static_cast<double>(spectra.segments));
   for (Index line = 0; line < lines; ++line) {
     spectra.density[static_cast<std::size_t>(line)] *= line == 0 || line == lines - 1 ? scale : 2.0 * scale;
   }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 
+#include "mbk/base/dsp/complex_transform.h"
 namespace mbk::dsp {
 
 Index fast_length_below(Index n) {
@@ -48,20 +48,23 @@ Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate
   if (signal.size() < 8) return bad_data(fmt::format("{} samples are too few for a spectrum", signal.size()));
   const Index length = segment_length(sample_rate, resolution, signal.size());
   const Vector window = hann_window(length);
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   const Index lines = length / 2 + 1;
-  Vector power = Vector::Zero(lines);
-  Vector piece(length);
-  Eigen::VectorXcd transform(lines);
+  ComplexTransform transform(length);
+  Vector both = Vector::Zero(length);
   Index pieces = 0;
   for (Index start = 0; start + length <= signal.size(); start += length / 2, ++pieces) {
-    piece = signal.segment(start, length);
-    piece.array() -= piece.mean();
-    piece.array() *= window.array();
-    fft.fwd(transform, piece);
-    power += transform.cwiseAbs2().head(lines);
+    // Two pieces at a time, as real and imaginary part: |A_k|² + |B_k|² = (|Z_k|² + |Z_{n−k}|²)/2.
+    Vector& to = pieces % 2 == 0 ? transform.real() : transform.imaginary();
+    const auto piece = signal.segment(start, length);
+    to = (piece.array() - piece.mean()) * window.array();
+    const bool last = start + length / 2 + length > signal.size();
+    if (pieces % 2 == 0 && !last) continue;
+    if (pieces % 2 == 0) transform.imaginary().setZero();
+    transform.run();
+    both += transform.real().cwiseAbs2() + transform.imaginary().cwiseAbs2();
   }
+  Vector power = both.head(lines);
+  power.segment(1, lines - 2) = 0.5 * (power.segment(1, lines - 2) + both.tail(lines - 2).reverse());
   power *= 1.0 / (sample_rate.value * window.squaredNorm() * static_cast<double>(pieces));
   power.segment(1, lines - 2) *= 2.0;
   const double spacing = sample_rate.value / static_cast<double>(length);

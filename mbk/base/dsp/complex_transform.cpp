@@ -1,0 +1,223 @@
+#include "mbk/base/dsp/complex_transform.h"
+
+#include <complex>
+#include <cstddef>
+#include <numbers>
+
+#include "mbk/base/core/vector4.h"
+
+namespace mbk::dsp {
+namespace {
+
+/// e^(−2πj i/n), i = 0 … n − 1, each as a product of two: no more than 64 + n/64 sines.
+std::vector<std::complex<double>> circle(Index n) {
+  constexpr Index kFine = 64;
+  const auto turn = [n](Index i) {
+    return std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+  };
+  std::vector<std::complex<double>> fine, all;
+  for (Index i = 0; i < kFine; ++i) fine.push_back(turn(i));
+  all.reserve(static_cast<std::size_t>(n));
+  for (Index begin = 0; begin < n; begin += kFine) {
+    const std::complex<double> coarse = turn(begin);
+    for (Index i = begin; i < n && i < begin + kFine; ++i) {
+      const std::complex<double> rest = fine[static_cast<std::size_t>(i - begin)];
+      all.emplace_back(coarse.real() * rest.real() - coarse.imag() * rest.imag(),
+                       coarse.real() * rest.imag() + coarse.imag() * rest.real());
+    }
+  }
+  return all;
+}
+
+template <class V>
+struct Value {
+  V re, im;
+  [[gnu::always_inline]] friend inline Value operator+(const Value& a, const Value& b) { return {a.re + b.re, a.im + b.im}; }
+  [[gnu::always_inline]] friend inline Value operator-(const Value& a, const Value& b) { return {a.re - b.re, a.im - b.im}; }
+  [[gnu::always_inline]] friend inline Value operator*(double gain, const Value& a) { return {gain * a.re, gain * a.im}; }
+};
+
+/// a − j b and a + j b
+template <class V>
+[[gnu::always_inline]] inline void across(const Value<V>& a, const Value<V>& b, Value<V>& minus, Value<V>& plus) {
+  minus = {a.re + b.im, a.im - b.re};
+  plus = {a.re - b.im, a.im + b.re};
+}
+
+/// The transform of `radix` values, in place.
+template <int radix, class V>
+[[gnu::always_inline]] inline void butterfly(Value<V> (&a)[radix]) {
+  if constexpr (radix == 2) {
+    const Value<V> first = a[0];
+    a[0] = first + a[1];
+    a[1] = first - a[1];
+  } else if constexpr (radix == 3) {
+    constexpr double kSine = 0.5 * std::numbers::sqrt3;
+    const Value<V> sum = a[1] + a[2], middle = a[0] - 0.5 * sum, apart = kSine * (a[1] - a[2]);
+    a[0] = a[0] + sum;
+    across(middle, apart, a[1], a[2]);
+  } else if constexpr (radix == 4) {
+    const Value<V> even = a[0] + a[2], even_apart = a[0] - a[2], odd = a[1] + a[3], odd_apart = a[1] - a[3];
+    a[0] = even + odd;
+    a[2] = even - odd;
+    across(even_apart, odd_apart, a[1], a[3]);
+  } else {
+    static_assert(radix == 5);
+    // cos and sin of 2π/5 and 4π/5
+    constexpr double kRoot5 = 2.2360679774997896964, kCos1 = 0.25 * (kRoot5 - 1.0), kCos2 = -0.25 * (kRoot5 + 1.0);
+    constexpr double kSin1 = 0.95105651629515357212, kSin2 = 0.58778525229247312917;
+    const Value<V> outer = a[1] + a[4], inner = a[2] + a[3], outer_apart = a[1] - a[4], inner_apart = a[2] - a[3];
+    const Value<V> first = a[0] + kCos1 * outer + kCos2 * inner, second = a[0] + kCos2 * outer + kCos1 * inner;
+    a[0] = a[0] + outer + inner;
+    across(first, kSin1 * outer_apart + kSin2 * inner_apart, a[1], a[4]);
+    across(second, kSin2 * outer_apart - kSin1 * inner_apart, a[2], a[3]);
+  }
+}
+
+template <class V, class Turn>
+[[gnu::always_inline]] inline Value<V> turned(const Value<V>& a, const Turn& re, const Turn& im) {
+  return {a.re * re - a.im * im, a.re * im + a.im * re};
+}
+
+}  // namespace
+
+/// One pass over all values: y[t + s(p q + k)] = e^(−2πj q k/(p m)) Σ_i x[t + s(q + m i)] e^(−2πj i k/p), with radix p,
+/// m groups and stride s.
+struct TransformLoops {
+  struct Pass {
+    const double *re, *im;
+    double *to_re, *to_im;
+    const double *turns_re, *turns_im;
+    Index groups, stride;
+  };
+
+  /// As many values of one group as V holds, which share their turns.
+  template <int radix, class V>
+  [[gnu::always_inline]] static inline void one_group(const Pass& pass, Index q, Index t) {
+    Value<V> a[radix];
+    for (Index i = 0; i < radix; ++i) {
+      const Index at = t + pass.stride * (q + pass.groups * i);
+      get(pass.re + at, a[i].re);
+      get(pass.im + at, a[i].im);
+    }
+    butterfly<radix>(a);
+    for (Index k = 0; k < radix; ++k) {
+      const Index turn = (k - 1) * pass.groups + q;
+      if (k > 0) a[k] = turned(a[k], pass.turns_re[turn], pass.turns_im[turn]);
+      const Index at = t + pass.stride * (radix * q + k);
+      put(a[k].re, pass.to_re + at);
+      put(a[k].im, pass.to_im + at);
+    }
+  }
+
+  /// The first value of four groups, where the stride is 1.
+  template <int radix>
+  [[gnu::always_inline]] static inline void four_groups(const Pass& pass, Index q) {
+    Value<Vector4> a[radix];
+    for (Index i = 0; i < radix; ++i) a[i] = {four(pass.re + q + pass.groups * i), four(pass.im + q + pass.groups * i)};
+    butterfly<radix>(a);
+    for (Index k = 0; k < radix; ++k) {
+      const Index turn = (k - 1) * pass.groups + q;
+      if (k > 0) a[k] = turned<Vector4, Vector4>(a[k], four(pass.turns_re + turn), four(pass.turns_im + turn));
+      for (Index lane = 0; lane < 4; ++lane) {
+        pass.to_re[radix * (q + lane) + k] = a[k].re[lane];
+        pass.to_im[radix * (q + lane) + k] = a[k].im[lane];
+      }
+    }
+  }
+
+  template <int radix>
+  [[gnu::always_inline]] static inline void pass_of(const Pass& pass) {
+    Index q = 0;
+    if (pass.stride == 1) {
+      for (; q + 4 <= pass.groups; q += 4) four_groups<radix>(pass, q);
+    }
+    for (; q < pass.groups; ++q) {
+      Index t = 0;
+      for (; t + 4 <= pass.stride; t += 4) one_group<radix, Vector4>(pass, q, t);
+      for (; t < pass.stride; ++t) one_group<radix, double>(pass, q, t);
+    }
+  }
+
+  [[gnu::always_inline]] static inline void pass_body(Index radix, const Pass& pass) {
+    switch (radix) {
+      case 2:
+        return pass_of<2>(pass);
+      case 3:
+        return pass_of<3>(pass);
+      case 4:
+        return pass_of<4>(pass);
+      default:
+        return pass_of<5>(pass);
+    }
+  }
+  static void pass_any(Index radix, const Pass& pass) { pass_body(radix, pass); }
+  MBK_X86_64_V3 static void pass_v3(Index radix, const Pass& pass) { pass_body(radix, pass); }
+
+  /// As `pass_of`, of any radix: by the sum of the definition.
+  static void pass_plain(Index radix, const Pass& pass) {
+    const std::vector<std::complex<double>> roots = circle(radix);
+    for (Index q = 0; q < pass.groups; ++q) {
+      for (Index k = 0; k < radix; ++k) {
+        const Index turn = (k - 1) * pass.groups + q;
+        for (Index t = 0; t < pass.stride; ++t) {
+          Value<double> sum{0.0, 0.0};
+          for (Index i = 0; i < radix; ++i) {
+            const Index at = t + pass.stride * (q + pass.groups * i);
+            const std::complex<double>& root = roots[static_cast<std::size_t>(i * k % radix)];
+            sum = sum + turned(Value<double>{pass.re[at], pass.im[at]}, root.real(), root.imag());
+          }
+          if (k > 0) sum = turned(sum, pass.turns_re[turn], pass.turns_im[turn]);
+          const Index at = t + pass.stride * (radix * q + k);
+          pass.to_re[at] = sum.re;
+          pass.to_im[at] = sum.im;
+        }
+      }
+    }
+  }
+
+  static void run(ComplexTransform& transform) {
+    const auto fast = has_x86_64_v3() ? pass_v3 : pass_any;
+    for (const ComplexTransform::Stage& stage : transform.stages_) {
+      (stage.radix <= 5 ? fast : pass_plain)(
+          stage.radix, {transform.real_.data(), transform.imaginary_.data(), transform.other_real_.data(),
+                        transform.other_imaginary_.data(), transform.turns_real_.data() + stage.turns,
+                        transform.turns_imaginary_.data() + stage.turns, stage.groups, stage.stride});
+      transform.real_.swap(transform.other_real_);
+      transform.imaginary_.swap(transform.other_imaginary_);
+    }
+  }
+
+ private:
+  [[gnu::always_inline]] static inline void get(const double* at, double& value) { value = *at; }
+  [[gnu::always_inline]] static inline void get(const double* at, Vector4& value) { value = four(at); }
+  [[gnu::always_inline]] static inline void put(double value, double* at) { *at = value; }
+  [[gnu::always_inline]] static inline void put(const Vector4& value, double* at) { four(at) = value; }
+};
+
+ComplexTransform::ComplexTransform(Index length)
+    : real_(length), imaginary_(length), other_real_(length), other_imaginary_(length), length_(length) {
+  const std::vector<std::complex<double>> turns = circle(length);
+  Index rest = length, stride = 1;
+  const auto add = [&](Index radix) {
+    for (; rest % radix == 0; rest /= radix, stride *= radix) {
+      const Index groups = rest / radix;
+      stages_.push_back({radix, groups, stride, static_cast<Index>(turns_real_.size())});
+      for (Index k = 1; k < radix; ++k) {
+        for (Index q = 0; q < groups; ++q) {
+          const std::complex<double> turn = turns[static_cast<std::size_t>(q * k * stride)];
+          turns_real_.push_back(turn.real());
+          turns_imaginary_.push_back(turn.imag());
+        }
+      }
+    }
+  };
+  for (const Index radix : {4, 5, 3, 2}) add(radix);  // fours first: from then on whole vectors are side by side
+  for (Index radix = 7; rest > 1; radix += 2) add(radix);
+}
+
+void ComplexTransform::run() {
+  TransformLoops::run(*this);
+}
+
+}  // namespace mbk::dsp
