@@ -34,9 +34,10 @@ Index segment_length(Hertz sample_rate, Hertz resolution, Index longest) {
 
 Vector hann_window(Index length) {
   Vector window(length);
-  for (Index i = 0; i < length; ++i) {
+  for (Index i = 0; i <= length / 2; ++i) {
     window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length));
   }
+  for (Index i = length / 2 + 1; i < length; ++i) window[i] = window[length - i];
   return window;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "mbk/files/hdf5/bytes.h"
+
+struct libdeflate_decompressor;
 
 namespace mbk::hdf5 {
 
@@ -25,7 +28,7 @@ struct Filters {
 /// Unpacks chunks of one dataset, one after the other, in buffers of its own.
 class Unpacker {
  public:
-  Unpacker(const Filters& filters, std::size_t chunk_bytes) : filters_(filters), chunk_bytes_(chunk_bytes) {}
+  Unpacker(const Filters& filters, std::size_t chunk_bytes);
 
   /// The `chunk_bytes` of a chunk; they stay until the next call, in `stored` or here.
   /// @param skipped  bit i: filter i was not applied
@@ -39,6 +42,7 @@ class Unpacker {
 
   const Filters& filters_;
   std::size_t chunk_bytes_;
+  std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor_;
   std::vector<std::byte> inflated_;
   std::vector<std::byte> ordered_;
 };

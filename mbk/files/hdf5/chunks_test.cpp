@@ -58,6 +58,7 @@ void expect_round_trip(const Shape& shape) {
 
 TEST(ReadChunks, OfADatasetThatCannotGrow) {
   expect_round_trip({{10}, {}, {3}});
+  expect_round_trip({{1000}, {}, {53}});  // of which three times sixteen elements are put in order together
   expect_round_trip({{9, 7}, {}, {2, 3}});
   expect_round_trip({{5, 6, 7}, {}, {2, 3, 4}});
 }

@@ -24,8 +24,8 @@ constexpr Index kRuns = 3;
 constexpr double kClippedFraction = 0.002;
 
 void find_non_finite(const std::string& name, const Vector& values, std::vector<NonFinite>& found) {
-  if (values.allFinite()) return;
   const Index first = first_non_finite(values);
+  if (first < 0) return;
   found.push_back({name, values.size() - values.array().isFinite().cast<Index>().sum(), first});
 }
 
@@ -120,7 +120,7 @@ std::vector<Gap> find_gaps(const Vector& time, Index positive, double median) {
   const double deviation =
       numeric::median_of_many(positive, each_interval(time, [=](double d) { return std::abs(d - median); }));
   const bool jitters = kNormal * deviation > kJitter * median;
-  if (!jitters || time.size() < kMin || !time.allFinite()) return long_intervals(time, kGap * median);
+  if (!jitters || time.size() < kMin || first_non_finite(time) >= 0) return long_intervals(time, kGap * median);
   return gaps_of_jittering(time, median);
 }
 
@@ -174,6 +174,7 @@ bool can_clip(std::string_view name) {
 
 /// Of finite values between facts.min and facts.max.
 void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& facts) {
+  if ((values.array() == facts.min).count() + (values.array() == facts.max).count() < kRunLength) return;
   Index runs = 0;
   Index covered = 0;
   for (Index begin = 0; begin < values.size();) {
@@ -194,7 +195,7 @@ void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& fact
 /// Of those of its values.
 ChannelFacts inspect_channel(const Channel& channel, const Eigen::Ref<const Vector>& values) {
   ChannelFacts facts{channel.name, channel.unit, kNaN, kNaN};
-  if (values.size() > 0 && values.allFinite()) {
+  if (values.size() > 0 && first_non_finite(values) < 0) {
     facts.min = values.minCoeff();
     facts.max = values.maxCoeff();
     facts.constant = facts.min == facts.max;

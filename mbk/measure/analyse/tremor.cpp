@@ -27,11 +27,11 @@ constexpr double kShareOfForce = 0.08;  ///< standard deviation over that of the
 /// The median of the spectrum beside a line, on the side where it is lower and where it is higher.
 std::pair<double, double> beside(const dsp::Spectrum& spectrum, Index line) {
   std::pair<double, double> sides = {std::numeric_limits<double>::infinity(), 0.0};
-  for (const double side : {-1.0, 1.0}) {
+  for (const Index step : {-1, 1}) {
     std::vector<double> values;
-    for (Index k = 1; k < spectrum.frequency.size(); ++k) {
-      const double away = side * (spectrum.frequency[k] - spectrum.frequency[line]);
-      if (away >= kNear && away <= kFar) values.push_back(spectrum.density[k]);
+    const auto away = [&](Index k) { return std::abs(spectrum.frequency[k] - spectrum.frequency[line]); };
+    for (Index k = line + step; k > 0 && k < spectrum.frequency.size() && away(k) <= kFar; k += step) {
+      if (away(k) >= kNear) values.push_back(spectrum.density[k]);
     }
     if (values.empty()) continue;
     const double middle = numeric::median(values);
@@ -40,11 +40,11 @@ std::pair<double, double> beside(const dsp::Spectrum& spectrum, Index line) {
   return sides;
 }
 
-/// Whether the reference has a line near there: one that stands above what is beside it on either side.
-bool has_line(const dsp::Spectrum& reference, Index at) {
-  const double strongest = reference.density.maxCoeff();
-  for (Index k = 1; k < reference.frequency.size(); ++k) {
-    if (std::abs(reference.frequency[k] - reference.frequency[at]) > kReach) continue;
+/// Whether the reference, whose strongest line is given, has one near there: a line that stands above what is beside it on either side.
+bool has_line(const dsp::Spectrum& reference, double strongest, Index at) {
+  const double low = reference.frequency[at] - kReach, high = reference.frequency[at] + kReach;
+  const Vector& f = reference.frequency;
+  for (Index k = std::max<Index>(1, std::ranges::lower_bound(f, low) - f.begin()); k < f.size() && f[k] <= high; ++k) {
     const double here = reference.density[k];
     if (here > kWeakest * strongest && here > kAbove * beside(reference, k).first) return true;
   }
@@ -65,12 +65,13 @@ AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<c
   if (!of_force || !of_reference) return result;
   const double width = of_force->frequency[1] - of_force->frequency[0];
   const double segments = static_cast<double>(force.size()) / rate * width;
+  const double strongest = of_reference->density.maxCoeff();
   Index lines = 0, best = 0;
   double highest = 0.0;
   for (Index k = 1; k + 1 < of_force->frequency.size(); ++k) {
     if (of_force->frequency[k] < kLowest || of_force->frequency[k] > kHighest) continue;
     ++lines;
-    if (has_line(*of_reference, k)) continue;
+    if (has_line(*of_reference, strongest, k)) continue;
     const double above = prominence(*of_force, k);
     if (above > highest) {
       highest = above;
@@ -110,7 +111,7 @@ std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> reco
     for (Index axis = 0; axis < trial.axes; ++axis) {
       const auto of_force = force.col(axis).segment(begin, end - begin),
                  of_reference = reference.col(axis).segment(begin, end - begin);
-      if (!of_force.allFinite() || !of_reference.allFinite()) continue;
+      if (first_non_finite(of_force) >= 0 || first_non_finite(of_reference) >= 0) continue;
       const AssumptionTest found = line_of(of_force, of_reference, rate);
       if (!clearest || found.p_value < clearest->p_value) clearest = found;
     }

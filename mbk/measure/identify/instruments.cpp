@@ -56,14 +56,16 @@ impedance::Model stable(const Matrix& coefficients, double fastest) {
   return model;
 }
 
-/// [x̂'' x̂' x̂] of M x'' + B x' + K x = u, u straight between samples. Each range begins at rest at 0, so that a step
-/// which the range begins with moves it.
-Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_time,
-                const std::vector<RowRange>& ranges) {
-  const Index n = u.cols();
+/// [x̂'' x̂' x̂] of M x'' + B x' + K x = u with n axes, u straight between samples. Each range begins at rest at 0, so that
+/// a step which the range begins with moves it.
+template <int n>
+Matrix simulate_axes(const impedance::Model& model, const Matrix& u, double sample_time,
+                     const std::vector<RowRange>& ranges) {
+  using Axes = Eigen::Matrix<double, n, 1>;
+  using Square = Eigen::Matrix<double, n, n>;
   const numeric::PivotedCholesky M(model.M);
-  const Matrix by_position = -M.solve(model.K), by_velocity = -M.solve(model.B);
-  const Matrix by_force = M.solve(Matrix::Identity(n, n));
+  const Square by_position = -M.solve(model.K), by_velocity = -M.solve(model.B);
+  const Square by_force = M.solve(Matrix::Identity(n, n));
   Matrix generator = Matrix::Zero(4 * n, 4 * n);
   generator.block(0, n, n, n).setIdentity();
   generator.block(n, 0, n, n) = by_position;
@@ -71,20 +73,26 @@ Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_ti
   generator.block(n, 2 * n, n, n) = by_force;
   generator.block(2 * n, 3 * n, n, n).setIdentity();
   const Matrix step = numeric::matrix_exponential(generator * sample_time);
-  const Matrix state = step.topLeftCorner(2 * n, 2 * n);
-  const Matrix slope = step.block(0, 3 * n, 2 * n, n) / sample_time, level = step.block(0, 2 * n, 2 * n, n) - slope;
+  const Eigen::Matrix<double, 2 * n, 2 * n> state = step.topLeftCorner(2 * n, 2 * n);
+  const Eigen::Matrix<double, 2 * n, n> slope = step.block(0, 3 * n, 2 * n, n) / sample_time,
+                                        level = step.block(0, 2 * n, 2 * n, n) - slope;
   Matrix motion = Matrix::Zero(u.rows(), 3 * n);
   for (const RowRange& range : ranges) {
-    Vector z = Vector::Zero(2 * n);
+    Eigen::Matrix<double, 2 * n, 1> z = Eigen::Matrix<double, 2 * n, 1>::Zero();
     for (Index i = range.begin; i < range.end; ++i) {
-      const Vector now = u.row(i).transpose();
-      motion.row(i).segment(2 * n, n) = z.head(n);
-      motion.row(i).segment(n, n) = z.tail(n);
-      motion.row(i).head(n) = by_position * z.head(n) + by_velocity * z.tail(n) + by_force * now;
-      if (i + 1 < range.end) z = state * z + level * now + slope * u.row(i + 1).transpose();
+      const Axes now = u.row(i).transpose(), position = z.template head<n>(), velocity = z.template tail<n>();
+      motion.row(i) << (by_position * position + by_velocity * velocity + by_force * now).transpose(),
+          velocity.transpose(), position.transpose();
+      if (i + 1 == range.end) break;
+      z = (state * z + level * now + slope * u.row(i + 1).transpose()).eval();
     }
   }
   return motion;
+}
+
+Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_time,
+                const std::vector<RowRange>& ranges) {
+  return (u.cols() == 1 ? simulate_axes<1> : simulate_axes<2>)(model, u, sample_time, ranges);
 }
 
 /// [motion 1] with the means of the rows that count removed.

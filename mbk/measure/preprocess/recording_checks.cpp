@@ -82,7 +82,8 @@ Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>
 
 Result<void> check_reference(const Clock& clock, const Signals& signals, const WindowLimits& limits) {
   for (Index axis = 0; axis < signals.reference.cols(); ++axis) {
-    for (Index i = 0; i < signals.reference.rows(); ++i) {
+    const Index first = first_non_finite(signals.reference.col(axis));
+    for (Index i = std::max<Index>(first, 0); first >= 0 && i < signals.reference.rows(); ++i) {
       const double at = clock.seconds(i);
       const bool outside = (limits.from_s && at < *limits.from_s) || (limits.to_s && at >= *limits.to_s);
       if (outside || std::isfinite(signals.reference(i, axis))) continue;

@@ -25,7 +25,10 @@ class Clock {
   [[nodiscard]] Hertz rate() const { return rate_; }
 
   /// When a sample was taken [s]; beyond the last one time goes on at the rate.
-  [[nodiscard]] double seconds(Index sample) const;
+  [[nodiscard]] double seconds(Index sample) const {
+    if (sample < samples()) return time_[sample] - time_[0];
+    return time_[samples() - 1] - time_[0] + static_cast<double>(sample - samples() + 1) / rate_.value;
+  }
 
   /// How long the recording lasts [s], the last interval included.
   [[nodiscard]] double duration() const { return seconds(samples()); }
