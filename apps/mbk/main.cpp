@@ -114,6 +114,7 @@ int run(int argc, char** argv) {
   const mbk::app::Actions commands = {
       {"measure", mbk::app::add_measure(app, mbk::app::command_line(argc, argv))},
       {"identify", mbk::app::add_identify(app)},
+      {"explore", mbk::app::add_explore(app)},
       {"tf", mbk::app::add_tf(app, mbk::app::command_line(argc, argv))},
       {"ellipse", mbk::app::add_ellipse(app)},
       {"passivity", mbk::app::add_passivity(app)},

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""mbk explore: what recordings say of a limb without M, B and K."""
+
+from command import BAD_DATA, WRONG_USAGE, Case, data_folder, main, make_log, run
+
+ANKLE = ("--axes", "1", "--channels", "x=position_rad:rad,F=torque_Nm:N.m")
+HERTZ = (1, 2, 5, 10, 20, 30)
+
+
+class Welch(Case):
+    # scipy.signal.coherence and csd/welch, Hann 2000, half overlap, constant detrend
+    COHERENCE = {"z_df": (0.94273, 0.942317, 0.933617, 0.979298, 0.986462, 0.996395),
+                 "z_df2": (0.972458, 0.944128, 0.96265, 0.964692, 0.992272, 0.99368),
+                 "z_pf": (0.872808, 0.774411, 0.268549, 0.724822, 0.977429, 0.991347)}
+    MAGNITUDE = {"z_df": (119.949, 109.4241, 79.095, 101.0275, 178.0519, 580.7178)}
+
+    def test_of_a_real_ankle_is_that_of_scipy(self):
+        for name, coherence in self.COHERENCE.items():
+            with self.subTest(name):
+                found = self.fine("explore", *ANKLE, "--json", data_folder("ankle") / f"{name}.csv").json
+                response = found["frequency_response"]
+                at = [response["frequency_hz"].index(hertz) for hertz in HERTZ]
+                for k, value in zip(at, coherence):
+                    self.assertAlmostEqual(response["multiple_coherence"][0][k], value, delta=6e-7)
+                    self.assertAlmostEqual(response["responses"][0]["partial_coherence"][k], value, delta=6e-7)
+                for k, value in zip(at, self.MAGNITUDE.get(name, ())):
+                    self.assertAlmostEqual(response["responses"][0]["magnitude"][k], value, delta=6e-5 * value)
+
+
+class TwoAxes(Case):
+    def test_text_and_json_say_the_same(self):
+        log = make_log().path
+        found = self.fine("explore", log, "--json").json
+        self.assertEqual(found["schema"], "mbk.explore/1")
+        self.assertEqual(found["axes"], 2)
+        responses = found["frequency_response"]["responses"]
+        self.assertEqual([(one["input"], one["output"]) for one in responses],
+                         [(f"hand_{j}", f"−force_{i}") for j in "xy" for i in "xy"])
+        text = self.fine("explore", log).out
+        self.assert_lines_fit(text)
+        for words in ("frequency response", "hand_x → −force_x", "hand_y → −force_x", "N/m"):
+            self.assertIn(words, text)
+
+
+class Mistakes(Case):
+    def test_are_refused_in_one_line(self):
+        log = make_log().path
+        for options, says in ((("--segment", "0"), "--segment"), (("--max-frequency", "-1"), "--max-frequency"),
+                              (("--from", "5", "--to", "3"), "--from"), (("--protocol", "sometimes"), "--protocol")):
+            with self.subTest(options):
+                self.refused(WRONG_USAGE, "explore", log, *options, says=says)
+        self.refused(BAD_DATA, "explore", log, "--segment", "1000", says="segment")
+        self.refused(BAD_DATA, "explore", self.folder / "none.mat", says="none.mat")
+
+
+if __name__ == "__main__":
+    main()
