@@ -21,6 +21,7 @@
 #include "mbk/model/trial/frequency_response.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/prepared_dynamics.h"
 #include "mbk/model/trial/readers.h"
 #include "mbk/model/trial/reproduction.h"
@@ -43,7 +44,7 @@ class WordsOf : public testing::Test {};
 using Enumerations =
     testing::Types<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal,
                    perturbation::MultisinePlan::Phases, perturbation::MultisinePlan::Axes, AccelerationSource,
-                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, Exhibit::Kind, ForceSource,
+                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, DelayedResponse, Exhibit::Kind, ForceSource,
                    FrequencyResponseMethod, InputHold, InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom,
                    Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod, SensorWarningCode,
                    StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod, Verdict, WarningCode,

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/lagged_regression.h"
+#include "mbk/measure/explore/response_model.h"
 
 namespace mbk::explore {
 namespace impulse_response_detail {
@@ -17,7 +17,6 @@ namespace impulse_response_detail {
 constexpr std::array kMemories = {0.02, 0.04, 0.06, 0.08, 0.12, 0.16, 0.2};  // [s]
 constexpr Index kFolds = 8;
 constexpr Index kRowsPerCoefficient = 20;
-constexpr double kChance = 0.01;  ///< of a limb that is M, B and K to be called something else
 
 /// The lagged motion and what stands for it, in the directions in which that varies.
 struct Basis {
@@ -61,56 +60,6 @@ Choice shortest(const std::vector<Choice>& choices) {
     if (excess.mean() <= error) return choice;
   }
   return *best;
-}
-
-Vector deviations(const Matrix& covariance) { return covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
-
-/// M, B, K by weighted least squares from coefficients and their covariances.
-/// @param D r×3n, coefficients of [ẍ ẋ x]
-ResponseModel fit_model(const Matrix& D, const LaggedFit& fit, Index n) {
-  ResponseModel model;
-  const Index r = D.rows();
-  for (Matrix* of : {&model.M, &model.B, &model.K, &model.M_half_width, &model.B_half_width, &model.K_half_width}) {
-    *of = Matrix::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
-  }
-  if (r < 3 * n) return model;
-  const Vector scale = D.colwise().norm().cwiseInverse();
-  const Matrix scaled = D * scale.asDiagonal();
-  if (!scaled.allFinite() || numeric::PivotedQr(scaled, 1e-9).rank() < 3 * n) return model;
-  model.identifiable = true;
-  model.numerator = static_cast<double>(r - 3 * n);
-  model.denominator = static_cast<double>(fit.residual.rows() - r);
-  for (Index i = 0; i < n; ++i) {
-    const Matrix& V = fit.covariance[static_cast<std::size_t>(i)];
-    const Vector own = deviations(V).cwiseInverse();
-    const numeric::PivotedCholesky weights(own.asDiagonal() * V * own.asDiagonal());
-    const Matrix Dw = own.asDiagonal() * scaled;
-    const Vector aw = own.cwiseProduct(fit.coefficients.col(i));
-    const Matrix C = numeric::inverse(Dw.transpose() * weights.solve(Dw));
-    const Vector theta = C * (Dw.transpose() * weights.solve(aw));
-    const Vector rest = aw - Dw * theta;
-    const Vector value = scale.cwiseProduct(theta);
-    const Vector half = numeric::kNormal95 * scale.cwiseProduct(deviations(C));
-    model.M.row(i) = value.head(n);
-    model.B.row(i) = value.segment(n, n);
-    model.K.row(i) = value.tail(n);
-    model.M_half_width.row(i) = half.head(n);
-    model.B_half_width.row(i) = half.segment(n, n);
-    model.K_half_width.row(i) = half.tail(n);
-    if (r == 3 * n) continue;
-    const double statistic = rest.dot(weights.solve(rest)) / model.numerator;
-    model.statistic = std::max(model.statistic, statistic);
-    model.p_value = std::min(model.p_value, static_cast<double>(n) * numeric::f_probability_above(
-                                                                         statistic, model.numerator, model.denominator));
-  }
-  model.enough = model.p_value >= kChance;
-  const auto narrow = [](const Matrix& value, const Matrix& half) {
-    return (half.diagonal().array() < value.diagonal().array().abs()).all();
-  };
-  model.M_identifiable = narrow(model.M, model.M_half_width);
-  model.B_identifiable = narrow(model.B, model.B_half_width);
-  model.K_identifiable = narrow(model.K, model.K_half_width);
-  return model;
 }
 
 std::vector<ExplainedForce> judged(const Matrix& Y, const Matrix& predicted, const std::vector<RowRange>& rows,
@@ -180,6 +129,7 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
   result.axes = signals.axes;
   result.sample_time = T;
   result.memory = T * static_cast<double>(L);
+  result.memory_at_limit = !options.memory_s && L == std::llround(kMemories.back() / T);
   result.memory_rule = options.memory_s ? "given" : "cross-validation";
   result.lag = Vector::LinSpaced(lags, -result.memory, result.memory);
   result.rank = V.cols();
@@ -205,7 +155,7 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
   derivatives << signals.acceleration, signals.velocity, signals.position;
   const Matrix motions = centred(rows_of(derivatives, own_rows));
   const Matrix D = numeric::Lu(R.transpose() * Z).solve(R.transpose() * motions);
-  result.model = fit_model(D, fit, n);
+  result.model = fit_response_model(D, fit, n);
 
   // M, B, K directly, on the same rows
   Matrix instruments = motions;

@@ -10,6 +10,8 @@
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/lagged_regression.h"
+#include "mbk/measure/explore/response_model.h"
+#include "mbk/measure/explore/second_order_reflex.h"
 
 namespace mbk::explore {
 namespace parallel_cascade_detail {
@@ -384,25 +386,54 @@ class Cascade {
     reflex_ = response_of(joint);
     result_.reflex = reflex_ / T_;
     result_.reflex_half_width.resize(lags, n_);
-    result_.gain = reflex_.colwise().sum().transpose();
-    result_.gain_half_width.resize(n_);
-    const Vector sum = joint.directions.colwise().sum().transpose();
     for (Index j = 0; j < n_; ++j) {
       const Matrix C = joint.fit.covariance[static_cast<std::size_t>(j)].bottomRightCorner(r, r);
       result_.reflex_half_width.col(j) =
           numeric::kNormal95 *
           (joint.directions * C).cwiseProduct(joint.directions).rowwise().sum().cwiseMax(0.0).cwiseSqrt() / T_;
-      result_.gain_half_width[j] = numeric::kNormal95 * std::sqrt(std::max(0.0, sum.dot(C * sum)));
     }
-    result_.gain_along = direction_.dot(result_.gain);
-    result_.gain_along_half_width = direction_.cwiseProduct(result_.gain_half_width).norm();
-    constexpr double kCarried = 0.5;  // share of a steady stretch that the directions hold
-    result_.gain_identifiable = sum.squaredNorm() >= kCarried * static_cast<double>(lags) &&
-                                result_.gain_along_half_width < std::abs(result_.gain_along);
+    describe(through(stretch, polynomial));
     stretch_ = through(stretch, polynomial).measured;
     joint_ = std::move(joint.fit);
     joint_->coefficients.conservativeResize(base, Eigen::NoChange);
     for (Matrix& C : joint_->covariance) C = C.topLeftCorner(base, base).eval();
+  }
+
+  /// Gain, second-order response and intrinsic M, B and K from a fit with all lags, none of them chosen: where lags or
+  /// directions are left out because they predict little, their sum is biased.
+  void describe(const Both& stretch) {
+    const Both lags = columns(stretch, first_, last_);
+    const Matrix directions = principal_directions(lags.explained);
+    const Index base = intrinsic_.explained.cols(), r = directions.cols(), count = directions.rows();
+    Matrix Z(Y_.rows(), base + r), R(Y_.rows(), base + r);
+    Z << intrinsic_.measured, lags.measured * directions;
+    R << intrinsic_.explained, lags.explained * directions;
+    const LaggedFit fit = fit_lagged(Z, R, Y_, rows_);
+
+    const Vector sum = directions.colwise().sum().transpose();
+    result_.gain_along = {};
+    double variance_along = 0.0;
+    std::vector<Matrix> covariances;
+    const Matrix coefficients = fit.coefficients.bottomRows(r);
+    for (Index j = 0; j < n_; ++j) {
+      covariances.push_back(fit.covariance[static_cast<std::size_t>(j)].bottomRightCorner(r, r));
+      const double variance = std::max(0.0, sum.dot(covariances.back() * sum));
+      const double value = sum.dot(coefficients.col(j));
+      result_.gain.push_back({value, numeric::kNormal95 * std::sqrt(variance)});
+      result_.gain_along.value += direction_[j] * value;
+      variance_along += direction_[j] * direction_[j] * variance;
+    }
+    result_.gain_along.half_width = numeric::kNormal95 * std::sqrt(variance_along);
+    constexpr double kCarried = 0.5;  // share of a steady stretch that the directions hold
+    result_.gain_identifiable = sum.squaredNorm() >= kCarried * static_cast<double>(count) &&
+                                result_.gain_along.half_width < std::abs(result_.gain_along.value);
+    const auto freedom = static_cast<double>(Y_.rows() - Z.cols());
+    result_.second_order = fit_second_order(directions, coefficients, covariances, T_, first_, freedom);
+
+    Matrix derivatives(s_.position.rows(), 3 * n_);
+    derivatives << s_.acceleration, s_.velocity, s_.position;
+    const Matrix D = numeric::Lu(R.transpose() * Z).solve(R.transpose() * centred(rows_of(derivatives, rows_)));
+    result_.intrinsic_model = fit_response_model(D.topRows(base), fit, n_);
   }
 
   void judge() {

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "mbk/files/recording/inspect.h"
+#include "mbk/measure/explore/limb_signals.h"
+#include "mbk/measure/explore/parallel_cascade.h"
 #include "mbk/measure/preprocess/exploration_trial_of.h"
 #include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
@@ -42,6 +44,26 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
   return trial;
 }
 
+/// What needs more than the recording holds is absent, and why stands in the notes.
+void add_responses_in_time(std::span<const ExplorationTrial> trials, const ExploreOptions& options,
+                           Exploration& found) {
+  const auto signals = explore::limb_signals(trials);
+  if (!signals) {
+    found.notes.push_back("no impulse response: " + signals.error().line());
+    return;
+  }
+  if (auto response = explore::impulse_response(*signals, options.impulse_response)) {
+    found.impulse_response = std::move(*response);
+  } else {
+    found.notes.push_back("no impulse response: " + response.error().line());
+  }
+  if (auto cascade = explore::parallel_cascade(*signals)) {
+    found.parallel_cascade = std::move(*cascade);
+  } else {
+    found.notes.push_back("no intrinsic and reflex path: " + cascade.error().line());
+  }
+}
+
 }  // namespace
 
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
@@ -65,6 +87,7 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   auto response = explore::welch_response(trials, options.welch);
   if (!response) return tl::unexpected(response.error());
   found.frequency_response = std::move(*response);
+  add_responses_in_time(trials, options, found);
   return found;
 }
 

@@ -5,6 +5,7 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
+#include "mbk/measure/explore/impulse_response.h"
 #include "mbk/measure/explore/welch_response.h"
 #include "mbk/measure/preprocess/options.h"
 #include "mbk/model/trial/exploration.h"
@@ -18,6 +19,7 @@ struct ExploreOptions {
   std::optional<Hertz> resample;  ///< put the samples on an even clock first
   double force_delay = 0.0;       ///< by which the force was read late, undone first [s]
   explore::WelchOptions welch;
+  explore::ImpulseResponseOptions impulse_response;
 };
 
 /// What recordings of one limb in one condition say of it without a model of M, B and K. They are averaged.

@@ -6,6 +6,8 @@
 
 #include "mbk/model/trial/exploration_trial.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
+#include "mbk/model/trial/impulse_response_estimate.h"
+#include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/warning.h"
 
 namespace mbk {
@@ -25,6 +27,8 @@ struct Exploration {
   Motion motion = Motion::translation;
   std::vector<ExploredRecording> recordings;
   std::optional<FrequencyResponseEstimate> frequency_response;
+  std::optional<ImpulseResponseEstimate> impulse_response;
+  std::optional<ParallelCascadeEstimate> parallel_cascade;
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   bool usable = true;

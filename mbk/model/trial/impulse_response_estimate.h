@@ -31,6 +31,7 @@ struct ImpulseResponseEstimate {
   int axes = 1;
   double sample_time = 0;  ///< T [s]
   double memory = 0;       ///< lags reach from −memory to memory [s]
+  bool memory_at_limit = false;  ///< the longest that was tried: it may be more
   std::string memory_rule;
   Vector lag;              ///< 2L+1 [s]
   Matrix response;         ///< (2L+1)×n²: column i + j n is from axis j of the motion to axis i of the force [N/(m·s)]

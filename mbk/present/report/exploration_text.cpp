@@ -18,6 +18,8 @@ std::string exploration_text(const Exploration& found) {
   }
   text += table(rows);
   if (found.frequency_response) text += "\n" + frequency_response_text(*found.frequency_response);
+  if (found.impulse_response) text += "\n" + impulse_response_text(*found.impulse_response, found.motion);
+  if (found.parallel_cascade) text += "\n" + parallel_cascade_text(*found.parallel_cascade, found.motion);
   for (const std::string& note : found.notes) text += paragraph("  ", note);
   if (!found.warnings.empty()) text += "\n" + warnings_text(found.warnings);
   return text;

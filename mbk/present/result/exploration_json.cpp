@@ -19,6 +19,8 @@ std::string to_json(const Exploration& found) {
   }
   json["axes"] = found.axes;
   if (found.frequency_response) json["frequency_response"] = frequency_response_json(*found.frequency_response);
+  if (found.impulse_response) json["impulse_response"] = impulse_response_json(*found.impulse_response);
+  if (found.parallel_cascade) json["parallel_cascade"] = parallel_cascade_json(*found.parallel_cascade);
   json["notes"] = found.notes;
   json["warnings"] = warnings_json(found.warnings);
   json["usable"] = found.usable;
