@@ -27,6 +27,37 @@ class Welch(Case):
                     self.assertAlmostEqual(response["responses"][0]["magnitude"][k], value, delta=6e-5 * value)
 
 
+class Ankle(Case):
+    # fitted on 0 to 40 s, VAF on the rest: intrinsic alone, with reflex
+    VAF = {"z_df": (87.0, 95.0), "z_df2": (94.0, 95.5), "z_pf": (67.5, 90.0)}
+
+    def test_has_a_reflex_to_stretch_in_one_direction(self):
+        for name, (alone, both) in self.VAF.items():
+            with self.subTest(name):
+                file = data_folder("ankle") / f"{name}.csv"
+                found = self.fine("explore", *ANKLE, "--split", "40", "--json", file).json
+                cascade = found["parallel_cascade"]
+                self.assertEqual(cascade["delayed_response"], "reflex")
+                self.assertEqual(cascade["validated_on"], "held-out")
+                shares = cascade["shares"][0]
+                self.assertGreaterEqual(shares["intrinsic_alone"]["VAF"], alone)
+                self.assertGreaterEqual(shares["both"]["VAF"], both)
+                low, high = shares["both"]["VAF_interval95"]
+                self.assertTrue(low < shares["both"]["VAF"] < high)
+                self.assertEqual(cascade["reflex"]["direction"], [1])
+                self.assertEqual([one["direction"] for one in cascade["candidates"]], [[1], None, [-1]])
+                self.assertTrue(0.04 <= cascade["reflex"]["delay_s"] <= 0.08)
+                self.assertGreater(cascade["reflex"]["gain_along"]["value"], 0)
+                response = found["impulse_response"]
+                self.assertFalse(response["model"]["enough"]["enough"])
+                self.assertGreater(response["explained"][0]["VAF"], response["explained_by_model"][0]["VAF"])
+                text = self.fine("explore", *ANKLE, "--split", "40", file).out
+                self.assert_lines_fit(text)
+                for words in ("impulse response", "not enough", "intrinsic and reflex force", "positive stretch",
+                              "resists the stretch"):
+                    self.assertIn(words, text)
+
+
 class TwoAxes(Case):
     def test_text_and_json_say_the_same(self):
         log = make_log().path
