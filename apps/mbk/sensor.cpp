@@ -63,7 +63,7 @@ int run_calibrate(const SensorCalibrateArguments& arguments) {
   return kFine;
 }
 
-Action add_calibrate(CLI::App& sensor) {
+Action add_sensor_calibrate(CLI::App& sensor) {
   auto arguments = std::make_shared<SensorCalibrateArguments>();
   CLI::App* command = add_command(sensor, "calibrate", "slope, zero, crosstalk and noise from known loads");
   command->footer(
@@ -175,7 +175,7 @@ Action add_sensor(CLI::App& app) {
       "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --json --out cell.json\n"
       "  mbk measure --sensor cell.json trial.csv\n"
       "  mbk sensor delay mass.h5 --mass 1.194");
-  const Actions actions = {{"calibrate", add_calibrate(*command)}, {"delay", add_delay(*command)}};
+  const Actions actions = {{"calibrate", add_sensor_calibrate(*command)}, {"delay", add_delay(*command)}};
   return [command, actions] { return run_chosen(*command, actions); };
 }
 

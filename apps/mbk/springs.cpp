@@ -281,7 +281,7 @@ Action add_find(CLI::App& springs) {
   return [arguments] { return run_find(*arguments); };
 }
 
-Action add_calibrate(CLI::App& springs) {
+Action add_springs_calibrate(CLI::App& springs) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = add_command(springs, "calibrate", "spring constants from slow stretches");
   command->footer(
@@ -310,7 +310,7 @@ Action add_springs(CLI::App& app) {
       "  mbk springs find --stiffness 443.86,232.34,16.74 --at 393:-55\n"
       "  mbk springs field --help");
   const Actions actions = {
-      {"field", add_field(*command)}, {"find", add_find(*command)}, {"calibrate", add_calibrate(*command)}};
+      {"field", add_field(*command)}, {"find", add_find(*command)}, {"calibrate", add_springs_calibrate(*command)}};
   return [command, actions] { return run_chosen(*command, actions); };
 }
 

@@ -32,7 +32,7 @@ TYPED = {  # what has been typed → what is offered
     ("teleop", "--sim"): ["--simulate"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
     ("validate", ""): ["closed-loop", "coverage", "faults", "live-estimate", "misspecification", "one-dimensional",
-                       "participant", "passivity", "recovery", "robot", "springs", "teleoperation",
+                       "participant", "passivity", "recovery", "reflex", "robot", "springs", "teleoperation",
                        "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],
     ("reproduce", "--wi"): ["--without-printed"],

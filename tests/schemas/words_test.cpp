@@ -7,7 +7,9 @@
 #include "mbk/model/trial/arm_posture.h"
 #include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/frequency_response.h"
+#include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/prepared_dynamics.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/protocol.h"
@@ -51,6 +53,8 @@ TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
   expect_words<TransferFunctionMethod>("tf", "/properties/method");
   expect_words<InputHold>("tf", "/properties/hold");
   expect_words<AdmittanceOutput>("tf", "/definitions/InvertedAdmittance/properties/admittance_to");
+  expect_words<FrequencyResponseMethod>("explore", "/definitions/FrequencyResponseEstimate/properties/method");
+  expect_words<DelayedResponse>("explore", "/definitions/ParallelCascadeEstimate/properties/delayed_response");
   expect_words<StabilityVerdict>("teleop", "/definitions/Stability/properties/verdict");
   expect_words<StabilityCondition>("teleop", "/definitions/Stability/properties/conditions/items/properties/name");
   expect_words<MotionOutcome>("teleop", "/properties/simulation/properties/runs/items/properties/outcome");

@@ -19,7 +19,9 @@
 #include "mbk/model/perturbation/schedule_plan.h"
 #include "mbk/model/trial/arm_posture.h"
 #include "mbk/model/trial/frequency_response.h"
+#include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/identification.h"
+#include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/prepared_dynamics.h"
 #include "mbk/model/trial/readers.h"
 #include "mbk/model/trial/reproduction.h"
@@ -42,14 +44,14 @@ class WordsOf : public testing::Test {};
 using Enumerations =
     testing::Types<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal,
                    perturbation::MultisinePlan::Phases, perturbation::MultisinePlan::Axes, AccelerationSource,
-                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, Exhibit::Kind, ForceSource,
-                   InputHold, InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom, Procedure, Protocol,
-                   Provenance, Readers, ReferenceQuantity, RobotMethod, SensorWarningCode, StabilityCondition,
-                   StabilityVerdict, Structure, TransferFunctionMethod, Verdict, WarningCode, journal::Ending::How,
-                   recording::Format, calibration::SensorFrame, teleop::Architecture, teleop::Form,
-                   teleop::SimulatedArm::Kind, control::Phase, device::Motors, device::Wiring::Frame, drivers::Refusal,
-                   safety::Reason, safety::MotorsOff::State, protocol::Machine, console::Action, console::Question,
-                   console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;
+                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, DelayedResponse, Exhibit::Kind, ForceSource,
+                   FrequencyResponseMethod, InputHold, InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom,
+                   Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod, SensorWarningCode,
+                   StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod, Verdict, WarningCode,
+                   journal::Ending::How, recording::Format, calibration::SensorFrame, teleop::Architecture,
+                   teleop::Form, teleop::SimulatedArm::Kind, control::Phase, device::Motors, device::Wiring::Frame,
+                   drivers::Refusal, safety::Reason, safety::MotorsOff::State, protocol::Machine, console::Action,
+                   console::Question, console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;
 TYPED_TEST_SUITE(WordsOf, Enumerations);
 
 TYPED_TEST(WordsOf, GoBothWays) {

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <optional>
 
+#include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/measure/identify/autoregression.h"
 
 namespace mbk::identify {
 namespace {
@@ -220,7 +220,7 @@ class Tester {
       pieces.push_back(residual.segment(piece.begin, piece.size()));
       shortest = std::min(shortest, piece.size());
     }
-    return autoregression(pieces, std::min(kMostOrder, shortest / 3));
+    return dsp::autoregression(pieces, std::min(kMostOrder, shortest / 3));
   }
 
   /// @param last  columns at the end that are tested

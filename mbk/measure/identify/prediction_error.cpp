@@ -11,12 +11,12 @@
 #include <string>
 #include <utility>
 
+#include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/dsp/difference_equation.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/polynomial_roots.h"
-#include "mbk/measure/identify/autoregression.h"
 #include "mbk/measure/identify/srivc.h"
 
 namespace mbk::identify {
@@ -506,7 +506,7 @@ std::vector<Model> Fitter::noise_models(const Model& at) const {
     return all.back().first;
   };
   double least = add(white, squares(white));
-  const Vector longest = autoregression(left, std::min(kLong, samples_ / 20));
+  const Vector longest = dsp::autoregression(left, std::min(kLong, samples_ / 20));
   const Index most = options_.max_noise_order;
   Matrix triangle;
   for (const Vector& v : left) {
@@ -529,7 +529,7 @@ std::vector<Model> Fitter::noise_models(const Model& at) const {
     least = all.back().first;
     rises = -1;
   }
-  const Vector c = autoregression(left, most);
+  const Vector c = dsp::autoregression(left, most);
   if (c.size() > 1) {
     Model autoregressive = white;
     autoregressive.c = c.tail(c.size() - 1);

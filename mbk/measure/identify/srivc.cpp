@@ -12,13 +12,14 @@
 #include <numbers>
 #include <optional>
 
+#include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/dsp/derivative_filter.h"
 #include "mbk/base/dsp/segments.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/polynomial_roots.h"
-#include "mbk/measure/identify/autoregression.h"
+#include "mbk/measure/identify/explained_by_past.h"
 
 namespace mbk::identify {
 namespace {
@@ -585,7 +586,7 @@ Fitter::Search Fitter::search(double pole) const {
   constexpr int kMaxNoisePasses = 30;
   for (int pass = 0; options_.max_noise_order > 0 && found.start.converged && pass < kMaxNoisePasses; ++pass) {
     const Vector before = found.at.physical();
-    found.noise = autoregression(residuals(found.at), options_.max_noise_order);
+    found.noise = dsp::autoregression(residuals(found.at), options_.max_noise_order);
     iterate(found);
     const Vector after = found.at.physical();
     if (((after - before).array().abs() <= options_.tolerance * after.array().abs()).all()) break;

@@ -9,12 +9,13 @@
 #include <numbers>
 #include <optional>
 
+#include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/dsp/difference_equation.h"
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/golden_section.h"
 #include "mbk/base/numeric/polynomial_roots.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/measure/identify/autoregression.h"
+#include "mbk/measure/identify/explained_by_past.h"
 #include "mbk/measure/identify/input_hold.h"
 #include "mbk/measure/identify/prediction_error.h"
 #include "mbk/measure/identify/srivc.h"
@@ -588,7 +589,7 @@ namespace {
 Vector cross_correlation(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
   constexpr Index kMaxOrder = 50, kSamplesEach = 20;
   const Index shortest = std::ranges::min(residuals, {}, &Vector::size).size();
-  const Vector whitening = autoregression(residuals, std::min(kMaxOrder, shortest / kSamplesEach));
+  const Vector whitening = dsp::autoregression(residuals, std::min(kMaxOrder, shortest / kSamplesEach));
   const Index order = whitening.size() - 1;
   Vector cross = Vector::Zero(lags + 1);
   double of_residual = 0.0, of_input = 0.0, samples = 0.0;

@@ -22,6 +22,8 @@ constexpr std::array kOfVirtualSensor = {JudgedShare{kNearNominal, 100.0, 5.0}, 
 constexpr std::array kOfLiveEstimate = {JudgedShare{kNearNominal, 93.0}, JudgedShare{kHardlyEver, 0.5}};
 constexpr std::array kOfTransferFunction = {JudgedShare{kNominalOrMore, 95.0}, JudgedShare{kNearlyAlways, 99.0},
                                             JudgedShare{kHardlyEver, 1.0}};
+constexpr std::array kOfReflex = {JudgedShare{kNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0},
+                                  JudgedShare{kHardlyEver, 1.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
 constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfFaultsAtAll = {JudgedShare{kNearNominal, 100.0}, JudgedShare{kHardlyEver, 0.0, 10.0}};
@@ -49,6 +51,8 @@ std::span<const Study> studies() {
       Study{"transfer-function", "a transfer function of four poles under noise, and its order", kOfTransferFunction, 2,
             transfer_function_study},
       Study{"one-dimensional", "no linear model holds for a rigid arm along one axis", {}, 4, one_dimensional_study},
+      Study{"reflex", "impulse response, intrinsic and reflex force of limbs that have them or not", kOfReflex, 2,
+            reflex_study},
       Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated",
             kOfTeleoperation, 1, teleoperation_study},
       Study{"participant", "when the simulated participant is active or passive", kOfParticipant, 2, participant_study},

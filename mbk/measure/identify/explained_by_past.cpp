@@ -1,4 +1,4 @@
-#include "mbk/measure/identify/autoregression.h"
+#include "mbk/measure/identify/explained_by_past.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -26,36 +26,6 @@ Vector finite_impulse_response(const Eigen::Ref<const Vector>& r, const Eigen::R
 }
 
 }  // namespace
-
-Vector autoregression(const std::vector<Vector>& pieces, Index most) {
-  Vector r = Vector::Zero(most + 1);
-  Index samples = 0;
-  for (const Vector& e : pieces) {
-    samples += e.size();
-    for (Index lag = 0; lag <= std::min(most, e.size() - 1); ++lag) {
-      r[lag] += e.head(e.size() - lag).dot(e.tail(e.size() - lag));
-    }
-  }
-  Vector c = Vector::Ones(1), best = c;
-  if (!(r[0] > 0.0)) return best;
-  const auto count = static_cast<double>(samples);
-  double variance = r[0], least = count * std::log(variance);
-  for (Index p = 1; p <= most; ++p) {
-    const double reflection = -c.dot(r.segment(1, p).reverse()) / variance;
-    Vector longer(p + 1);
-    longer << c, 0.0;
-    longer += reflection * longer.reverse().eval();
-    c = longer;
-    variance *= 1.0 - reflection * reflection;
-    if (!(variance > 0.0)) break;
-    const double bic = count * std::log(variance) + static_cast<double>(p) * std::log(count);
-    if (bic < least) {
-      least = bic;
-      best = c;
-    }
-  }
-  return best;
-}
 
 Vector explained_by_past(const Vector& reference, const Vector& signal) {
   constexpr Index kMaxLags = 300;

@@ -1,0 +1,99 @@
+#include "mbk/measure/measurement/explore.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "apps/mbk/commands.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/preprocess_options.h"
+#include "apps/mbk/reading_options.h"
+#include "apps/mbk/word_options.h"
+#include "mbk/present/report/exploration_text.h"
+#include "mbk/present/result/exploration_json.h"
+
+namespace mbk::app {
+namespace {
+
+struct ExploreArguments {
+  ReadingArguments reading;
+  SensorArguments sensor;
+  WindowArguments window;
+  std::optional<Protocol> protocol;
+  std::optional<double> resample_hz;
+  double force_delay_ms = 0.0;
+  explore::WelchOptions welch;
+  OutputArguments output;
+};
+
+Result<measurement::ExploreOptions> options_of(const ExploreArguments& a) {
+  const auto window = window_limits(a.window);
+  if (!window) return tl::unexpected(window.error());
+  measurement::ExploreOptions options;
+  options.preprocess.window = *window;
+  options.preprocess.protocol = a.protocol;
+  options.preprocess.axes = a.reading.axes;
+  if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
+  options.force_delay = a.force_delay_ms / kMilliseconds;
+  options.welch = a.welch;
+  return options;
+}
+
+int run_explore(const ExploreArguments& arguments) {
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
+  const auto options = options_of(arguments);
+  if (!options) return report_error(options.error());
+  const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
+  if (!recordings) return report_error(recordings.error());
+  const auto found = measurement::explore(*recordings, *options);
+  if (!found) return report_error(found.error());
+  const std::string text = arguments.output.json ? result::to_json(*found) : report::exploration_text(*found);
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  return found->usable ? kFine : kNotUsable;
+}
+
+}  // namespace
+
+Action add_explore(CLI::App& app) {
+  auto arguments = std::make_shared<ExploreArguments>();
+  CLI::App* command = add_command(app, "explore", "what the limb does before anyone assumes M, B and K");
+  command->footer(
+      "Examples:\n"
+      "  mbk explore log.mat\n"
+      "      how the force answers motion at each frequency: dynamic stiffness −F/X and coherence\n"
+      "  mbk explore first.mat second.mat third.mat --json\n"
+      "      repetitions of one condition, averaged\n"
+      "  mbk explore ankle.csv --channels x=2,F=3 --max-frequency 30\n\n"
+      "Exit codes: " +
+      std::string(kExitCodes));
+  add_reading_options(*command, arguments->reading);
+  add_sensor_options(*command, arguments->sensor);
+  add_choice_or_auto(*command, "--protocol", arguments->protocol,
+                     "how the limb was perturbed; auto looks at the reference and says what it saw")
+      ->group("Analysed interval");
+  add_window_options(*command, arguments->window);
+  command
+      ->add_option("--resample", arguments->resample_hz,
+                   "put an uneven clock right first, by straight lines; never done unasked")
+      ->type_name("HZ")
+      ->check(positive());
+  command
+      ->add_option("--force-delay-ms", arguments->force_delay_ms,
+                   "by which the force was read late, as 'mbk sensor delay' finds it: undone first (0)")
+      ->type_name("MS")
+      ->check(number_within(1000.0));
+  const char* const group = "Frequency response";
+  command->add_option("--segment", arguments->welch.segment_s, "length of the segments that are averaged, s (2)")
+      ->type_name("S")
+      ->check(positive())
+      ->group(group);
+  command->add_option("--max-frequency", arguments->welch.max_frequency_hz, "highest frequency that is shown, Hz (50)")
+      ->type_name("HZ")
+      ->check(positive())
+      ->group(group);
+  add_output_options(*command, arguments->output, "mbk.explore/1");
+  return [arguments] { return run_explore(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,193 @@
+#include "mbk/measure/explore/second_order_reflex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/statistics.h"
+
+namespace mbk::explore {
+namespace second_order_reflex_detail {
+
+/// Impulse response of 1/(s² + 2ζs + 1) at time t, in units of 1/ω.
+double impulse(double t, double damping) {
+  if (t <= 0.0) return 0.0;
+  const double square = damping * damping - 1.0;
+  if (std::abs(square) < 1e-8) return t * std::exp(-damping * t);
+  if (square < 0.0) {
+    const double w = std::sqrt(-square);
+    return std::exp(-damping * t) * std::sin(w * t) / w;
+  }
+  const double w = std::sqrt(square);  // of two real poles: no difference of large numbers
+  return (std::exp(-(damping - w) * t) - std::exp(-(damping + w) * t)) / (2.0 * w);
+}
+
+/// What is searched: ln ω, ln ζ, d.
+using Shape = Eigen::Vector3d;
+
+class Search {
+ public:
+  Search(const Matrix& directions, const Matrix& coefficients, const std::vector<Matrix>& covariance, double T,
+         Index first)
+      : T_(T), first_(first), lags_(directions.rows()) {
+    for (Index j = 0; j < coefficients.cols(); ++j) {
+      // C⁻¹ = UᵀU by the triangle of C
+      const numeric::Cholesky triangle(covariance[static_cast<std::size_t>(j)]);
+      usable_ = usable_ && triangle.positive_definite();
+      if (!usable_) return;
+      const Matrix lower = triangle.upper().transpose();
+      weights_.push_back(lower.triangularView<Eigen::Lower>().solve(directions.transpose()));
+      wanted_.push_back(lower.triangularView<Eigen::Lower>().solve(coefficients.col(j)));
+    }
+  }
+  [[nodiscard]] bool usable() const { return usable_; }
+
+  struct Point {
+    Shape shape;
+    Vector gain;  ///< n
+    Vector rest;  ///< of all axes under each other, whitened
+    [[nodiscard]] double squares() const { return rest.squaredNorm(); }
+  };
+
+  /// The best gains for a shape.
+  [[nodiscard]] Point at(const Shape& shape) const {
+    const double natural = std::exp(shape[0]), damping = std::exp(shape[1]);
+    Vector g(lags_);
+    for (Index k = 0; k < lags_; ++k) {
+      g[k] = T_ * natural * impulse(natural * (T_ * static_cast<double>(first_ + k) - shape[2]), damping);
+    }
+    Point point{shape, Vector(wanted_.size()), {}};
+    std::vector<Vector> parts;
+    Index rows = 0;
+    for (std::size_t j = 0; j < wanted_.size(); ++j) {
+      const Vector made = weights_[j] * g;
+      const double gain = made.squaredNorm() > 0.0 ? made.dot(wanted_[j]) / made.squaredNorm() : 0.0;
+      point.gain[static_cast<Index>(j)] = gain;
+      parts.emplace_back(wanted_[j] - gain * made);
+      rows += made.size();
+    }
+    point.rest.resize(rows);
+    Index row = 0;
+    for (const Vector& part : parts) {
+      point.rest.segment(row, part.size()) = part;
+      row += part.size();
+    }
+    return point;
+  }
+
+  /// ∂rest/∂shape of the profiled gains, by central differences.
+  [[nodiscard]] Matrix slope(const Point& point) const {
+    Matrix J(point.rest.size(), 3);
+    const Shape steps(1e-4, 1e-4, 0.02 * T_);
+    for (Index k = 0; k < 3; ++k) {
+      Shape up = point.shape, down = point.shape;
+      up[k] += steps[k];
+      down[k] -= steps[k];
+      J.col(k) = (at(up).rest - at(down).rest) / (2.0 * steps[k]);
+    }
+    return J;
+  }
+
+  [[nodiscard]] Point from(const Shape& start) const {
+    Point best = at(start);
+    double damp = 1e-2;
+    constexpr int kMaxSteps = 60;
+    for (int step = 0; step < kMaxSteps; ++step) {
+      const Matrix J = slope(best);
+      Matrix H = J.transpose() * J;
+      const Vector down = -(J.transpose() * best.rest);
+      H.diagonal() *= 1.0 + damp;
+      const Vector move = numeric::PivotedCholesky(H).solve(down);
+      if (!move.allFinite()) break;
+      const Point next = at(best.shape + Shape(move));
+      if (next.squares() < best.squares()) {
+        const double gained = best.squares() - next.squares();
+        best = next;
+        damp = std::max(1e-9, 0.3 * damp);
+        if (gained < 1e-7 * best.squares()) break;
+      } else {
+        damp *= 5.0;
+        if (damp > 1e8) break;
+      }
+    }
+    return best;
+  }
+
+  /// Covariance of [G; ln ω; ln ζ; d].
+  [[nodiscard]] Matrix covariance(const Point& point) const {
+    const auto n = static_cast<Index>(wanted_.size());
+    Matrix J = Matrix::Zero(point.rest.size(), n + 3);
+    const auto rest_with = [&](const Shape& shape, const Vector& gain) {
+      const double natural = std::exp(shape[0]), damping = std::exp(shape[1]);
+      Vector g(lags_), rest(point.rest.size());
+      for (Index k = 0; k < lags_; ++k) {
+        g[k] = T_ * natural * impulse(natural * (T_ * static_cast<double>(first_ + k) - shape[2]), damping);
+      }
+      Index row = 0;
+      for (std::size_t j = 0; j < wanted_.size(); ++j) {
+        rest.segment(row, wanted_[j].size()) = wanted_[j] - gain[static_cast<Index>(j)] * (weights_[j] * g);
+        row += wanted_[j].size();
+      }
+      return rest;
+    };
+    for (Index j = 0; j < n; ++j) {
+      J.col(j) = rest_with(point.shape, point.gain + Vector::Unit(n, j)) - rest_with(point.shape, point.gain);
+    }
+    const Shape steps(1e-4, 1e-4, 0.02 * T_);
+    for (Index k = 0; k < 3; ++k) {
+      Shape up = point.shape, down = point.shape;
+      up[k] += steps[k];
+      down[k] -= steps[k];
+      J.col(n + k) = (rest_with(up, point.gain) - rest_with(down, point.gain)) / (2.0 * steps[k]);
+    }
+    return numeric::inverse(J.transpose() * J);
+  }
+
+ private:
+  double T_;
+  Index first_, lags_;
+  bool usable_ = true;
+  std::vector<Matrix> weights_;  ///< r×lags
+  std::vector<Vector> wanted_;   ///< r
+};
+
+}  // namespace second_order_reflex_detail
+
+std::optional<SecondOrderReflex> fit_second_order(const Matrix& directions, const Matrix& coefficients,
+                                                  const std::vector<Matrix>& covariance, double sample_time,
+                                                  Index first, double freedom) {
+  using namespace second_order_reflex_detail;
+  const Index n = coefficients.cols(), r = coefficients.rows();
+  const double begin = sample_time * static_cast<double>(first);
+  const double end = sample_time * static_cast<double>(first + directions.rows());
+  const Search search(directions, coefficients, covariance, sample_time, first);
+  if (!search.usable() || r * n <= n + 3) return std::nullopt;
+  std::optional<Search::Point> best;
+  for (const double natural : {8.0, 20.0, 50.0}) {
+    for (const double damping : {0.5, 1.0}) {
+      for (const double later : {0.0, 0.03, 0.08}) {
+        const auto point = search.from(Shape(std::log(natural), std::log(damping), begin + later));
+        const bool inside = std::isfinite(point.squares()) && point.shape[2] > 0.0 && point.shape[2] < end &&
+                            std::exp(point.shape[0]) < std::numbers::pi / sample_time;
+        if (inside && (!best || point.squares() < best->squares())) best = point;
+      }
+    }
+  }
+  if (!best) return std::nullopt;
+  const double left = static_cast<double>(r * n - n - 3), statistic = best->squares() / left;
+  const Vector deviation =
+      search.covariance(*best).diagonal().cwiseMax(0.0).cwiseSqrt() * std::sqrt(std::max(1.0, statistic));
+  if (!deviation.allFinite()) return std::nullopt;
+  SecondOrderReflex reflex;
+  for (Index j = 0; j < n; ++j) reflex.gain.push_back({best->gain[j], numeric::kNormal95 * deviation[j]});
+  const double frequency = std::exp(best->shape[0]) / (2.0 * std::numbers::pi), damping = std::exp(best->shape[1]);
+  reflex.frequency = {frequency, numeric::kNormal95 * frequency * deviation[n]};
+  reflex.damping = {damping, numeric::kNormal95 * damping * deviation[n + 1]};
+  reflex.delay = {best->shape[2], numeric::kNormal95 * deviation[n + 2]};
+  reflex.p_value = numeric::f_probability_above(statistic, left, freedom);
+  return reflex;
+}
+
+}  // namespace mbk::explore

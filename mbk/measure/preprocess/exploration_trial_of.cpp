@@ -1,0 +1,101 @@
+#include "mbk/measure/preprocess/exploration_trial_of.h"
+
+#include <fmt/format.h>
+
+#include "mbk/measure/preprocess/recording_checks.h"
+#include "mbk/measure/preprocess/signals.h"
+#include "mbk/measure/preprocess/trial_clock.h"
+#include "mbk/measure/preprocess/windows.h"
+#include "mbk/model/trial/quantity_channels.h"
+
+namespace mbk::preprocess {
+namespace {
+
+std::vector<SignalLabel> labels_of(const Recording& recording, const QuantityChannels& quantity, int axes,
+                                   const std::string& sign) {
+  std::vector<SignalLabel> labels;
+  for (Index axis = 0; axis < axes; ++axis) {
+    const std::string name = quantity.name(axes, axis);
+    labels.push_back({sign + name, recording.find(name)->unit});
+  }
+  return labels;
+}
+
+/// Whether it moves along every axis, so that it can stand for the motion without its noise.
+bool moves(const Matrix& reference) {
+  for (Index axis = 0; axis < reference.cols(); ++axis) {
+    if (reference.col(axis).maxCoeff() == reference.col(axis).minCoeff()) return false;
+  }
+  return reference.size() > 0;
+}
+
+}  // namespace
+
+Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const Inspection& inspection,
+                                              const Options& options) {
+  constexpr Index kMin = 20;
+  const Index samples = recording.samples();
+  if (samples < kMin || !(inspection.rate_hz > 0.0)) {
+    return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
+  }
+  const Hertz rate(inspection.rate_hz);
+  const Clock clock(recording.time, rate);
+  if (auto ok = check_missing(clock, inspection.missing, options.window); !ok) return tl::unexpected(ok.error());
+  const auto signals = select_signals(recording, options.axes, false);
+  if (!signals) return tl::unexpected(signals.error());
+
+  ExplorationTrial trial;
+  trial.axes = signals->axes;
+  trial.motion = signals->motion;
+  const ProtocolFinding found = detect_protocol(signals->reference);
+  trial.protocol = options.protocol.value_or(found.protocol);
+  trial.protocol_rule = options.protocol ? "given" : found.rule;
+  if (trial.protocol == Protocol::sinusoidal && signals->reference.size() == 0) {
+    return bad_data(fmt::format("protocol 'sinusoidal' needs the reference, channel '{}', which is missing",
+                                kReferenceChannels.name(trial.axes, 0)),
+                    "name it with --channels, or use --protocol free");
+  }
+  if (trial.protocol != Protocol::free) {
+    if (auto ok = check_reference(clock, *signals, options.window); !ok) return tl::unexpected(ok.error());
+  }
+  const Protocol windows = trial.protocol == Protocol::sinusoidal ? Protocol::sinusoidal : Protocol::free;
+  const auto plan = default_windows(windows, signals->reference, clock, options.window);
+  if (!plan) return tl::unexpected(plan.error());
+  if (auto ok = check_clock(clock, inspection, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_finite(clock, *signals, *plan); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_alive(*signals, *plan); !ok) return tl::unexpected(ok.error());
+  warn_of_small_motion(*signals, *plan, trial.warnings);
+
+  const Cut& cut = plan->cuts.front();
+  const Index rows = cut.end - cut.begin;
+  if (rows < kMin) {
+    return bad_data(fmt::format("{} samples of the analysed interval are too few", rows), "choose a longer interval");
+  }
+  trial.sample_time = 1.0 / rate.value;
+  trial.from_s = clock.seconds(cut.begin);
+  trial.input = signals->position.middle_rows(cut.begin, rows);
+  trial.output = -signals->force_hand_on_robot.middle_rows(cut.begin, rows);
+  if (signals->reference.size() > 0) {
+    Matrix reference = signals->reference.middle_rows(cut.begin, rows);
+    if (reference.allFinite() && moves(reference)) {
+      trial.reference = std::move(reference);
+      trial.reference_quantity = signals->reference_quantity;
+    }
+  }
+  trial.input_labels = labels_of(recording, kPositionChannels, trial.axes, "");
+  trial.output_labels = labels_of(recording, kForceChannels, trial.axes, "−");
+  trial.split = rows;
+  for (const Segment& segment : cut.keep) {
+    if (segment.purpose == Purpose::validation) {
+      trial.split = segment.begin - cut.begin;
+      break;
+    }
+  }
+  trial.window_rule = plan->rule;
+  if (!recording.sources.empty()) trial.source = recording.sources.front();
+  trial.recording_duration = inspection.duration + inspection.interval_median;
+  trial.notes = recording.notes;
+  return trial;
+}
+
+}  // namespace mbk::preprocess

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/trial/prepared_trial.h"
+#include "mbk/model/trial/recording.h"
+#include "mbk/model/trial/warning.h"
+
+namespace mbk {
+
+/// What a signal is called, and its unit.
+struct SignalLabel {
+  std::string name;  ///< "hand_x", "−force_x"
+  std::string unit;  ///< "m", "N"; "" where the recording does not say
+};
+
+/// Evenly sampled signals as they were recorded, behind no filter: what is explored without a model of the limb.
+/// Motion of the hand and the force that answers it, so that the response from one to the other is the dynamic
+/// stiffness D = −F_h/X of the limb, K at rest.
+struct ExplorationTrial {
+  int axes = 2;  ///< n, 1 or 2
+  Motion motion = Motion::translation;
+  double sample_time = 0;  ///< T [s]
+  double from_s = 0;       ///< of the first row, [s] from the recording's first sample
+  Matrix input;            ///< N×n, position x, base frame [m or rad]
+  Matrix output;           ///< N×n, −F_h: the force of the robot on the hand [N or N·m]
+  Matrix reference;        ///< N×n; empty where none was recorded or it never moves
+  ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
+  std::vector<SignalLabel> input_labels, output_labels;  ///< n
+  Index split = 0;  ///< rows before it identify, the others validate, where a part is held out at all
+  Protocol protocol = Protocol::free;
+  std::string protocol_rule, window_rule;  ///< why, in words
+  SourceFile source;
+  double recording_duration = 0;  ///< [s]
+  std::vector<std::string> notes;
+  std::vector<Warning> warnings;
+  [[nodiscard]] Index samples() const { return input.rows(); }
+  [[nodiscard]] double to_s() const { return from_s + static_cast<double>(samples()) * sample_time; }
+};
+
+}  // namespace mbk

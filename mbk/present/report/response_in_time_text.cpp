@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "mbk/model/trial/identification.h"
+#include "mbk/present/report/exploration_parts_text.h"
+#include "mbk/present/report/layout.h"
+
+namespace mbk::report {
+namespace response_in_time {
+
+constexpr double kMs = 1e3;
+
+std::string vaf(const ExplainedForce& one) { return with_interval(one.vaf, one.vaf_half_width) + " %"; }
+
+/// "x", "y", or nothing where there is one axis.
+std::string axis_name(std::size_t axis, int axes) { return axes == 1 ? "" : axis == 0 ? " x" : " y"; }
+
+/// One line for each matrix: its entries row by row.
+void add_model(const ResponseModel& model, Motion motion, std::vector<std::vector<std::string>>& rows) {
+  if (!model.identifiable) {
+    rows.push_back({"M, B, K", "not identifiable: the motion excites fewer directions than they need"});
+    return;
+  }
+  const Units units = units_of(motion);
+  const auto add = [&](const char* name, const Matrix& value, const Matrix& half, bool identifiable,
+                       const std::string& unit) {
+    std::string cell;
+    for (Index i = 0; i < value.rows(); ++i) {
+      for (Index j = 0; j < value.cols(); ++j) {
+        cell += (cell.empty() ? "" : ", ") + with_interval(value(i, j), half(i, j));
+      }
+    }
+    rows.push_back({name, cell + " " + unit + (identifiable ? "" : ": not identifiable")});
+  };
+  add("M", model.M, model.M_half_width, model.M_identifiable, units.inertia);
+  add("B", model.B, model.B_half_width, model.B_identifiable, units.damping);
+  add("K", model.K, model.K_half_width, model.K_identifiable, units.stiffness);
+}
+
+/// A direction of stretch, in words.
+std::string direction_name(const Vector& direction) {
+  if (direction.size() == 0) return "both alike";
+  if (direction.size() == 1) return direction[0] > 0.0 ? "positive" : "negative";
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  return fmt::format("{:.0f}°", kDegrees * std::atan2(direction[1], direction[0]));
+}
+
+}  // namespace response_in_time
+
+std::string impulse_response_text(const ImpulseResponseEstimate& found, Motion motion) {
+  using namespace response_in_time;
+  std::string text = "impulse response\n";
+  std::vector<std::vector<std::string>> rows = {
+      {"memory", fmt::format("±{:.0f} ms by {}{}", kMs * found.memory, found.memory_rule,
+                             found.memory_at_limit ? ": the longest that was tried, it may be more" : "")},
+      {"rank", fmt::format("{} of {} directions of the lagged motion, by cross-validation", found.rank,
+                           found.directions)},
+      {"loop", found.instruments ? "the reference stands for the motion: holds in closed loop"
+                                 : "no reference that explains the motion: biased where the force moves the robot"}};
+  const std::string rows_judged = found.held_out ? "held-out data" : "in sample";
+  for (std::size_t i = 0; i < found.explained.size(); ++i) {
+    rows.push_back({"VAF" + axis_name(i, found.axes),
+                    fmt::format("{}; M, B, K alone {} ({})", vaf(found.explained[i]),
+                                vaf(found.explained_by_model[i]), rows_judged)});
+  }
+  add_model(found.model, motion, rows);
+  if (found.model.identifiable && found.model.numerator > 0.0) {
+    rows.push_back({"M-B-K", fmt::format("{}: F({:.0f}, {:.0f}) = {:.3g}, p = {:.1g}",
+                                         found.model.enough ? "enough" : "not enough", found.model.numerator,
+                                         found.model.denominator, found.model.statistic, found.model.p_value)});
+  }
+  return text + table(rows);
+}
+
+std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion motion) {
+  using namespace response_in_time;
+  std::string text = "intrinsic and reflex force\n";
+  std::vector<std::vector<std::string>> rows;
+  switch (found.found) {
+    case DelayedResponse::not_identifiable:
+      rows.push_back({"reflex", "not identifiable: " + found.why});
+      return text + table(rows);
+    case DelayedResponse::none:
+      rows.push_back({"reflex", "none found: " + found.why});
+      break;
+    case DelayedResponse::both_directions:
+      rows.push_back({"reflex", "none found, but a delayed linear response: " + found.why});
+      break;
+    case DelayedResponse::reflex:
+      rows.push_back({"reflex", "found: " + found.why});
+      break;
+  }
+  std::string candidates;
+  for (const StretchCandidate& one : found.candidates) {
+    candidates += fmt::format("{}{} {:.2f} %", candidates.empty() ? "" : ", ", direction_name(one.direction), one.vaf);
+  }
+  rows.push_back({"stretch", candidates + fmt::format(", no delayed response {:.2f} % (cross-validated VAF)",
+                                                      found.intrinsic_vaf)});
+  const std::string judged = found.held_out ? " (held-out data)" : " (in sample)";
+  const bool reflex = found.found == DelayedResponse::reflex;
+  for (std::size_t i = 0; i < found.shares.size(); ++i) {
+    const PathShares& one = found.shares[i];
+    rows.push_back({"VAF" + axis_name(i, found.axes),
+                    reflex ? fmt::format("intrinsic alone {}, with reflex {}{}", vaf(one.intrinsic_alone), vaf(one.both),
+                                         judged)
+                           : fmt::format("intrinsic alone {}{}", vaf(one.intrinsic_alone), judged)});
+    if (reflex) {
+      rows.push_back({"shares" + axis_name(i, found.axes),
+                      fmt::format("intrinsic path {}, reflex path {}; they overlap", vaf(one.intrinsic_path),
+                                  vaf(one.reflex_path))});
+    }
+  }
+  if (!reflex) return text + table(rows);
+  const std::string unit = units_of(motion).damping;
+  rows.push_back({"direction", direction_name(found.direction) + " stretch"});
+  rows.push_back({"delay", fmt::format("a response shows from {:.0f} ms ({:.0f} to {:.0f} ms){}, until {:.0f} ms",
+                                       kMs * found.delay, kMs * found.delay_low, kMs * found.delay_high,
+                                       found.delay_at_limit ? ", the earliest that was tried" : "",
+                                       kMs * found.memory)});
+  rows.push_back({"gain", fmt::format("{} {}{}{}", with_interval(found.gain_along.value, found.gain_along.half_width),
+                                      unit, found.gain_along.value > 0.0 ? ", resists the stretch" : ", assists it",
+                                      found.gain_identifiable ? "" : ": not identifiable")});
+  if (found.second_order) {
+    const SecondOrderReflex& fit = *found.second_order;
+    std::string gains;
+    for (const Margin& one : fit.gain) {
+      gains += (gains.empty() ? "" : ", ") + with_interval(one.value, one.half_width);
+    }
+    rows.push_back({"second order",
+                    fmt::format("gain {} {}, delay {} ms, {} Hz, damping ratio {}; {} (p = {:.1g})", gains, unit,
+                                with_interval(kMs * fit.delay.value, kMs * fit.delay.half_width),
+                                with_interval(fit.frequency.value, fit.frequency.half_width),
+                                with_interval(fit.damping.value, fit.damping.half_width),
+                                fit.p_value < 0.01 ? "the response is more than that" : "enough", fit.p_value)});
+  }
+  rows.push_back({"nonlinearity", found.nonlinearity.size() == 1
+                                      ? std::string("the velocity rectified, no more")
+                                      : fmt::format("polynomial of order {} of the rectified velocity",
+                                                    found.nonlinearity.size())});
+  rows.push_back({"intrinsic", "M, B, K of the intrinsic path"});
+  add_model(found.intrinsic_model, motion, rows);
+  return text + table(rows);
+}
+
+}  // namespace mbk::report

@@ -1,0 +1,61 @@
+#include <numbers>
+
+#include "mbk/present/result/exploration_parts_json.h"
+
+namespace mbk::result {
+namespace {
+
+Json labels_json(const std::vector<SignalLabel>& labels) {
+  Json array = Json::array();
+  for (const SignalLabel& label : labels) array.push_back({{"name", label.name}, {"unit", label.unit}});
+  return array;
+}
+
+}  // namespace
+
+Json frequency_response_json(const FrequencyResponseEstimate& found) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const auto outputs = static_cast<Index>(found.outputs.size());
+  const auto inputs = static_cast<Index>(found.inputs.size());
+  Json json = {{"method", word_of(found.method)},
+               {"method_rule", found.method_rule},
+               {"intervals_assume", found.assumes},
+               {"by_reference", found.by_reference},
+               {"averages", number(found.averages)},
+               {"inputs", labels_json(found.inputs)},
+               {"outputs", labels_json(found.outputs)},
+               {"frequency_hz", list(found.frequency)},
+               {"degrees_of_freedom", list(found.degrees_of_freedom)}};
+  json["responses"] = Json::array();
+  for (Index j = 0; j < inputs; ++j) {
+    for (Index i = 0; i < outputs; ++i) {
+      const Index entry = j * outputs + i;
+      Eigen::VectorXcd G(found.size());
+      Vector deviation(found.size());
+      for (Index k = 0; k < found.size(); ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        G[k] = found.response[at](i, j);
+        deviation[k] = std::sqrt(std::max(0.0, found.covariance[at](entry, entry).real()));
+      }
+      Json one = {{"input", found.inputs[static_cast<std::size_t>(j)].name},
+                  {"output", found.outputs[static_cast<std::size_t>(i)].name},
+                  {"magnitude", list(G.cwiseAbs())},
+                  {"magnitude_interval95",
+                   Json::array({list(found.magnitude_low.col(entry)), list(found.magnitude_high.col(entry))})},
+                  {"phase_deg", list(kDegrees * G.array().arg().matrix())},
+                  {"real", list(G.real())},
+                  {"imaginary", list(G.imag())},
+                  {"standard_error", list(deviation)},
+                  {"region95_radius", list(found.radius95.col(entry))}};
+      if (found.partial_coherence.size() > 0) one["partial_coherence"] = list(found.partial_coherence.col(entry));
+      json["responses"].push_back(std::move(one));
+    }
+  }
+  if (found.multiple_coherence.size() > 0) {
+    json["multiple_coherence"] = Json::array();
+    for (Index i = 0; i < outputs; ++i) json["multiple_coherence"].push_back(list(found.multiple_coherence.col(i)));
+  }
+  return json;
+}
+
+}  // namespace mbk::result

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""mbk explore: what recordings say of a limb without M, B and K."""
+
+from command import BAD_DATA, WRONG_USAGE, Case, data_folder, main, make_log, run
+
+ANKLE = ("--axes", "1", "--channels", "x=position_rad:rad,F=torque_Nm:N.m")
+HERTZ = (1, 2, 5, 10, 20, 30)
+
+
+class Welch(Case):
+    # scipy.signal.coherence and csd/welch, Hann 2000, half overlap, constant detrend
+    COHERENCE = {"z_df": (0.94273, 0.942317, 0.933617, 0.979298, 0.986462, 0.996395),
+                 "z_df2": (0.972458, 0.944128, 0.96265, 0.964692, 0.992272, 0.99368),
+                 "z_pf": (0.872808, 0.774411, 0.268549, 0.724822, 0.977429, 0.991347)}
+    MAGNITUDE = {"z_df": (119.949, 109.4241, 79.095, 101.0275, 178.0519, 580.7178)}
+
+    def test_of_a_real_ankle_is_that_of_scipy(self):
+        for name, coherence in self.COHERENCE.items():
+            with self.subTest(name):
+                found = self.fine("explore", *ANKLE, "--json", data_folder("ankle") / f"{name}.csv").json
+                response = found["frequency_response"]
+                at = [response["frequency_hz"].index(hertz) for hertz in HERTZ]
+                for k, value in zip(at, coherence):
+                    self.assertAlmostEqual(response["multiple_coherence"][0][k], value, delta=6e-7)
+                    self.assertAlmostEqual(response["responses"][0]["partial_coherence"][k], value, delta=6e-7)
+                for k, value in zip(at, self.MAGNITUDE.get(name, ())):
+                    self.assertAlmostEqual(response["responses"][0]["magnitude"][k], value, delta=6e-5 * value)
+
+
+class Ankle(Case):
+    # fitted on 0 to 40 s, VAF on the rest: intrinsic alone, with reflex
+    VAF = {"z_df": (87.0, 95.0), "z_df2": (94.0, 95.5), "z_pf": (67.5, 90.0)}
+
+    def test_has_a_reflex_to_stretch_in_one_direction(self):
+        for name, (alone, both) in self.VAF.items():
+            with self.subTest(name):
+                file = data_folder("ankle") / f"{name}.csv"
+                found = self.fine("explore", *ANKLE, "--split", "40", "--json", file).json
+                cascade = found["parallel_cascade"]
+                self.assertEqual(cascade["delayed_response"], "reflex")
+                self.assertEqual(cascade["validated_on"], "held-out")
+                shares = cascade["shares"][0]
+                self.assertGreaterEqual(shares["intrinsic_alone"]["VAF"], alone)
+                self.assertGreaterEqual(shares["both"]["VAF"], both)
+                low, high = shares["both"]["VAF_interval95"]
+                self.assertTrue(low < shares["both"]["VAF"] < high)
+                self.assertEqual(cascade["reflex"]["direction"], [1])
+                self.assertEqual([one["direction"] for one in cascade["candidates"]], [[1], None, [-1]])
+                self.assertTrue(0.04 <= cascade["reflex"]["delay_s"] <= 0.08)
+                self.assertGreater(cascade["reflex"]["gain_along"]["value"], 0)
+                response = found["impulse_response"]
+                self.assertFalse(response["model"]["enough"]["enough"])
+                self.assertGreater(response["explained"][0]["VAF"], response["explained_by_model"][0]["VAF"])
+                text = self.fine("explore", *ANKLE, "--split", "40", file).out
+                self.assert_lines_fit(text)
+                for words in ("impulse response", "not enough", "intrinsic and reflex force", "positive stretch",
+                              "resists the stretch"):
+                    self.assertIn(words, text)
+
+
+class TwoAxes(Case):
+    def test_text_and_json_say_the_same(self):
+        log = make_log().path
+        found = self.fine("explore", log, "--json").json
+        self.assertEqual(found["schema"], "mbk.explore/1")
+        self.assertEqual(found["axes"], 2)
+        responses = found["frequency_response"]["responses"]
+        self.assertEqual([(one["input"], one["output"]) for one in responses],
+                         [(f"hand_{j}", f"−force_{i}") for j in "xy" for i in "xy"])
+        text = self.fine("explore", log).out
+        self.assert_lines_fit(text)
+        for words in ("frequency response", "hand_x → −force_x", "hand_y → −force_x", "N/m"):
+            self.assertIn(words, text)
+
+
+class Mistakes(Case):
+    def test_are_refused_in_one_line(self):
+        log = make_log().path
+        for options, says in ((("--segment", "0"), "--segment"), (("--max-frequency", "-1"), "--max-frequency"),
+                              (("--from", "5", "--to", "3"), "--from"), (("--protocol", "sometimes"), "--protocol")):
+            with self.subTest(options):
+                self.refused(WRONG_USAGE, "explore", log, *options, says=says)
+        self.refused(BAD_DATA, "explore", log, "--segment", "1000", says="segment")
+        self.refused(BAD_DATA, "explore", self.folder / "none.mat", says="none.mat")
+
+
+if __name__ == "__main__":
+    main()
