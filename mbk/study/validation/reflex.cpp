@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -126,10 +126,7 @@ ValidationRow coverage_row(std::string what, const std::vector<Run>& runs,
   return share_row(std::move(what), static_cast<int>(std::lround(share)), trials, expected);
 }
 
-}  // namespace reflex_detail
-
-Result<ValidationTable> reflex_study(const StudyOptions& options) {
-  using namespace reflex_detail;
+Result<ValidationTable> study(const StudyOptions& options) {
   const std::vector<Condition> all = conditions();
   using RunOfAll = std::vector<Run>;
   const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<RunOfAll> {
@@ -190,6 +187,12 @@ Result<ValidationTable> reflex_study(const StudyOptions& options) {
       "Reflex: G ω²/(s + ω)² with ω = 20 rad/s after 60 ms, of velocity in one direction; the slow linear response is "
       "the same of velocity in both. Hardening: a tenth of the stiffness at the edge of the motion."};
   return table;
+}
+
+}  // namespace reflex_detail
+
+Result<ValidationTable> reflex_study(const StudyOptions& options) {
+  return reflex_detail::study(options);
 }
 
 }  // namespace mbk::validation
