@@ -1,5 +1,3 @@
-#include "mbk/measure/measurement/movement.h"
-
 #include <memory>
 #include <string>
 #include <utility>
@@ -10,6 +8,7 @@
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/preprocess_options.h"
 #include "apps/mbk/reading_options.h"
+#include "mbk/measure/measurement/measure_movement.h"
 #include "mbk/present/report/movement_text.h"
 #include "mbk/present/result/movement_json.h"
 
@@ -58,7 +57,8 @@ int run_movement(const MovementArguments& arguments) {
 Action add_movement(CLI::App& app) {
   using namespace movement_command;
   auto arguments = std::make_shared<MovementArguments>();
-  CLI::App* command = add_command(app, "movement", "quality of reaches: smoothness, path, speed, endpoint, work, force");
+  CLI::App* command =
+      add_command(app, "movement", "quality of reaches: smoothness, path, speed, endpoint, work, force");
   command->footer(
       "Examples:\n"
       "  mbk movement reaches.csv\n"

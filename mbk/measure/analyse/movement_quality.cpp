@@ -116,8 +116,7 @@ std::vector<numeric::RowRange> find_reaches(const Vector& speed, Hertz rate, con
   std::vector<numeric::RowRange> moving;
   for (Index i = 0; i < speed.size(); ++i) {
     if (!(speed[i] > options.rest_share * largest)) continue;
-    const bool same = !moving.empty() &&
-                      static_cast<double>(i - moving.back().end) / rate.value < options.min_pause_s;
+    const bool same = !moving.empty() && static_cast<double>(i - moving.back().end) / rate.value < options.min_pause_s;
     if (same) {
       moving.back().end = i + 1;
     } else {
@@ -136,8 +135,8 @@ Result<MovementQuality> movement_quality(const Matrix& position, const Matrix& f
                                          const Matrix& target, Hertz rate, const MovementOptions& options) {
   using namespace movement_detail;
   if (!(options.cutoff_hz > 0.0) || !(options.cutoff_hz < 0.5 * rate.value)) {
-    return bad_usage(fmt::format("a cutoff of {:.4g} Hz is not between 0 and half of {:.4g} Hz", options.cutoff_hz,
-                                 rate.value));
+    return bad_usage(
+        fmt::format("a cutoff of {:.4g} Hz is not between 0 and half of {:.4g} Hz", options.cutoff_hz, rate.value));
   }
   if (!(options.rest_share > 0.0) || !(options.peak_share > options.rest_share) || !(options.peak_share < 1.0)) {
     return bad_usage("the shares of the largest speed have to rise from above 0 to below 1");
@@ -190,7 +189,8 @@ Result<MovementQuality> movement_quality(const Matrix& position, const Matrix& f
     if (force_hand_on_robot.size() > 0) {
       const Matrix force = force_hand_on_robot.middleRows(range.begin + lost, range.size());
       reach.robot_work =
-          -0.5 * (force.topRows(last) + force.bottomRows(last)).cwiseProduct(way.bottomRows(last) - way.topRows(last)).sum();
+          -0.5 *
+          (force.topRows(last) + force.bottomRows(last)).cwiseProduct(way.bottomRows(last) - way.topRows(last)).sum();
       if (found.axes > 1) reach.force_angle = force_angle(force, way);
     }
     found.reaches.push_back(reach);

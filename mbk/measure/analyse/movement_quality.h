@@ -39,8 +39,8 @@ struct MovementOptions {
 [[nodiscard]] std::vector<numeric::RowRange> find_reaches(const Vector& speed, Hertz rate,
                                                           const MovementOptions& options);
 
-/// Reaches of a hand and the measures of Dyck 2013, §2.4, of each: smoothness, path, speed, endpoint, work of the robot,
-/// angle of the force. Speed is |ẋ| by a Savitzky–Golay filter of order 4.
+/// Reaches of a hand and the measures of Dyck 2013, §2.4, of each: smoothness, path, speed, endpoint, work of the
+/// robot, angle of the force. Speed is |ẋ| by a Savitzky–Golay filter of order 4.
 /// @param position N×n    @param force_hand_on_robot N×n, or empty    @param target N×n, a position, or empty
 /// @fails  usage: an option out of its range. data: too few samples for the filter; a value is not finite; a hand that
 /// never moves; no reach in the recording

@@ -34,9 +34,8 @@ std::string movement_text(const MovementQuality& found) {
       {"path ratio", "{:.3f}", [](const Reach& r) { return r.path_ratio; }},
       {"error " + unit, "{:.2g}", [](const Reach& r) { return r.endpoint_error; }},
       {"work J", "{:.3g}", [](const Reach& r) { return r.robot_work; }},
-      {"angle °", "{:.0f}", [&](const Reach& r) {
-         return r.force_angle ? std::optional(kDegrees * *r.force_angle) : std::nullopt;
-       }}};
+      {"angle °", "{:.0f}",
+       [&](const Reach& r) { return r.force_angle ? std::optional(kDegrees * *r.force_angle) : std::nullopt; }}};
   std::vector<std::vector<std::string>> rows(found.reaches.size() + (found.reaches.size() > 1 ? 2 : 1));
   for (const Measure& measure : measures) {
     std::vector<double> values;

@@ -10,15 +10,10 @@ std::string to_json(std::span<const MovementQuality> all) {
   Json json = header("mbk.movement/1");
   json["recordings"] = Json::array();
   for (const MovementQuality& one : all) {
-    Json recording = {{"file", one.source.path},
-                      {"sha256", one.source.sha256},
-                      {"format", one.source.format},
-                      {"axes", one.axes},
-                      {"rate_hz", number(one.rate_hz)},
-                      {"from_s", number(one.from_s)},
-                      {"to_s", number(one.to_s)},
-                      {"cutoff_hz", number(one.cutoff_hz)},
-                      {"rest_speed", number(one.rest_speed)}};
+    Json recording = {
+        {"file", one.source.path},  {"sha256", one.source.sha256},        {"format", one.source.format},
+        {"axes", one.axes},         {"rate_hz", number(one.rate_hz)},     {"from_s", number(one.from_s)},
+        {"to_s", number(one.to_s)}, {"cutoff_hz", number(one.cutoff_hz)}, {"rest_speed", number(one.rest_speed)}};
     recording["reaches"] = Json::array();
     const auto maybe = [](const std::optional<double>& value, double scale = 1.0) {
       return value ? number(scale * *value) : Json(nullptr);

@@ -1,4 +1,4 @@
-#include "mbk/measure/measurement/movement.h"
+#include "mbk/measure/measurement/measure_movement.h"
 
 #include <fmt/format.h>
 
@@ -63,9 +63,7 @@ Result<MovementQuality> movement_quality(const Recording& recording, const Movem
   if (source->samples() < 3 || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} samples cannot show a movement", source->samples()), "record longer");
   }
-  const int axes = options.axes != 0                                                       ? options.axes
-                   : channels_of(*source, kPositionChannels, 2).cols() == 2 ? 2
-                                                                                           : 1;
+  const int axes = options.axes != 0 ? options.axes : channels_of(*source, kPositionChannels, 2).cols() == 2 ? 2 : 1;
   preprocess::Signals signals;
   signals.axes = axes;
   signals.position = channels_of(*source, kPositionChannels, axes);
@@ -82,9 +80,8 @@ Result<MovementQuality> movement_quality(const Recording& recording, const Movem
   if (auto ok = preprocess::check_finite(clock, signals, *plan); !ok) return tl::unexpected(ok.error());
   const preprocess::Cut& cut = plan->cuts.front();
   const Index rows = cut.end - cut.begin;
-  const Matrix target = is_place(*source, axes)
-                            ? rows_where_finite(*source, kReferenceChannels, axes, cut.begin, rows)
-                            : Matrix();
+  const Matrix target =
+      is_place(*source, axes) ? rows_where_finite(*source, kReferenceChannels, axes, cut.begin, rows) : Matrix();
   auto found = analyse::movement_quality(signals.position.middle_rows(cut.begin, rows),
                                          rows_where_finite(*source, kForceChannels, axes, cut.begin, rows), target,
                                          clock.rate(), options.movement);
