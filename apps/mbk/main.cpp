@@ -102,6 +102,7 @@ Commands all_commands(const std::string& typed) {
       {"measure", [typed](CLI::App& app) { return add_measure(app, typed); }},
       {"identify", add_identify},
       {"explore", add_explore},
+      {"movement", add_movement},
       {"tf", [typed](CLI::App& app) { return add_tf(app, typed); }},
       {"ellipse", add_ellipse},
       {"passivity", add_passivity},

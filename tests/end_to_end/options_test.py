@@ -10,7 +10,7 @@ import unittest
 from command import (BAD_DATA, FINE, NOT_SHOWN, WRONG_USAGE, Case, copy, is_root, main, make_log, run, table_of,
                      write_csv)
 
-COMMANDS = ("measure", "identify", "explore", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
+COMMANDS = ("measure", "identify", "explore", "movement", "tf", "ellipse", "info", "simulate", "springs", "sensor", "robot", "validate",
             "completion", "manual", "passivity", "teleop", "compare", "reproduce")
 SUBCOMMANDS = {"springs": ("field", "find", "calibrate"), "sensor": ("calibrate", "delay"),
                "robot": ("workspace", "describe", "identify", "force", "check")}

@@ -44,11 +44,11 @@ class WordsOf : public testing::Test {};
 using Enumerations =
     testing::Types<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal,
                    perturbation::MultisinePlan::Phases, perturbation::MultisinePlan::Axes, AccelerationSource,
-                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, DelayedResponse, Exhibit::Kind, ForceSource,
-                   FrequencyResponseMethod, InputHold, InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom,
-                   Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod, SensorWarningCode,
-                   StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod, Verdict, WarningCode,
-                   journal::Ending::How, recording::Format, calibration::SensorFrame, teleop::Architecture,
+                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, DelayedResponse, Exhibit::Kind,
+                   ForceSource, FrequencyResponseMethod, InputHold, InstrumentMotion, Method, Mode, MotionOutcome,
+                   ParametersFrom, Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod,
+                   SensorWarningCode, StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod, Verdict,
+                   WarningCode, journal::Ending::How, recording::Format, calibration::SensorFrame, teleop::Architecture,
                    teleop::Form, teleop::SimulatedArm::Kind, control::Phase, device::Motors, device::Wiring::Frame,
                    drivers::Refusal, safety::Reason, safety::MotorsOff::State, protocol::Machine, console::Action,
                    console::Question, console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;

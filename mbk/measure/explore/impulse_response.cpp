@@ -167,12 +167,12 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
   const LaggedFit direct = fit_lagged(motions, instruments, own, own_rows);
 
   result.held_out = !signals.validation.empty();
-  const auto judged_rows = rows_inside(result.held_out ? signals.validation : signals.identification, signals.pieces, L, L);
+  const auto judged_rows =
+      rows_inside(result.held_out ? signals.validation : signals.identification, signals.pieces, L, L);
   const Matrix force = rows_of(signals.resistance, judged_rows);
   const Matrix response = V * fit.coefficients;
   result.explained = judged(force, lagged(signals.position, -L, L, judged_rows) * response, judged_rows, T);
-  result.explained_by_model =
-      judged(force, rows_of(derivatives, judged_rows) * direct.coefficients, judged_rows, T);
+  result.explained_by_model = judged(force, rows_of(derivatives, judged_rows) * direct.coefficients, judged_rows, T);
   return result;
 }
 

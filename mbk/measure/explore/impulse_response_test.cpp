@@ -159,7 +159,8 @@ TEST(ImpulseResponse, HasIntervalsThatHoldTheTruth) {
   constexpr int kRuns = 60;
   int held = 0, contradicted = 0;
   for (int run = 0; run < kRuns; ++run) {
-    const auto found = found_of(finite(1200, 50 + static_cast<std::uint64_t>(run), 3.0), {.memory_s = 3 * kStep, .rank = 7});
+    const auto found =
+        found_of(finite(1200, 50 + static_cast<std::uint64_t>(run), 3.0), {.memory_s = 3 * kStep, .rank = 7});
     ASSERT_TRUE(found);
     for (Index k = 0; k < 7; ++k) {
       held += std::abs(found->response(k, 0) - kResponse[k] / kStep) <= found->half_width(k, 0) ? 1 : 0;

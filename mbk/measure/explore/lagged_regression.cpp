@@ -99,15 +99,16 @@ Matrix lagged(const Matrix& u, Index first, Index last, const std::vector<RowRan
   return columns;
 }
 
-Matrix centred(const Matrix& columns) { return columns.rowwise() - columns.colwise().mean().eval(); }
+Matrix centred(const Matrix& columns) {
+  return columns.rowwise() - columns.colwise().mean().eval();
+}
 
 Matrix principal_directions(const Matrix& columns, double threshold) {
   if (columns.cols() == 0) return Matrix(0, 0);
   const auto eigen = numeric::symmetric_eigen(columns.transpose() * columns);  // ascending
   const double largest = eigen.values.tail(1)[0];
   Index rank = 0;
-  while (rank < columns.cols() &&
-         eigen.values[columns.cols() - 1 - rank] > threshold * threshold * largest) {
+  while (rank < columns.cols() && eigen.values[columns.cols() - 1 - rank] > threshold * threshold * largest) {
     ++rank;
   }
   return eigen.vectors.rightCols(rank).rowwise().reverse();
@@ -169,8 +170,8 @@ LaggedFit fit_lagged(const Matrix& Z, const Matrix& R, const Matrix& Y, const st
     const Vector noise = lagged_detail::autoregression_of(fit.residual.col(j), ranges);
     const Matrix innovations = whitened(fit.residual.col(j), noise, ranges);
     const double left = std::max(1.0, static_cast<double>(N - p - noise.size() + 1));
-    const double variance =
-        innovations.squaredNorm() / std::max(1.0, static_cast<double>(innovations.rows())) * static_cast<double>(N) / left;
+    const double variance = innovations.squaredNorm() / std::max(1.0, static_cast<double>(innovations.rows())) *
+                            static_cast<double>(N) / left;
     const Matrix coloured = lagged_detail::coloured_backward(R, noise, ranges);
     const Matrix half = coloured * A.transpose();
     fit.covariance.push_back(variance * (half.transpose() * half));
@@ -198,8 +199,7 @@ Matrix whitened(const Matrix& columns, const Vector& filter, const std::vector<R
   return result;
 }
 
-AccountedFor accounted_for(const Vector& y, const Vector& e, const std::vector<RowRange>& ranges,
-                           double sample_time) {
+AccountedFor accounted_for(const Vector& y, const Vector& e, const std::vector<RowRange>& ranges, double sample_time) {
   AccountedFor result;
   const Index N = y.size();
   const Vector signal = y.array() - y.mean(), error = e.array() - e.mean();

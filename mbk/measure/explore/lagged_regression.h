@@ -43,10 +43,10 @@ using numeric::RowRange;
 ///   θ = (RᵀZ)⁻¹Rᵀy,   V = A RᵀΣR Aᵀ,   A = (RᵀZ)⁻¹
 /// with Σ the covariance of the autoregression fitted to the residual, N/(N − p) times larger for what the fit took.
 struct LaggedFit {
-  Matrix coefficients;                ///< p×q
-  std::vector<Matrix> covariance;     ///< q of p×p
-  Matrix residual;                    ///< N×q
-  std::vector<Vector> noise;          ///< q, 1, c₁ … of the autoregressions
+  Matrix coefficients;             ///< p×q
+  std::vector<Matrix> covariance;  ///< q of p×p
+  Matrix residual;                 ///< N×q
+  std::vector<Vector> noise;       ///< q, 1, c₁ … of the autoregressions
 };
 
 /// @param Z N×p, R N×p, Y N×q, centred: the rows of `ranges` under each other

@@ -52,8 +52,8 @@ TEST(CrossValidation, IsWhatFittingEachFoldByItselfGives) {
       Matrix others(300, r), of_others(300, 2);
       others << Z.topRows(100 * fold).leftCols(r), Z.bottomRows(300 - 100 * fold).leftCols(r);
       of_others << Y.topRows(100 * fold), Y.bottomRows(300 - 100 * fold);
-      const Matrix left = Y.middleRows(100 * fold, 100) - Z.middleRows(100 * fold, 100).leftCols(r) *
-                                                              numeric::householder_solve(others, of_others);
+      const Matrix left = Y.middleRows(100 * fold, 100) -
+                          Z.middleRows(100 * fold, 100).leftCols(r) * numeric::householder_solve(others, of_others);
       double expected = 0.0;
       for (Index j = 0; j < 2; ++j) expected += left.col(j).squaredNorm() / Y.col(j).squaredNorm() * 400.0 / 200.0;
       EXPECT_NEAR(errors(fold, r - 1), expected, 1e-10);

@@ -15,7 +15,7 @@
 namespace mbk::explore {
 namespace limb_signals_detail {
 
-constexpr double kRowsPerBand = 2.5;         ///< rate over kResponseBand
+constexpr double kRowsPerBand = 2.5;          ///< rate over kResponseBand
 constexpr double kBack = 1.0, kAhead = 0.05;  ///< what of the reference explains the motion of an instant [s]
 constexpr Index kRowsPerLag = 10;
 constexpr double kExplained = 0.5;  ///< share of the motion that the reference must explain to stand for it
@@ -80,7 +80,8 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
   LimbSignals signals;
   signals.axes = trials.front().axes;
   const double step = trials.front().sample_time;
-  signals.every = std::max<Index>(1, static_cast<Index>(std::floor(1.0 / (step * kRowsPerBand * kResponseBand) + 1e-9)));
+  signals.every =
+      std::max<Index>(1, static_cast<Index>(std::floor(1.0 / (step * kRowsPerBand * kResponseBand) + 1e-9)));
   signals.sample_time = step * static_cast<double>(signals.every);
   const Index n = signals.axes;
   bool referenced = true;
@@ -89,9 +90,9 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
   for (const ExplorationTrial& trial : trials) {
     if (trial.axes != signals.axes) return bad_data("trials of one axis and of two cannot be explored together");
     if (std::abs(trial.sample_time - step) > 1e-9 * step) {
-      return bad_data(fmt::format("one trial is sampled at {:.6g} Hz, another at {:.6g} Hz", 1.0 / step,
-                                  1.0 / trial.sample_time),
-                      "bring them to one rate with --resample");
+      return bad_data(
+          fmt::format("one trial is sampled at {:.6g} Hz, another at {:.6g} Hz", 1.0 / step, 1.0 / trial.sample_time),
+          "bring them to one rate with --resample");
     }
     referenced = referenced && trial.reference.size() > 0;
   }

@@ -18,16 +18,16 @@ inline constexpr double kResponseBand = 50.0;
 /// Trials as impulse responses are fitted to them: freed of what is beyond the band, decimated, under each other.
 struct LimbSignals {
   int axes = 1;
-  double sample_time = 0;                 ///< T [s] after decimation
-  Index every = 1;                        ///< samples of the recording per row
-  Matrix position;                        ///< N×n, x [m or rad], without its mean
-  Matrix velocity, acceleration;          ///< N×n
-  Matrix resistance;                      ///< N×n, −F_h [N or N·m]
-  Matrix explained;                       ///< N×3n, [x ẋ ẍ] as the reference explains them; empty where it does not
-  Vector explained_share;                 ///< n, of the variance of x that the reference explains; empty without one
-  std::vector<RowRange> pieces;           ///< rows without a break
-  std::vector<RowRange> identification;   ///< rows that are fitted
-  std::vector<RowRange> validation;       ///< rows that are predicted; empty where nothing was held out
+  double sample_time = 0;                ///< T [s] after decimation
+  Index every = 1;                       ///< samples of the recording per row
+  Matrix position;                       ///< N×n, x [m or rad], without its mean
+  Matrix velocity, acceleration;         ///< N×n
+  Matrix resistance;                     ///< N×n, −F_h [N or N·m]
+  Matrix explained;                      ///< N×3n, [x ẋ ẍ] as the reference explains them; empty where it does not
+  Vector explained_share;                ///< n, of the variance of x that the reference explains; empty without one
+  std::vector<RowRange> pieces;          ///< rows without a break
+  std::vector<RowRange> identification;  ///< rows that are fitted
+  std::vector<RowRange> validation;      ///< rows that are predicted; empty where nothing was held out
 };
 
 /// Motion, its derivatives and the force behind one low-pass (dsp::decimate), at the lowest rate at which it is flat

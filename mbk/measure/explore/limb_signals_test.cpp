@@ -40,7 +40,8 @@ TEST(LimbSignals, HaveTheDerivativesOfASine) {
       constexpr double kOfEnds = 1e-5;  // what the filter remembers of them
       const double sine = 0.5 * signals->resistance(k, 0);
       EXPECT_NEAR(signals->acceleration(k, 0) / (omega * omega), -sine, kOfEnds);
-      EXPECT_NEAR(signals->position(k, 0) - signals->position(200, 0), sine - 0.5 * signals->resistance(200, 0), kOfEnds);
+      EXPECT_NEAR(signals->position(k, 0) - signals->position(200, 0), sine - 0.5 * signals->resistance(200, 0),
+                  kOfEnds);
     }
   }
 }

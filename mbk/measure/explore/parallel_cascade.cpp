@@ -20,12 +20,17 @@ constexpr double kIntrinsicMemory = 0.04;  ///< [s]: no reflex is as fast (Kearn
 constexpr double kEarliest = 0.04, kLatest = 0.2, kLongest = 0.99;  ///< lags of a reflex [s]
 constexpr Index kFolds = 8;
 constexpr Index kRowsPerCoefficient = 10;
-constexpr double kChance = 0.01;       ///< of a linear limb to be credited with a reflex
-constexpr double kTestedLags = 0.04;   ///< [s], lags that are tested as one
-constexpr Index kMaxOrder = 5;         ///< of the polynomial
+constexpr double kChance = 0.001;     ///< of a linear limb to be credited with a reflex
+constexpr double kTestedLags = 0.04;  ///< [s], lags that are tested as one
+constexpr Index kMaxOrder = 5;        ///< of the polynomial
 constexpr int kMaxSwaps = 8;
 constexpr double kSwapTolerance = 0.05;  ///< [% VAF]
 constexpr Index kDirections = 8;         ///< in a plane
+
+/// "p = 0.03", "p < 1e-12".
+std::string p_text(double p) {
+  return p < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.1g}", p);
+}
 
 /// A signal, and what the reference explains of it (the same, where there is none).
 struct Both {
@@ -77,14 +82,16 @@ class Cascade {
     const Index count = row_count(rows_);
     if (count < kRowsPerCoefficient * coefficients) {
       result_.found = DelayedResponse::not_identifiable;
-      result_.why = fmt::format("a response of up to {:.2f} s has {} coefficients, and {} rows of {:.3g} ms do not hold them",
-                                kLongest, coefficients, count, 1e3 * T_);
+      result_.why =
+          fmt::format("a response of up to {:.2f} s has {} coefficients, and {} rows of {:.3g} ms do not hold them",
+                      kLongest, coefficients, count, 1e3 * T_);
       return result_;
     }
     Y_ = centred(rows_of(s_.resistance, rows_));
     for (Index j = 0; j < n_; ++j) {
       if (!(Y_.col(j).squaredNorm() > 0.0)) return bad_data("a force that never varies answers no motion");
-      if (!(numeric::variance(s_.position.col(j)) > 0.0)) return bad_data("a motion that never varies shows no response");
+      if (!(numeric::variance(s_.position.col(j)) > 0.0))
+        return bad_data("a motion that never varies shows no response");
     }
     fit_intrinsic();
     choose_direction();
@@ -168,9 +175,8 @@ class Cascade {
     std::ranges::sort(all, [](const Tried& a, const Tried& b) { return a.errors.mean() < b.errors.mean(); });
     for (const Tried& one : all) {
       const Vector excess = one.errors - best.errors;
-      result_.candidates.push_back(
-          {one.direction, 100.0 * (1.0 - one.errors.mean()),
-           100.0 * std::sqrt(numeric::variance(excess) / static_cast<double>(excess.size()))});
+      result_.candidates.push_back({one.direction, 100.0 * (1.0 - one.errors.mean()),
+                                    100.0 * std::sqrt(numeric::variance(excess) / static_cast<double>(excess.size()))});
     }
   }
 
@@ -202,7 +208,8 @@ class Cascade {
       const Vector squares = nested_squares(whitened(Z, noise, rows_), whitened(Y_.col(j), noise, rows_));
       const auto freedom = static_cast<double>(Y_.rows() - Z.cols() - noise.size());
       const double with = squares[Z.cols()], without = squares[Z.cols() - unsigned_speed.cols()];
-      least = std::min(least, numeric::f_probability_above((without - with) / tested / (with / freedom), tested, freedom));
+      least =
+          std::min(least, numeric::f_probability_above((without - with) / tested / (with / freedom), tested, freedom));
     }
     const auto directions = static_cast<double>(directions_of(n_).size()) / 2.0;  // |v| is the same to and fro
     return std::min(1.0, least * static_cast<double>(n_) * directions);
@@ -215,24 +222,25 @@ class Cascade {
       return gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
     };
     const double none = none_.mean(), one = one_way_.mean(), both = both_ways_.mean();
-    if (one < none && one < both && result_.p_value < kChance) {
+    if (better(one_way_, none_) && one < both && result_.p_value < kChance) {
       result_.found = DelayedResponse::reflex;
       result_.why = fmt::format(
           "stretch in one direction predicts {:.2f} % of the force, in both alike {:.2f} %, without a delayed response "
-          "{:.2f} % (cross-validated); p = {:.1g} that both directions are answered alike",
-          100.0 * (1.0 - one), 100.0 * (1.0 - both), 100.0 * (1.0 - none), result_.p_value);
+          "{:.2f} % (cross-validated); {} that both directions are answered alike",
+          100.0 * (1.0 - one), 100.0 * (1.0 - both), 100.0 * (1.0 - none), p_text(result_.p_value));
     } else if (both < none && better(both_ways_, none_)) {
       result_.found = DelayedResponse::both_directions;
       result_.why = fmt::format(
-          "a delayed response to motion in both directions alike predicts {:.2f} % of the force, to one alone {:.2f} %, "
-          "without it {:.2f} % (cross-validated); p = {:.1g} that both directions are answered alike",
-          100.0 * (1.0 - both), 100.0 * (1.0 - one), 100.0 * (1.0 - none), result_.p_value);
+          "a delayed response to motion in both directions alike predicts {:.2f} % of the force, to one alone {:.2f} "
+          "%, "
+          "without it {:.2f} % (cross-validated); {} that both directions are answered alike",
+          100.0 * (1.0 - both), 100.0 * (1.0 - one), 100.0 * (1.0 - none), p_text(result_.p_value));
     } else {
       result_.found = DelayedResponse::none;
       result_.why = fmt::format(
           "no delayed response to stretch predicts the force better than the limb alone does ({:.2f} against {:.2f} %, "
-          "cross-validated), or p = {:.1g} that both directions are answered alike is too large",
-          100.0 * (1.0 - std::min(one, both)), 100.0 * (1.0 - none), result_.p_value);
+          "cross-validated), or {} that both directions are answered alike is too large",
+          100.0 * (1.0 - std::min(one, both)), 100.0 * (1.0 - none), p_text(result_.p_value));
     }
   }
 
@@ -263,7 +271,8 @@ class Cascade {
     const auto limit = [&](Index lags_between) {
       return numeric::chi_square_quantile(kConfidence, static_cast<int>(n_ * lags_between));
     };
-    for (Index drop = best + 1; drop < tried && deviance[drop] - deviance[best] < limit(drop - best); ++drop) high = drop;
+    for (Index drop = best + 1; drop < tried && deviance[drop] - deviance[best] < limit(drop - best); ++drop)
+      high = drop;
     for (Index drop = best - 1; drop >= 0; --drop) {
       if (deviance[best] - deviance[drop] > limit(best - drop)) low = drop;
     }
@@ -304,7 +313,8 @@ class Cascade {
     const auto value = [&](const Matrix& v) {
       Matrix sum = Matrix::Zero(v.rows(), v.cols());
       const Matrix scaled = v / result_.speed_scale;
-      for (Index k = polynomial.size() - 1; k >= 0; --k) sum = ((sum.array() + polynomial[k]) * scaled.array()).matrix();
+      for (Index k = polynomial.size() - 1; k >= 0; --k)
+        sum = ((sum.array() + polynomial[k]) * scaled.array()).matrix();
       return sum;
     };
     return {value(stretch.measured), stretch.explained.size() > 0 ? value(stretch.explained) : Matrix()};
@@ -446,10 +456,14 @@ class Cascade {
       const Matrix part = directions_.middleRows(j * lags, lags);
       for (Index i = 0; i < n_; ++i) {
         result_.intrinsic.col(i + j * n_) = part * fit.coefficients.col(i) / T_;
-        result_.intrinsic_half_width.col(i + j * n_) =
-            numeric::kNormal95 *
-            (part * fit.covariance[static_cast<std::size_t>(i)]).cwiseProduct(part).rowwise().sum().cwiseMax(0.0).cwiseSqrt() /
-            T_;
+        result_.intrinsic_half_width.col(i + j * n_) = numeric::kNormal95 *
+                                                       (part * fit.covariance[static_cast<std::size_t>(i)])
+                                                           .cwiseProduct(part)
+                                                           .rowwise()
+                                                           .sum()
+                                                           .cwiseMax(0.0)
+                                                           .cwiseSqrt() /
+                                                       T_;
       }
     }
     const auto rows = rows_inside(result_.held_out ? s_.validation : s_.identification, s_.pieces, last_, L_);
@@ -480,8 +494,8 @@ class Cascade {
   Index start_ = 0, end_ = 0;  ///< of the reflex path, as chosen
   std::vector<RowRange> rows_;
   Matrix Y_;
-  Matrix directions_;   ///< of the intrinsic path
-  Both intrinsic_;      ///< rows×r
+  Matrix directions_;  ///< of the intrinsic path
+  Both intrinsic_;     ///< rows×r
   LaggedFit alone_;
   std::optional<LaggedFit> joint_;  ///< its intrinsic part
   Vector direction_;

@@ -15,9 +15,10 @@ namespace mbk::explore {
 /// - the delay d, from 40 to 200 ms: least BIC of the whitened residual, fitted with lags from d on;
 /// - the order of N, up to 5: the lowest within one standard error of the least cross-validated error.
 ///
-/// A reflex is found where stretch in one direction predicts the force better than no delayed response and better than
+/// A reflex is found where stretch in one direction predicts the force better than no delayed response, by two standard
+/// errors over the folds, and better than
 /// one that answers both directions alike (a linear limb with a long memory), and where |eᵀẋ| adds to the latter, by an
-/// F test of the whitened rows at 1 %, Bonferroni over axes and directions.
+/// F test of the whitened rows at 0.1 %, Bonferroni over axes and directions.
 /// @returns `not_identifiable` where there are fewer than ten rows for each coefficient
 /// @fails  a force or motion that does not vary
 [[nodiscard]] Result<ParallelCascadeEstimate> parallel_cascade(const LimbSignals& signals);

@@ -11,7 +11,9 @@ namespace response_model_detail {
 
 constexpr double kChance = 0.01;  ///< of a limb that is M, B and K to be called something else
 
-Vector deviations(const Matrix& covariance) { return covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
+Vector deviations(const Matrix& covariance) {
+  return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
 
 }  // namespace response_model_detail
 
@@ -49,8 +51,9 @@ ResponseModel fit_response_model(const Matrix& D, const LaggedFit& fit, Index n)
     if (r == 3 * n) continue;
     const double statistic = rest.dot(weights.solve(rest)) / model.numerator;
     model.statistic = std::max(model.statistic, statistic);
-    model.p_value = std::min(model.p_value, static_cast<double>(n) * numeric::f_probability_above(
-                                                                         statistic, model.numerator, model.denominator));
+    model.p_value =
+        std::min(model.p_value,
+                 static_cast<double>(n) * numeric::f_probability_above(statistic, model.numerator, model.denominator));
   }
   model.enough = model.p_value >= kChance;
   const auto narrow = [](const Matrix& value, const Matrix& half) {

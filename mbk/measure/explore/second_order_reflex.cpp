@@ -1,6 +1,7 @@
 #include "mbk/measure/explore/second_order_reflex.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -51,13 +52,27 @@ class Search {
     [[nodiscard]] double squares() const { return rest.squaredNorm(); }
   };
 
+  /// At each lag, of unit gain: what answers an input that runs in straight lines between its samples is the response
+  /// weighted by a triangle of ±T around the lag, here by Gauss–Legendre quadrature of four points on each side.
+  [[nodiscard]] Vector response(const Shape& shape) const {
+    constexpr std::array kNodes = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
+    constexpr std::array kWeights = {0.17392742256872692, 0.3260725774312731, 0.3260725774312731, 0.17392742256872692};
+    const double natural = std::exp(shape[0]), damping = std::exp(shape[1]);
+    const auto at_time = [&](double t) { return natural * impulse(natural * (t - shape[2]), damping); };
+    Vector g = Vector::Zero(lags_);
+    for (Index k = 0; k < lags_; ++k) {
+      const double lag = T_ * static_cast<double>(first_ + k);
+      for (std::size_t q = 0; q < kNodes.size(); ++q) {
+        const double weight = T_ * kWeights[q] * (1.0 - kNodes[q]), away = T_ * kNodes[q];
+        g[k] += weight * (at_time(lag + away) + at_time(lag - away));
+      }
+    }
+    return g;
+  }
+
   /// The best gains for a shape.
   [[nodiscard]] Point at(const Shape& shape) const {
-    const double natural = std::exp(shape[0]), damping = std::exp(shape[1]);
-    Vector g(lags_);
-    for (Index k = 0; k < lags_; ++k) {
-      g[k] = T_ * natural * impulse(natural * (T_ * static_cast<double>(first_ + k) - shape[2]), damping);
-    }
+    const Vector g = response(shape);
     Point point{shape, Vector(wanted_.size()), {}};
     std::vector<Vector> parts;
     Index rows = 0;
@@ -120,11 +135,8 @@ class Search {
     const auto n = static_cast<Index>(wanted_.size());
     Matrix J = Matrix::Zero(point.rest.size(), n + 3);
     const auto rest_with = [&](const Shape& shape, const Vector& gain) {
-      const double natural = std::exp(shape[0]), damping = std::exp(shape[1]);
-      Vector g(lags_), rest(point.rest.size());
-      for (Index k = 0; k < lags_; ++k) {
-        g[k] = T_ * natural * impulse(natural * (T_ * static_cast<double>(first_ + k) - shape[2]), damping);
-      }
+      const Vector g = response(shape);
+      Vector rest(point.rest.size());
       Index row = 0;
       for (std::size_t j = 0; j < wanted_.size(); ++j) {
         rest.segment(row, wanted_[j].size()) = wanted_[j] - gain[static_cast<Index>(j)] * (weights_[j] * g);

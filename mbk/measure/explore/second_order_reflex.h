@@ -10,9 +10,10 @@ namespace mbk::explore {
 
 /// Second-order low-pass behind a delay, fitted to a response by weighted least squares (Mirbagheri, Barbeau & Kearney
 /// 2000),
-///   min Σ_j (a_j − Vᵀg_j)ᵀ C_j⁻¹ (a_j − Vᵀg_j),   g_j(l) = T G_j ω²/(s² + 2ζωs + ω²) e^{−s d} at t = l T
-/// with ω, ζ and d in common to the axes, by Levenberg & Marquardt's method from several starts. Intervals are those of
-/// the linearised fit, wider by √F where it leaves F > 1.
+///   min Σ_j (a_j − Vᵀg_j)ᵀ C_j⁻¹ (a_j − Vᵀg_j),   g_j(l) = G_j ∫ h(l T + τ) (1 − |τ|/T) dτ
+/// with h the impulse response of ω²/(s² + 2ζωs + ω²) e^{−s d}, for an input that runs in straight lines between
+/// samples, and ω, ζ and d in common to the axes, by Levenberg & Marquardt's method from several starts. Intervals are
+/// those of the linearised fit, wider by √F where it leaves F > 1.
 /// @param directions V, lags×r    @param coefficients a, r×n    @param covariance C, n of r×r
 /// @param first  lag of the first row [samples]    @param freedom  of the covariances
 /// @returns none where no start leads to a response within the lags

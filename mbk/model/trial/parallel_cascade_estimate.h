@@ -28,15 +28,15 @@ enum class DelayedResponse {
 
 /// A direction of stretch, and how well velocity in it, rectified and delayed, predicts the force.
 struct StretchCandidate {
-  Vector direction;         ///< n, unit vector; empty: both directions alike
-  double vaf = 0;           ///< [%], cross-validated on the rows that were fitted, mean over the axes
-  double vaf_error = 0;     ///< [%], standard error of what it is better than the one that was chosen
+  Vector direction;      ///< n, unit vector; empty: both directions alike
+  double vaf = 0;        ///< [%], cross-validated on the rows that were fitted, mean over the axes
+  double vaf_error = 0;  ///< [%], standard error of what it is better than the one that was chosen
 };
 
 /// Intrinsic and reflex part of the force of one axis.
 struct PathShares {
-  ExplainedForce intrinsic_alone;  ///< a limb without reflex, fitted by itself
-  ExplainedForce both;             ///< the two paths together
+  ExplainedForce intrinsic_alone;              ///< a limb without reflex, fitted by itself
+  ExplainedForce both;                         ///< the two paths together
   ExplainedForce intrinsic_path, reflex_path;  ///< each of the two by itself; they overlap and need not add up
 };
 
@@ -59,9 +59,9 @@ struct SecondOrderReflex {
 ///   −F_h(t) = Σ_l h(l) x(t − l) T + Σ_l g(l) N(v⁺(t − l)) T + c,   v⁺ = max(eᵀẋ, 0)
 struct ParallelCascadeEstimate {
   int axes = 1;
-  double sample_time = 0;                    ///< T [s]
-  bool instruments = false;                  ///< the reference stood for the motion
-  bool held_out = false;                     ///< shares are of rows that were not fitted
+  double sample_time = 0;    ///< T [s]
+  bool instruments = false;  ///< the reference stood for the motion
+  bool held_out = false;     ///< shares are of rows that were not fitted
   DelayedResponse found = DelayedResponse::none;
   std::string why;                           ///< in words
   double p_value = 1;                        ///< of stretch in both directions being answered alike
@@ -70,23 +70,23 @@ struct ParallelCascadeEstimate {
   Vector intrinsic_lag;                      ///< [s]
   Matrix intrinsic, intrinsic_half_width;    ///< (2L+1)×n², as in ImpulseResponseEstimate
   // Only where a reflex was found:
-  Vector direction;                     ///< e, n
-  double delay = 0;                     ///< first lag at which a response shows [s]
-  double delay_low = 0, delay_high = 0; ///< lags that the data do not exclude as the first [s]
-  bool delay_at_limit = false;          ///< the earliest that was tried: it may be less
-  double memory = 0;                    ///< last lag [s]
-  Vector reflex_lag;                    ///< [s]
-  Matrix reflex, reflex_half_width;     ///< lags×n, g [N/m]
-  Index reflex_rank = 0;                ///< directions kept
-  std::vector<Margin> gain;             ///< n, Σ g T over all lags that were tried: force for a steady stretch [N·s/m]
-  Margin gain_along;                    ///< eᵀ gain: positive resists the stretch
-  bool gain_identifiable = false;       ///< its interval is narrower than it
+  Vector direction;                      ///< e, n
+  double delay = 0;                      ///< first lag at which a response shows [s]
+  double delay_low = 0, delay_high = 0;  ///< lags that the data do not exclude as the first [s]
+  bool delay_at_limit = false;           ///< the earliest that was tried: it may be less
+  double memory = 0;                     ///< last lag [s]
+  Vector reflex_lag;                     ///< [s]
+  Matrix reflex, reflex_half_width;      ///< lags×n, g [N/m]
+  Index reflex_rank = 0;                 ///< directions kept
+  std::vector<Margin> gain;        ///< n, Σ g T over all lags that were tried: force for a steady stretch [N·s/m]
+  Margin gain_along;               ///< eᵀ gain: positive resists the stretch
+  bool gain_identifiable = false;  ///< its interval is narrower than it
   std::optional<SecondOrderReflex> second_order;  ///< absent where no such response could be fitted
-  Vector nonlinearity;                  ///< N(v) = Σ c_k (v/s)^k, k = 1 …, with s = speed_scale
-  double speed_scale = 1;               ///< [m/s], the largest that was seen
-  ResponseModel intrinsic_model;        ///< M, B and K of the intrinsic path
+  Vector nonlinearity;                            ///< N(v) = Σ c_k (v/s)^k, k = 1 …, with s = speed_scale
+  double speed_scale = 1;                         ///< [m/s], the largest that was seen
+  ResponseModel intrinsic_model;                  ///< M, B and K of the intrinsic path
   // Always:
-  std::vector<PathShares> shares;       ///< n; without a reflex only the intrinsic path
+  std::vector<PathShares> shares;  ///< n; without a reflex only the intrinsic path
 };
 
 }  // namespace mbk

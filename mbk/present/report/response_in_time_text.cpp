@@ -13,10 +13,18 @@ namespace response_in_time {
 
 constexpr double kMs = 1e3;
 
-std::string vaf(const ExplainedForce& one) { return with_interval(one.vaf, one.vaf_half_width) + " %"; }
+std::string vaf(const ExplainedForce& one) {
+  return with_interval(one.vaf, one.vaf_half_width) + " %";
+}
 
 /// "x", "y", or nothing where there is one axis.
-std::string axis_name(std::size_t axis, int axes) { return axes == 1 ? "" : axis == 0 ? " x" : " y"; }
+std::string axis_name(std::size_t axis, int axes) {
+  return axes == 1 ? "" : axis == 0 ? " x" : " y";
+}
+
+std::string p_text(double p) {
+  return p < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.1g}", p);
+}
 
 /// One line for each matrix: its entries row by row.
 void add_model(const ResponseModel& model, Motion motion, std::vector<std::vector<std::string>>& rows) {
@@ -56,21 +64,20 @@ std::string impulse_response_text(const ImpulseResponseEstimate& found, Motion m
   std::vector<std::vector<std::string>> rows = {
       {"memory", fmt::format("±{:.0f} ms by {}{}", kMs * found.memory, found.memory_rule,
                              found.memory_at_limit ? ": the longest that was tried, it may be more" : "")},
-      {"rank", fmt::format("{} of {} directions of the lagged motion, by cross-validation", found.rank,
-                           found.directions)},
+      {"rank",
+       fmt::format("{} of {} directions of the lagged motion, by cross-validation", found.rank, found.directions)},
       {"loop", found.instruments ? "the reference stands for the motion: holds in closed loop"
                                  : "no reference that explains the motion: biased where the force moves the robot"}};
   const std::string rows_judged = found.held_out ? "held-out data" : "in sample";
   for (std::size_t i = 0; i < found.explained.size(); ++i) {
-    rows.push_back({"VAF" + axis_name(i, found.axes),
-                    fmt::format("{}; M, B, K alone {} ({})", vaf(found.explained[i]),
-                                vaf(found.explained_by_model[i]), rows_judged)});
+    rows.push_back({"VAF" + axis_name(i, found.axes), fmt::format("{}; M, B, K alone {} ({})", vaf(found.explained[i]),
+                                                                  vaf(found.explained_by_model[i]), rows_judged)});
   }
   add_model(found.model, motion, rows);
   if (found.model.identifiable && found.model.numerator > 0.0) {
-    rows.push_back({"M-B-K", fmt::format("{}: F({:.0f}, {:.0f}) = {:.3g}, p = {:.1g}",
+    rows.push_back({"M-B-K", fmt::format("{}: F({:.0f}, {:.0f}) = {:.3g}, {}",
                                          found.model.enough ? "enough" : "not enough", found.model.numerator,
-                                         found.model.denominator, found.model.statistic, found.model.p_value)});
+                                         found.model.denominator, found.model.statistic, p_text(found.model.p_value))});
   }
   return text + table(rows);
 }
@@ -103,23 +110,23 @@ std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion m
   const bool reflex = found.found == DelayedResponse::reflex;
   for (std::size_t i = 0; i < found.shares.size(); ++i) {
     const PathShares& one = found.shares[i];
-    rows.push_back({"VAF" + axis_name(i, found.axes),
-                    reflex ? fmt::format("intrinsic alone {}, with reflex {}{}", vaf(one.intrinsic_alone), vaf(one.both),
-                                         judged)
-                           : fmt::format("intrinsic alone {}{}", vaf(one.intrinsic_alone), judged)});
+    rows.push_back(
+        {"VAF" + axis_name(i, found.axes),
+         reflex ? fmt::format("intrinsic alone {}, with reflex {}{}", vaf(one.intrinsic_alone), vaf(one.both), judged)
+                : fmt::format("intrinsic alone {}{}", vaf(one.intrinsic_alone), judged)});
     if (reflex) {
-      rows.push_back({"shares" + axis_name(i, found.axes),
-                      fmt::format("intrinsic path {}, reflex path {}; they overlap", vaf(one.intrinsic_path),
-                                  vaf(one.reflex_path))});
+      rows.push_back(
+          {"shares" + axis_name(i, found.axes), fmt::format("intrinsic path {}, reflex path {}; they overlap",
+                                                            vaf(one.intrinsic_path), vaf(one.reflex_path))});
     }
   }
   if (!reflex) return text + table(rows);
   const std::string unit = units_of(motion).damping;
   rows.push_back({"direction", direction_name(found.direction) + " stretch"});
-  rows.push_back({"delay", fmt::format("a response shows from {:.0f} ms ({:.0f} to {:.0f} ms){}, until {:.0f} ms",
-                                       kMs * found.delay, kMs * found.delay_low, kMs * found.delay_high,
-                                       found.delay_at_limit ? ", the earliest that was tried" : "",
-                                       kMs * found.memory)});
+  rows.push_back(
+      {"delay", fmt::format("a response shows from {:.0f} ms ({:.0f} to {:.0f} ms){}, until {:.0f} ms",
+                            kMs * found.delay, kMs * found.delay_low, kMs * found.delay_high,
+                            found.delay_at_limit ? ", the earliest that was tried" : "", kMs * found.memory)});
   rows.push_back({"gain", fmt::format("{} {}{}{}", with_interval(found.gain_along.value, found.gain_along.half_width),
                                       unit, found.gain_along.value > 0.0 ? ", resists the stretch" : ", assists it",
                                       found.gain_identifiable ? "" : ": not identifiable")});
@@ -129,17 +136,17 @@ std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion m
     for (const Margin& one : fit.gain) {
       gains += (gains.empty() ? "" : ", ") + with_interval(one.value, one.half_width);
     }
-    rows.push_back({"second order",
-                    fmt::format("gain {} {}, delay {} ms, {} Hz, damping ratio {}; {} (p = {:.1g})", gains, unit,
-                                with_interval(kMs * fit.delay.value, kMs * fit.delay.half_width),
-                                with_interval(fit.frequency.value, fit.frequency.half_width),
-                                with_interval(fit.damping.value, fit.damping.half_width),
-                                fit.p_value < 0.01 ? "the response is more than that" : "enough", fit.p_value)});
+    rows.push_back({"second order", fmt::format("gain {} {}, delay {} ms, {} Hz, damping ratio {}; {} ({})", gains,
+                                                unit, with_interval(kMs * fit.delay.value, kMs * fit.delay.half_width),
+                                                with_interval(fit.frequency.value, fit.frequency.half_width),
+                                                with_interval(fit.damping.value, fit.damping.half_width),
+                                                fit.p_value < 0.01 ? "the response is more than that" : "enough",
+                                                p_text(fit.p_value))});
   }
-  rows.push_back({"nonlinearity", found.nonlinearity.size() == 1
-                                      ? std::string("the velocity rectified, no more")
-                                      : fmt::format("polynomial of order {} of the rectified velocity",
-                                                    found.nonlinearity.size())});
+  rows.push_back({"nonlinearity",
+                  found.nonlinearity.size() == 1
+                      ? std::string("the velocity rectified, no more")
+                      : fmt::format("polynomial of order {} of the rectified velocity", found.nonlinearity.size())});
   rows.push_back({"intrinsic", "M, B, K of the intrinsic path"});
   add_model(found.intrinsic_model, motion, rows);
   return text + table(rows);

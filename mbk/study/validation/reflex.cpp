@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -48,12 +48,9 @@ struct Condition {
 };
 
 std::vector<Condition> conditions() {
-  std::vector<Condition> all = {{"M-B-K", joint(), false},
-                                {"M-B-K, two axes", arm(), false},
-                                {"slow linear response", joint(), false},
-                                {"hardening", joint(), false},
-                                {"reflex", joint(), true},
-                                {"reflex, two axes", arm(), true}};
+  std::vector<Condition> all = {
+      {"M-B-K", joint(), false},     {"M-B-K, two axes", arm(), false}, {"slow linear response", joint(), false},
+      {"hardening", joint(), false}, {"reflex", joint(), true},         {"reflex, two axes", arm(), true}};
   all[2].limb.linear_gain = Vector::Constant(1, 3.0);
   all[3].limb.cubic = 3e4;  // a tenth of K at the edge of the motion
   all[4].limb.reflex_gain = Vector::Constant(1, 4.0);
@@ -66,8 +63,8 @@ struct Run {
   std::vector<bool> held;  ///< of M, B and K from the impulse response, entry by entry
   bool enough = true;      ///< M, B and K, as said
   DelayedResponse found = DelayedResponse::none;
-  bool direction = false;               ///< the right one
-  std::vector<bool> gain, intrinsic;    ///< entry by entry
+  bool direction = false;             ///< the right one
+  std::vector<bool> gain, intrinsic;  ///< entry by entry
   std::optional<bool> second_gain, second_delay;
 };
 
@@ -114,7 +111,8 @@ Result<Run> run_of(const Condition& condition, std::uint64_t seed) {
 
 /// Share of all entries of all runs. Entries of a run are not independent, so that its runs count as trials.
 ValidationRow coverage_row(std::string what, const std::vector<Run>& runs,
-                           const std::function<const std::vector<bool>&(const Run&)>& of, std::optional<Range> expected) {
+                           const std::function<const std::vector<bool>&(const Run&)>& of,
+                           std::optional<Range> expected) {
   double share = 0.0;
   int trials = 0;
   for (const Run& run : runs) {
@@ -126,10 +124,7 @@ ValidationRow coverage_row(std::string what, const std::vector<Run>& runs,
   return share_row(std::move(what), static_cast<int>(std::lround(share)), trials, expected);
 }
 
-}  // namespace reflex_detail
-
-Result<ValidationTable> reflex_study(const StudyOptions& options) {
-  using namespace reflex_detail;
+Result<ValidationTable> study(const StudyOptions& options) {
   const std::vector<Condition> all = conditions();
   using RunOfAll = std::vector<Run>;
   const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<RunOfAll> {
@@ -145,7 +140,8 @@ Result<ValidationTable> reflex_study(const StudyOptions& options) {
 
   ValidationTable table;
   table.study = "reflex";
-  table.question = "are impulse responses and reflexes what the limb has, and is a limb without a reflex credited with none?";
+  table.question =
+      "are impulse responses and reflexes what the limb has, and is a limb without a reflex credited with none?";
   table.unit = "% of the trials";
   table.runs = options.runs;
   table.seed = options.seed;
@@ -160,7 +156,8 @@ Result<ValidationTable> reflex_study(const StudyOptions& options) {
     const auto credited = [](const Run& run) { return run.found == DelayedResponse::reflex; };
     if (k <= 1) {
       table.rows.push_back(coverage_row(
-          named("M, B, K of the impulse response held"), own, [](const Run& run) -> auto& { return run.held; }, kNominal));
+          named("M, B, K of the impulse response held"), own, [](const Run& run) -> auto& { return run.held; },
+          kNominal));
       share("M-B-K said not to be enough", kHardlyEver, [](const Run& run) { return !run.enough; });
     } else {
       share("M-B-K said not to be enough", kNearlyAlways, [](const Run& run) { return !run.enough; });
@@ -185,11 +182,18 @@ Result<ValidationTable> reflex_study(const StudyOptions& options) {
     fitted("delay of the second-order response held", &Run::second_delay);
   }
   table.notes = {
-      "Joint: 0.015 kg·m², 0.8 N·m·s/rad, 70 N·m/rad under a random binary motion of ±0.02 rad, force noise of 0.3 N·m; "
+      "Joint: 0.015 kg·m², 0.8 N·m·s/rad, 70 N·m/rad under a random binary motion of ±0.02 rad, force noise of 0.3 "
+      "N·m; "
       "arm: participant P1 of Dyck (2013) under ±1 cm along both axes, 0.3 N. 40 s at 500 Hz.",
       "Reflex: G ω²/(s + ω)² with ω = 20 rad/s after 60 ms, of velocity in one direction; the slow linear response is "
       "the same of velocity in both. Hardening: a tenth of the stiffness at the edge of the motion."};
   return table;
+}
+
+}  // namespace reflex_detail
+
+Result<ValidationTable> reflex_study(const StudyOptions& options) {
+  return reflex_detail::study(options);
 }
 
 }  // namespace mbk::validation

@@ -113,10 +113,10 @@ inline constexpr int kTrialsWithoutController = 16;
 [[nodiscard]] Result<ValidationTable> one_dimensional_study(const StudyOptions& options);
 
 /// Impulse responses and reflexes of limbs whose force is known in closed form (simulated_limbs.h), by
-/// explore::impulse_response and explore::parallel_cascade: how often the intervals of M, B, K, of the reflex's gain and
-/// its second-order response hold the truth, how often M-B-K is said not to be enough of a limb that is no more, and
-/// how often a limb without a reflex is credited with one: M-B-K alone, with a slow linear response beside it, with a
-/// hardening spring. A run is one record of each limb.
+/// explore::impulse_response and explore::parallel_cascade: how often the intervals of M, B, K, of the reflex's gain
+/// and its second-order response hold the truth, how often M-B-K is said not to be enough of a limb that is no more,
+/// and how often a limb without a reflex is credited with one: M-B-K alone, with a slow linear response beside it, with
+/// a hardening spring. A run is one record of each limb.
 [[nodiscard]] Result<ValidationTable> reflex_study(const StudyOptions& options);
 
 /// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of
