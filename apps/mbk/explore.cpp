@@ -9,6 +9,7 @@
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/preprocess_options.h"
 #include "apps/mbk/reading_options.h"
+#include "apps/mbk/signal_names.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/result/exploration_json.h"
@@ -23,7 +24,8 @@ struct ExploreArguments {
   std::optional<Protocol> protocol;
   std::optional<double> resample_hz;
   double force_delay_ms = 0.0;
-  explore::WelchOptions welch;
+  explore::FrequencyResponseOptions response;
+  std::string input, output_signal, reference;
   OutputArguments output;
 };
 
@@ -36,14 +38,31 @@ Result<measurement::ExploreOptions> options_of(const ExploreArguments& a) {
   options.preprocess.axes = a.reading.axes;
   if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
   options.force_delay = a.force_delay_ms / kMilliseconds;
-  options.welch = a.welch;
+  options.frequency_response = a.response;
   return options;
 }
 
-int run_explore(const ExploreArguments& arguments) {
+/// Other signals than motion and force, where they are named.
+Result<void> name_signals(ExploreArguments& a, measurement::ExploreOptions& options) {
+  if (a.input.empty() && a.output_signal.empty() && a.reference.empty()) return {};
+  if (a.input.empty() || a.output_signal.empty()) {
+    return bad_usage("a response needs --input and --output", "name both, or neither for that of force to motion");
+  }
+  measurement::ExploredSignals& signals = options.signals.emplace();
+  const SignalName names[] = {{a.input, "input", signals.input, &signals.input_sign},
+                              {a.output_signal, "output", signals.output, &signals.output_sign},
+                              {a.reference, "drive", signals.reference, nullptr}};
+  signals.input_name = shown_name(a.input);
+  signals.output_name = shown_name(a.output_signal);
+  return place_signals(a.reading, names);
+}
+
+int run_explore(const ExploreArguments& given) {
+  ExploreArguments arguments = given;
   if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
-  const auto options = options_of(arguments);
+  auto options = options_of(arguments);
   if (!options) return report_error(options.error());
+  if (auto ok = name_signals(arguments, *options); !ok) return report_error(ok.error());
   const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return report_error(recordings.error());
   const auto found = measurement::explore(*recordings, *options);
@@ -64,10 +83,22 @@ Action add_explore(CLI::App& app) {
       "      how the force answers motion at each frequency: dynamic stiffness −F/X and coherence\n"
       "  mbk explore first.mat second.mat third.mat --json\n"
       "      repetitions of one condition, averaged\n"
-      "  mbk explore ankle.csv --channels x=2,F=3 --max-frequency 30\n\n"
+      "  mbk explore ankle.csv --channels x=2,F=3 --method welch --max-frequency 30\n"
+      "  mbk explore arm.mat --input torque --output acceleration --rate 500\n\n"
+      "FILEs are of one limb in one condition. Trials with other phases of a periodic perturbation are\n"
+      "realisations: they tell nonlinear distortion from noise, and two axes from each other.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(*command, arguments->reading);
+  command
+      ->add_option("--input", arguments->input,
+                   "another response than that of force to motion: from this channel, column, row or variable")
+      ->type_name("NAME")
+      ->check(not_empty());
+  command->add_option("--output", arguments->output_signal, "to this, likewise")->type_name("NAME")->check(not_empty());
+  command->add_option("--reference", arguments->reference, "what drives both, likewise")
+      ->type_name("NAME")
+      ->check(not_empty());
   add_sensor_options(*command, arguments->sensor);
   add_choice_or_auto(*command, "--protocol", arguments->protocol,
                      "how the limb was perturbed; auto looks at the reference and says what it saw")
@@ -84,11 +115,26 @@ Action add_explore(CLI::App& app) {
       ->type_name("MS")
       ->check(number_within(1000.0));
   const char* const group = "Frequency response";
-  command->add_option("--segment", arguments->welch.segment_s, "length of the segments that are averaged, s (2)")
+  add_choice_or_auto(
+      *command, "--method", arguments->response.method,
+      "robust: periods and realisations of a periodic perturbation, noise and nonlinear distortion "
+      "apart; fast: periods of one; local-polynomial: any perturbation, without leakage; welch: averaged "
+      "spectra; auto: the first of these that the data allow, and says why (auto)")
+      ->group(group);
+  command
+      ->add_option("--period", arguments->response.period_s,
+                   "of the perturbation, s; otherwise found in the reference or the motion")
       ->type_name("S")
       ->check(positive())
       ->group(group);
-  command->add_option("--max-frequency", arguments->welch.max_frequency_hz, "highest frequency that is shown, Hz (50)")
+  command
+      ->add_option("--segment", arguments->response.segment_s,
+                   "length of the segments that welch averages; local polynomials reach over its inverse, s (2)")
+      ->type_name("S")
+      ->check(positive())
+      ->group(group);
+  command
+      ->add_option("--max-frequency", arguments->response.max_frequency_hz, "highest frequency that is shown, Hz (50)")
       ->type_name("HZ")
       ->check(positive())
       ->group(group);

@@ -15,9 +15,8 @@
 #include "apps/mbk/preprocess_options.h"
 #include "apps/mbk/reading_options.h"
 #include "apps/mbk/report_file.h"
+#include "apps/mbk/signal_names.h"
 #include "apps/mbk/word_options.h"
-#include "mbk/files/recording/channel_map.h"
-#include "mbk/files/recording/channel_table.h"
 #include "mbk/measure/analyse/describe_transfer_function.h"
 #include "mbk/measure/measurement/identify_transfer_function.h"
 #include "mbk/measure/preprocess/resample.h"
@@ -151,47 +150,6 @@ Result<measurement::TransferFunctionMeasurement> options_of(const TfArguments& a
   return options;
 }
 
-/// A signal as the command line names it.
-struct Signal {
-  const std::string& given;
-  const char* channel;  ///< that it becomes where the map has to say where it stands
-  std::string& to;
-  double* sign;  ///< nullptr: has none
-};
-
-/// Where the signals stand: channels under their own names (position, Fx), or else columns, rows or variables of the
-/// file, which the map then makes `input`, `output` and `drive`.
-Result<void> place_signals(TfArguments& a, measurement::TransferFunctionMeasurement& options) {
-  const auto mapped = a.reading.channels.empty() ? Result<std::vector<recording::ChannelSource>>()
-                                                 : recording::parse_channel_map(a.reading.channels);
-  if (!mapped) return tl::unexpected(mapped.error());
-  const auto in_map = [&](const std::string& name) {
-    const auto meant = recording::kinds_called(name);
-    return std::ranges::any_of(*mapped, [&](const recording::ChannelSource& entry) {
-      const auto kinds = recording::kinds_called(entry.channel);
-      return std::ranges::find_first_of(meant, kinds) != meant.end();
-    });
-  };
-  const Signal signals[] = {{a.input, "input", options.input, &options.input_sign},
-                            {a.output_signal, "output", options.output, &options.output_sign},
-                            {a.reference, "drive", options.reference, nullptr}};
-  for (const Signal& signal : signals) {
-    if (signal.given.empty()) continue;
-    const bool flipped = signal.given.front() == '-' && signal.sign != nullptr;
-    const std::string name = signal.given.substr(flipped ? 1 : 0);
-    const bool by_name = mapped->empty() && !recording::kinds_called(name).empty();
-    if (by_name || in_map(name)) {
-      signal.to = name;
-      if (flipped) *signal.sign = -1.0;
-      if (by_name) a.reading.requested.push_back(name);
-      continue;
-    }
-    a.reading.channels += fmt::format("{}{}={}", a.reading.channels.empty() ? "" : ",", signal.channel, signal.given);
-    signal.to = signal.channel;
-  }
-  return {};
-}
-
 Result<std::vector<Recording>> read_all(const TfArguments& a, const std::vector<std::filesystem::path>& files) {
   ReadingArguments reading = a.reading;
   reading.files = files;
@@ -203,13 +161,6 @@ Result<std::vector<Recording>> read_all(const TfArguments& a, const std::vector<
     recording = std::move(*even);
   }
   return recordings;
-}
-
-/// How a signal was named, without what converts it: "-2:mm" is −2.
-std::string shown_name(const std::string& given) {
-  const auto entry = recording::parse_channel_map("input=" + given);
-  if (!entry) return given;
-  return (entry->front().negate ? "−" : "") + entry->front().source;
 }
 
 constexpr std::array kChartNames = {"magnitude", "phase", "nyquist"};
@@ -248,7 +199,10 @@ int run(const TfArguments& given, const std::string& typed) {
   if (auto ok = check_written(arguments); !ok) return report_error(ok.error());
   auto options = options_of(arguments);
   if (!options) return report_error(options.error());
-  if (auto ok = place_signals(arguments, *options); !ok) return report_error(ok.error());
+  const SignalName signals[] = {{arguments.input, "input", options->input, &options->input_sign},
+                                {arguments.output_signal, "output", options->output, &options->output_sign},
+                                {arguments.reference, "drive", options->reference, nullptr}};
+  if (auto ok = place_signals(arguments.reading, signals); !ok) return report_error(ok.error());
   const auto recordings = read_all(arguments, arguments.reading.files);
   if (!recordings) return report_error(recordings.error());
   const auto held_out = read_all(arguments, arguments.held_out);

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """mbk explore: what recordings say of a limb without M, B and K."""
 
+import statistics
+
+import mat_file
 from command import BAD_DATA, WRONG_USAGE, Case, data_folder, main, make_log, run
 
 ANKLE = ("--axes", "1", "--channels", "x=position_rad:rad,F=torque_Nm:N.m")
@@ -17,7 +20,7 @@ class Welch(Case):
     def test_of_a_real_ankle_is_that_of_scipy(self):
         for name, coherence in self.COHERENCE.items():
             with self.subTest(name):
-                found = self.fine("explore", *ANKLE, "--json", data_folder("ankle") / f"{name}.csv").json
+                found = self.fine("explore", *ANKLE, "--method", "welch", "--json", data_folder("ankle") / f"{name}.csv").json
                 response = found["frequency_response"]
                 at = [response["frequency_hz"].index(hertz) for hertz in HERTZ]
                 for k, value in zip(at, coherence):
@@ -58,6 +61,41 @@ class Ankle(Case):
                     self.assertIn(words, text)
 
 
+class FlexibleArm(Case):
+    """Torque to acceleration of a real robot arm, ten periods of an odd multisine to 24 Hz (Kollár et al. 1994)."""
+
+    def explored(self, *options):
+        path = data_folder("flexible_arm") / "contsid_robotarm.mat"
+        return path, self.fine("explore", path, "--input", "Input", "--output", "Output", "--rate", "500", *options)
+
+    def test_is_the_response_of_the_file_with_the_noise_of_its_periods(self):
+        path, ran = self.explored("--json")
+        response = ran.json["frequency_response"]
+        self.assertEqual(response["method"], "fast")
+        self.assertEqual((response["periodic"]["period_s"], response["periodic"]["periods"]), (8.192, 10))
+        self.assertEqual(response["frequency_hz"], [k / 8.192 for k in range(1, 200, 2)])
+        one, = response["responses"]
+        values = [complex(a, b) for a, b in zip(one["real"], one["imaginary"])]
+        for got, want in zip(values, mat_file.read_complex(path)["G"]):
+            self.assertLess(abs(got - want), 1e-12 * abs(want))
+        relative = [deviation / abs(value) for deviation, value in zip(one["noise_standard_error"], values)]
+        self.assertAlmostEqual(statistics.median(relative), 0.0144, delta=0.0001)
+        for k, deviation in ((0, 0.00783), (29, 1.71), (99, 0.00183)):
+            self.assertAlmostEqual(one["noise_standard_error"][k], deviation, delta=0.005 * deviation)
+
+    def test_has_no_even_distortion_once_what_the_input_carries_is_subtracted(self):
+        _, ran = self.explored("--json")
+        periodic = ran.json["frequency_response"]["periodic"]
+        even = periodic["even_distortion"]
+        for name, amplitude in (("uncorrected", 7.0e-4), ("relative", 3.8e-4), ("noise", 4.7e-4)):
+            self.assertAlmostEqual(even["output_amplitude"] * even[name], amplitude, delta=0.06e-4)
+        self.assertIs(even["detected"], False)
+        self.assertNotIn("odd_distortion", periodic)
+        text = " ".join(self.explored()[1].out.split())
+        for words in ("even not above the noise", "no odd line between the excited ones is left empty", "8.192 s"):
+            self.assertIn(words, text)
+
+
 class TwoAxes(Case):
     def test_text_and_json_say_the_same(self):
         log = make_log().path
@@ -80,7 +118,7 @@ class Mistakes(Case):
                               (("--from", "5", "--to", "3"), "--from"), (("--protocol", "sometimes"), "--protocol")):
             with self.subTest(options):
                 self.refused(WRONG_USAGE, "explore", log, *options, says=says)
-        self.refused(BAD_DATA, "explore", log, "--segment", "1000", says="segment")
+        self.refused(BAD_DATA, "explore", log, "--method", "welch", "--segment", "1000", says="segment")
         self.refused(BAD_DATA, "explore", self.folder / "none.mat", says="none.mat")
 
 

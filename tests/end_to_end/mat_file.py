@@ -42,6 +42,19 @@ def read(path):
     return variables
 
 
+def read_complex(path):
+    """{name: list of values} of every complex vector of doubles in the file."""
+    variables = {}
+    for kind, data in elements(path.read_bytes()[128:]):
+        if kind == COMPRESSED:
+            (kind, data), = elements(zlib.decompress(data))
+        parts = list(elements(data))
+        if kind == MATRIX and len(parts) > 4 and parts[3][0] == 9:
+            real, imaginary = (array.array("d", part[1]) for part in parts[3:5])
+            variables[parts[2][1].decode()] = [complex(a, b) for a, b in zip(real, imaginary)]
+    return variables
+
+
 def element(kind, data):
     return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
 

@@ -9,6 +9,7 @@
 
 #include "mbk/base/dsp/cross_spectrum.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/measure/explore/alike.h"
 #include "mbk/measure/explore/response_intervals.h"
 
 namespace mbk::explore {
@@ -50,23 +51,6 @@ double partial_coherence(const Complex& S, Index inputs, Index i, Index j) {
   return power > 0.0 ? std::min(1.0, std::norm(rest(0, 1)) / power) : std::numeric_limits<double>::quiet_NaN();
 }
 
-Result<void> check_alike(std::span<const ExplorationTrial> trials) {
-  if (trials.empty()) return bad_data("there is no recording to explore");
-  const ExplorationTrial& first = trials.front();
-  for (const ExplorationTrial& trial : trials) {
-    if (trial.input.cols() != first.input.cols() || trial.output.cols() != first.output.cols()) {
-      return bad_data("recordings with different axes have no common frequency response", "explore them one by one",
-                      trial.source.path);
-    }
-    if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
-      return bad_data(fmt::format("{:.6g} Hz beside {:.6g} Hz: recordings at different rates are not averaged",
-                                  1.0 / trial.sample_time, 1.0 / first.sample_time),
-                      "bring them to one rate by --resample", trial.source.path);
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTrial> trials,
@@ -74,8 +58,7 @@ Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTria
   if (auto ok = check_alike(trials); !ok) return tl::unexpected(ok.error());
   const ExplorationTrial& first = trials.front();
   const Index inputs = first.input.cols(), outputs = first.output.cols();
-  const bool by_reference =
-      std::ranges::all_of(trials, [](const ExplorationTrial& trial) { return trial.reference.size() > 0; });
+  const bool by_reference = all_have_reference(trials);
   std::vector<Matrix> pieces;
   for (const ExplorationTrial& trial : trials) pieces.push_back(side_by_side(trial, by_reference));
   const auto wanted = static_cast<Index>(std::llround(options.segment_s / first.sample_time));

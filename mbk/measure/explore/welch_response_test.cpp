@@ -14,15 +14,8 @@ namespace welch_response_test {
 using Complex = std::complex<double>;
 constexpr double kStep = 0.01;
 
-/// y[i] = a u[i] + b u[i − 1], whose response is a + b e^(−jωT).
-Vector two_taps(const Vector& u, double a, double b) {
-  Vector y = a * u;
-  y.tail(y.size() - 1) += b * u.head(u.size() - 1);
-  return y;
-}
-
 Complex response_of(double a, double b, double hertz) {
-  return a + b * std::polar(1.0, -2.0 * std::numbers::pi * hertz * kStep);
+  return two_taps_response(a, b, hertz, kStep);
 }
 
 TEST(WelchResponse, OfAGainIsThatGainWithoutDoubt) {

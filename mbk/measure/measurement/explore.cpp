@@ -1,8 +1,13 @@
 #include "mbk/measure/measurement/explore.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/explore/limb_signals.h"
 #include "mbk/measure/explore/parallel_cascade.h"
@@ -14,7 +19,55 @@
 namespace mbk::measurement {
 namespace {
 
+/// The channel of that name or alias.
+Result<Channel> named_channel(const Recording& recording, const std::string& name) {
+  if (const Channel* const channel = recording.find(name)) return *channel;
+  for (const auto* const kind : recording::kinds_called(name)) {
+    if (const Channel* const channel = recording.find(kind->name)) return *channel;
+  }
+  std::vector<std::string> names;
+  for (const Channel& channel : recording.channels) names.push_back(channel.name);
+  return bad_data(fmt::format("there is no channel '{}'; there are {}", name, fmt::join(names, ", ")),
+                  "name a channel, a column's number or name, or a variable");
+}
+
+/// The recording as that of one axis: the input in the place of the position, the output in that of −F.
+Result<Recording> with_signals(const Recording& recording, const ExploredSignals& signals) {
+  Recording one = recording;
+  one.channels.clear();
+  const auto add = [&](const std::string& name, const char* as, double sign) -> Result<void> {
+    auto channel = named_channel(recording, name);
+    if (!channel) return tl::unexpected(channel.error());
+    channel->name = as;
+    channel->unit.clear();
+    channel->values *= sign;
+    one.channels.push_back(std::move(*channel));
+    return {};
+  };
+  if (auto ok = add(signals.input, "position", signals.input_sign); !ok) return tl::unexpected(ok.error());
+  if (auto ok = add(signals.output, "reaction", -signals.output_sign); !ok) return tl::unexpected(ok.error());
+  if (signals.reference.empty()) return one;
+  if (auto ok = add(signals.reference, "reference", 1.0); !ok) return tl::unexpected(ok.error());
+  return one;
+}
+
 Result<ExplorationTrial> explored_trial(const Recording& recording, const ExploreOptions& options) {
+  if (options.signals) {
+    const ExploredSignals& signals = *options.signals;
+    const auto one = with_signals(recording, signals);
+    if (!one) return tl::unexpected(one.error());
+    ExploreOptions rest = options;
+    rest.signals.reset();
+    rest.preprocess.axes = 1;
+    auto trial = explored_trial(*one, rest);
+    if (!trial) {
+      return tl::unexpected(trial.error().in(fmt::format("'position' is the input {}, 'reaction' the output {}",
+                                                         signals.input_name, signals.output_name)));
+    }
+    trial->input_labels = {{signals.input_name, named_channel(recording, signals.input)->unit}};
+    trial->output_labels = {{signals.output_name, named_channel(recording, signals.output)->unit}};
+    return trial;
+  }
   const Recording* source = &recording;
   Inspection inspection = recording::inspect(recording);
   Recording even;
@@ -84,7 +137,7 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   if (trials.empty()) return bad_usage("there is no recording to explore");
   found.axes = trials.front().axes;
   found.motion = trials.front().motion;
-  auto response = explore::welch_response(trials, options.welch);
+  auto response = explore::frequency_response(trials, options.frequency_response);
   if (!response) return tl::unexpected(response.error());
   found.frequency_response = std::move(*response);
   add_responses_in_time(trials, options, found);

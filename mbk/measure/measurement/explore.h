@@ -2,23 +2,32 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
+#include "mbk/measure/explore/frequency_response_of.h"
 #include "mbk/measure/explore/impulse_response.h"
-#include "mbk/measure/explore/welch_response.h"
 #include "mbk/measure/preprocess/options.h"
 #include "mbk/model/trial/exploration.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::measurement {
 
+/// A response other than that of force to motion: from one channel to another.
+struct ExploredSignals {
+  std::string input, output, reference;        ///< channels; reference: empty where there is none
+  double input_sign = 1.0, output_sign = 1.0;  ///< 1 or −1
+  std::string input_name, output_name;         ///< as they are shown
+};
+
 /// Everything that may be chosen on the way from recordings to what they say without a model.
 struct ExploreOptions {
   preprocess::Options preprocess;
-  std::optional<Hertz> resample;  ///< put the samples on an even clock first
-  double force_delay = 0.0;       ///< by which the force was read late, undone first [s]
-  explore::WelchOptions welch;
+  std::optional<Hertz> resample;           ///< put the samples on an even clock first
+  double force_delay = 0.0;                ///< by which the force was read late, undone first [s]
+  std::optional<ExploredSignals> signals;  ///< absent: from the position to −F
+  explore::FrequencyResponseOptions frequency_response;
   explore::ImpulseResponseOptions impulse_response;
 };
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,51 @@
 namespace mbk {
 
 /// How a frequency response is estimated from signals.
-enum class FrequencyResponseMethod { welch };
+enum class FrequencyResponseMethod {
+  welch,             ///< averaged spectra of segments
+  robust,            ///< periods and realisations of a periodic perturbation
+  fast,              ///< periods of one realisation, distortion by the lines that it leaves empty
+  local_polynomial,  ///< a polynomial across neighbouring frequencies, any perturbation
+};
 
 [[nodiscard]] constexpr auto word_table(FrequencyResponseMethod) {
   using enum FrequencyResponseMethod;
-  return std::to_array<Word<FrequencyResponseMethod>>({{welch, "welch"}});
+  return std::to_array<Word<FrequencyResponseMethod>>(
+      {{welch, "welch"}, {robust, "robust"}, {fast, "fast"}, {local_polynomial, "local-polynomial"}});
 }
+
+/// What the output does at lines that the perturbation leaves empty, without what the input carries there times G.
+/// Relative to the output at the lines that are excited; root mean squares over the lines and outputs, each output
+/// relative to its own.
+struct Distortion {
+  Index lines = 0;
+  double relative = 0;          ///< of the corrected output
+  double uncorrected = 0;       ///< of the output as it is
+  double noise = 0;             ///< of the noise in the mean output, as the periods show it
+  double residual_noise = 0;    ///< the same without what the input's noise explains of it
+  double output_amplitude = 0;  ///< what they are relative to: |Y| of the transform over its length [output's unit]
+  double p = 1;                 ///< probability of so much where the noise of the output is all there is (F test)
+  double residual_p = 1;        ///< the same by `residual_noise`
+  /// Stands out of the noise of the output.
+  [[nodiscard]] bool detected() const { return p < 0.01; }
+  /// Significant beside the noise that the input does not explain, but below that of the output: a trace.
+  [[nodiscard]] bool trace() const { return !detected() && residual_p < 0.01; }
+};
+
+/// How a periodic perturbation was taken apart.
+struct PeriodicFacts {
+  double period_s = 0;
+  bool period_found = true;                ///< otherwise it was given
+  Index realisations = 0;                  ///< different ones
+  Index periods = 0;                       ///< of the realisation that has fewest
+  Index dropped_periods = 0;               ///< at the beginnings, where they differ from the others: transients
+  bool orthogonal = false;                 ///< experiments belong together in groups of n_u with orthogonal references
+  Index skipped_lines = 0;                 ///< excited, but not along every input
+  bool odd = false;                        ///< all excited lines are odd multiples of 1/period
+  std::optional<double> total_over_noise;  ///< variance over realisations over that over periods, ratio of sums
+  double total_over_noise_p = 1;           ///< probability of so much where the limb is linear
+  std::optional<Distortion> even, odd_lines;  ///< at empty even and odd lines; absent where there are none
+};
 
 /// Matrix of responses G(f) from n_u inputs to n_y outputs, Y = G U + V, as the data show it without a model, with one
 /// entry of every list for each frequency. Entries of G stand in the order of its columns: response i + j n_y is
@@ -31,9 +71,11 @@ struct FrequencyResponseEstimate {
   Vector frequency;                          ///< N [Hz], rising, > 0
   std::vector<Eigen::MatrixXcd> response;    ///< G, n_y×n_u [unit of the output per unit of the input]
   std::vector<Eigen::MatrixXcd> covariance;  ///< (n_y n_u)², E[δg δgᴴ] of g = vec G, circular: noise and distortion
-  Vector degrees_of_freedom;                 ///< complex, of that covariance
-  Matrix magnitude_low, magnitude_high;      ///< N×(n_y n_u), ends of the 95 % interval of |G|
-  Matrix radius95;                           ///< N×(n_y n_u), of the disc around the estimate that holds G with 95 %
+  std::vector<Eigen::MatrixXcd> noise_covariance;  ///< the same of noise alone, as periods show it; or empty
+  std::optional<PeriodicFacts> periodic;
+  Vector degrees_of_freedom;             ///< complex, of that covariance
+  Matrix magnitude_low, magnitude_high;  ///< N×(n_y n_u), ends of the 95 % interval of |G|
+  Matrix radius95;                       ///< N×(n_y n_u), of the disc around the estimate that holds G with 95 %
   Matrix multiple_coherence;  ///< N×n_y, γ² of each output with all inputs; empty where the method gives none
   Matrix partial_coherence;   ///< N×(n_y n_u), γ² of output and input without what the other inputs explain
   double averages = 0;        ///< independent segments, or experiments, that were averaged

@@ -14,8 +14,62 @@ const char* name_of(FrequencyResponseMethod method) {
   switch (method) {
     case FrequencyResponseMethod::welch:
       return "averaged spectra (Welch), Hann windows";
+    case FrequencyResponseMethod::robust:
+      return "robust, from periods and realisations";
+    case FrequencyResponseMethod::fast:
+      return "fast, from periods of one realisation";
+    case FrequencyResponseMethod::local_polynomial:
+      return "local polynomials of order 2";
   }
   return "";
+}
+
+std::string distortion_said(const Distortion& distortion) {
+  const std::string trace =
+      distortion.trace()
+          ? fmt::format(", with a trace above the {:.2g} that the noise of the input leaves", distortion.residual_noise)
+          : "";
+  return fmt::format(
+      "{}: {:.2g} of the output at {} empty lines, noise {:.2g} (p = {:.2g}){}{}",
+      distortion.detected() ? "detected" : "not above the noise", distortion.relative, distortion.lines,
+      distortion.noise, distortion.p, trace,
+      distortion.uncorrected > 1.2 * distortion.relative
+          ? fmt::format("; {:.2g} before what the input carries there is subtracted", distortion.uncorrected)
+          : "");
+}
+
+/// What periods and realisations tell of noise and distortion, and what they cannot.
+std::vector<std::vector<std::string>> periodic_rows(const FrequencyResponseEstimate& found) {
+  const PeriodicFacts& facts = *found.periodic;
+  std::vector<std::vector<std::string>> rows;
+  if (facts.dropped_periods > 0) {
+    rows.push_back({"transients", fmt::format("the first period of {} realisation{} differs from the others and was "
+                                              "left out",
+                                              facts.dropped_periods, facts.dropped_periods == 1 ? "" : "s")});
+  }
+  if (facts.skipped_lines > 0) {
+    rows.push_back({"skipped", fmt::format("{} line{} at which the inputs are not excited in all directions",
+                                           facts.skipped_lines, facts.skipped_lines == 1 ? "" : "s")});
+  }
+  if (facts.total_over_noise) {
+    rows.push_back({"nonlinear", fmt::format("variance over realisations is {:.3g} times that of noise (p = {:.2g}): "
+                                             "{}",
+                                             *facts.total_over_noise, facts.total_over_noise_p,
+                                             facts.total_over_noise_p < 0.01 ? "nonlinear distortion"
+                                                                             : "no nonlinear distortion is detected")});
+  } else {
+    rows.push_back({"nonlinear", "realisations with other phases would show it; here are too few"});
+  }
+  if (facts.even) rows.push_back({"even", distortion_said(*facts.even)});
+  if (facts.odd_lines) rows.push_back({"odd", distortion_said(*facts.odd_lines)});
+  if (!facts.odd) {
+    rows.push_back({"even, odd",
+                    "not known: the perturbation excites even lines too, so that none shows even "
+                    "distortion alone"});
+  } else if (!facts.odd_lines) {
+    rows.push_back({"odd", "not known from one realisation: no odd line between the excited ones is left empty"});
+  }
+  return rows;
 }
 
 /// At most that many lines, evenly spaced on a logarithmic scale.
@@ -45,10 +99,15 @@ std::string frequency_response_text(const FrequencyResponseEstimate& found) {
   std::string text = "frequency response\n";
   std::vector<std::vector<std::string>> facts = {{"method", name_of(found.method)}};
   if (!found.method_rule.empty()) facts.back().back() += ": " + found.method_rule;
-  facts.push_back({"averages", fmt::format("{:.3g} independent ones", found.averages)});
+  if (found.method == FrequencyResponseMethod::welch) {
+    facts.push_back({"averages", fmt::format("{:.3g} independent segments", found.averages)});
+  }
   facts.push_back({"loop", found.by_reference ? "projected on the reference: holds in closed loop"
                                               : "no reference: biased where the force moves the robot"});
   facts.push_back({"intervals", "95 %, for " + found.assumes});
+  if (found.periodic) {
+    for (auto& row : periodic_rows(found)) facts.push_back(std::move(row));
+  }
   text += table(facts);
   for (std::size_t j = 0; j < found.inputs.size(); ++j) {
     for (std::size_t i = 0; i < found.outputs.size(); ++i) {

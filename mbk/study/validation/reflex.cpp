@@ -41,14 +41,14 @@ SimulatedLimb arm() {
   return limb;
 }
 
-struct Condition {
+struct LimbCondition {
   const char* name;
   SimulatedLimb limb;
   bool reflex;  ///< it has one
 };
 
-std::vector<Condition> conditions() {
-  std::vector<Condition> all = {
+std::vector<LimbCondition> limb_conditions() {
+  std::vector<LimbCondition> all = {
       {"M-B-K", joint(), false},     {"M-B-K, two axes", arm(), false}, {"slow linear response", joint(), false},
       {"hardening", joint(), false}, {"reflex", joint(), true},         {"reflex, two axes", arm(), true}};
   all[2].limb.linear_gain = Vector::Constant(1, 3.0);
@@ -81,7 +81,7 @@ void add_held(const ResponseModel& model, const SimulatedLimb& limb, std::vector
   add_held(model.K, model.K_half_width, limb.K, held);
 }
 
-Result<Run> run_of(const Condition& condition, std::uint64_t seed) {
+Result<Run> run_of(const LimbCondition& condition, std::uint64_t seed) {
   const SimulatedLimb& limb = condition.limb;
   const ExplorationTrial trial = simulate_limb(limb, kDuration, kRate, seed);
   const auto signals = explore::limb_signals({&trial, 1});
@@ -125,11 +125,11 @@ ValidationRow coverage_row(std::string what, const std::vector<Run>& runs,
 }
 
 Result<ValidationTable> study(const StudyOptions& options) {
-  const std::vector<Condition> all = conditions();
+  const std::vector<LimbCondition> all = limb_conditions();
   using RunOfAll = std::vector<Run>;
   const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<RunOfAll> {
     RunOfAll of_all;
-    for (const Condition& condition : all) {
+    for (const LimbCondition& condition : all) {
       auto run = run_of(condition, seed);
       if (!run) return tl::unexpected(run.error().in(condition.name));
       of_all.push_back(std::move(*run));
@@ -146,7 +146,7 @@ Result<ValidationTable> study(const StudyOptions& options) {
   table.runs = options.runs;
   table.seed = options.seed;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const Condition& condition = all[k];
+    const LimbCondition& condition = all[k];
     std::vector<Run> own;
     for (const RunOfAll& run : *runs) own.push_back(run[k]);
     const auto named = [&](const char* what) { return fmt::format("{}: {}", condition.name, what); };

@@ -1,0 +1,62 @@
+#include "mbk/measure/explore/frequency_response_of.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+namespace mbk::explore {
+namespace {
+
+bool by_pulses(std::span<const ExplorationTrial> trials) {
+  return std::ranges::any_of(trials, [](const ExplorationTrial& trial) {
+    return trial.protocol == Protocol::underdamped && trial.reference.size() > 0;
+  });
+}
+
+std::string periods_said(const FrequencyResponseEstimate& found) {
+  const PeriodicFacts& facts = *found.periodic;
+  return fmt::format("the {} repeats itself every {:g} s{}; {} realisation{} of {} period{}{}",
+                     found.by_reference ? "reference" : "input", facts.period_s, facts.period_found ? "" : ", as given",
+                     facts.realisations, facts.realisations == 1 ? "" : "s", facts.periods,
+                     facts.periods == 1 ? "" : "s", facts.realisations > 1 ? " or more" : "");
+}
+
+}  // namespace
+
+Result<FrequencyResponseEstimate> frequency_response(std::span<const ExplorationTrial> trials,
+                                                     const FrequencyResponseOptions& options) {
+  using enum FrequencyResponseMethod;
+  const auto wanted = [&](FrequencyResponseMethod method) { return !options.method || *options.method == method; };
+  const std::string given = options.method ? "as asked; " : "";
+  std::string refused;
+  if (wanted(robust) || wanted(fast)) {
+    if (!options.method && by_pulses(trials)) {
+      refused = "pulses do not repeat themselves; ";
+    } else {
+      auto found = periodic_response(trials, {options.period_s, options.max_frequency_hz, options.method == fast});
+      if (found && options.method == robust && found->method != robust) {
+        return bad_data(fmt::format("the robust method needs several realisations; there {} {}",
+                                    found->periodic->realisations == 1 ? "is" : "are", found->periodic->realisations),
+                        "record trials with other phases, or let --method be fast");
+      }
+      if (found) {
+        found->method_rule = given + periods_said(*found);
+        return found;
+      }
+      if (options.method || found.error().kind == ErrorKind::usage) return found;
+      refused = found.error().message + "; ";
+    }
+  }
+  if (wanted(local_polynomial)) {
+    auto found = local_polynomial_response(trials, {1.0 / options.segment_s, options.max_frequency_hz});
+    if (found) found->method_rule = given + refused + "any perturbation will do";
+    if (found || options.method || found.error().kind == ErrorKind::usage) return found;
+    refused += found.error().message + "; ";
+  }
+  auto found = welch_response(trials, {options.segment_s, options.max_frequency_hz});
+  if (found) found->method_rule = given + refused + "averages any perturbation";
+  return found;
+}
+
+}  // namespace mbk::explore

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "mbk/base/core/result.h"
+#include "mbk/measure/explore/local_polynomial.h"
+#include "mbk/measure/explore/periodic_response.h"
+#include "mbk/measure/explore/welch_response.h"
+#include "mbk/model/trial/exploration_trial.h"
+#include "mbk/model/trial/frequency_response_estimate.h"
+
+namespace mbk::explore {
+
+struct FrequencyResponseOptions {
+  std::optional<FrequencyResponseMethod> method;  ///< absent: by the data
+  std::optional<double> period_s;                 ///< of the perturbation; absent: found
+  double segment_s = 2.0;                         ///< of averaged spectra; the bandwidth of local polynomials is 1/that
+  double max_frequency_hz = 50.0;
+};
+
+/// The frequency response by the method that was asked for or, by default, the first of these that the data allow:
+/// periods and realisations (robust), periods of one realisation (fast), local polynomials, averaged spectra. Pulses,
+/// whose reference rests most of the time, are not searched for a period. `method_rule` says why.
+/// @fails  as the method; data: the method that was asked for needs other data.
+[[nodiscard]] Result<FrequencyResponseEstimate> frequency_response(std::span<const ExplorationTrial> trials,
+                                                                   const FrequencyResponseOptions& options = {});
+
+}  // namespace mbk::explore
