@@ -24,7 +24,7 @@ struct ImpulseResponseOptions {
 /// M, B and K are fitted to the response with its inverse covariance as weights: with a = V_rᵀh T and D the same
 /// coefficients of [ẍ ẋ x],
 ///   θ = (DᵀV⁻¹D)⁻¹DᵀV⁻¹a,   F = (a − Dθ)ᵀV⁻¹(a − Dθ)/(r − 3n)
-/// M, B and K are enough where F is not above its 99 % quantile, Bonferroni over axes. What the lags cannot make of ẍ
+/// M, B and K are not enough where chance is below 10⁻⁵, Bonferroni over axes. What the lags cannot make of ẍ
 /// biases neither, since D has lost the same.
 /// @fails  fewer than 20 rows for each coefficient; a force or motion that does not vary
 [[nodiscard]] Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals,

@@ -18,6 +18,7 @@ namespace limb_signals_detail {
 constexpr double kRowsPerBand = 2.5;          ///< rate over kResponseBand
 constexpr double kBack = 1.0, kAhead = 0.05;  ///< what of the reference explains the motion of an instant [s]
 constexpr Index kRowsPerLag = 10;
+constexpr Index kEnds = 12;         ///< rows at each end of a trial that the low-pass made of what it added there
 constexpr double kExplained = 0.5;  ///< share of the motion that the reference must explain to stand for it
 constexpr dsp::SavitzkyGolay kStencil{.order = 8, .window = 9};
 
@@ -99,8 +100,11 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
   for (const ExplorationTrial& trial : trials) {
     auto part = filtered(trial, signals.every);
     if (!part) return tl::unexpected(part.error());
+    const Index ends = signals.every > 1 ? kEnds : 0;
+    if (part->rows() <= 2 * ends) return bad_data("a trial is too short for the low-pass", "record longer");
+    *part = part->middleRows(ends, part->rows() - 2 * ends).eval();
     const Index rows = part->rows();
-    const Index split = std::clamp<Index>(trial.split / signals.every, 0, rows);
+    const Index split = std::clamp<Index>(trial.split / signals.every - ends, 0, rows);
     signals.pieces.push_back({total, total + rows});
     if (split > 0) signals.identification.push_back({total, total + split});
     if (split < rows) signals.validation.push_back({total + split, total + rows});

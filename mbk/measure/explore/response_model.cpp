@@ -9,7 +9,9 @@
 namespace mbk::explore {
 namespace response_model_detail {
 
-constexpr double kChance = 0.01;  ///< of a limb that is M, B and K to be called something else
+/// Of a limb that is M, B and K to be called something else. Far below the few per cent at which that is meant to
+/// happen: directions that the motion hardly excites see a noise that no short autoregression knows exactly.
+constexpr double kChance = 1e-5;
 
 Vector deviations(const Matrix& covariance) {
   return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

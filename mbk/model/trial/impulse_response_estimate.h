@@ -23,7 +23,7 @@ struct ResponseModel {
   double statistic = 0;                   ///< F of what M, B and K do not explain of the response
   double numerator = 0, denominator = 0;  ///< its degrees of freedom
   double p_value = 1;                     ///< of the largest over the axes, with Bonferroni's bound
-  bool enough = true;                     ///< not contradicted with 99 % confidence
+  bool enough = true;                     ///< p is not below 10⁻⁵
 };
 
 /// Two-sided impulse response from motion to force, −F_h(t) = Σ_l h(l) x(t − l) T + c, without a model of it.
