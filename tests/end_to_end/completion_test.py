@@ -31,7 +31,7 @@ TYPED = {  # what has been typed → what is offered
     ("teleop", "--ex"): ["--excess"],
     ("teleop", "--sim"): ["--simulate"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
-    ("validate", ""): ["closed-loop", "coverage", "faults", "live-estimate", "misspecification", "one-dimensional",
+    ("validate", ""): ["closed-loop", "coverage", "faults", "frequency-response", "live-estimate", "misspecification", "one-dimensional",
                        "participant", "passivity", "recovery", "robot", "springs", "teleoperation",
                        "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],
