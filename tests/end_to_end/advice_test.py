@@ -10,6 +10,7 @@ import re
 from command import Case, flat, main, run, write_csv
 from help_tree import every_command
 from mistakes import as_option, first_options, right_map
+from explore_test import trial
 from tf_test import oscillator
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -518,6 +519,39 @@ def behind_a_lag(time_constant, noise):
         last = y
         rows.append((time, u, z + noise * chance.gauss(0, 1)))
     return rows
+
+
+def explored(*files):
+    return run("explore", "--json", *files)
+
+
+@advice_of("low-coherence")
+def _(test):  # perturb more strongly
+    weak = trial(test, "weak", 1, 1, peak="peak_mm = 0.2", noise=1)
+    strong = trial(test, "strong", 1, 1, peak="peak_mm = 8", noise=0.05)
+    options = ("--max-frequency", "4")
+    raised = explored(weak, *options)
+    test.assertIn("perturb more", hint_of(raised, "low-coherence"))
+    test.goes("low-coherence", raised, explored(strong, *options))
+
+
+@advice_of("few-realisations")
+def _(test):  # more trials
+    files = [trial(test, f"trial{k}", k, k) for k in range(1, 6)]
+    raised = explored(*files[:3])
+    test.assertIn("more trials", hint_of(raised, "few-realisations"))
+    test.goes("few-realisations", raised, explored(*files))
+
+
+@advice_of("nonlinear-distortion")
+def _(test):  # perturb less
+    hardening = "[participant.departures]\ncubic_stiffness_N_per_m3 = 2e5"
+
+    def files(millimetres):
+        return [trial(test, f"trial{k}", k, k, peak=f"peak_mm = {millimetres}", more=hardening) for k in range(1, 7)]
+    raised = explored(*files(8))
+    test.assertIn("less", hint_of(raised, "nonlinear-distortion"))
+    test.goes("nonlinear-distortion", raised, explored(*files(0.8)))
 
 
 @advice_of("input-explains-residual")

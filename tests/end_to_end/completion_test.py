@@ -31,8 +31,9 @@ TYPED = {  # what has been typed → what is offered
     ("teleop", "--ex"): ["--excess"],
     ("teleop", "--sim"): ["--simulate"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
-    ("validate", ""): ["closed-loop", "coverage", "faults", "live-estimate", "misspecification", "one-dimensional",
-                       "participant", "passivity", "recovery", "reflex", "robot", "springs", "teleoperation",
+    ("validate", ""): ["closed-loop", "coverage", "faults", "frequency-response", "live-estimate", "misspecification",
+                       "one-dimensional", "participant", "passivity", "recovery", "reflex", "robot", "springs",
+                       "teleoperation",
                        "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],
     ("reproduce", "--wi"): ["--without-printed"],

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """mbk explore: what recordings say of a limb without M, B and K."""
 
+import math
 import statistics
 
 import mat_file
@@ -111,6 +112,105 @@ class TwoAxes(Case):
             self.assertIn(words, text)
 
 
+ARM = """
+[recording]
+seed = {seed}
+[robot]
+home_mm = [300, -50]
+coulomb_Nm = [0.114, 0.114]
+[control]
+kind = "{control}"
+[perturbation]
+kind = "multisine"
+{peak}
+period_s = 5
+odd_harmonics_to = {highest}
+odd_group = {group}
+phase_seed = {phases}
+axes = "{axes}"
+duration_s = 35.1
+[participant]
+kind = "linear"
+mass_kg = [[1.33, -0.9], [-0.9, 1.9]]
+damping_Ns_per_m = [[5.8, -2.1], [-2.1, 10.6]]
+stiffness_N_per_m = [[42, -20], [-36, 125]]
+{more}
+[participant.remnant]
+floor_N = {noise}
+[sensors.force]
+kind = "load_cell"
+white_noise_N = 0.02
+"""
+K = ((42, -20), (-36, 125))
+B = ((5.8, -2.1), (-2.1, 10.6))
+M = ((1.33, -0.9), (-0.9, 1.9))
+
+
+def stiffness(i, j, hertz):
+    """Dynamic stiffness of that arm."""
+    omega = 2 * math.pi * hertz
+    return K[i][j] + 1j * omega * B[i][j] - omega**2 * M[i][j]
+
+
+def trial(case, name, seed, phases, axes="independent", control="position", peak="peak_mm = 8", noise=0.05, more="",
+          highest=19, group=0):
+    """A simulated trial of a linear arm."""
+    text = ARM.format(seed=seed, phases=phases, axes=axes, control=control, peak=peak, noise=noise, more=more,
+                      highest=highest, group=group)
+    path = case.folder / f"{name}.h5"
+    case.mbk("simulate", case.file(f"{name}.toml", text), "--out", path, "--quiet", "--overwrite")
+    return path
+
+
+class Realisations(Case):
+    def pairs(self, count, **how):
+        return [trial(self, f"pair{k}{axes}", 10 * k + which, k, f"hadamard_{axes}", **how)
+                for k in range(1, count + 1) for which, axes in enumerate(("first", "second"))]
+
+    def explored(self, files, *options):
+        found = self.fine("explore", *files, "--json", *options).json
+        return found, found["frequency_response"]
+
+    def assert_covered(self, response, least):
+        inside = lines = 0
+        for one in response["responses"]:
+            i, j = "xy".index(one["output"][-1]), "xy".index(one["input"][-1])
+            for k, hertz in enumerate(response["frequency_hz"]):
+                value = complex(one["real"][k], one["imaginary"][k])
+                inside += abs(value - stiffness(i, j, hertz)) <= one["region95_radius"][k]
+                lines += 1
+        self.assertGreaterEqual(inside, least * lines, f"{inside} of {lines}")
+
+    def test_of_a_linear_arm_in_orthogonal_pairs_have_its_response_and_no_distortion(self):
+        for control, peak in (("position", "peak_mm = 8"), ("force", "peak_N = 5")):
+            with self.subTest(control):
+                found, response = self.explored(self.pairs(4, control=control, peak=peak))
+                periodic = response["periodic"]
+                self.assertEqual((response["method"], periodic["orthogonal"], periodic["realisations"]),
+                                 ("robust", True, 8))
+                self.assertEqual(response["frequency_hz"], [k / 5 for k in range(1, 20, 2)])
+                self.assert_covered(response, 0.8)  # 95 % of 40, of the handle's inertia too
+                self.assertLess(periodic["total_over_noise"]["ratio"], 2)
+                self.assertNotIn("nonlinear-distortion", [warning["code"] for warning in found["warnings"]])
+
+    def test_of_a_hardening_arm_show_its_distortion(self):
+        hardening = "[participant.departures]\ncubic_stiffness_N_per_m3 = 2e5"
+        found, response = self.explored(self.pairs(3, more=hardening))
+        self.assertGreater(response["periodic"]["total_over_noise"]["ratio"], 10)
+        self.assertIn("nonlinear-distortion", [warning["code"] for warning in found["warnings"]])
+        text = " ".join(self.fine("explore", *self.folder.glob("pair*.h5")).out.split())
+        self.assertIn("nonlinear distortion", text)
+
+
+class TwoTrials(Case):
+    def test_one_trial_of_two_axes_is_not_taken_apart_by_periods_and_the_text_says_why(self):
+        path = trial(self, "one", 1, 1)
+        text = " ".join(self.fine("explore", path).out.split())
+        self.assertIn("1 realisation of a periodic perturbation cannot tell 2 inputs apart", text)
+        self.refused(BAD_DATA, "explore", path, "--method", "robust", says="1 realisation")
+        self.refused(WRONG_USAGE, "explore", path, "--method", "robust", "--period", "0.0005", says="period")
+
+
 class Mistakes(Case):
     def test_are_refused_in_one_line(self):
         log = make_log().path
@@ -120,6 +220,8 @@ class Mistakes(Case):
                 self.refused(WRONG_USAGE, "explore", log, *options, says=says)
         self.refused(BAD_DATA, "explore", log, "--method", "welch", "--segment", "1000", says="segment")
         self.refused(BAD_DATA, "explore", self.folder / "none.mat", says="none.mat")
+        self.refused(WRONG_USAGE, "explore", log, "--input", "x", says="--output")
+        self.refused(BAD_DATA, "explore", log, "--input", "x", "--output", "nothing", says="nothing")
 
 
 if __name__ == "__main__":

@@ -90,7 +90,12 @@ MultisinePlan read_multisine(const Section& s, const Size& size) {
     if (harmonic != std::round(harmonic)) s.reject("harmonics", fmt::format("{:g} is no whole number", harmonic));
     plan.harmonics.push_back(static_cast<int>(harmonic));
   }
+  const int odd_to = s.integer("odd_harmonics_to", 0, 0, 1'000'000);
+  const int odd_group = s.integer("odd_group", 4, 0, 1000);
+  if (odd_to > 0) plan.odd_grid = MultisinePlan::OddGrid{odd_to, odd_group};
   plan.phases = s.choice("phases", plan.phases);
+  const auto phase_seed = s.integer<std::int64_t>("phase_seed", -1, -1, std::numeric_limits<std::int64_t>::max());
+  if (phase_seed >= 0) plan.phase_seed = static_cast<std::uint64_t>(phase_seed);
   plan.axes = s.choice("axes", plan.axes);
   plan.optimal_power = read_optimal_power(s);
   plan.duration = s.number("duration_s", plan.duration, above(0));

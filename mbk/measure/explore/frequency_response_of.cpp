@@ -59,4 +59,43 @@ Result<FrequencyResponseEstimate> frequency_response(std::span<const Exploration
   return found;
 }
 
+std::vector<Warning> warnings_of(const FrequencyResponseEstimate& found) {
+  std::vector<Warning> warnings;
+  for (Index i = 0; i < found.multiple_coherence.cols(); ++i) {
+    constexpr double kHalf = 0.5;
+    const Vector coherence = found.multiple_coherence.col(i);
+    const Index low = (coherence.array() < kHalf).count();
+    if (2 * low <= coherence.size()) continue;
+    warnings.push_back({WarningCode::low_coherence,
+                        fmt::format("at {} of {} frequencies less than half of {} follows the motion: noise, or a limb "
+                                    "that is not linear",
+                                    low, coherence.size(), found.outputs[static_cast<std::size_t>(i)].name),
+                        "perturb more strongly or average more trials; choose --max-frequency within what the "
+                        "perturbation excites"});
+    break;
+  }
+  if (!found.periodic) return warnings;
+  const PeriodicFacts& facts = *found.periodic;
+  constexpr double kFew = 3.0;
+  if (found.method == FrequencyResponseMethod::robust && found.degrees_of_freedom[0] < kFew) {
+    warnings.push_back(
+        {WarningCode::few_realisations,
+         fmt::format("{} realisations leave {:g} degree{} of freedom for the intervals, which are wide",
+                     facts.realisations, found.degrees_of_freedom[0], found.degrees_of_freedom[0] == 1.0 ? "" : "s"),
+         "name more trials whose perturbation has other phases"});
+  }
+  const bool by_realisations = facts.total_over_noise && facts.total_over_noise_p < 0.01;
+  const bool by_lines = (facts.even && facts.even->detected()) || (facts.odd_lines && facts.odd_lines->detected());
+  if (by_realisations || by_lines) {
+    warnings.push_back({WarningCode::nonlinear_distortion,
+                        by_realisations ? fmt::format("realisations differ by {:.3g} times the variance of noise: the "
+                                                      "limb is not linear at this size of perturbation",
+                                                      *facts.total_over_noise)
+                                        : "lines that the perturbation leaves empty hold more than noise: the limb is "
+                                          "not linear at this size of perturbation",
+                        "perturb less, and compare the responses"});
+  }
+  return warnings;
+}
+
 }  // namespace mbk::explore

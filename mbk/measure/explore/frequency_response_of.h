@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/measure/explore/local_polynomial.h"
@@ -9,6 +10,7 @@
 #include "mbk/measure/explore/welch_response.h"
 #include "mbk/model/trial/exploration_trial.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
+#include "mbk/model/trial/warning.h"
 
 namespace mbk::explore {
 
@@ -25,5 +27,9 @@ struct FrequencyResponseOptions {
 /// @fails  as the method; data: the method that was asked for needs other data.
 [[nodiscard]] Result<FrequencyResponseEstimate> frequency_response(std::span<const ExplorationTrial> trials,
                                                                    const FrequencyResponseOptions& options = {});
+
+/// What a user must know of a response: at most of its frequencies less than half of an output is explained; the
+/// intervals rest on fewer than three degrees of freedom of realisations; realisations or empty lines show distortion.
+[[nodiscard]] std::vector<Warning> warnings_of(const FrequencyResponseEstimate& found);
 
 }  // namespace mbk::explore

@@ -224,7 +224,7 @@ Matrix greatest_power(const std::vector<Averages>& averages, const Sizes& sizes)
 
 /// Lines that a commanded signal holds: it is exact, so that the others are empty but for rounding.
 void add_commanded(const Vector& power, std::vector<bool>& excited) {
-  constexpr double kLeast = 1e-6;  // of the greatest power
+  constexpr double kLeast = 1e-3;  // of the greatest power: bent axes make lines of 1 % of the amplitude of theirs
   for (Index k = 0; k < power.size(); ++k) {
     if (power[k] > kLeast * power.maxCoeff()) excited[static_cast<std::size_t>(k)] = true;
   }

@@ -139,6 +139,7 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   found.motion = trials.front().motion;
   auto response = explore::frequency_response(trials, options.frequency_response);
   if (!response) return tl::unexpected(response.error());
+  for (Warning& warning : explore::warnings_of(*response)) found.warnings.push_back(std::move(warning));
   found.frequency_response = std::move(*response);
   add_responses_in_time(trials, options, found);
   return found;

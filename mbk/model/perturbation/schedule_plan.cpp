@@ -1,8 +1,10 @@
 #include "mbk/model/perturbation/schedule_plan.h"
 
 #include <cmath>
+#include <utility>
 
 #include "mbk/model/perturbation/axis_pair.h"
+#include "mbk/model/perturbation/odd_grid.h"
 #include "mbk/model/perturbation/optimal_power.h"
 #include "mbk/model/perturbation/phases.h"
 
@@ -11,6 +13,9 @@ namespace {
 
 /// Streams of the seed for the phases of the two axes.
 constexpr std::uint32_t kPhases = 10;
+
+/// Seed of the lines that an odd grid leaves out: realisations are compared line by line.
+constexpr std::uint64_t kGrid = 1;
 
 /// Amplitudes up to a common factor.
 Result<std::vector<double>> relative_amplitudes(const MultisinePlan& plan) {
@@ -52,7 +57,14 @@ Result<AxisPair> both_axes(const MultisinePlan& plan, std::uint64_t seed) {
   return AxisPair{*first, *second};
 }
 
-Result<Schedule> schedule_of(const MultisinePlan& plan, std::uint64_t seed) {
+Result<Schedule> schedule_of(const MultisinePlan& given, std::uint64_t schedule_seed) {
+  MultisinePlan plan = given;
+  if (plan.odd_grid) {
+    auto lines = odd_grid(plan.odd_grid->highest, plan.odd_grid->group, kGrid);
+    if (!lines) return tl::unexpected(lines.error());
+    plan.harmonics = std::move(*lines);
+  }
+  const std::uint64_t seed = plan.phase_seed.value_or(schedule_seed);
   auto pair = both_axes(plan, seed);
   if (!pair) return tl::unexpected(pair.error());
   const auto first = with_phases(plan, pair->first, seed), second = with_phases(plan, pair->second, seed + 1);

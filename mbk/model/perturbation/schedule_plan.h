@@ -20,12 +20,21 @@ struct MultisinePlan {
   /// Lines and phases of each axis its own, lines in turn to one and the other, or the first or second of a pair of
   /// experiments that differ in the second axis's sign (axis_pair.h).
   enum class Axes { independent, interleaved, hadamard_first, hadamard_second };
+  /// Odd lines alone, one of each group left out (odd_grid.h), the same for all seeds.
+  struct OddGrid {
+    int highest = 59;
+    int group = 4;
+  };
   Quantity quantity = Quantity::position;
   Space space = Space::joint;
   double peak = 0.034906585039886591;  ///< of each axis: ±2° by default [rad, m, N or N·m]
   double period = 10.0;                ///< [s]
   std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
+  std::optional<OddGrid> odd_grid;  ///< in place of `harmonics`
   Phases phases = Phases::random;
+  /// Of the phases; absent: the schedule's seed. Trials with another one are other realisations; a pair of orthogonal
+  /// experiments has the same.
+  std::optional<std::uint64_t> phase_seed;
   std::optional<OptimalPowerOptions> optimal_power;  ///< absent: the same at every line
   Axes axes = Axes::independent;
   double duration = 62.1;  ///< [s]

@@ -38,9 +38,9 @@ struct Distortion {
   double output_amplitude = 0;  ///< what they are relative to: |Y| of the transform over its length [output's unit]
   double p = 1;                 ///< probability of so much where the noise of the output is all there is (F test)
   double residual_p = 1;        ///< the same by `residual_noise`
-  /// Stands out of the noise of the output.
-  [[nodiscard]] bool detected() const { return p < 0.01; }
-  /// Significant beside the noise that the input does not explain, but below that of the output: a trace.
+  /// Stands out of both noises: in a loop that yields, subtracting what the input carries adds the noise of the input.
+  [[nodiscard]] bool detected() const { return p < 0.01 && residual_p < 0.01; }
+  /// Significant beside the noise that the input does not explain, but not above that of the output.
   [[nodiscard]] bool trace() const { return !detected() && residual_p < 0.01; }
 };
 

@@ -48,6 +48,9 @@ enum class WarningCode {
   other_column,
   handle_mass_too_large,
   consistent_fit_poor,
+  low_coherence,
+  few_realisations,
+  nonlinear_distortion,
 };
 
 /// Stable: scripts may test for these words.
@@ -93,6 +96,9 @@ enum class WarningCode {
       {other_column, "other-column"},
       {handle_mass_too_large, "handle-mass-too-large"},
       {consistent_fit_poor, "consistent-fit-poor"},
+      {low_coherence, "low-coherence"},
+      {few_realisations, "few-realisations"},
+      {nonlinear_distortion, "nonlinear-distortion"},
   });
 }
 

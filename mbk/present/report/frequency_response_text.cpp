@@ -113,9 +113,11 @@ std::string frequency_response_text(const FrequencyResponseEstimate& found) {
     for (std::size_t i = 0; i < found.outputs.size(); ++i) {
       const auto entry = static_cast<Index>(j * found.outputs.size() + i);
       text += fmt::format("\n  {} → {}\n", found.inputs[j].name, found.outputs[i].name);
+      const bool of_limb = found.outputs[i].name.starts_with("−force") || found.outputs[i].name == "−reaction";
       const bool partial = found.inputs.size() > 1 && found.partial_coherence.size() > 0;
       std::vector<std::vector<std::string>> rows = {
-          {"Hz", fmt::format("|D|{}", unit_of(found.outputs[i], found.inputs[j])), "95 %", "phase [°]"}};
+          {"Hz", fmt::format("{}{}", of_limb ? "|D|" : "|G|", unit_of(found.outputs[i], found.inputs[j])), "95 %",
+           "phase [°]"}};
       if (found.multiple_coherence.size() > 0) rows.back().emplace_back("γ²");
       if (partial) rows.back().emplace_back("partial");
       for (const Index k : shown_lines(found.frequency, 16)) {
@@ -130,6 +132,12 @@ std::string frequency_response_text(const FrequencyResponseEstimate& found) {
         if (partial) rows.back().push_back(fmt::format("{:.4f}", found.partial_coherence(k, entry)));
       }
       text += table(rows);
+      const Index unknown = (found.magnitude_low.col(entry).array() <= 0.0).count();
+      if (unknown > 0) {
+        text += paragraph("  ", fmt::format("({} of {} frequencies have an interval that reaches 0: the response there "
+                                            "is not known)",
+                                            unknown, found.size()));
+      }
     }
   }
   return text;

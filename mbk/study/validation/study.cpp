@@ -24,6 +24,8 @@ constexpr std::array kOfTransferFunction = {JudgedShare{kNominalOrMore, 95.0}, J
                                             JudgedShare{kHardlyEver, 1.0}};
 constexpr std::array kOfReflex = {JudgedShare{kNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0},
                                   JudgedShare{kHardlyEver, 1.0}};
+constexpr std::array kOfFrequencyResponse = {JudgedShare{kHardlyEver, 1.0}, JudgedShare{kNearlyAlways, 100.0},
+                                             JudgedShare{kNominal, 95.0, 5.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
 constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfFaultsAtAll = {JudgedShare{kNearNominal, 100.0}, JudgedShare{kHardlyEver, 0.0, 10.0}};
@@ -50,6 +52,8 @@ std::span<const Study> studies() {
             virtual_sensor_study},
       Study{"transfer-function", "a transfer function of four poles under noise, and its order", kOfTransferFunction, 2,
             transfer_function_study},
+      Study{"frequency-response", "frequency responses without a model, and noise told from distortion",
+            kOfFrequencyResponse, 2, frequency_response_study},
       Study{"one-dimensional", "no linear model holds for a rigid arm along one axis", {}, 4, one_dimensional_study},
       Study{"reflex", "impulse response, intrinsic and reflex force of limbs that have them or not", kOfReflex, 2,
             reflex_study},

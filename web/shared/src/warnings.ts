@@ -33,6 +33,18 @@ export const plainWarnings: PlainWarnings = {
     title: "No robot that can exist explains the torques as well",
     meaning: "A torque was probably recorded with the opposite sign or in another unit, or part of the robot is missing from its description.",
   },
+  "low-coherence": {
+    title: "Little of the force follows the motion",
+    meaning: "At these frequencies the response is mostly noise, or the limb is not linear.",
+  },
+  "few-realisations": {
+    title: "Few realisations of the perturbation",
+    meaning: "How sure the response is, is itself not well known: the intervals are wide.",
+  },
+  "nonlinear-distortion": {
+    title: "The limb is not linear",
+    meaning: "The response holds for a perturbation of this size and kind only.",
+  },
   "handle-mass-too-large": {
     title: "More handle mass was subtracted than was measured",
     meaning: "The inertia that is left is not that of a limb.",
