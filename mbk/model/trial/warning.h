@@ -48,6 +48,8 @@ enum class WarningCode {
   other_column,
   handle_mass_too_large,
   consistent_fit_poor,
+  elastic_drive,
+  backlash,
 };
 
 /// Stable: scripts may test for these words.
@@ -93,6 +95,8 @@ enum class WarningCode {
       {other_column, "other-column"},
       {handle_mass_too_large, "handle-mass-too-large"},
       {consistent_fit_poor, "consistent-fit-poor"},
+      {elastic_drive, "elastic-drive"},
+      {backlash, "backlash"},
   });
 }
 

@@ -33,6 +33,14 @@ export const plainWarnings: PlainWarnings = {
     title: "No robot that can exist explains the torques as well",
     meaning: "A torque was probably recorded with the opposite sign or in another unit, or part of the robot is missing from its description.",
   },
+  "elastic-drive": {
+    title: "The drive of a joint bends",
+    meaning: "Motor and link of the robot turn against each other as on a spring. Its inertia and friction are biased by that.",
+  },
+  "backlash": {
+    title: "The drive of a joint has play",
+    meaning: "Wherever the torque of the joint turns round, the motor moves for a moment without the link. Inertia and friction of the robot are biased by that.",
+  },
   "handle-mass-too-large": {
     title: "More handle mass was subtracted than was measured",
     meaning: "The inertia that is left is not that of a limb.",
