@@ -54,6 +54,7 @@ BENCHMARKS = [
     Benchmark("stages", "stages.cpp", "bench_stages", short=("--benchmark_min_time=0.02",)),
     Benchmark("simulation", "simulation.py", full=("--runs", "9", *BIN), short=("--runs", "2", *BIN)),
     Benchmark("transfer_function", "transfer_function.py", full=("--turns", "21", *BIN), short=("--turns", "3", *BIN)),
+    Benchmark("prediction_error", "prediction_error.py", full=("--turns", "5", *BIN), short=("--turns", "1", *BIN)),
     Benchmark("robot_dynamics", "robot_dynamics.cpp", "bench_robot_dynamics", short=("--benchmark_min_time=0.02",)),
     Benchmark("session", "session.cpp", "bench_session", short=("--seconds", "5", "--minutes", "1")),
     Benchmark("floods", "floods.py", full=("--mbk", "{bin}/mbk"), short=("--mbk", "{bin}/mbk", "--stops", "1")),

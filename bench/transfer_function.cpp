@@ -1,5 +1,8 @@
-// SRIVC from arrays in memory, one start, one thread, for bench/transfer_function.py to compare.
-//   bench_transfer_function SIGNALS STEP TURNS   SIGNALS: doubles, all of the input, then all of the output
+// Transfer functions from arrays in memory, one thread, for bench/transfer_function.py and bench/prediction_error.py to
+// compare.
+//   bench_transfer_function SIGNALS STEP TURNS                        SRIVC, 4 poles, 1 zero, one start
+//   bench_transfer_function SIGNALS STEP TURNS oe|bj POLES ZEROS      all that `mbk tf` does for such a model
+// SIGNALS: doubles, all of the input, then all of the output
 #include <fmt/format.h>
 #include <time.h>
 
@@ -7,8 +10,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
+#include "mbk/measure/identify/prediction_error.h"
 #include "mbk/measure/identify/srivc.h"
 
 namespace {
@@ -20,10 +25,32 @@ double cpu_ms() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
+/// ms, R_T², the variance of the innovations, the orders of C and D, f and b of each turn.
+int time_prediction_error(const std::vector<mbk::SignalPair>& pairs, char** argv) {
+  mbk::identify::PredictionErrorOptions options;
+  options.noise_model = std::string_view(argv[4]) == "bj";
+  options.poles = std::atoi(argv[5]);
+  options.zeros = std::atoi(argv[6]);
+  options.threads = 1;
+  for (int turn = 0; turn < std::atoi(argv[3]); ++turn) {
+    const double begin = cpu_ms();
+    const auto fit = mbk::identify::fit_prediction_error(pairs, options);
+    const double taken = cpu_ms() - begin;
+    if (!fit || !fit->converged) return 4;
+    fmt::print("{} {:.17g} {:.17g} {} {}", taken, fit->fit, fit->variance, fit->noise_denominator.size() - 1,
+               fit->noise_numerator.size() - 1);
+    for (const mbk::Vector* part : {&fit->f, &fit->b}) {
+      for (const double value : *part) fmt::print(" {:.17g}", value);
+    }
+    fmt::print("\n");
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) return 2;
+  if (argc != 4 && argc != 7) return 2;
   std::ifstream file(argv[1], std::ios::binary | std::ios::ate);
   const auto count = static_cast<mbk::Index>(static_cast<std::size_t>(file.tellg()) / (2 * sizeof(double)));
   std::vector<mbk::SignalPair> pairs(1);
@@ -37,6 +64,7 @@ int main(int argc, char** argv) {
   if (!file) return 3;
   pair.step = std::atof(argv[2]);
   pair.time = mbk::Vector::LinSpaced(count, 0.0, static_cast<double>(count - 1)) * *pair.step;
+  if (argc == 7) return time_prediction_error(pairs, argv);
   mbk::identify::ContinuousFitOptions options;
   options.poles = 4;
   options.zeros = 1;

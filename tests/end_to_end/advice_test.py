@@ -340,6 +340,36 @@ def _(test):  # look for friction, and remove it
                                           "viscous,coulomb,stribeck,offset", "--stribeck-velocity", "auto"))
 
 
+def on_a_drive(test, drive, slower=1, peak_deg=20):
+    """The robot by itself, on a drive with these keys; its sines so many times slower."""
+    period = 10 * slower
+    path = test.simulated("free_motion", (r"^\[control\]$", f"[robot.capstan]\n{drive}\n\n[control]"),
+                          (r"^steps_per_tick.*$|^home_mm", "steps_per_tick = 4\nhome_mm"),
+                          (r"^period_s = 10", f"period_s = {period}"))
+    return run("robot", "identify", "--json", "--quiet", path)
+
+
+def advised_slowness(hint, top_hz):
+    """By how much slower than `top_hz` the advice wants the motion to be."""
+    return math.ceil(top_hz / float(re.search(r"below ([\d.]+) Hz", hint)[1]))
+
+
+@advice_of("elastic-drive")
+def _(test):  # move more slowly, or stiffen the drive
+    raised = on_a_drive(test, "stiffness_Nm_per_rad = [400, 400]")
+    slower = advised_slowness(hint_of(raised, "elastic-drive"), 1.9)
+    test.goes("elastic-drive", raised, on_a_drive(test, "stiffness_Nm_per_rad = [400, 400]", slower))
+    test.goes("elastic-drive", raised, on_a_drive(test, "stiffness_Nm_per_rad = [40000, 40000]"))
+
+
+@advice_of("backlash")
+def _(test):  # take the play out of the drive, or move more slowly
+    stiff = "stiffness_Nm_per_rad = [20000, 20000]\n"
+    raised = on_a_drive(test, stiff + "backlash_deg = [0.2, 0.2]")
+    test.assertIn("take the play out", hint_of(raised, "backlash"))
+    test.goes("backlash", raised, on_a_drive(test, stiff))
+
+
 @advice_of("stiffness-changes")
 def _(test):
     path = departing(test, "[[participant.stiffness_at]]\ntime_s = 30\nfactor = 1\n\n"

@@ -13,6 +13,7 @@
 
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/inspect.h"
+#include "mbk/measure/identify/transmission_checks.h"
 #include "mbk/measure/preprocess/resample.h"
 
 namespace mbk::measurement {
@@ -132,11 +133,20 @@ double middle(Vector values) {
   return values[values.size() / 2];
 }
 
+/// Share of the squares of a joint's residual that its drive explains, where the user is told so.
+double explained_by_drive(const RobotIdentification& found, std::size_t joint) {
+  if (joint >= found.transmission.size()) return 0.0;
+  const TransmissionTest& test = found.transmission[joint];
+  return std::max(test.elastic.found ? test.elastic.explained : 0.0,
+                  test.backlash.found ? test.backlash.explained : 0.0);
+}
+
 /// Fits once more with a Stribeck term of a few velocities, at the delay that was found, and says so where friction
 /// grows again near standstill: where f_Δ is above 0 beyond chance, a fifth of the Coulomb friction beside it, and
 /// matters: the residual falls by a fifth, or Coulomb or viscous friction changes by more than its interval.
 void check_friction(std::span<const Recording> recordings, std::span<const Recording> held_out,
-                    const RobotOptions& options, RobotIdentification& found) {
+                    const std::vector<PreparedDynamics>& trials, const RobotOptions& options,
+                    RobotIdentification& found) {
   constexpr double kBeyondChance = 4.5;  // standard errors
   constexpr double kShare = 0.2;         // of the Coulomb friction
   constexpr double kRest = 0.8;          // of the residual
@@ -149,7 +159,7 @@ void check_friction(std::span<const Recording> recordings, std::span<const Recor
   model.drive.stribeck = true;
   const auto joints = static_cast<std::size_t>(model.mechanism->joints());
   struct Growth {
-    double errors = 0, share = 0, velocity = 0;
+    double errors = 0, share = 0, velocity = 0, explained = 0;
   };
   std::vector<Growth> most(joints);
   // What is fixed keeps its value among more coefficients.
@@ -164,9 +174,7 @@ void check_friction(std::span<const Recording> recordings, std::span<const Recor
     const bool fixed = std::ranges::find(options.fit.fixed, at) != options.fit.fixed.end();
     if (fixed) once.fit.fixed.push_back(static_cast<Index>(k));
   }
-  const auto both = prepare_both(recordings, held_out, found.model, once.preprocess);
-  if (!both) return;
-  const Vector speed = speeds(both->trials, before);
+  const Vector speed = speeds(trials, before);
   for (const double factor : kVelocities) {
     model.drive.stribeck_velocity = std::max(factor * middle(speed), 1.5 * model.drive.smoothing);
     if (!(model.drive.stribeck_velocity > 0.0)) continue;
@@ -187,13 +195,20 @@ void check_friction(std::span<const Recording> recordings, std::span<const Recor
       };
       const double errors = growth->value / growth->standard_error;
       const double share = growth->value / std::max(std::abs(dry->value), 1e-300);
-      const bool explains = with.fit[joint].rmse_in_sample < kRest * found_free[joint].rmse_in_sample;
+      const double rest = with.fit[joint].rmse_in_sample / std::max(found_free[joint].rmse_in_sample, 1e-300);
+      const bool explains = rest < kRest;
+      const double explained = 1.0 - rest * rest;
+      if (errors > kBeyondChance) most[joint].explained = std::max(most[joint].explained, explained);
+      if (explained < explained_by_drive(found, joint)) continue;  // what it looks like is something else
       if (!(errors > kBeyondChance && share > kShare)) continue;
       if (!explains && !moved("coulomb") && !moved("viscous")) continue;
-      if (errors > most[joint].errors) most[joint] = {errors, share, model.drive.stribeck_velocity};
+      if (errors > most[joint].errors)
+        most[joint] = {errors, share, model.drive.stribeck_velocity, most[joint].explained};
     }
   }
   for (std::size_t joint = 0; joint < joints; ++joint) {
+    TransmissionColumn& gap = found.transmission[joint].backlash;
+    if (most[joint].explained > gap.explained) gap.found = false;  // its pulses are those of friction
     if (!(most[joint].errors > 0.0)) continue;
     found.warnings.push_back(
         {WarningCode::dry_friction,
@@ -203,6 +218,19 @@ void check_friction(std::span<const Recording> recordings, std::span<const Recor
                      model.mechanism->slides(static_cast<int>(joint)) ? "m/s" : "rad/s"),
          "add --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto"});
   }
+}
+
+/// What the residual says of friction and of the drives, at the delay that was found.
+void check_drives(std::span<const Recording> recordings, std::span<const Recording> held_out,
+                  const RobotOptions& options, RobotIdentification& found) {
+  const auto both = prepare_both(recordings, held_out, found.model, options.preprocess);
+  if (!both) return;
+  identify::test_transmission(both->trials, found);
+  const robot::DriveTerms& drive = found.model.drive;
+  if (drive.coulomb && drive.viscous && !drive.stribeck) {
+    check_friction(recordings, held_out, both->trials, options, found);
+  }
+  identify::warn_of_transmission(found);
 }
 
 double unexplained(const RobotIdentification& found) {
@@ -227,8 +255,7 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
   }
   if (!options.stribeck_velocity || !model.drive.stribeck) {
     auto found = fit_delay(recordings, held_out, model, all);
-    if (found && model.drive.coulomb && model.drive.viscous && !model.drive.stribeck)
-      check_friction(recordings, held_out, all, *found);
+    if (found) check_drives(recordings, held_out, all, *found);
     return found;
   }
 
@@ -263,6 +290,7 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
   constexpr int kBits = 8;  // of the logarithm's range: 2 % of the velocity
   boost::math::tools::brent_find_minima(left, std::max(low, nearest - step), std::min(high, nearest + step), kBits);
   if (failure) return tl::unexpected(*failure);
+  if (best) check_drives(recordings, held_out, all, *best);
   return best;
 }
 

@@ -32,5 +32,13 @@ TEST(Capstan, ATwistThatGoesRoundLosesWhatTheDampersTake) {
   EXPECT_NEAR(work, kLost, 1e-12 * kLost);
 }
 
+TEST(Capstan, TransmitsNothingInsideItsGapAndNeverPullsBack) {
+  const Capstan capstan{.stiffness = {400.0, 400.0}, .damping = {0.2, 0.2}, .backlash = {0.01, 0.01}};
+  EXPECT_EQ(capstan.torque({0.004, -0.005}, {3.0, -3.0}), Vector2d::Zero());
+  EXPECT_TRUE(capstan.torque({0.006, -0.007}, {1.0, 0.0}).isApprox(Vector2d(0.4 + 0.2, -0.8), 1e-12));
+  EXPECT_EQ(capstan.torque({0.006, -0.006}, {-3.0, 3.0}), Vector2d::Zero());  // parting faster than the spring follows
+  EXPECT_TRUE(capstan.bend({0.006, -0.004}).isApprox(Vector2d(0.001, 0.0), 1e-12));
+}
+
 }  // namespace
 }  // namespace mbk::robot

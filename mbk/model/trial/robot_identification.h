@@ -47,6 +47,26 @@ struct InertiaCheck {
   double mass_at_hand = kNaN;  ///< the least that the hand feels over the postures [kg]; NaN where all are singular
 };
 
+/// A column that a rigid drive does not have.
+struct TransmissionColumn {
+  double coefficient = 0;
+  double errors = 0;         ///< standard errors from 0, with the coefficient's sign
+  double errors_beside = 0;  ///< the same beside the other column
+  double explained = 0;      ///< share of the squares of the joint's residual
+  double of_torque = 0;      ///< root mean square of what it adds, over that of the joint's torque
+  bool biases = false;       ///< left out, it moves a coefficient of the robot by more than its interval
+  bool found = false;        ///< it is there beyond chance, matters, and the user is warned
+};
+
+/// What the residual of one joint says of the drive between motor and link.
+struct TransmissionTest {
+  TransmissionColumn elastic;     ///< [s²]
+  TransmissionColumn backlash;    ///< [N·m·s², or N·s² where the joint slides]
+  double elastic_by_torque = 0;   ///< `errors` of the elastic column that is made of the torque instead of the motion
+  double backlash_by_torque = 0;  ///< the same of the pulses
+  int reversals = 0;              ///< of the torque that is transmitted
+};
+
 /// The dynamics of a robot, how sure they are and how well they hold.
 struct RobotIdentification {
   robot::DynamicModel model;  ///< with covariance and delay
@@ -64,7 +84,8 @@ struct RobotIdentification {
   double condition = 0;                                 ///< of the regressors kept, each scaled to unit length
   std::vector<std::pair<std::string, double>> weakest;  ///< what is hardest to identify: coefficients with their shares
   InertiaCheck inertia;
-  std::optional<ConsistentRobot> consistent;  ///< where a robot that can exist was asked for: `model` is then that one
+  std::optional<ConsistentRobot> consistent;   ///< where a robot that can exist was asked for: `model` is then that one
+  std::vector<TransmissionTest> transmission;  ///< of each joint; empty where it was not tested
   double hac_lag_s = 0;
   Index samples = 0;
   std::string description, urdf;  ///< the files that say what robot it is, as they were; empty for the thesis's

@@ -51,6 +51,8 @@ enum class WarningCode {
   low_coherence,
   few_realisations,
   nonlinear_distortion,
+  elastic_drive,
+  backlash,
 };
 
 /// Stable: scripts may test for these words.
@@ -99,6 +101,8 @@ enum class WarningCode {
       {low_coherence, "low-coherence"},
       {few_realisations, "few-realisations"},
       {nonlinear_distortion, "nonlinear-distortion"},
+      {elastic_drive, "elastic-drive"},
+      {backlash, "backlash"},
   });
 }
 

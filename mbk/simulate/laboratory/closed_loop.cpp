@@ -55,6 +55,7 @@ Result<void> check(const typename ClosedLoop<Axes>::Options& options) {
     for (int joint = 0; joint < Axes; ++joint) {
       positive.push_back({"capstan stiffness", options.capstan->stiffness[joint], "N·m/rad"});
       at_least_zero.push_back({"capstan damping", options.capstan->damping[joint], "N·m·s/rad"});
+      at_least_zero.push_back({"capstan backlash", options.capstan->backlash[joint], "rad"});
       positive.push_back({"motor inertia", motors[joint], "kg·m²"});
     }
   }
@@ -120,7 +121,8 @@ auto ClosedLoop<Axes>::derivative(const State& state, TrueState<Axes>* seen) con
     motor_acceleration = (drive - cable).cwiseQuotient(options_.capstan->motor_inertia);
     I.diagonal() -= options_.capstan->motor_inertia;
     drive = cable;
-    cable_loss = twist_rate.dot(options_.capstan->damping.cwiseProduct(twist_rate));
+    const Values elastic = options_.capstan->stiffness.cwiseProduct(options_.capstan->bend(twist));
+    cable_loss = twist_rate.dot(cable - elastic);
   }
 
   const participant::LoadDynamics<Axes> load = load_->dynamics(hand);
@@ -155,9 +157,9 @@ auto ClosedLoop<Axes>::derivative(const State& state, TrueState<Axes>* seen) con
     seen->kinetic_energy = 0.5 * rate.dot(I * rate);
     seen->elastic_energy = 0.0;
     if (options_.capstan) {
-      const Values twist = seen->motor_angle - theta;
+      const Values bent = options_.capstan->bend(seen->motor_angle - theta);
       seen->kinetic_energy += 0.5 * motor_rate.dot(options_.capstan->motor_inertia.cwiseProduct(motor_rate));
-      seen->elastic_energy = 0.5 * twist.dot(options_.capstan->stiffness.cwiseProduct(twist));
+      seen->elastic_energy = 0.5 * bent.dot(options_.capstan->stiffness.cwiseProduct(bent));
     }
     const auto energy = state.template segment<5>(kEnergy);
     seen->energy = {energy[0], energy[1], energy[2], energy[3], energy[4]};

@@ -74,6 +74,10 @@ TEST(ClosedLoop, EnergyBalancesWithDryFrictionAndWithElasticCables) {
   ClosedLoop<2>::Options elastic;
   elastic.capstan.emplace();
   EXPECT_LT(identity_error(run(elastic, 20.0).last), 1e-6);
+  // Contacts that open and close within a step cost the integrator its order.
+  elastic.capstan->backlash.setConstant(0.005);
+  elastic.steps_per_tick = 8;
+  EXPECT_LT(identity_error(run(elastic, 20.0).last), 1e-4);
 }
 
 TEST(ClosedLoop, HalvingTheStepLeavesThePathOfTheSmoothPlant) {

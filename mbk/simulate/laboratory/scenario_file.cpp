@@ -41,6 +41,7 @@ ClosedLoop<2>::Options read_robot(const Section& s) {
     capstan.stiffness = c.vector2("stiffness_Nm_per_rad", capstan.stiffness, above(0));
     capstan.damping = c.vector2("damping_Nms_per_rad", capstan.damping, at_least(0));
     capstan.motor_inertia = c.vector2("motor_inertia_kg_m2", capstan.motor_inertia, above(0));
+    capstan.backlash = c.vector2("backlash_deg", capstan.backlash, at_least(0));
     options.capstan = capstan;
   }
   return options;

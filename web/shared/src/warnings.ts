@@ -44,6 +44,13 @@ export const plainWarnings: PlainWarnings = {
   "nonlinear-distortion": {
     title: "The limb is not linear",
     meaning: "The response holds for a perturbation of this size and kind only.",
+  "elastic-drive": {
+    title: "The drive of a joint bends",
+    meaning: "Motor and link of the robot turn against each other as on a spring. Its inertia and friction are biased by that.",
+  },
+  "backlash": {
+    title: "The drive of a joint has play",
+    meaning: "Wherever the torque of the joint turns round, the motor moves for a moment without the link. Inertia and friction of the robot are biased by that.",
   },
   "handle-mass-too-large": {
     title: "More handle mass was subtracted than was measured",
