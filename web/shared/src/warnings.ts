@@ -44,6 +44,7 @@ export const plainWarnings: PlainWarnings = {
   "nonlinear-distortion": {
     title: "The limb is not linear",
     meaning: "The response holds for a perturbation of this size and kind only.",
+  },
   "elastic-drive": {
     title: "The drive of a joint bends",
     meaning: "Motor and link of the robot turn against each other as on a spring. Its inertia and friction are biased by that.",
