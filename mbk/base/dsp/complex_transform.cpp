@@ -32,9 +32,15 @@ std::vector<std::complex<double>> circle(Index n) {
 template <class V>
 struct Value {
   V re, im;
-  [[gnu::always_inline]] friend inline Value operator+(const Value& a, const Value& b) { return {a.re + b.re, a.im + b.im}; }
-  [[gnu::always_inline]] friend inline Value operator-(const Value& a, const Value& b) { return {a.re - b.re, a.im - b.im}; }
-  [[gnu::always_inline]] friend inline Value operator*(double gain, const Value& a) { return {gain * a.re, gain * a.im}; }
+  [[gnu::always_inline]] friend inline Value operator+(const Value& a, const Value& b) {
+    return {a.re + b.re, a.im + b.im};
+  }
+  [[gnu::always_inline]] friend inline Value operator-(const Value& a, const Value& b) {
+    return {a.re - b.re, a.im - b.im};
+  }
+  [[gnu::always_inline]] friend inline Value operator*(double gain, const Value& a) {
+    return {gain * a.re, gain * a.im};
+  }
 };
 
 /// a − j b and a + j b

@@ -6,10 +6,10 @@
 
 namespace mbk::dsp {
 
-/// Discrete Fourier transforms of complex signals of one length, X_k = Σ_i x_i e^(−2πj i k/n), k = 0 … n − 1: Stockham's
-/// form of the fast Fourier transform (Cochran et al. 1967), whose results come in order, with factors 4, 5, 3 and 2; any other prime factor p costs O(n p).
-/// Two real signals of like size are transformed for the price of one as real and imaginary part: with Z = A + j B,
-/// A_k = (Z_k + Z*_{n−k})/2 and B_k = (Z_k − Z*_{n−k})/(2j).
+/// Discrete Fourier transforms of complex signals of one length, X_k = Σ_i x_i e^(−2πj i k/n), k = 0 … n − 1:
+/// Stockham's form of the fast Fourier transform (Cochran et al. 1967), whose results come in order, with factors 4, 5,
+/// 3 and 2; any other prime factor p costs O(n p). Two real signals of like size are transformed for the price of one
+/// as real and imaginary part: with Z = A + j B, A_k = (Z_k + Z*_{n−k})/2 and B_k = (Z_k − Z*_{n−k})/(2j).
 class ComplexTransform {
  public:
   /// @param length  ≥ 1; `fast_length_above` and `fast_length_below` name those of factors 2, 3 and 5 alone
@@ -27,7 +27,7 @@ class ComplexTransform {
   struct Stage {
     Index radix;
     Index groups, stride;  // of the `radix`·groups·stride = n values
-    Index turns;           // where e^(−2πj q k/(radix·groups)) begins: k = 1 … radix − 1, q = 0 … groups − 1
+    Index turns;  // where e^(−2πj q k/(radix·groups)) begins: k = 1 … radix − 1, q = 0 … groups − 1
   };
   std::vector<Stage> stages_;
   std::vector<double> turns_real_, turns_imaginary_;

@@ -46,8 +46,8 @@ constexpr double kRounding = 2e-15;  // of the largest sum, for each of log n pa
 
 // Each factor alone and each with each other, odd and even strides, and primes that have no loop of their own.
 TEST(ComplexTransform, IsTheSumOfItsDefinitionAtAnyLength) {
-  for (const Index n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 20, 25, 27, 30, 45, 49, 64, 77, 100, 120, 135, 375,
-                        500, 512, 625, 720, 729, 997, 1000, 1024, 1430}) {
+  for (const Index n : {1,  2,  3,  4,  5,   6,   7,   8,   9,   10,  12,  15,  16,  20,  25,   27,   30,
+                        45, 49, 64, 77, 100, 120, 135, 375, 500, 512, 625, 720, 729, 997, 1000, 1024, 1430}) {
     const Eigen::VectorXcd signal = noise(n);
     const double largest = static_cast<double>(n) * signal.cwiseAbs().maxCoeff();
     EXPECT_LT((transformed(signal) - plain(signal)).cwiseAbs().maxCoeff(), kRounding * largest) << n;

@@ -130,7 +130,8 @@ Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz samp
     overlaps += std::max<Index>(count - 1, 0);
   }
   spectra.density = sums.of_lines();
-  const double scale = 1.0 / (sample_rate.value * hann_window(segment).squaredNorm() * static_cast<double>(spectra.segments));
+  const double scale =
+      1.0 / (sample_rate.value * hann_window(segment).squaredNorm() * static_cast<double>(spectra.segments));
   for (Index line = 0; line < lines; ++line) {
     spectra.density[static_cast<std::size_t>(line)] *= line == 0 || line == lines - 1 ? scale : 2.0 * scale;
   }

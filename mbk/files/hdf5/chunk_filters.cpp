@@ -36,8 +36,8 @@ struct Interleaved {
         high(__builtin_shuffle(a, b, Bytes16{8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31})) {}
 };
 
-/// Shuffled, the first bytes of all elements stand first, then all the second bytes. Of elements of eight bytes, sixteen
-/// at a time: planes that are four apart are interleaved, then those two apart, then neighbours.
+/// Shuffled, the first bytes of all elements stand first, then all the second bytes. Of elements of eight bytes,
+/// sixteen at a time: planes that are four apart are interleaved, then those two apart, then neighbours.
 /// @returns how many elements are done, a multiple of sixteen
 std::size_t unshuffle_doubles(const std::byte* from, std::size_t count, std::byte* to) {
   std::size_t i = 0;

@@ -40,7 +40,8 @@ std::pair<double, double> beside(const dsp::Spectrum& spectrum, Index line) {
   return sides;
 }
 
-/// Whether the reference, whose strongest line is given, has one near there: a line that stands above what is beside it on either side.
+/// Whether the reference, whose strongest line is given, has one near there: a line that stands above what is beside it
+/// on either side.
 bool has_line(const dsp::Spectrum& reference, double strongest, Index at) {
   const double low = reference.frequency[at] - kReach, high = reference.frequency[at] + kReach;
   const Vector& f = reference.frequency;

@@ -33,9 +33,10 @@ struct LimbSignals {
 /// Motion, its derivatives and the force behind one low-pass (dsp::decimate), at the lowest rate at which it is flat
 /// enough up to kResponseBand: every ⌊f_s/(2.5·50 Hz)⌋-th sample. Derivatives are those of the polynomial of degree 8
 /// through nine samples, taken before. Twelve rows at each end of a trial,
-/// which the low-pass makes of its own continuation, are dropped. Where a reference was recorded, the motion is regressed on the reference from
-/// 1 s before to 0.05 s after, each half of the rows with the response of the other half; what that explains stands
-/// for the motion without the noise of the loop, where it is at least half of the variance of every axis.
+/// which the low-pass makes of its own continuation, are dropped. Where a reference was recorded, the motion is
+/// regressed on the reference from 1 s before to 0.05 s after, each half of the rows with the response of the other
+/// half; what that explains stands for the motion without the noise of the loop, where it is at least half of the
+/// variance of every axis.
 /// @fails  no trial; trials of different axes or sample times; too few samples for the filters
 [[nodiscard]] Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials);
 

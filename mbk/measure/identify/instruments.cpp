@@ -56,8 +56,8 @@ impedance::Model stable(const Matrix& coefficients, double fastest) {
   return model;
 }
 
-/// [x̂'' x̂' x̂] of M x'' + B x' + K x = u with n axes, u straight between samples. Each range begins at rest at 0, so that
-/// a step which the range begins with moves it.
+/// [x̂'' x̂' x̂] of M x'' + B x' + K x = u with n axes, u straight between samples. Each range begins at rest at 0, so
+/// that a step which the range begins with moves it.
 template <int n>
 Matrix simulate_axes(const impedance::Model& model, const Matrix& u, double sample_time,
                      const std::vector<RowRange>& ranges) {
