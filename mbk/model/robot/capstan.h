@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mbk/base/core/axes.h"
+#include "mbk/base/core/linear_algebra.h"
 
 namespace mbk::robot {
 
