@@ -59,7 +59,12 @@ TEST(FrequencyResponse, IsByTheMethodThatIsAskedForOrRefused) {
   const auto robust = frequency_response({several.data(), 1}, {.method = FrequencyResponseMethod::robust});
   ASSERT_FALSE(robust.has_value());
   EXPECT_THAT(robust.error().line(), HasSubstr("needs several realisations"));
-  EXPECT_FALSE(frequency_response(several, {.method = FrequencyResponseMethod::local_polynomial}).has_value());
+  // Lines 10 Hz apart: around each there is no other that would tell the response from a transient.
+  const Vector u = periodic_signal(odd_lines(9), 20, 1000, 4);
+  const auto far_apart = trial_of(u, 2.0 * u + 0.1 * white_noise(1000, 8), kStep, u);
+  const auto local = frequency_response({&far_apart, 1}, {.method = FrequencyResponseMethod::local_polynomial});
+  ASSERT_FALSE(local.has_value());
+  EXPECT_THAT(local.error().line(), HasSubstr("let --method be welch"));
 }
 
 TEST(FrequencyResponse, WarnsOfWhatItsUserMustKnow) {

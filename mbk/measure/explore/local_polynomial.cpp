@@ -19,8 +19,9 @@ namespace {
 
 constexpr Index kOrder = 2;
 constexpr Index kTerms = kOrder + 1;
-constexpr Index kMinFreedom = 8;  ///< of the residual: its variance is known to about a third
-constexpr double kTold = 1e-4;    ///< least pivot of the regressors, of columns of length 1
+constexpr Index kMinFreedom = 8;    ///< of the residual: its variance is known to about a third
+constexpr double kRounding = 1e-9;  ///< of the strongest line: a window without one more than that is not excited
+constexpr double kTold = 1e-4;      ///< least pivot of the regressors, of columns of length 1
 
 /// Spectra of the signals of a trial: rows are outputs, inputs and, behind them, the reference; column k is line k.
 Eigen::MatrixXcd record_spectra(const ExplorationTrial& trial, Index samples, Index lines, bool with_reference) {
@@ -39,6 +40,15 @@ Eigen::MatrixXcd record_spectra(const ExplorationTrial& trial, Index samples, In
   return spectra;
 }
 
+/// The strongest line of each input, or of its reference.
+Vector strongest_lines(const std::vector<Eigen::MatrixXcd>& spectra, Index first, Index inputs) {
+  Vector strongest = Vector::Zero(inputs);
+  for (const Eigen::MatrixXcd& X : spectra) {
+    strongest = strongest.cwiseMax(Vector(X.middleRows(first, inputs).cwiseAbs().rowwise().maxCoeff()));
+  }
+  return strongest;
+}
+
 /// What the lines around one say.
 struct LocalFit {
   Eigen::MatrixXcd response;    ///< of Z to X at the line
@@ -48,8 +58,10 @@ struct LocalFit {
   bool determined = false;
 };
 
-LocalFit local_fit(const std::vector<Eigen::MatrixXcd>& spectra, Index outputs, Index inputs, bool by_reference,
-                   Index line, Index low, Index width) {
+/// @param strongest  line of each input
+LocalFit local_fit(const std::vector<Eigen::MatrixXcd>& spectra, const Vector& strongest, Index outputs,
+                   bool by_reference, Index line, Index low, Index width) {
+  const Index inputs = strongest.size();
   const auto trials = static_cast<Index>(spectra.size());
   const Index first = by_reference ? outputs + inputs : outputs, z = by_reference ? outputs + inputs : outputs;
   const Index shared = kTerms * inputs, unknowns = shared + kTerms * trials, rows = trials * width;
@@ -70,7 +82,7 @@ LocalFit local_fit(const std::vector<Eigen::MatrixXcd>& spectra, Index outputs, 
   }
   LocalFit fit;
   const Vector length = K.colwise().norm().transpose();
-  if (!(length.minCoeff() > 0.0)) return fit;
+  if (!(length.minCoeff() > 0.0) || (length.head(inputs).array() <= kRounding * strongest.array()).any()) return fit;
   K = K * length.cwiseInverse().asDiagonal();
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(K);
   if (!(qr.matrixR().diagonal().cwiseAbs().head(unknowns).minCoeff() > kTold)) return fit;
@@ -119,6 +131,8 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
   std::vector<Eigen::MatrixXcd> spectra;
   for (const ExplorationTrial& trial : trials) spectra.push_back(record_spectra(trial, samples, lines, by_reference));
 
+  const Vector strongest = strongest_lines(spectra, by_reference ? both : outputs, inputs);
+
   FrequencyResponseEstimate found;
   found.method = FrequencyResponseMethod::local_polynomial;
   found.by_reference = by_reference;
@@ -134,7 +148,7 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
   const Index step = std::max<Index>(1, width / 2);
   for (Index line = 1 + width / 2; line <= last; line += step, ++tried) {
     const Index low = std::clamp<Index>(line - width / 2, 1, lines - width);
-    const LocalFit fit = local_fit(spectra, outputs, inputs, by_reference, line, low, width);
+    const LocalFit fit = local_fit(spectra, strongest, outputs, by_reference, line, low, width);
     if (!fit.determined) continue;
     Eigen::MatrixXcd G = fit.response, residual = fit.residual, part = fit.input_part;
     if (by_reference) {
