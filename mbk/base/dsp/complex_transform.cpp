@@ -120,11 +120,19 @@ struct TransformLoops {
   template <int radix>
   [[gnu::always_inline]] static inline void four_groups(const Pass& pass, Index q) {
     Value<Vector4> a[radix];
-    for (Index i = 0; i < radix; ++i) a[i] = {four(pass.re + q + pass.groups * i), four(pass.im + q + pass.groups * i)};
+    for (Index i = 0; i < radix; ++i) {
+      get(pass.re + q + pass.groups * i, a[i].re);
+      get(pass.im + q + pass.groups * i, a[i].im);
+    }
     butterfly<radix>(a);
     for (Index k = 0; k < radix; ++k) {
       const Index turn = (k - 1) * pass.groups + q;
-      if (k > 0) a[k] = turned<Vector4, Vector4>(a[k], four(pass.turns_re + turn), four(pass.turns_im + turn));
+      if (k > 0) {
+        Vector4 re, im;  // not by reference: that would take them for aligned
+        get(pass.turns_re + turn, re);
+        get(pass.turns_im + turn, im);
+        a[k] = turned(a[k], re, im);
+      }
       for (Index lane = 0; lane < 4; ++lane) {
         pass.to_re[radix * (q + lane) + k] = a[k].re[lane];
         pass.to_im[radix * (q + lane) + k] = a[k].im[lane];
