@@ -439,9 +439,7 @@ void warn_of_transmission(RobotIdentification& found) {
            fmt::format("the residual of joint {} has a pulse wherever its torque turns round ({} times), as of a drive "
                        "with backlash{}, the encoder {}; inertia and friction are biased by that",
                        joint + 1, test.reversals, size, side_of(gap.coefficient)),
-           fmt::format("take the play out of the drive, or preload it so that its torque does not change its sign; or "
-                       "move more slowly, below {:.2g} Hz",
-                       top * std::sqrt(kEnough * kBeyondPulses / std::max(std::abs(gap.errors), kBeyondPulses)))});
+           "take the play out of the drive, or preload it so that its torque does not change its sign"});
     }
   }
 }

@@ -272,20 +272,5 @@ TEST(IdentifyRobot, SeesNothingOfADriveThatIsStiffForItsBand) {
   EXPECT_FALSE(warned(*found, elastic_drive) || warned(*found, backlash));
 }
 
-TEST(IdentifyRobot, MovingAsSlowlyAsIsAdvisedCuresPlay) {
-  Axis axis = with_play(false)[1].axis;
-  const auto raised = identified(axis, 3);
-  ASSERT_TRUE(raised) << raised.error().line();
-  const auto warning = std::ranges::find(raised->warnings, backlash, &Warning::code);
-  ASSERT_NE(warning, raised->warnings.end());
-  const std::size_t at = warning->remedy.find("below ");
-  ASSERT_NE(at, std::string::npos) << warning->remedy;
-  axis.highest_hz = std::stod(warning->remedy.substr(at + 6));
-  EXPECT_LT(axis.highest_hz, 1.9);
-  const auto followed = identified(axis, 3);
-  ASSERT_TRUE(followed) << followed.error().line();
-  EXPECT_FALSE(warned(*followed, backlash)) << axis.highest_hz;
-}
-
 }  // namespace identify_robot_test
 }  // namespace mbk::measurement
