@@ -557,8 +557,8 @@ def explored(*files):
 
 @advice_of("low-coherence")
 def _(test):  # perturb more strongly
-    weak = trial(test, "weak", 1, 1, peak="peak_mm = 0.2", noise=1)
-    strong = trial(test, "strong", 1, 1, peak="peak_mm = 8", noise=0.05)
+    weak = trial(test, "weak", 1, 1, peak="peak_mm = 0.05", sensor=5)
+    strong = trial(test, "strong", 1, 1, peak="peak_mm = 8", sensor=5)
     options = ("--max-frequency", "4")
     raised = explored(weak, *options)
     test.assertIn("perturb more", hint_of(raised, "low-coherence"))

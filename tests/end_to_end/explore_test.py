@@ -139,7 +139,7 @@ stiffness_N_per_m = [[42, -20], [-36, 125]]
 floor_N = {noise}
 [sensors.force]
 kind = "load_cell"
-white_noise_N = 0.02
+white_noise_N = {sensor}
 """
 K = ((42, -20), (-36, 125))
 B = ((5.8, -2.1), (-2.1, 10.6))
@@ -153,10 +153,10 @@ def stiffness(i, j, hertz):
 
 
 def trial(case, name, seed, phases, axes="independent", control="position", peak="peak_mm = 8", noise=0.05, more="",
-          highest=19, group=0):
+          highest=19, group=0, sensor=0.02):
     """A simulated trial of a linear arm."""
     text = ARM.format(seed=seed, phases=phases, axes=axes, control=control, peak=peak, noise=noise, more=more,
-                      highest=highest, group=group)
+                      highest=highest, group=group, sensor=sensor)
     path = case.folder / f"{name}.h5"
     case.mbk("simulate", case.file(f"{name}.toml", text), "--out", path, "--quiet", "--overwrite")
     return path
