@@ -103,6 +103,12 @@ def compare(title, names, arguments, joblib):
     if not joblib:
         return
     row("joblib_pipeline.py, without imports", theirs, len(names))
+    if (arguments.bin / "bench_floor").exists():
+        floor = json.loads(run([arguments.bin / "bench_floor", names[0], "11"])[0])
+        parts = [1e3 * floor[part] for part in ("read_s", "inflate_s", "sha256_s")]
+        alone = 1e3 * statistics.median(cpu for _, cpu in theirs) / len(names) / sum(parts)
+        print(f"  ms a file to read, unpack and hash it, by themselves: {parts[0]:.1f}, {parts[1]:.1f} and {parts[2]:.1f}; "
+              f"joblib over these alone: {alone:.1f}")
     for what, which in (("wall", 0), ("CPU", 1)):
         ratios = [b[which] / a[which] for a, b in zip(ours, theirs)]
         print(f"  joblib over mbk identify, {what}: {' '.join(f'{ratio:.2f}' for ratio in ratios)}")

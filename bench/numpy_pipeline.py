@@ -4,7 +4,7 @@
 What a skilled user would write for the same job as `mbk measure --mode reference`: an array for each quantity, one
 library call for each step, no loops. Prints M, B, K, x0 and the VAF as JSON, and the seconds spent after the imports.
 
-usage: numpy_pipeline.py [--savgol-filter] LOG.mat
+usage: numpy_pipeline.py [--savgol-filter] LOG.mat|LOG.h5
 
 The Savitzky-Golay weights come from a fit on an abscissa scaled to [-1, 1]. With --savgol-filter they are those of
 scipy.signal.savgol_filter, which fits on the sample numbers -50 ... 50: their powers up to the sixth span ten orders
@@ -18,15 +18,20 @@ import sys
 import time
 
 import numpy as np
-from scipy.io import loadmat
 from scipy.ndimage import convolve1d
 from scipy.signal import butter, savgol_filter, sosfiltfilt
+
+if sys.argv[-1].endswith(".h5"):  # each script imports what it reads with
+    import h5py
+else:
+    from scipy.io import loadmat
 
 RATE = 1000.0  # [Hz]
 BEGIN, END = 11999, 62000  # samples of the published window
 IDENTIFY = 40000  # samples that make the parameters; the rest is held out
 ORDER, WINDOW = 6, 101  # Savitzky-Golay
 CUTOFF = 5.0  # [Hz]
+ROWS = {"hand": slice(1, 3), "force": slice(9, 11), "reference": slice(11, 13)}
 
 
 def savitzky_golay(signal, derivative):
@@ -42,9 +47,17 @@ def scipys_own(signal, derivative):
     return savgol_filter(signal, WINDOW, ORDER, deriv=derivative, delta=1.0 / RATE)
 
 
-def measure(path, smooth):
+def signals_of(path, names):
+    """The window of pairs of signals, 2 x N each; of an HDF5 file nothing else is read."""
+    if str(path).endswith(".h5"):
+        with h5py.File(path, "r") as file:
+            return [np.vstack([file[f"channels/{name}_{axis}"][BEGIN:END] for axis in "xy"]) for name in names]
     logs = loadmat(path, variable_names=["logs"])["logs"][:, BEGIN:END]
-    position, force = logs[1:3], logs[9:11]
+    return [logs[ROWS[name]] for name in names]
+
+
+def measure(path, smooth):
+    position, force = signals_of(path, ("hand", "force"))
 
     signals = np.vstack([smooth(position, 2), smooth(position, 1), smooth(position, 0), smooth(force, 0)])
     lost = (WINDOW - 1) // 2 + 1
@@ -76,9 +89,10 @@ def main():
     if len(arguments) != 1 or arguments[0].startswith("-"):
         print(__doc__.strip())
         sys.exit(0 if arguments in (["-h"], ["--help"]) else 2)
-    start = time.perf_counter()
+    start, cpu = time.perf_counter(), time.process_time()
     model = measure(arguments[0], smooth)
     model["seconds_after_imports"] = time.perf_counter() - start
+    model["cpu_seconds_after_imports"] = time.process_time() - cpu
     print(json.dumps(model))
 
 

@@ -164,6 +164,8 @@ def main():
     for name, of in (("mbk, sample for sample", "exact"), ("mbk, every 20th row", "default")):
         row(f"{name}: filters", [one[of]["filters_s"] for one in ours])
         row("  and least squares", [one[of]["all_s"] for one in ours])
+    row("mbk, the same with its signals in no cache", [one["from_memory"]["all_s"] for one in ours])
+    row("reading the four signals once from memory", [one["from_memory"]["reading_s"] for one in ours])
     row("SciPy: filters", [one["filters_s"] for one in theirs])
     row("  and least squares", [one["all_s"] for one in theirs])
     if octave:
@@ -173,6 +175,8 @@ def main():
     for part in ("filters", "all"):
         for name, of in (("sample for sample", "exact"), ("every 20th row", "default")):
             ratios(f"{part}, {name}", [(a[of][f"{part}_s"], b[f"{part}_s"]) for a, b in zip(ours, theirs)])
+    print("\nmbk over reading the four signals once from memory\n")
+    ratios("all, every 20th row", [(one["from_memory"]["reading_s"], one["from_memory"]["all_s"]) for one in ours])
     if octave:
         print("\nOctave over mbk, turn by turn\n")
         for part in ("filters", "all"):

@@ -12,13 +12,13 @@ std::vector<recording::Contents> files() {
   table.table = true;
   recording::Contents variables;
   for (const char* name : {"clock", "pos_mm", "Fx", "y"}) {
-    table.arrays.push_back({name, Vector::LinSpaced(6, 0.0, 5.0)});
-    variables.arrays.push_back({name, Vector::LinSpaced(6, 0.0, 5.0).transpose()});
+    table.arrays.push_back({name, Matrix(Vector::LinSpaced(6, 0.0, 5.0))});
+    variables.arrays.push_back({name, Matrix(Vector::LinSpaced(6, 0.0, 5.0).transpose())});
   }
-  table.arrays.push_back({"HAND.x", Vector::Ones(6), "mm", true, 100.0});
-  table.arrays.push_back({"Force X", Vector::Ones(12), "N", true, 200.0});
-  table.arrays.push_back({"S:H.x", Vector::Ones(6), "furlong", true, 100.0});
-  variables.arrays.push_back({"logs", Matrix::Ones(19, 6)});
+  table.arrays.push_back({"HAND.x", Matrix(Vector::Ones(6)), "mm", true, 100.0});
+  table.arrays.push_back({"Force X", Matrix(Vector::Ones(12)), "N", true, 200.0});
+  table.arrays.push_back({"S:H.x", Matrix(Vector::Ones(6)), "furlong", true, 100.0});
+  variables.arrays.push_back({"logs", Matrix(Matrix::Ones(19, 6))});
   return {table, variables};
 }
 

@@ -27,7 +27,7 @@ int run_chosen(const CLI::App& parent, const Actions& actions);
 /// @param typed the command line, which a report repeats
 Action add_measure(CLI::App& app, const std::string& typed);
 Action add_identify(CLI::App& app);
-Action add_explore(CLI::App& app);
+Action add_explore(CLI::App& app, const std::string& typed);
 Action add_movement(CLI::App& app);
 Action add_tf(CLI::App& app, const std::string& typed);
 Action add_ellipse(CLI::App& app);

@@ -9,6 +9,7 @@
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/preprocess_options.h"
 #include "apps/mbk/reading_options.h"
+#include "apps/mbk/report_file.h"
 #include "apps/mbk/signal_names.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/present/report/exploration_text.h"
@@ -24,9 +25,14 @@ struct ExploreArguments {
   std::optional<Protocol> protocol;
   std::optional<double> resample_hz;
   double force_delay_ms = 0.0;
+  std::optional<ExplorationPart> only;
+  std::optional<double> after_onset_ms;
+  std::string schedule, align;
   explore::FrequencyResponseOptions response;
+  std::optional<double> plateau_from_ms, plateau_to_ms;
   std::string input, output_signal, reference;
   OutputArguments output;
+  ReportArguments report;
 };
 
 Result<measurement::ExploreOptions> options_of(const ExploreArguments& a) {
@@ -38,7 +44,13 @@ Result<measurement::ExploreOptions> options_of(const ExploreArguments& a) {
   options.preprocess.axes = a.reading.axes;
   if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
   options.force_delay = a.force_delay_ms / kMilliseconds;
+  options.only = a.only;
   options.frequency_response = a.response;
+  if (a.plateau_from_ms) options.plateau.from_s = *a.plateau_from_ms / kMilliseconds;
+  if (a.plateau_to_ms) options.plateau.to_s = *a.plateau_to_ms / kMilliseconds;
+  options.schedule = a.schedule;
+  if (!a.align.empty()) options.align = a.align;
+  if (a.after_onset_ms) options.after_onset_s = *a.after_onset_ms / kMilliseconds;
   return options;
 }
 
@@ -57,9 +69,11 @@ Result<void> name_signals(ExploreArguments& a, measurement::ExploreOptions& opti
   return place_signals(a.reading, names);
 }
 
-int run_explore(const ExploreArguments& given) {
+int run_explore(const ExploreArguments& given, const std::string& typed) {
   ExploreArguments arguments = given;
-  if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok) {
+    return report_error(ok.error());
+  }
   auto options = options_of(arguments);
   if (!options) return report_error(options.error());
   if (auto ok = name_signals(arguments, *options); !ok) return report_error(ok.error());
@@ -67,6 +81,12 @@ int run_explore(const ExploreArguments& given) {
   if (!recordings) return report_error(recordings.error());
   const auto found = measurement::explore(*recordings, *options);
   if (!found) return report_error(found.error());
+  if (arguments.report.file) {
+    const std::string report = result::report_json(*found, typed, arguments.report.note);
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, report); !ok) {
+      return report_error(ok.error());
+    }
+  }
   const std::string text = arguments.output.json ? result::to_json(*found) : report::exploration_text(*found);
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
@@ -74,7 +94,7 @@ int run_explore(const ExploreArguments& given) {
 
 }  // namespace
 
-Action add_explore(CLI::App& app) {
+Action add_explore(CLI::App& app, const std::string& typed) {
   auto arguments = std::make_shared<ExploreArguments>();
   CLI::App* command = add_command(app, "explore", "what the limb does before anyone assumes M, B and K");
   command->footer(
@@ -83,6 +103,8 @@ Action add_explore(CLI::App& app) {
       "      how the force answers motion at each frequency: dynamic stiffness −F/X and coherence\n"
       "  mbk explore first.mat second.mat third.mat --json\n"
       "      repetitions of one condition, averaged\n"
+      "  mbk explore log.mat --report log.html\n"
+      "      the same to be looked at: Bode plots with bands, coherence, Nyquist plots, impulse responses\n"
       "  mbk explore ankle.csv --channels x=2,F=3 --method welch --max-frequency 30\n"
       "  mbk explore arm.mat --input torque --output acceleration --rate 500\n\n"
       "FILEs are of one limb in one condition. Trials with other phases of a periodic perturbation are\n"
@@ -114,6 +136,7 @@ Action add_explore(CLI::App& app) {
                    "by which the force was read late, as 'mbk sensor delay' finds it: undone first (0)")
       ->type_name("MS")
       ->check(number_within(1000.0));
+  add_choice(*command, "--only", arguments->only, "nothing but this part (all of them)");
   const char* const group = "Frequency response";
   add_choice_or_auto(
       *command, "--method", arguments->response.method,
@@ -138,8 +161,42 @@ Action add_explore(CLI::App& app) {
       ->type_name("HZ")
       ->check(positive())
       ->group(group);
+  command
+      ->add_option("--plateau-from", arguments->plateau_from_ms,
+                   "begin of the window in which the force is averaged, ms after the onset (when the hand rests)")
+      ->type_name("MS")
+      ->check(not_negative())
+      ->group("Ramps and holds");
+  command->add_option("--plateau-to", arguments->plateau_to_ms, "its end, ms after the onset (300)")
+      ->type_name("MS")
+      ->check(positive())
+      ->group("Ramps and holds");
+  const char* const in_time = "Change over time";
+  command
+      ->add_option("--after-onset", arguments->after_onset_ms,
+                   "M, B and K from so long after each step or pulse of the reference, before the person can "
+                   "answer, ms; 100 to 150")
+      ->type_name("MS")
+      ->check(positive())
+      ->group(in_time);
+  CLI::Option* const schedule =
+      command
+          ->add_option("--schedule", arguments->schedule,
+                       "follow M, B and K over this channel, such as an angle or a co-contraction, not over time")
+          ->type_name("NAME")
+          ->check(not_empty())
+          ->group(in_time);
+  command
+      ->add_option("--align", arguments->align,
+                   "count time from this event, repetition by repetition, or from the onsets of the reference "
+                   "(reference)")
+      ->type_name("EVENT")
+      ->check(not_empty())
+      ->excludes(schedule)
+      ->group(in_time);
   add_output_options(*command, arguments->output, "mbk.explore/1");
-  return [arguments] { return run_explore(*arguments); };
+  add_report_options(*command, arguments->report);
+  return [arguments, typed] { return run_explore(*arguments, typed); };
 }
 
 }  // namespace mbk::app

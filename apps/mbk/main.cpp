@@ -101,7 +101,7 @@ Commands all_commands(const std::string& typed) {
   return {
       {"measure", [typed](CLI::App& app) { return add_measure(app, typed); }},
       {"identify", add_identify},
-      {"explore", add_explore},
+      {"explore", [typed](CLI::App& app) { return add_explore(app, typed); }},
       {"movement", add_movement},
       {"tf", [typed](CLI::App& app) { return add_tf(app, typed); }},
       {"ellipse", add_ellipse},

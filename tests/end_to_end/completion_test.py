@@ -14,7 +14,7 @@ from command import WRONG_USAGE, Case, main
 from help_tree import every_command
 
 SHELLS = ("bash", "zsh", "fish")
-READY = ["relaxed_sinusoidal", "relaxed_underdamped", "relaxed_virtual_sensor"]
+READY = ["relaxed_ramp_and_hold", "relaxed_sinusoidal", "relaxed_underdamped", "relaxed_virtual_sensor"]
 TYPED = {  # what has been typed → what is offered
     ("me",): ["measure"],
     ("measure", "--mo"): ["--mode"],
@@ -31,8 +31,9 @@ TYPED = {  # what has been typed → what is offered
     ("teleop", "--ex"): ["--excess"],
     ("teleop", "--sim"): ["--simulate"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
-    ("validate", ""): ["closed-loop", "coverage", "faults", "frequency-response", "live-estimate", "misspecification",
-                       "one-dimensional", "participant", "passivity", "recovery", "reflex", "robot", "springs",
+    ("validate", ""): ["change", "closed-loop", "coverage", "faults", "frequency-response", "live-estimate",
+                       "misspecification", "one-dimensional", "participant", "passivity", "ramp-and-hold", "recovery",
+                       "reflex", "robot", "servo-displacement", "springs",
                        "teleoperation",
                        "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],

@@ -1,11 +1,20 @@
 #!/usr/bin/env python3
 """mbk explore: what recordings say of a limb without M, B and K."""
 
+import json
 import math
+import re
 import statistics
 
 import mat_file
+import schemas
 from command import BAD_DATA, WRONG_USAGE, Case, data_folder, main, make_log, run
+
+try:
+    import numpy
+    import scipy.signal
+except ImportError:
+    scipy = None
 
 ANKLE = ("--axes", "1", "--channels", "x=position_rad:rad,F=torque_Nm:N.m")
 HERTZ = (1, 2, 5, 10, 20, 30)
@@ -29,6 +38,32 @@ class Welch(Case):
                     self.assertAlmostEqual(response["responses"][0]["partial_coherence"][k], value, delta=6e-7)
                 for k, value in zip(at, self.MAGNITUDE.get(name, ())):
                     self.assertAlmostEqual(response["responses"][0]["magnitude"][k], value, delta=6e-5 * value)
+
+
+    def test_agrees_with_scipy_at_every_line(self):
+        if scipy is None:
+            self.skipTest("SciPy is not installed")
+        path = data_folder("ankle") / "z_df2.csv"
+        table = numpy.genfromtxt(path, delimiter=",", names=True)
+        x, F = table["position_rad"], table["torque_Nm"]
+        rate = 1 / numpy.median(numpy.diff(table["time_s"])) if "time_s" in table.dtype.names else 1000.0
+        options = dict(fs=round(rate), window="hann", nperseg=2 * round(rate), detrend="constant")
+        hertz, cross = scipy.signal.csd(x, -F, **options)
+        _, power = scipy.signal.welch(x, **options)
+        _, coherence = scipy.signal.coherence(x, F, **options)
+        found = self.fine("explore", *ANKLE, "--method", "welch", "--only", "frequency-response", "--json", path).json
+        self.assertNotIn("impulse_response", found)
+        self.assertNotIn("parallel_cascade", found)
+        response = found["frequency_response"]
+        count = len(response["frequency_hz"])
+        self.assertGreaterEqual(count, 90)
+        numpy.testing.assert_allclose(response["frequency_hz"], hertz[1:count + 1], rtol=1e-12)
+        one = response["responses"][0]
+        got = numpy.array(one["real"]) + 1j * numpy.array(one["imaginary"])
+        want = (cross / power)[1:count + 1]
+        self.assertLess(abs(got - want).max(), 1e-9 * abs(want).max())
+        self.assertLess((abs(got - want) / abs(want)).max(), 1e-9)
+        numpy.testing.assert_allclose(response["multiple_coherence"][0], coherence[1:count + 1], rtol=1e-9)
 
 
 class Ankle(Case):
@@ -60,6 +95,42 @@ class Ankle(Case):
                 for words in ("impulse response", "not enough", "intrinsic and reflex force", "positive stretch",
                               "resists the stretch"):
                     self.assertIn(words, text)
+
+
+    def test_is_where_the_warnings_of_measure_lead(self):
+        file = data_folder("ankle") / "z_pf.csv"
+        measured = run("measure", *ANKLE, "--json", file).json
+        hints = {warning["code"]: warning["try"] for warning in measured["warnings"]}
+        self.assertIn("mbk explore", hints["fit-poor"])
+        self.assertIn("mbk explore", hints["missing-dynamics"])
+        found = self.fine("explore", *ANKLE, "--json", file).json
+        self.assertEqual(found["parallel_cascade"]["delayed_response"], "reflex")
+        self.assertIs(found["impulse_response"]["model"]["enough"]["enough"], False)
+        # what M, B and K lack is there to be had
+        self.assertGreater(found["parallel_cascade"]["shares"][0]["both"]["VAF"], measured["fit"]["VAF"][0] + 10)
+
+
+class Report(Case):
+    def test_holds_the_result_that_json_prints(self):
+        path = self.folder / "explored.html"
+        if "without the page" in run("explore", "nothing.mat", "--report", path).err:
+            self.skipTest("this mbk was built without the page")
+        log = make_log().path
+        ran = self.fine("explore", log, "--json", "--report", path, "--report-note", "<b>Ward 3")
+        text = path.read_text(encoding="utf-8")
+        document = json.loads(re.search(r'id="report-data">(.*?)</script>', text, re.DOTALL).group(1))
+        schemas.check(document)
+        self.assertEqual((document["schema"], document["note"]), ("mbk.explore_report/1", "<b>Ward 3"))
+        self.assertEqual(document["result"], ran.json)
+        responses = ran.json["frequency_response"]["responses"]
+        K = ran.json["impulse_response"]["model"]["K"]["value"]
+        self.assertEqual(len(document["model_responses"]), len(responses))
+        lowest = ran.json["frequency_response"]["frequency_hz"][0]
+        self.assertLess(lowest, 2)
+        for k, model in enumerate(document["model_responses"]):
+            self.assertEqual(len(model["magnitude"]), len(responses[k]["magnitude"]))
+        self.assertGreater(document["model_responses"][0]["magnitude"][0], 0.3 * abs(K[0][0]))
+        self.refused(WRONG_USAGE, "explore", log, "--report", path, says="--overwrite")
 
 
 class FlexibleArm(Case):
@@ -210,6 +281,61 @@ class TwoTrials(Case):
         self.assertIn("1 realisation of a periodic perturbation cannot tell 2 inputs apart", text)
         self.refused(BAD_DATA, "explore", path, "--method", "robust", says="1 realisation")
         self.refused(WRONG_USAGE, "explore", path, "--method", "robust", "--period", "0.0005", says="period")
+
+
+class ChangeOverTime(Case):
+    def simulated(self, name, more=""):
+        text = self.mbk("simulate", "--show", "relaxed_sinusoidal").out + more
+        path = self.folder / f"{name}.h5"
+        self.mbk("simulate", self.file(f"{name}.toml", text), "--out", path, "--quiet")
+        return path
+
+    def test_a_constant_arm_is_called_constant_and_one_that_triples_is_followed(self):
+        constant = self.fine("explore", self.simulated("constant"), "--json").json["time_course"]
+        self.assertEqual(constant["verdict"], "constant")
+        self.assertTrue(constant["instruments"])
+        self.assertNotIn("value", constant["K"])
+        levels = "".join(f"\n[[participant.stiffness_at]]\ntime_s = {t}\nfactor = {factor}\n"
+                         for t, factor in ((31, 1), (32, 3)))
+        path = self.simulated("triples", levels)
+        triples = self.fine("explore", path, "--json").json["time_course"]
+        self.assertEqual(triples["verdict"], "changes")
+        self.assertIn("K", triples["varying"])
+        diagonal = triples["K"]["value"][3]
+        early = [k for t, k in zip(triples["at"], diagonal) if 5 < t < 28]
+        late = [k for t, k in zip(triples["at"], diagonal) if 35 < t < 58]
+        self.assertAlmostEqual(statistics.mean(late) / statistics.mean(early), 3, delta=0.45)
+        text = self.fine("explore", path).out
+        self.assert_lines_fit(text)
+        for words in ("change over time", "changes: BIC prefers", "K_xx [N/m]"):
+            self.assertIn(words, text)
+
+    def test_is_followed_over_a_channel_or_since_an_event(self):
+        log = make_log().path
+        found = self.fine("explore", log, "--schedule", "hand_x", "--json").json["time_course"]
+        self.assertEqual((found["variable"], found["unit"]), ("hand_x", "m"))
+        self.refused(BAD_DATA, "explore", log, "--schedule", "nothing", says="nothing")
+        self.refused(BAD_DATA, "explore", log, "--align", "nothing", says="nothing")
+        self.refused(WRONG_USAGE, "explore", log, "--align", "reference", "--schedule", "hand_x", says="--schedule")
+
+
+class AfterOnset(Case):
+    def test_tells_the_inertia_and_says_what_it_cannot_tell(self):
+        path = self.folder / "pulses.h5"
+        self.mbk("simulate", "rigid_underdamped_2N", "--out", path, "--quiet")
+        found = self.fine("explore", path, "--after-onset", "120", "--json").json["after_onset"]
+        self.assertIs(found["K"]["identifiable"], False)
+        self.assertEqual(found["handle_mass"], 0.194)
+        text = self.fine("explore", path, "--after-onset", "120").out
+        self.assert_lines_fit(text)
+        self.assertIn("the first 120 ms after onset", text)
+        self.assertIn("not identifiable", text)
+
+    def test_needs_onsets(self):
+        path = self.folder / "sines.h5"
+        self.mbk("simulate", "relaxed_sinusoidal", "--out", path, "--quiet")
+        self.refused(BAD_DATA, "explore", path, "--after-onset", "120", says="onset")
+        self.refused(WRONG_USAGE, "explore", path, "--after-onset", "-5", says="--after-onset")
 
 
 class Mistakes(Case):

@@ -40,6 +40,7 @@ Recording recorded(std::string_view name) {
   auto& kind = scenario.perturbation.kind;
   if (auto* sines = std::get_if<perturbation::MultisinePlan>(&kind)) sines->duration = 12.0;
   if (auto* binary = std::get_if<perturbation::RandomBinaryPlan>(&kind)) binary->duration = 12.0;
+  if (auto* ramps = std::get_if<perturbation::RampPlan>(&kind)) ramps->ramps.repetitions = 1;
   return laboratory::simulate(scenario).value().recording;
 }
 

@@ -24,9 +24,9 @@ constexpr double kToldApart = 1e-12;
 /// part; with Z = A + j B the lines of both follow from Z_k and Z_{n−k}.
 class SumsOverSegments {
  public:
-  SumsOverSegments(Index signals, Index segment)
+  SumsOverSegments(Index signals, Index segment, Index lines)
       : signals_(signals),
-        lines_(segment / 2 + 1),
+        lines_(lines),
         window_(hann_window(segment)),
         transform_(segment),
         real_{Matrix(lines_, signals), Matrix(lines_, signals)},
@@ -99,7 +99,7 @@ class SumsOverSegments {
 
 }  // namespace
 
-Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate, Index segment) {
+Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate, Index segment, Hertz highest) {
   if (!(sample_rate.value > 0.0)) {
     return bad_usage(fmt::format("a sample rate of {:g} Hz is not positive", sample_rate.value));
   }
@@ -113,11 +113,15 @@ Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz samp
   }
   if (longest < segment) return bad_data(fmt::format("{} samples are too few for a segment of {}", longest, segment));
 
-  const Index lines = segment / 2 + 1, signals = pieces.front().cols();
+  const double spacing = sample_rate.value / static_cast<double>(segment);
+  const Index nyquist = segment / 2, signals = pieces.front().cols();
+  const Index lines = 1 + (highest.value < spacing * static_cast<double>(nyquist)
+                               ? std::max<Index>(1, static_cast<Index>(highest.value / spacing))
+                               : nyquist);
   CrossSpectra spectra;
   spectra.frequency =
       Vector::LinSpaced(lines, 0.0, sample_rate.value * static_cast<double>(lines - 1) / static_cast<double>(segment));
-  SumsOverSegments sums(signals, segment);
+  SumsOverSegments sums(signals, segment, lines);
   Index overlaps = 0;
   for (const Matrix& piece : pieces) {
     std::vector<Index> starts;
@@ -133,7 +137,7 @@ Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz samp
   const double scale =
       1.0 / (sample_rate.value * hann_window(segment).squaredNorm() * static_cast<double>(spectra.segments));
   for (Index line = 0; line < lines; ++line) {
-    spectra.density[static_cast<std::size_t>(line)] *= line == 0 || line == lines - 1 ? scale : 2.0 * scale;
+    spectra.density[static_cast<std::size_t>(line)] *= line == 0 || line == nyquist ? scale : 2.0 * scale;
   }
   const auto count = static_cast<double>(spectra.segments);
   spectra.independent_segments = count / (1.0 + 2.0 / 36.0 * static_cast<double>(overlaps) / count);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -11,7 +12,7 @@ namespace mbk::dsp {
 
 /// Spectral densities of several signals and of each with each other, one-sided.
 struct CrossSpectra {
-  Vector frequency;                       ///< [Hz], from 0 to rate/2
+  Vector frequency;                       ///< [Hz], from 0 to rate/2 or less
   std::vector<Eigen::MatrixXcd> density;  ///< S at each frequency, n×n, Hermitian: S_jk = E[X_j X_k*] [unit²/Hz]
   Index segments = 0;                     ///< that were averaged
   double independent_segments = 0;        ///< as many that do not overlap would vary as much
@@ -23,9 +24,11 @@ struct CrossSpectra {
 /// overlap their predecessor vary as much as K/(1 + 2/36 P/K) independent ones (Welch 1967).
 /// @param pieces N_i×n, evenly sampled    @param segment samples of a segment, even, ≥ 8; rate/segment is the spacing
 /// of the lines. The transform is fast where it is made of small factors.
+/// @param highest lines above it are left out; there are two at least
 /// @fails no piece is as long as a segment; pieces of different numbers of signals; segment odd or below 8; rate not
 /// positive.
-[[nodiscard]] Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate, Index segment);
+[[nodiscard]] Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz sample_rate, Index segment,
+                                                 Hertz highest = Hertz(std::numeric_limits<double>::infinity()));
 
 /// Multiple coherence of each output with all inputs together, γ² = S_yx S_xx⁻¹ S_xy/S_yy in [0, 1]: the share of the
 /// output's power that linear responses to the inputs can explain (Bendat & Piersol 2010, ch. 7); of one input it is

@@ -64,6 +64,23 @@ TEST(CrossSpectra, AgreeWithSumsOverTheSamples) {
   }
 }
 
+TEST(CrossSpectra, AreTheSameWhereTheUpperLinesAreLeftOut) {
+  const Matrix signals = side_by_side({noise(3000, 5), noise(3000, 6)});
+  const CrossSpectra all = cross_spectra({signals}, kRate, 200).value();
+  const double spacing = all.frequency[1];
+  for (const double highest : {0.0, 0.4 * spacing, 7.5 * spacing, 0.5 * kRate.value, kRate.value}) {
+    const CrossSpectra some = cross_spectra({signals}, kRate, 200, Hertz(highest)).value();
+    const Index lines = some.frequency.size();
+    ASSERT_EQ(std::ssize(some.density), lines);
+    EXPECT_EQ(lines, highest < spacing ? 2 : highest < 8.0 * spacing ? 8 : 101) << highest;
+    EXPECT_EQ(some.independent_segments, all.independent_segments);
+    for (Index line = 0; line < lines; ++line) {
+      EXPECT_NEAR(some.frequency[line], all.frequency[line], 1e-12 * kRate.value);
+      EXPECT_EQ(some.density[static_cast<std::size_t>(line)], all.density[static_cast<std::size_t>(line)]);
+    }
+  }
+}
+
 TEST(CrossSpectra, NeverReachAcrossABreak) {
   // Two pieces whose means differ by far: a segment across the break would see a step.
   const Vector quiet = 1e-6 * noise(400, 5);

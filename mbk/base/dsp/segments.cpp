@@ -165,6 +165,29 @@ template <class Lanes>
   }
 }
 
+/// @param sums  eight doubles for each row
+template <class Lanes, int Count>
+[[gnu::always_inline]] inline void squares_of(Rows rows, Index columns, double* sums) {
+  typename Lanes::V sum[Count];
+  for (int i = 0; i < Count; ++i) sum[i] = Lanes::at(sums + 8 * i);
+  for (Index c = 0; c < columns; c += Lanes::kWidth) {
+    for (int i = 0; i < Count; ++i) {
+      const typename Lanes::V a = Lanes::at(rows.data + i * rows.stride + c);
+      sum[i] += a * a;
+    }
+  }
+  for (int i = 0; i < Count; ++i) Lanes::at(sums + 8 * i) = sum[i];
+}
+template <class Lanes>
+[[gnu::always_inline]] inline void squares_body(Rows rows, Index count, Index columns, double* sums) {
+  constexpr int kAtOnce = 4;
+  Index i = 0;
+  for (; i + kAtOnce <= count; i += kAtOnce) {
+    squares_of<Lanes, kAtOnce>({rows.row(i), rows.stride}, columns, sums + 8 * i);
+  }
+  for (; i < count; ++i) squares_of<Lanes, 1>({rows.row(i), rows.stride}, columns, sums + 8 * i);
+}
+
 // ---- for each kind of processor ----
 
 using Filter = void (*)(const double*, Index, double*, const double*, Index, double*, Index);
@@ -175,6 +198,7 @@ struct Loops {
   void (*advance)(const double*, Index, Index, const double*, const double*, double*);
   void (*combine)(const double*, Index, const double*, Index, const double*, Index, double*);
   void (*products)(Rows, Index, Rows, Index, Index, double*);
+  void (*squares)(Rows, Index, Index, double*);
 };
 
 #define MBK_LOOPS(NAME, LANES, TARGET)                                                                              \
@@ -195,6 +219,9 @@ struct Loops {
     TARGET static void products(Rows left, Index down, Rows right, Index across, Index columns, double* sums) {     \
       products_body<LANES>(left, down, right, across, columns, sums);                                               \
     }                                                                                                               \
+    TARGET static void squares(Rows rows, Index count, Index columns, double* sums) {                               \
+      squares_body<LANES>(rows, count, columns, sums);                                                              \
+    }                                                                                                               \
   };
 MBK_LOOPS(Any, Four, )
 MBK_LOOPS(V3, Four, MBK_X86_64_V3)
@@ -203,7 +230,7 @@ MBK_LOOPS(V4, Eight, MBK_X86_64_V4)
 
 template <class Kind, int... N>
 constexpr Loops loops_of(std::integer_sequence<int, N...>) {
-  return {{Kind::template filter<N>...}, Kind::advance, Kind::combine, Kind::products};
+  return {{Kind::template filter<N>...}, Kind::advance, Kind::combine, Kind::products, Kind::squares};
 }
 
 const Loops& loops() {
@@ -241,6 +268,10 @@ Matrix power_of(Matrix base, Index exponent) {
 
 double* values(std::vector<Abreast>& rows) {
   return rows.front().values.data();
+}
+
+double added_up(const PartialSums& parts) {
+  return std::accumulate(parts.values.begin(), parts.values.end(), 0.0);
 }
 
 }  // namespace
@@ -341,11 +372,19 @@ void Products::add(Rows left, Rows right, Index columns) {
 Matrix Products::total() const {
   Matrix total(left_, right_);
   for (Index i = 0; i < left_; ++i) {
-    for (Index j = 0; j < right_; ++j) {
-      const auto& parts = sums_[static_cast<std::size_t>(i * right_ + j)].values;
-      total(i, j) = std::accumulate(parts.begin(), parts.end(), 0.0);
-    }
+    for (Index j = 0; j < right_; ++j) total(i, j) = added_up(sums_[static_cast<std::size_t>(i * right_ + j)]);
   }
+  return total;
+}
+
+void Squares::add(Rows rows, Index columns) {
+  if (sums_.empty()) return;
+  loops().squares(rows, std::ssize(sums_), columns, sums_.front().values.data());
+}
+
+Vector Squares::total() const {
+  Vector total(std::ssize(sums_));
+  for (Index i = 0; i < total.size(); ++i) total[i] = added_up(sums_[static_cast<std::size_t>(i)]);
   return total;
 }
 

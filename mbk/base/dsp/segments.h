@@ -76,6 +76,11 @@ class SegmentFilter {
 /// to = plus + Σ_k weights_k · from(k), column by column.   @param columns a multiple of 16
 void combine(const Vector& weights, Rows from, const double* plus, Index columns, double* to);
 
+/// What is yet to be added up.
+struct alignas(64) PartialSums {
+  std::array<double, 8> values{};
+};
+
 /// Sums of products of rows, added up block by block.
 class Products {
  public:
@@ -85,11 +90,20 @@ class Products {
   [[nodiscard]] Matrix total() const;  ///< left×right
 
  private:
-  struct alignas(64) Parts {
-    std::array<double, 8> values{};
-  };
   Index left_, right_;
-  std::vector<Parts> sums_;
+  std::vector<PartialSums> sums_;
+};
+
+/// Sums of squares of rows, added up block by block: the diagonal of their products.
+class Squares {
+ public:
+  explicit Squares(Index rows) : sums_(static_cast<std::size_t>(rows)) {}
+  /// @param columns a multiple of 16
+  void add(Rows rows, Index columns);
+  [[nodiscard]] Vector total() const;
+
+ private:
+  std::vector<PartialSums> sums_;
 };
 
 }  // namespace mbk::dsp

@@ -129,6 +129,12 @@ TEST(Segments, ProductsAndCombinationsAreThoseOfMatrices) {
       const Matrix expected = table.topRows(left) * table.bottomRows(right).transpose() +
                               table.topRows(left).leftCols(16) * table.bottomRows(right).leftCols(16).transpose();
       EXPECT_LT((products.total() - expected).lpNorm<Eigen::Infinity>(), 1e-12) << left << "×" << right;
+      Squares squares(left);
+      squares.add(rows, kColumns);
+      squares.add(rows, 16);
+      const Vector of_rows =
+          table.topRows(left).rowwise().squaredNorm() + table.topRows(left).leftCols(16).rowwise().squaredNorm();
+      EXPECT_LT((squares.total() - of_rows).lpNorm<Eigen::Infinity>(), 1e-12) << left;
       Vector sum(kColumns);
       const Vector weights = Vector::LinSpaced(left, -1.0, 2.0);
       combine(weights, rows, rows.row(left), kColumns, sum.data());

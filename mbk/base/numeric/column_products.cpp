@@ -11,6 +11,26 @@ namespace {
 constexpr Index kBlock = 256;  // rows that stay in the first cache while all pairs of columns are taken
 constexpr Index kTile = 3;     // a tile of 3×3 dot products fills the registers, and none waits for another
 
+/// What is read once and used three times: the compiler would rather read it three times.
+template <class Lanes>
+[[gnu::always_inline]] inline void keep_in_register([[maybe_unused]] typename Lanes::V& lanes) {
+#if defined(__x86_64__) && defined(__GNUC__)
+  if constexpr (Lanes::kWidth == Eight::kWidth) asm("" : "+v"(lanes));  // of eight, where there is such a register
+#endif
+}
+
+/// The sum of all lanes, by halves.
+template <class Lanes>
+[[gnu::always_inline]] inline double added_up(const typename Lanes::V& lanes) {
+  Vector4 four_left;
+  if constexpr (Lanes::kWidth == Eight::kWidth) {
+    four_left = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) + __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  } else {
+    four_left = lanes;
+  }
+  return (four_left[0] + four_left[2]) + (four_left[1] + four_left[3]);
+}
+
 /// aᵢᵀ bⱼ of a tile over `rows` rows, added to `to` + i + stride·j.
 template <class Lanes>
 [[gnu::always_inline]] inline void dot_tile(const double* const* a, const double* const* b, Index rows, double* to,
@@ -19,16 +39,19 @@ template <class Lanes>
   Index t = 0;
   for (; t + Lanes::kWidth <= rows; t += Lanes::kWidth) {
     typename Lanes::V left[kTile];
-    for (Index i = 0; i < kTile; ++i) left[i] = Lanes::at(a[i] + t);
+    for (Index i = 0; i < kTile; ++i) {
+      left[i] = Lanes::at(a[i] + t);
+      keep_in_register<Lanes>(left[i]);
+    }
     for (Index j = 0; j < kTile; ++j) {
-      const typename Lanes::V right = Lanes::at(b[j] + t);
+      typename Lanes::V right = Lanes::at(b[j] + t);
+      keep_in_register<Lanes>(right);
       for (Index i = 0; i < kTile; ++i) sum[j][i] += left[i] * right;
     }
   }
   for (Index j = 0; j < kTile; ++j) {
     for (Index i = 0; i < kTile; ++i) {
-      double rest = 0.0;
-      for (Index k = 0; k < Lanes::kWidth; ++k) rest += sum[j][i][k];
+      double rest = added_up<Lanes>(sum[j][i]);
       for (Index r = t; r < rows; ++r) rest += a[i][r] * b[j][r];
       to[i + stride * j] += rest;
     }
@@ -91,10 +114,13 @@ MBK_X86_64_V4 void products_v4(const Task& task, double* to) {
   products_body<Eight>(task, to);
 }
 
+auto products_run() {
+  return has_x86_64_v4() ? products_v4 : has_x86_64_v3() ? products_v3 : products_any;
+}
+
 Matrix products(const Tiled& left, const Tiled& right, bool upper) {
   Matrix all = Matrix::Zero(left.padded(), right.padded());
-  const auto run = has_x86_64_v4() ? products_v4 : has_x86_64_v3() ? products_v3 : products_any;
-  run({left.data(), left.padded(), right.data(), right.padded(), left.rows(), upper}, all.data());
+  products_run()({left.data(), left.padded(), right.data(), right.padded(), left.rows(), upper}, all.data());
   return all;
 }
 
@@ -127,6 +153,10 @@ MBK_X86_64_V4 void residual_v4(const double* y, const double* const* z, const do
                                Index rows, double* to) {
   residual_body<Eight>(y, z, theta, count, begin, rows, to);
 }
+using Residual = void (*)(const double*, const double* const*, const double*, Index, Index, Index, double*);
+Residual residual() {
+  return has_x86_64_v4() ? residual_v4 : has_x86_64_v3() ? residual_v3 : residual_any;
+}
 
 }  // namespace
 
@@ -142,7 +172,7 @@ Matrix products_of(const MatrixPart& A, const MatrixPart& B) {
 
 Matrix projected_residuals(const MatrixPart& Z, const MatrixPart& Y, const Matrix& theta) {
   const Tiled regressors({Z});
-  const auto run = has_x86_64_v4() ? residual_v4 : has_x86_64_v3() ? residual_v3 : residual_any;
+  const Residual run = residual();
   constexpr Index kRows = 8 * kBlock;  // that stay in the second cache
   Matrix projected = Matrix::Zero(Z.cols(), Y.cols()), block(std::min(kRows, Z.rows()), Y.cols());
   for (Index begin = 0; begin < Z.rows(); begin += kRows) {
@@ -154,6 +184,38 @@ Matrix projected_residuals(const MatrixPart& Z, const MatrixPart& Y, const Matri
     projected += products_of(Z.middleRows(begin, rows), block.topRows(rows));
   }
   return projected;
+}
+
+Matrix residuals_of(const std::vector<MatrixPart>& Z, const MatrixPart& Y, const Matrix& theta) {
+  const Tiled regressors(Z);
+  const Residual run = residual();
+  Matrix left(Y.rows(), Y.cols());
+  for (Index j = 0; j < Y.cols(); ++j) {
+    run(Y.data() + j * Y.outerStride(), regressors.data(), theta.data() + j * theta.rows(), regressors.count(), 0,
+        Y.rows(), left.col(j).data());
+  }
+  return left;
+}
+
+Vector lagged_products(const Eigen::Ref<const Vector>& e, Index first, Index count) {
+  constexpr Index kLags = kTile * kTile;  // of a tile: left is shifted by 0, 1, 2 samples, right by 2, 5, 8 more
+  const Index last = first + count - 1, tiles = (count + kLags - 1) / kLags;
+  // So many products are there at every shift, those of the lags that fill the last tile included.
+  const Index whole = std::max<Index>(0, e.size() - (first + tiles * kLags - 1) - (kTile - 1));
+  const double* left[kTile];
+  std::vector<const double*> right;
+  for (Index i = 0; i < kTile; ++i) left[i] = e.data() + (whole > 0 ? i : 0);
+  for (Index j = 0; j < tiles * kTile; ++j) right.push_back(e.data() + (whole > 0 ? first + kTile * j + kTile - 1 : 0));
+  Matrix sums = Matrix::Zero(kTile, tiles * kTile);  // (i, j): of lag first + 3j + 2 − i, from sample i on
+  products_run()({left, kTile, right.data(), tiles * kTile, whole, false}, sums.data());
+  Vector all(count);
+  for (Index lag = first; lag <= last; ++lag) {
+    const Index j = (lag - first) / kTile, i = kTile - 1 - (lag - first) % kTile;
+    const Index pairs = e.size() - lag, before = std::min(i, pairs), end = std::min(i + whole, pairs);
+    all[lag - first] = sums(i, j) + e.head(before).dot(e.segment(lag, before)) +
+                       e.segment(end, pairs - end).dot(e.segment(end + lag, pairs - end));
+  }
+  return all;
 }
 
 }  // namespace mbk::numeric

@@ -20,4 +20,11 @@ using MatrixPart = Eigen::Ref<const Matrix>;
 /// Zᵀ(Y − Z θ), p×q, in one pass and without the residuals in memory.   @param theta p×q
 [[nodiscard]] Matrix projected_residuals(const MatrixPart& Z, const MatrixPart& Y, const Matrix& theta);
 
+/// Y − [Z …] θ, N×q.   @param Z side by side, p columns in all    @param theta p×q
+[[nodiscard]] Matrix residuals_of(const std::vector<MatrixPart>& Z, const MatrixPart& Y, const Matrix& theta);
+
+/// Σ_t e_t e_{t+l} for l = first … first + count − 1, each over all pairs that there are.
+/// @param first ≥ 0; first + count ≤ N
+[[nodiscard]] Vector lagged_products(const Eigen::Ref<const Vector>& e, Index first, Index count);
+
 }  // namespace mbk::numeric

@@ -26,6 +26,37 @@ TEST(ColumnProducts, AreThoseOfThePlainProductForAnyShape) {
   }
 }
 
+TEST(ColumnProducts, LeaveTheResidualsOfThePlainProduct) {
+  for (const Index rows : {1, 7, 8, 300, 1001}) {
+    const Matrix Z = Matrix::Random(rows + 3, 7), Y = Matrix::Random(rows + 3, 2), theta = Matrix::Random(7, 2);
+    const Matrix want = Y - Z * theta;
+    EXPECT_LE((residuals_of({Z}, Y, theta) - want).cwiseAbs().maxCoeff(), kTolerance);
+    const auto part = Z.topRows(rows);
+    EXPECT_LE((residuals_of({part.leftCols(3), part.rightCols(4)}, Y.topRows(rows), theta) - want.topRows(rows))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              kTolerance);
+  }
+}
+
+TEST(ColumnProducts, OfASignalWithItselfTakeEveryPairOnce) {
+  for (const Index samples : {1, 2, 5, 11, 12, 40, 257, 1003}) {
+    const Vector e = Vector::Random(samples);
+    for (const Index first : {Index{0}, Index{1}, samples / 2}) {
+      for (const Index count : {Index{1}, Index{2}, Index{9}, Index{10}, Index{64}, samples - first}) {
+        if (count < 1 || first + count > samples) continue;
+        const Vector sums = lagged_products(e, first, count);
+        ASSERT_EQ(sums.size(), count);
+        for (Index k = 0; k < count; ++k) {
+          const Index pairs = samples - first - k;
+          EXPECT_NEAR(sums[k], e.head(pairs).dot(e.tail(pairs)), kTolerance * static_cast<double>(samples))
+              << samples << " samples, lag " << first + k;
+        }
+      }
+    }
+  }
+}
+
 TEST(ColumnProducts, TakePartsOfMatrices) {
   const Matrix all = Matrix::Random(900, 8);
   const auto part = all.block(13, 2, 700, 4);

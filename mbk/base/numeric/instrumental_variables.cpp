@@ -11,17 +11,18 @@
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/long_run_covariances.h"
 
 namespace mbk::numeric {
 namespace {
 
 /// What makes the columns unit length; 0 columns stay.
-Vector scaling(const Matrix& columns) {
+Vector scaling(const MatrixPart& columns) {
   const Vector length = columns.colwise().norm();
   return (length.array() > 0.0).select(length.cwiseInverse(), 1.0);
 }
 
-Result<void> check(const Matrix& Z, const Matrix& R, const Matrix& Y) {
+Result<void> check(const MatrixPart& Z, const MatrixPart& R, const MatrixPart& Y) {
   if (Z.rows() != R.rows() || Z.rows() != Y.rows() || Z.cols() != R.cols()) {
     return bad_usage(fmt::format("regressors {}×{}, instruments {}×{} and outputs {}×{} do not go together", Z.rows(),
                                  Z.cols(), R.rows(), R.cols(), Y.rows(), Y.cols()));
@@ -35,7 +36,8 @@ Result<void> check(const Matrix& Z, const Matrix& R, const Matrix& Y) {
 
 }  // namespace
 
-Result<InstrumentalFit> fit_instrumental_variables(const Matrix& Z, const Matrix& R, const Matrix& Y, const Matrix& S) {
+Result<InstrumentalFit> fit_instrumental_variables(const MatrixPart& Z, const MatrixPart& R, const MatrixPart& Y,
+                                                   const Matrix& S) {
   if (auto ok = check(Z, R, Y); !ok) return tl::unexpected(ok.error());
   const Index p = Z.cols(), q = Y.cols();
   InstrumentalFit fit;
@@ -78,7 +80,7 @@ Matrix newey_west_covariance(const InstrumentalFit& fit, const Matrix& R, const 
   return fit.inverse * omega * fit.inverse.transpose();
 }
 
-Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<RowRange>& ranges, Index lags) {
+Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std::vector<RowRange>& ranges, Index lags) {
   const Index m = Z.cols() - 1, excluded = R.cols() - 1;
   const auto freedom = static_cast<double>(excluded - m + 1);
   // All that is needed but the residuals follows from products of columns, each scaled to unit length.
@@ -92,7 +94,13 @@ Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<
   const Matrix inverse = instruments.inverse();
   const Matrix predicted = RZ.transpose() * inverse * RZ;  // products of R (RᵀR)⁻¹RᵀZ
   constexpr double kDependent = 1e-11;                     // of products that were added up
-  Vector strength = Vector::Zero(m);
+  // What of each regressor the others do not explain, and the instruments' part in that.
+  struct Conditional {
+    Index regressor;
+    Vector coefficients;  // of the instruments
+    Vector taken;         // of [Z R], from nothing to what is left
+  };
+  std::vector<Conditional> all;
   for (Index j = 0; j < m; ++j) {
     std::vector<Index> others;
     for (Index i = 0; i <= m; ++i) {
@@ -102,18 +110,28 @@ Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<
     if (second.rank() < m) continue;
     Vector own = Vector::Unit(Z.cols(), j);  // z_j without what the others explain of it
     own(others) = -second.solve(predicted(others, j));
-    const Vector coefficients = inverse * (RZ * own);
-    const Vector of_Z = unit_Z.cwiseProduct(own), of_R = unit_R.cwiseProduct(coefficients);
-    Matrix omega = long_run_covariance(R.cols(), ranges, lags, [&](const RowRange& range) {
-      const auto rows = R.middleRows(range.begin, range.size());
-      const Vector left = Z.middleRows(range.begin, range.size()) * of_Z - rows * of_R;
-      return Matrix(rows.array().colwise() * left.array());
-    });
-    omega = unit_R.asDiagonal() * omega * unit_R.asDiagonal();
+    Conditional one{j, inverse * (RZ * own), Vector(Z.cols() + R.cols())};
+    one.taken << -unit_Z.cwiseProduct(own), unit_R.cwiseProduct(one.coefficients);
+    all.push_back(std::move(one));
+  }
+  Vector strength = Vector::Zero(m);
+  const auto kinds = static_cast<Index>(all.size());
+  const std::vector<Matrix> omegas = long_run_covariances(kinds, R.cols(), ranges, lags, [&](const RowRange& range) {
+    const auto rows = R.middleRows(range.begin, range.size());
+    Matrix scores(range.size(), kinds * R.cols());
+    for (Index kind = 0; kind < kinds; ++kind) {
+      const Vector left = residuals_of({Z.middleRows(range.begin, range.size()), rows}, Vector::Zero(range.size()),
+                                       all[static_cast<std::size_t>(kind)].taken);
+      scores.middleCols(kind * R.cols(), R.cols()) = rows.array().colwise() * left.array();
+    }
+    return scores;
+  });
+  for (std::size_t kind = 0; kind < all.size(); ++kind) {
+    const Matrix omega = unit_R.asDiagonal() * omegas[kind] * unit_R.asDiagonal();
     const Matrix V = (inverse * omega * inverse).topLeftCorner(excluded, excluded);
-    const Vector slope = coefficients.head(excluded);
+    const Vector slope = all[kind].coefficients.head(excluded);
     const double wald = slope.dot(CompleteOrthogonal(V).solve(slope));
-    strength[j] = std::isfinite(wald) && wald > 0.0 ? wald / freedom : 0.0;
+    strength[all[kind].regressor] = std::isfinite(wald) && wald > 0.0 ? wald / freedom : 0.0;
   }
   return strength;
 }

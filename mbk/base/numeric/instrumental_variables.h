@@ -20,8 +20,8 @@ struct InstrumentalFit {
 
 /// @param Z N×p    @param R N×p    @param Y N×q    @param S pq×k, full column rank; empty = nothing tied
 /// @returns the fit; where rank < p the coefficients are NaN.   @fails N < p; shapes differ; a value is not finite.
-[[nodiscard]] Result<InstrumentalFit> fit_instrumental_variables(const Matrix& Z, const Matrix& R, const Matrix& Y,
-                                                                 const Matrix& S = {});
+[[nodiscard]] Result<InstrumentalFit> fit_instrumental_variables(const MatrixPart& Z, const MatrixPart& R,
+                                                                 const MatrixPart& Y, const Matrix& S = {});
 
 /// Covariance of φ that holds for coloured and correlated residuals: A Ω Aᵀ, Ω the long-run covariance of the scores of
 /// R (least_squares.h).
@@ -35,7 +35,7 @@ struct InstrumentalFit {
 /// towards least squares and its intervals mean little.
 /// @param Z N×p, R N×r with r ≥ p; the last column of both is the constant
 /// @returns p − 1 statistics; 0 where the instruments cannot tell the regressor from the others
-[[nodiscard]] Vector first_stage_strength(const Matrix& Z, const Matrix& R, const std::vector<RowRange>& ranges,
+[[nodiscard]] Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std::vector<RowRange>& ranges,
                                           Index lags);
 
 }  // namespace mbk::numeric

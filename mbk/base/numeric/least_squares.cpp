@@ -10,8 +10,8 @@
 #include <limits>
 #include <vector>
 
-#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/long_run_covariances.h"
 
 namespace mbk::numeric {
 
@@ -22,7 +22,7 @@ struct Triangle {
   Matrix R, Qty;
 };
 
-Triangle reduce_by_householder(const Matrix& Z, const Matrix& Y, const Vector& length) {
+Triangle reduce_by_householder(const MatrixPart& Z, const MatrixPart& Y, const Vector& length) {
   const Index p = Z.cols(), q = Y.cols();
   Matrix work(Z.rows(), p + q);
   work << Z * length.cwiseInverse().asDiagonal(), Y;
@@ -32,7 +32,7 @@ Triangle reduce_by_householder(const Matrix& Z, const Matrix& Y, const Vector& l
 
 /// By the Cholesky factor of the scaled ZᵀZ, with one step of refinement from the residuals (corrected seminormal
 /// equations, Björck 1987): as exact as Householder's while the condition is moderate, in a third of the time.
-Triangle reduce(const Matrix& Z, const Matrix& Y, const Matrix& gram, const Vector& length) {
+Triangle reduce(const MatrixPart& Z, const MatrixPart& Y, const Matrix& gram, const Vector& length) {
   constexpr double kModerate = 1e-6;  // squared reciprocal of a condition of 1000
   const Index p = Z.cols(), q = Y.cols();
   const Vector inverse = length.cwiseInverse();
@@ -48,7 +48,7 @@ Triangle reduce(const Matrix& Z, const Matrix& Y, const Matrix& gram, const Vect
 
 }  // namespace
 
-Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matrix& S) {
+Result<LinearFit> fit_least_squares(const MatrixPart& Z, const MatrixPart& Y, const Matrix& S) {
   const Index n = Z.rows(), p = Z.cols(), q = Y.cols();
   if (Y.rows() != n || (S.size() > 0 && S.rows() != p * q)) {
     return bad_data(
@@ -112,15 +112,16 @@ void move_window(const Matrix& scores, Index first, Index rows, Index before, Ve
 
 }  // namespace
 
-Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
-                           const std::function<Matrix(const RowRange&)>& scores_of) {
-  Matrix omega = Matrix::Zero(k, k);
-  constexpr Index kAtLeast = 256;
-  const Index before = lags + 1, block = std::max(kAtLeast, before);
-  Matrix scores(before + block, k), windows(block, k);  // scores: those that are to leave the window, and a block
+std::vector<Matrix> long_run_covariances(Index kinds, Index k, const std::vector<RowRange>& ranges, Index lags,
+                                         const std::function<Matrix(const RowRange&)>& scores_of) {
+  std::vector<Matrix> omegas(static_cast<std::size_t>(kinds), Matrix::Zero(k, k));
+  constexpr Index kAtLeast = 512;
+  const Index columns = kinds * k, before = lags + 1, block = std::max(kAtLeast, before);
+  // scores: those that are to leave the window, and a block
+  Matrix scores(before + block, columns), windows(block, columns);
   for (const RowRange& range : ranges) {
     scores.topRows(before).setZero();
-    Vector sums = Vector::Zero(k);
+    Vector sums = Vector::Zero(columns);
     const Index end = range.size() + lags;  // the window [t − lags, t], clipped to the range
     for (Index t = 0; t < end; t += block) {
       const Index rows = std::min(block, end - t), given = std::clamp<Index>(range.size() - t, 0, rows);
@@ -129,16 +130,26 @@ Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index l
       }
       scores.middleRows(before + given, rows - given).setZero();
       Index column = 0;
-      for (; column + 4 <= k; column += 4) move_window<4>(scores, column, rows, before, sums, windows);
-      for (; column < k; ++column) move_window<1>(scores, column, rows, before, sums, windows);
-      omega += gram_of({windows.topRows(rows)});
+      for (; column + 7 <= columns; column += 7) move_window<7>(scores, column, rows, before, sums, windows);
+      for (; column + 4 <= columns; column += 4) move_window<4>(scores, column, rows, before, sums, windows);
+      for (; column < columns; ++column) move_window<1>(scores, column, rows, before, sums, windows);
+      for (Index kind = 0; kind < kinds; ++kind) {
+        omegas[static_cast<std::size_t>(kind)] += gram_of({windows.block(0, kind * k, rows, k)});
+      }
       if (rows == block) scores.topRows(before) = scores.middleRows(block, before).eval();
     }
   }
-  return omega / static_cast<double>(before);
+  for (Matrix& omega : omegas) omega /= static_cast<double>(before);
+  return omegas;
 }
 
-Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix& structure, const RowRange& range) {
+Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
+                           const std::function<Matrix(const RowRange&)>& scores_of) {
+  return long_run_covariances(1, k, ranges, lags, scores_of).front();
+}
+
+Matrix regression_scores(const MatrixPart& R, const MatrixPart& residuals, const Matrix& structure,
+                         const RowRange& range) {
   const Index p = R.cols(), q = residuals.cols(), n = range.size();
   Matrix full(n, p * q);
   for (Index j = 0; j < q; ++j) {
@@ -146,7 +157,8 @@ Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix&
         R.middleRows(range.begin, n).array().colwise() * residuals.col(j).segment(range.begin, n).array();
   }
   const bool tied = structure.rows() != structure.cols() || !structure.isIdentity(0.0);
-  return tied ? Matrix(full * structure) : full;
+  if (tied) return full * structure;
+  return full;
 }
 
 Matrix newey_west_covariance(const LinearFit& fit, const Matrix& Z, const Matrix& residuals,

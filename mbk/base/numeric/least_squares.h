@@ -5,6 +5,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
+#include "mbk/base/numeric/column_products.h"
 
 namespace mbk::numeric {
 
@@ -31,7 +32,7 @@ struct LinearFit {
 /// @param Z N×p    @param Y N×q    @param S pq×k, full column rank; empty = nothing tied
 /// @returns the fit; where rank < p (singular values below p·ε of the largest) the coefficients are those of
 /// smallest norm and must not be used.   @fails N < p; shapes differ; a value is not finite (first bad row named).
-[[nodiscard]] Result<LinearFit> fit_least_squares(const Matrix& Z, const Matrix& Y, const Matrix& S = {});
+[[nodiscard]] Result<LinearFit> fit_least_squares(const MatrixPart& Z, const MatrixPart& Y, const Matrix& S = {});
 
 /// Long-run covariance of scores, Ω = Σ_l (1 − |l|/(L + 1)) Σ_t s_t s_{t+l}ᵀ (Newey & West 1987). The weights are the
 /// autocorrelation of a rectangle, so that Ω = Σ_t g_t g_tᵀ/(L + 1) with g the sums of s over L + 1 consecutive
@@ -43,7 +44,7 @@ struct LinearFit {
 
 /// s_t = Sᵀ(e_t ⊗ r_t) of the rows of a range, n×k.
 /// @param R N×p, regressors or instruments    @param residuals N×q    @param structure S, pq×k
-[[nodiscard]] Matrix regression_scores(const Matrix& R, const Matrix& residuals, const Matrix& structure,
+[[nodiscard]] Matrix regression_scores(const MatrixPart& R, const MatrixPart& residuals, const Matrix& structure,
                                        const RowRange& range);
 
 /// Covariance of φ that holds for coloured and correlated residuals: V = A Ω A with A = inverse_gram and Ω the long-run

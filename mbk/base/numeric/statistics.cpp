@@ -17,12 +17,38 @@
 namespace mbk::numeric {
 namespace {
 
-/// The value in the middle, behind which the greater ones then stand; NaN where there are none.
-double upper_median_of(std::vector<double>& values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + std::ssize(values) / 2;
+/// The values that stand in the middle of sorted ones, at n/2 − 1 and n/2.
+struct Middle {
+  double lower, upper;
+};
+
+Middle middle_by_order(std::span<double> values, std::size_t upper) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(upper);
   std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return {upper > 0 ? *std::max_element(values.begin(), middle) : *middle, *middle};
+}
+
+/// NaN where there are no values, which change their places. Of many, two of a sample nearly always enclose the middle,
+/// and then few are left to be put in order.
+Middle middle_of(std::vector<double>& values) {
+  constexpr std::size_t kMany = 4096, kSample = 255, kAround = 24;
+  if (values.empty()) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  const std::size_t upper = values.size() / 2;
+  if (values.size() < kMany) return middle_by_order(values, upper);
+  std::array<double, kSample> sample{};
+  for (std::size_t k = 0; k < kSample; ++k) sample[k] = values[k * (values.size() / kSample)];
+  std::ranges::sort(sample);
+  const double low = sample[kSample / 2 - kAround], high = sample[kSample / 2 + kAround];
+  std::vector<double> between(values.size());
+  std::size_t below = 0, count = 0;
+  for (const double value : values) {
+    between[count] = value;
+    below += value < low ? 1 : 0;
+    count += value >= low && value <= high ? 1 : 0;
+  }
+  if (upper < below + 1 || upper >= below + count) return middle_by_order(values, upper);
+  if (low == high) return {low, low};
+  return middle_by_order(std::span(between).first(count), upper - below);
 }
 
 }  // namespace
@@ -86,10 +112,8 @@ double quantile(const Eigen::Ref<const Vector>& sorted, double p) {
 }
 
 double median(std::vector<double> values) {
-  const double upper = upper_median_of(values);
-  if (values.size() % 2 == 1 || values.empty()) return upper;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  return 0.5 * (upper + *std::max_element(values.begin(), middle));
+  const auto [lower, upper] = middle_of(values);
+  return values.size() % 2 == 1 ? upper : 0.5 * (lower + upper);
 }
 
 double median_of_many(Index count, const EachBlock& each_block) {
@@ -133,7 +157,7 @@ double median_of_many(Index count, const EachBlock& each_block) {
 }
 
 double upper_median(std::vector<double> values) {
-  return upper_median_of(values);
+  return middle_of(values).upper;
 }
 
 std::pair<double, double> binomial_interval(int successes, int trials, double confidence) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -70,6 +71,29 @@ TEST(Statistics, TheMedianIsInTheMiddle) {
   EXPECT_EQ(median({7}), 7.0);
   EXPECT_TRUE(std::isnan(median({})));
   EXPECT_TRUE(std::isnan(upper_median({})));
+}
+
+TEST(Statistics, TheMedianOfManyIsThatOfSortedValues) {
+  Random random(5);
+  for (const std::size_t count : {4095u, 4096u, 4097u, 5000u, 20001u}) {
+    // Far apart, many alike, one beside few others, and in an order that misleads a sample.
+    for (const double grain : {0.0, 0.1, 3.0, 100.0}) {
+      std::vector<double> values(count);
+      for (double& value : values) {
+        const double drawn = 10.0 * random.normal();
+        value = grain > 0.0 ? grain * std::round(drawn / grain) : drawn;
+      }
+      std::vector<double> misleading = values;
+      for (std::size_t k = 0; k < count; k += count / 255) misleading[k] = 1e6 + static_cast<double>(k);
+      for (const std::vector<double>& given : {values, misleading}) {
+        std::vector<double> sorted = given;
+        std::ranges::sort(sorted);
+        const double upper = sorted[count / 2], lower = sorted[count / 2 - 1];
+        EXPECT_EQ(upper_median(given), upper) << count << " values, " << grain;
+        EXPECT_EQ(median(given), count % 2 == 1 ? upper : 0.5 * (lower + upper)) << count << " values, " << grain;
+      }
+    }
+  }
 }
 
 TEST(Statistics, TheMedianOfManyIsTheSame) {

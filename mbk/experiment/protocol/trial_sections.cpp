@@ -21,6 +21,7 @@ using perturbation::MultisinePlan;
 using perturbation::Plan;
 using perturbation::PulsePlan;
 using perturbation::Quantity;
+using perturbation::RampPlan;
 using perturbation::RandomBinaryPlan;
 using perturbation::RestPlan;
 using perturbation::Space;
@@ -138,6 +139,23 @@ RandomBinaryPlan read_random_binary(const Section& s, const Size& size) {
   return plan;
 }
 
+RampPlan read_ramps(const Section& s, const Size& size) {
+  RampPlan plan;
+  perturbation::RampAndHold::Options& r = plan.ramps;
+  plan.space = size.unit.space;
+  r.amplitude = size.value;
+  r.ramp = s.number("ramp_s", r.ramp, above(0));
+  r.hold = s.number("hold_s", r.hold, above(0));
+  r.way_back = s.number("return_s", r.way_back, above(0));
+  r.directions = s.integer("directions", r.directions, 1, 360);
+  r.repetitions = s.integer("repetitions", r.repetitions, 1, 1000);
+  r.shortest_pause = s.number("shortest_pause_s", r.shortest_pause, at_least(0));
+  r.longest_pause = s.number("longest_pause_s", r.longest_pause, at_least(0));
+  r.quiet = s.number("quiet_s", r.quiet, at_least(0));
+  plan.tail = s.number("tail_s", plan.tail, at_least(0));
+  return plan;
+}
+
 /// A signal has limits in its own unit.
 perturbation::Limits read_limits(const Section& s, const SizeUnit& unit) {
   perturbation::Limits limits;
@@ -192,7 +210,7 @@ control::Mode read_control(const Section& s) {
 }
 
 Plan read_perturbation(const Section& s, Machine machine) {
-  enum class Kind { none, multisine, pulses, random_binary };
+  enum class Kind { none, multisine, pulses, random_binary, ramp_and_hold };
   const bool one_axis = machine == Machine::one_axis;
   const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, at_hand = {kMillimetres, kNewtons},
                               of_sines = {kDegrees, kMillimetres, kNewtons};
@@ -204,6 +222,7 @@ Plan read_perturbation(const Section& s, Machine machine) {
   switch (s.required_choice<Kind>("kind", {{"multisine", Kind::multisine},
                                            {"pulses", Kind::pulses},
                                            {"random_binary", Kind::random_binary},
+                                           {"ramp_and_hold", Kind::ramp_and_hold},
                                            {"none", Kind::none}})) {
     case Kind::none:
       plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
@@ -223,6 +242,13 @@ Plan read_perturbation(const Section& s, Machine machine) {
     case Kind::random_binary: {
       const Size size = amplitude(kNewtons, RandomBinaryPlan{}.sequence.amplitude);
       plan.kind = read_random_binary(s, size);
+      unit = size.unit;
+      break;
+    }
+    case Kind::ramp_and_hold: {
+      const SizeUnit displaced = one_axis ? kDegrees : kMillimetres;
+      const Size size = read_size(s, "amplitude", {displaced}, {kMillimetres, RampPlan{}.ramps.amplitude});
+      plan.kind = read_ramps(s, size);
       unit = size.unit;
       break;
     }

@@ -13,7 +13,8 @@ using testing::Pair;
 
 Contents with_events(Index times, Index values, std::size_t names) {
   Contents contents;
-  contents.arrays = {{"events.time", Vector::LinSpaced(times, 1.0, 2.0)}, {"events.value", Vector::Zero(values)}};
+  contents.arrays = {{"events.time", Matrix(Vector::LinSpaced(times, 1.0, 2.0))},
+                     {"events.value", Matrix(Vector::Zero(values))}};
   contents.texts = {{"events.name", std::vector<std::string>(names, "onset")}};
   return contents;
 }

@@ -87,9 +87,14 @@ bool is_matrix(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) > 1;
 }
 
-/// NaN throughout; most rows say otherwise at once.
-bool not_recorded(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row) {
-  return std::all_of(row.begin(), row.end(), [](double value) { return std::isnan(value); });
+/// Rows that are NaN throughout, column by column, as they stand in memory.
+std::vector<Index> rows_not_recorded(const SharedMatrix& values) {
+  std::vector<Index> rows;
+  for (Index row = 0; row < values.rows(); ++row) rows.push_back(row);
+  for (Index column = 0; column < values.cols() && !rows.empty(); ++column) {
+    std::erase_if(rows, [&](Index row) { return !std::isnan(values(row, column)); });
+  }
+  return rows;
 }
 
 Line vector_of(const Array& array) {
@@ -242,10 +247,11 @@ class Assembler {
 
   Result<void> take_logs(const Array& logs) {
     std::vector<std::string> absent;
+    const std::vector<Index> not_recorded = rows_not_recorded(logs.values);
     for (const ChannelKind& kind : channel_kinds()) {
       if (kind.logs_row == 0 || !is_requested(kind)) continue;
       const Line line{&logs, kind.logs_row - 1, true};
-      if (kind.name != "time" && not_recorded(logs.values.row(line.index))) {
+      if (kind.name != "time" && std::ranges::binary_search(not_recorded, line.index)) {
         absent.emplace_back(kind.name);
       } else {
         signals_.push_back(

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mbk/base/core/linear_algebra.h"
+#include "mbk/files/recording/shared_matrix.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::recording {
@@ -12,7 +12,7 @@ namespace mbk::recording {
 /// Numbers of a file under the name that they have there.
 struct Array {
   std::string name;  ///< CSV column, MAT variable or "struct.field", HDF5 path; "" for a column without a header
-  Matrix values;
+  SharedMatrix values;
   std::string unit = {};  ///< what the file says of it beside its name: "mm"; "" where it says nothing
   bool signal = false;    ///< the file says that it is one, even with a single sample
   double rate_hz = 0.0;   ///< of its samples, as the file says it; 0 where it does not

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <optional>
@@ -94,8 +96,38 @@ std::string_view trimmed(std::string_view cell) {
   return cell;
 }
 
+/// Digits with at most a sign and a point, so few that one division gives their value to rounding (Clinger 1990): what
+/// most loggers write. Nothing where a cell holds anything else.
+std::optional<double> plain_number(std::string_view cell) {
+  constexpr std::uint64_t kExact = std::uint64_t{1} << 53;
+  constexpr std::size_t kLongest = 17;  // a point and 16 digits
+  constexpr std::array kPowers = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7, 1e8,
+                                  1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16};
+  const bool negative = cell.starts_with('-');
+  if (negative) cell.remove_prefix(1);
+  if (cell.size() > kLongest) return std::nullopt;
+  std::uint64_t digits = 0;
+  std::size_t point = cell.size();
+  for (std::size_t k = 0; k < cell.size(); ++k) {
+    const auto digit = static_cast<unsigned>(cell[k] - '0');
+    if (digit <= 9) {
+      digits = 10 * digits + digit;
+    } else if (cell[k] == '.' && point == cell.size()) {
+      point = k;
+    } else {
+      return std::nullopt;
+    }
+  }
+  const std::size_t decimals = point == cell.size() ? 0 : cell.size() - point - 1;
+  const bool any = decimals > 0 || point > 0;
+  if (!any || digits > kExact || decimals >= kPowers.size()) return std::nullopt;
+  const double value = static_cast<double>(digits) / kPowers[decimals];
+  return negative ? -value : value;
+}
+
 /// The number in a cell; NaN where it is empty; nothing where it is not a number.
 std::optional<double> number(std::string_view cell) {
+  if (const auto plain = plain_number(cell)) return plain;
   cell = trimmed(cell);
   if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
   if (cell.front() == '+') {

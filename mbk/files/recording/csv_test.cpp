@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mbk/files/recording/file_bytes.h"
 #include "mbk/files/recording/read.h"
@@ -66,6 +69,43 @@ TEST(DecodeCsv, ReadsEmptyCellsAsNaN) {
 
 TEST(DecodeCsv, ReadsOneNumberPerLine) {
   EXPECT_EQ(values_of("1\n2\n3\n"), Vector::LinSpaced(3, 1, 3));
+}
+
+TEST(DecodeCsv, ReadsEveryNumberAsTheCLibraryDoes) {
+  std::vector<std::string> cells = {"0",
+                                    "-0",
+                                    "5.",
+                                    "-.5",
+                                    "0.1",
+                                    "007.50",
+                                    "0.3",
+                                    "123456.789",
+                                    "-99999.99999",
+                                    "0.000000000000001",
+                                    "1234567890123456",
+                                    "9007199254740991",
+                                    "9007199254740992",
+                                    "9007199254740993",
+                                    "9007199254740.993",
+                                    "0.9007199254740993",
+                                    "0.28412345678901234",
+                                    "1.5e-3"};
+  std::mt19937 random(1);  // NOLINT(cert-msc32-c, cert-msc51-cpp): the same numbers every time
+  for (int k = 0; k < 2000; ++k) {
+    const auto digits = static_cast<std::size_t>(1 + random() % 17);
+    std::string cell;
+    while (cell.size() < digits) cell += static_cast<char>('0' + random() % 10);
+    cell.insert(random() % (cell.size() + 1), ".");
+    cells.push_back((random() % 2 == 0 ? "-" : "") + cell);
+  }
+  for (const std::string& cell : cells) {
+    const double want = std::strtod(cell.c_str(), nullptr), found = values_of(cell + "\n1\n")(0, 0);
+    EXPECT_EQ(found, want) << cell;
+    EXPECT_EQ(std::signbit(found), std::signbit(want)) << cell;
+  }
+  for (const char* none : {".", "-", "-.", "1.2.3", "1-2", "--1", "1 2"}) {
+    EXPECT_FALSE(csv(std::string("a,b\n1,") + none + "\n2,3\n")) << none;
+  }
 }
 
 TEST(DecodeCsv, ReadsNumbersTooSmallForADouble) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "mbk/files/recording/byte_view.h"
 
@@ -16,14 +18,15 @@ Index side(std::uint64_t length) {
 
 }  // namespace
 
-Matrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
-  Matrix matrix = numbers.values.reshaped(side(rows), side(columns));
+SharedMatrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
+  const auto kept = std::make_shared<Vector>(std::move(numbers.values));
   numbers.values.resize(0);
-  return matrix;
+  return {kept->data(), side(rows), side(columns), kept};
 }
 
-Matrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
-  Matrix matrix = numbers.values.reshaped<Eigen::RowMajor>(side(rows), side(columns));
+SharedMatrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
+  if (rows == 1 || columns == 1) return take_columns(numbers, rows, columns);
+  SharedMatrix matrix = Matrix(numbers.values.reshaped<Eigen::RowMajor>(side(rows), side(columns)));
   numbers.values.resize(0);
   return matrix;
 }

@@ -25,12 +25,12 @@ void for_each_member(Group& group, const Use& use) {
   }
 }
 
-/// Moves numbers out of the tree into a matrix of that many rows and columns, column by column: the tree keeps none, so
+/// Takes numbers out of the tree as a matrix of that many rows and columns, column by column: the tree keeps none, so
 /// that a large recording is not in memory twice.
-[[nodiscard]] Matrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
+[[nodiscard]] SharedMatrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
 
 /// The same, row by row.
-[[nodiscard]] Matrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
+[[nodiscard]] SharedMatrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
 
 /// The text of an attribute that holds one, in UTF-8 without control characters; "" where there is none.
 [[nodiscard]] std::string text_attribute(const hdf5::Attributes& attributes, std::string_view name);

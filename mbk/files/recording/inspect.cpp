@@ -23,9 +23,14 @@ constexpr Index kRunLength = 5;
 constexpr Index kRuns = 3;
 constexpr double kClippedFraction = 0.002;
 
+/// By a sum, which takes several at a time.
+bool all_finite(const Eigen::Ref<const Vector>& values) {
+  return (values.array() - values.array()).sum() == 0.0;
+}
+
 void find_non_finite(const std::string& name, const Vector& values, std::vector<NonFinite>& found) {
+  if (all_finite(values)) return;
   const Index first = first_non_finite(values);
-  if (first < 0) return;
   found.push_back({name, values.size() - values.array().isFinite().cast<Index>().sum(), first});
 }
 
@@ -99,16 +104,16 @@ template <class From>
 numeric::EachBlock each_interval(const Vector& time, const From& from) {
   return [&time, from](const std::function<void(std::span<const double>)>& use) {
     constexpr Index kBlock = 1 << 17;
-    std::vector<double> block;
+    std::vector<double> block(static_cast<std::size_t>(std::min(kBlock, time.size())));
     for (Index begin = 1; begin < time.size(); begin += kBlock) {
       const Index end = std::min(time.size(), begin + kBlock);
-      block.clear();
-      block.reserve(static_cast<std::size_t>(end - begin));
+      std::size_t count = 0;
       for (Index i = begin; i < end; ++i) {
         const double interval = time[i] - time[i - 1];
-        if (interval > 0.0 && std::isfinite(interval)) block.push_back(from(interval));
+        block[count] = from(interval);
+        count += interval > 0.0 && interval <= std::numeric_limits<double>::max() ? 1 : 0;
       }
-      use(block);
+      use(std::span(block).first(count));
     }
   };
 }
@@ -174,7 +179,9 @@ bool can_clip(std::string_view name) {
 
 /// Of finite values between facts.min and facts.max.
 void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& facts) {
-  if ((values.array() == facts.min).count() + (values.array() == facts.max).count() < kRunLength) return;
+  Index at_extremes = 0;
+  for (const double value : values) at_extremes += (value == facts.min ? 1 : 0) + (value == facts.max ? 1 : 0);
+  if (at_extremes < kRunLength) return;
   Index runs = 0;
   Index covered = 0;
   for (Index begin = 0; begin < values.size();) {
@@ -195,7 +202,7 @@ void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& fact
 /// Of those of its values.
 ChannelFacts inspect_channel(const Channel& channel, const Eigen::Ref<const Vector>& values) {
   ChannelFacts facts{channel.name, channel.unit, kNaN, kNaN};
-  if (values.size() > 0 && first_non_finite(values) < 0) {
+  if (values.size() > 0 && all_finite(values)) {
     facts.min = values.minCoeff();
     facts.max = values.maxCoeff();
     facts.constant = facts.min == facts.max;

@@ -4,7 +4,10 @@
 
 #include <array>
 #include <bit>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "mbk/files/recording/byte_view.h"
 #include "mbk/files/recording/inflate.h"
@@ -127,6 +130,8 @@ struct Header {
 
 class Decoder {
  public:
+  /// @param bytes  of the file, where matrices may stand in them
+  explicit Decoder(std::shared_ptr<Buffer> bytes) : bytes_(std::move(bytes)) {}
   Contents contents;
 
   Result<void> top_level(Elements elements) {
@@ -149,14 +154,17 @@ class Decoder {
     if (element.type != kCompressed) return damaged(fmt::format("element type {} is not a variable", element.type));
     contents.format = "MAT v7";
     const bool swapped = element.data.swapped;
-    const auto inflated =
+    auto inflated =
         inflate_exactly(element.data.bytes, [swapped](std::span<const std::byte, 8> tag) -> Result<std::uint64_t> {
           const ByteView view{tag, swapped};
           if (view.at<std::uint32_t>(0) != kMatrix) return damaged("compressed data does not hold a variable");
           return std::uint64_t{view.at<std::uint32_t>(4)} + 8;
         });
     if (!inflated) return tl::unexpected(inflated.error());
-    return matrix({inflated->bytes().subspan(8), swapped}, "", 0);
+    const std::shared_ptr<Buffer> file = std::exchange(bytes_, std::make_shared<Buffer>(std::move(*inflated)));
+    auto done = matrix({bytes_->bytes().subspan(8), swapped}, "", 0);
+    bytes_ = file;
+    return done;
   }
 
   /// One matrix element; `outer` is the name of a field, or empty for a variable.
@@ -320,9 +328,22 @@ class Decoder {
     if (header.dimensions.size() != 2) return aside(header, "an array of more than two dimensions");
     Array& array = contents.arrays.emplace_back();
     array.name = header.name;
-    array.values.resize(static_cast<Index>(header.dimensions[0]), static_cast<Index>(header.dimensions[1]));
+    const auto rows = static_cast<Index>(header.dimensions[0]), columns = static_cast<Index>(header.dimensions[1]);
+    if (double* const at = where_they_stand(*real); at != nullptr) {
+      array.values = SharedMatrix(at, rows, columns, bytes_);
+      return {};
+    }
+    array.values.resize(rows, columns);
     copy_doubles(*real, static_cast<std::size_t>(*count), array.values.data());
     return {};
+  }
+
+  /// Numbers that are doubles of this processor already, and so many that they would keep few other bytes in memory;
+  /// nullptr where they have to be copied.
+  [[nodiscard]] double* where_they_stand(const Element& real) const {
+    if (!bytes_ || real.type != kDouble || real.data.swapped || 2 * real.data.size() < bytes_->size) return nullptr;
+    std::byte* const at = bytes_->data.get() + (real.data.bytes.data() - bytes_->data.get());
+    return reinterpret_cast<std::uintptr_t>(at) % alignof(double) == 0 ? reinterpret_cast<double*>(at) : nullptr;
   }
 
   Result<void> structure(const Header& header, Elements& elements, int depth) {
@@ -353,21 +374,31 @@ class Decoder {
     return {};
   }
 
-  std::string name_;  ///< of the variable at hand, for messages
+  std::string name_;               ///< of the variable at hand, for messages
+  std::shared_ptr<Buffer> bytes_;  ///< in which it stands: of the file, or inflated
 };
 
-}  // namespace
-
-Result<Contents> decode_mat_level5(std::span<const std::byte> file) {
+Result<Contents> decoded(std::span<const std::byte> file, std::shared_ptr<Buffer> bytes) {
   if (file.size() < kHeaderSize) {
     return damaged(fmt::format("the MAT header has {} of {} bytes", file.size(), kHeaderSize));
   }
   const bool little = file[126] == std::byte{'I'};
   const ByteView view{file, little != (std::endian::native == std::endian::little)};
-  Decoder decoder;
+  Decoder decoder(std::move(bytes));
   decoder.contents.format = "MAT v5";
   if (auto done = decoder.top_level({view, kHeaderSize}); !done) return tl::unexpected(done.error());
   return std::move(decoder.contents);
+}
+
+}  // namespace
+
+Result<Contents> decode_mat_level5(std::span<const std::byte> file) {
+  return decoded(file, nullptr);
+}
+
+Result<Contents> decode_mat_level5(std::shared_ptr<Buffer> file) {
+  const std::span<const std::byte> bytes = file->bytes();
+  return decoded(bytes, std::move(file));
 }
 
 }  // namespace mbk::recording

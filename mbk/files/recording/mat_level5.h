@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 
 #include "mbk/base/core/result.h"
 #include "mbk/files/recording/contents.h"
+#include "mbk/files/recording/file_bytes.h"
 
 namespace mbk::recording {
 
@@ -14,5 +16,7 @@ namespace mbk::recording {
 /// dimensions, texts and cell arrays of texts come out, also from structures; everything else is named in a note.
 /// @fails  a tag, checksum, size or dimension contradicts the bytes; the file ends within an element.
 [[nodiscard]] Result<Contents> decode_mat_level5(std::span<const std::byte> file);
+/// The same, where doubles are not copied: matrices stand in the bytes of the file, or in those that were inflated.
+[[nodiscard]] Result<Contents> decode_mat_level5(std::shared_ptr<Buffer> file);
 
 }  // namespace mbk::recording

@@ -3,7 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
 #include <random>
+#include <span>
+#include <utility>
 
 #include "mbk/files/recording/test_files.h"
 
@@ -22,8 +28,49 @@ using testing::HasSubstr;
 
 const Matrix kValues = (Matrix(2, 3) << 1, 2, 3, 4, 5, 6.5).finished();
 
+/// By a copy of the numbers; where they stand in the bytes they must be the same, and stay when the file is let go.
 Result<Contents> decode(std::string_view bytes) {
-  return decode_mat_level5(std::as_bytes(std::span(bytes)));
+  auto copied = decode_mat_level5(std::as_bytes(std::span(bytes)));
+  auto file = std::make_shared<Buffer>(bytes.size());
+  std::memcpy(file->data.get(), bytes.data(), bytes.size());
+  const auto standing = decode_mat_level5(std::move(file));
+  EXPECT_EQ(standing.has_value(), copied.has_value());
+  if (!standing || !copied) {
+    if (!standing && !copied) {
+      EXPECT_EQ(standing.error().line(), copied.error().line());
+    }
+    return copied;
+  }
+  EXPECT_EQ(standing->format, copied->format);
+  EXPECT_EQ(standing->notes, copied->notes);
+  EXPECT_EQ(standing->arrays.size(), copied->arrays.size());
+  for (std::size_t k = 0; k < std::min(standing->arrays.size(), copied->arrays.size()); ++k) {
+    const SharedMatrix &a = standing->arrays[k].values, &b = copied->arrays[k].values;
+    EXPECT_TRUE(a.rows() == b.rows() && a.cols() == b.cols());
+    EXPECT_TRUE(a.rows() != b.rows() || a.cols() != b.cols() ||
+                std::equal(a.data(), a.data() + a.size(), b.data(),
+                           [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); }));
+  }
+  return copied;
+}
+
+TEST(SharedMatrix, KeepsWhatItsNumbersStandIn) {
+  auto numbers = std::make_shared<Vector>(Vector::LinSpaced(6, 1.0, 6.0));
+  const std::weak_ptr<Vector> watched = numbers;
+  SharedMatrix matrix(numbers->data(), 2, 3, numbers);
+  numbers.reset();
+  const SharedMatrix copy = matrix;
+  EXPECT_NE(copy.data(), matrix.data());
+  EXPECT_EQ(copy, matrix);
+  SharedMatrix moved = std::move(matrix);
+  EXPECT_FALSE(watched.expired());
+  EXPECT_EQ(moved, copy);
+  moved.conservativeResize(2, 2);  // into memory of its own
+  EXPECT_TRUE(watched.expired());
+  EXPECT_EQ(moved, copy.leftCols(2));
+  moved.resize(0, 0);
+  EXPECT_EQ(moved.size(), 0);
+  EXPECT_EQ(copy(1, 2), 6.0);
 }
 
 std::string error_of(std::string_view bytes) {

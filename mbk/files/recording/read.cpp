@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <new>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -38,14 +40,15 @@ bool has_mat_header(std::string_view text) {
   return text.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
 }
 
-Result<Contents> decode(std::span<const std::byte> bytes) {
+Result<Contents> decode(std::shared_ptr<Buffer> file) {
+  const std::span<const std::byte> bytes = file->bytes();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (hdf5::looks_like_hdf5(bytes)) return decode_hdf5(bytes);
   if (text.starts_with("MATLAB 7.3")) {
     return bad_data("the MAT v7.3 header is not followed by HDF5 data",
                     "copy the file again from where it was recorded");
   }
-  if (has_mat_header(text) || text.starts_with("MATLAB 5.0")) return decode_mat_level5(bytes);
+  if (has_mat_header(text) || text.starts_with("MATLAB 5.0")) return decode_mat_level5(std::move(file));
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
   if (is_text(text)) return decode_csv(bytes);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
@@ -85,12 +88,13 @@ Result<Decoded> decode_file(const std::filesystem::path& file) {
     take_annotations((*table)->contents);
     return std::move(**table);
   }
-  const auto bytes = read_file(file);
+  auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
-  auto contents = decode(bytes->bytes());
+  std::string sum = sha256(bytes->bytes());
+  auto contents = decode(std::make_shared<Buffer>(std::move(*bytes)));  // what needs the file no more lets it go
   if (!contents) return tl::unexpected(contents.error());
   take_annotations(*contents);
-  SourceFile source{file.string(), contents->format, sha256(bytes->bytes())};
+  SourceFile source{file.string(), contents->format, std::move(sum)};
   return Decoded{std::move(*contents), std::move(source)};
 }
 

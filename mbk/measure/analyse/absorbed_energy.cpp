@@ -63,24 +63,27 @@ class Velocity {
   explicit Velocity(const Exchange& exchange, Index at_once = kBlock) : exchange_(exchange), at_once_(at_once) {}
 
   /// N×n; NaN where the smoothing does not reach.
-  [[nodiscard]] auto row(Index i) {
-    if (i < begin_ || i >= begin_ + rows_.rows()) load(i);
-    return rows_.row(i - begin_);
-  }
+  [[nodiscard]] auto row(Index i) { return rows_.row(place(i)); }
   /// Whether energy and velocity are both known throughout an interval.
   [[nodiscard]] bool is_known(Index i) {
-    return exchange_.unbroken[static_cast<std::size_t>(i)] && row(i + 1).allFinite() && row(i).allFinite();
+    return exchange_.unbroken[static_cast<std::size_t>(i)] && std::isfinite(squares_[place(i + 1)]) &&
+           std::isfinite(squares_[place(i)]);
   }
   [[nodiscard]] double squared(Index i) {
-    const double behind = row(i + 1).squaredNorm();
-    return 0.5 * exchange_.step(i) * (row(i).squaredNorm() + behind);
+    const double behind = squares_[place(i + 1)];
+    return 0.5 * exchange_.step(i) * (squares_[place(i)] + behind);
   }
   [[nodiscard]] double path(Index i) {
-    const double behind = row(i + 1).norm();
-    return 0.5 * exchange_.step(i) * (row(i).norm() + behind);
+    const double behind = std::sqrt(squares_[place(i + 1)]);
+    return 0.5 * exchange_.step(i) * (std::sqrt(squares_[place(i)]) + behind);
   }
 
  private:
+  /// In the rows that are there, which are others then where it was none of them.
+  Index place(Index i) {
+    if (i < begin_ || i >= begin_ + rows_.rows()) load(i);
+    return i - begin_;
+  }
   /// Rows from a little before sample i on, so that a few steps back need no other block; all of a short recording.
   void load(Index i) {
     const Index samples = exchange_.samples(), half = exchange_.smoothing.half_window();
@@ -100,11 +103,13 @@ class Velocity {
       first = last;
       if (broken != exchange_.breaks.end()) ++broken;
     }
+    squares_ = rows_.rowwise().squaredNorm();
   }
 
   const Exchange& exchange_;
   Index at_once_, begin_ = 0;
   Matrix rows_;
+  Vector squares_;  ///< |row|²
 };
 
 Index last_sample(const Segment& segment, Index every) {
@@ -197,19 +202,20 @@ EnergyPart part_of(const Exchange& exchange, Velocity& velocity, const Range& ra
   EnergyPart part;
   part.from_s = exchange.time(range.first);
   part.to_s = exchange.time(range.last);
+  double farthest = 0.0;  // squared
   for (Index i = range.first; i < range.last; ++i) {
     double distance = 0.0;
     for (Index k = 0; k < exchange.position.cols(); ++k) {
       const double away = exchange.position(i + 1, k) - exchange.position(range.first, k);
       distance += away * away;
     }
-    distance = std::sqrt(distance);
-    if (distance > part.largest_displacement) part.largest_displacement = distance;
+    if (distance > farthest) farthest = distance;
     if (!velocity.is_known(i)) continue;
     part.absorbed += exchange.absorbed(i);
     part.path_length += velocity.path(i);
     part.squared_velocity += velocity.squared(i);
   }
+  part.largest_displacement = std::sqrt(farthest);
   part.shortage = part.squared_velocity > 0.0 ? -part.absorbed / part.squared_velocity : kNaN;
   return part;
 }

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "mbk/base/dsp/cross_spectrum.h"
+#include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/analyse/channel_cure.h"
 #include "mbk/model/impedance/passivity_index.h"
@@ -22,6 +24,9 @@ constexpr const char* kCheckColumns =
 constexpr const char* kFilter =
     "leave --cutoff out, or raise it: the filter cuts into the excited band; --mode reference has a filter of its own";
 
+/// [%] of the force in the excited band above which what M, B and K do not explain is no noise.
+constexpr double kHighCoherence = 70.0;
+
 constexpr const char* kInstruments =
     "use --method iv; the limb's own force moves the robot too, which biases least squares towards the negative robot "
     "impedance";
@@ -33,6 +38,39 @@ int matrix_of(WarningCode code) {
 
 double smallest(const impedance::Model& model, WarningCode code) {
   return impedance::smallest_eigenvalue(model, matrix_of(code)).value;
+}
+
+/// Of the force of one axis, the share [%] that follows the motion linearly within the excited band of the trial: the
+/// multiple coherence, weighted with the power of the force. Nothing where there are too few segments to tell.
+std::optional<double> linear_share(const PreparedTrial& trial, Index axis) {
+  constexpr double kSegment = 2.0;  // [s]
+  const Index n = trial.axes;
+  const Hertz rate(1.0 / trial.sample_time);
+  std::vector<Matrix> pieces;
+  Index longest = 0;
+  for (const Segment& one : trial.segments) {
+    Matrix piece(one.size(), n + 1);
+    piece << trial.position.middleRows(one.begin, one.size()),
+        trial.force_hand_on_robot.col(axis).segment(one.begin, one.size());
+    longest = std::max(longest, one.size());
+    pieces.push_back(std::move(piece));
+  }
+  constexpr Index kShortest = 8;
+  if (longest < kShortest) return std::nullopt;
+  const auto spectra = dsp::cross_spectra(pieces, rate, dsp::segment_length(rate, Hertz(1.0 / kSegment), longest));
+  constexpr double kFewest = 5.0;  // segments for each input
+  if (!spectra || spectra->independent_segments < kFewest * static_cast<double>(n)) return std::nullopt;
+  const Vector coherence = dsp::multiple_coherence(*spectra, n).col(0);
+  double explained = 0.0, all = 0.0;
+  for (Index k = 0; k < spectra->frequency.size(); ++k) {
+    const double f = spectra->frequency[k];
+    if (f < trial.preparation.band_low.value || f > trial.preparation.band_high.value) continue;
+    if (!std::isfinite(coherence[k])) continue;
+    const double power = spectra->density[static_cast<std::size_t>(k)](n, n).real();
+    explained += coherence[k] * power;
+    all += power;
+  }
+  return all > 0.0 ? std::optional(100.0 * explained / all) : std::nullopt;
 }
 
 class Advisor {
@@ -82,7 +120,25 @@ class Advisor {
     const auto& difference = measured_.disagreement;
     const bool better = other && other->method == Method::instrumental_variables && other->usable && difference &&
                         difference->significant;
-    return better ? std::optional<std::string>(kInstruments) : std::nullopt;
+    if (better) return kInstruments;
+    Index axis = 0;
+    const double vaf = id_.fit.vaf.cwiseMin(id_.fit.vaf_in_sample).minCoeff(&axis);
+    if (!std::isfinite(vaf) || trials_.empty()) return std::nullopt;
+    const auto share = linear_share(trials_.front(), axis);
+    if (!share) return std::nullopt;
+    constexpr double kMore = 10.0;  // points of VAF that M, B and K lack
+    if (*share > vaf + kMore && *share > kHighCoherence) {
+      return fmt::format(
+          "the coherence is high: a linear response to the motion could explain {:.0f} % of that force, where M, B "
+          "and K explain {:.0f} %. 'mbk explore' shows what they lack: memory, reflexes, resonances; do not read M, B "
+          "and K as a passive limb's",
+          *share, vaf);
+    }
+    return fmt::format(
+        "the coherence is low: no linear response to the motion could explain more than {:.0f} % of that force. 'mbk "
+        "explore' tells noise from a limb that is not linear, and 'mbk passivity' shows by the energy whether it "
+        "acted; do not read M, B and K as a passive limb's",
+        *share);
   }
 
   [[nodiscard]] std::optional<std::string> of_line() const {

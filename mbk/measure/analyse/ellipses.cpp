@@ -14,6 +14,8 @@ double standard_error(const Eigen::RowVector4d& gradient, const Eigen::Matrix4d&
   return variance < 0.0 ? 0.0 : std::sqrt(variance);  // NaN, where there is no covariance, stays NaN
 }
 
+}  // namespace
+
 EllipseFinding ellipse_finding(const Matrix& Z, const Eigen::Matrix4d& covariance) {
   EllipseFinding finding;
   finding.symmetric = impedance::symmetric_part(Z);
@@ -44,8 +46,6 @@ AntisymmetryFinding antisymmetry_finding(const Matrix& Z, const Eigen::Matrix4d&
                      scale * std::max(std::abs(low), std::abs(high))};
   return finding;
 }
-
-}  // namespace
 
 Result<Findings> analyse_ellipses(const Identification& identification) {
   if (identification.axes != 2) return bad_data("one axis has no ellipse", "ellipses need a result with two axes");

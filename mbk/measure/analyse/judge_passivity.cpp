@@ -106,7 +106,8 @@ struct Coherence {
 };
 
 /// Of position and force with the reference; of the force with the position, where no reference was recorded.
-Coherence smallest_coherence(const std::vector<PreparedTrial>& trials) {
+/// @param highest  lines beyond the one above it are left out
+Coherence smallest_coherence(const std::vector<PreparedTrial>& trials, Hertz highest) {
   const Index n = trials.front().axes;
   const bool known =
       std::ranges::all_of(trials, [](const PreparedTrial& one) { return one.reference_motion.size() > 0; });
@@ -129,7 +130,8 @@ Coherence smallest_coherence(const std::vector<PreparedTrial>& trials) {
   const double finest = kSegmentsAcross * rate.value / static_cast<double>(std::max<Index>(total, 1));
   if (longest < 8) return {};
   const Index segment = dsp::segment_length(rate, Hertz(std::max(finest, lowest)), longest);
-  const auto spectra = dsp::cross_spectra(pieces, rate, segment);
+  const Hertz spacing(rate.value / static_cast<double>(segment));
+  const auto spectra = dsp::cross_spectra(pieces, rate, segment, Hertz(highest.value + 2.0 * spacing.value));
   if (!spectra) return {};
   const Matrix coherence = dsp::multiple_coherence(*spectra, n);
   Coherence result{spectra->frequency, Vector(coherence.rows())};
@@ -238,7 +240,7 @@ PassivityBand excited_band(const std::vector<PreparedTrial>& trials) {
 
 std::optional<PassivityBand> coherent_band(const std::vector<PreparedTrial>& trials) {
   const PassivityBand excited = excited_band(trials);
-  const Coherence coherence = smallest_coherence(trials);
+  const Coherence coherence = smallest_coherence(trials, excited.high);
   if (coherence.frequency.size() < 2) return std::nullopt;
   const double spacing = coherence.frequency[1];
   double low = std::numeric_limits<double>::infinity(), high = 0.0;

@@ -62,15 +62,14 @@ Moments moments_of(const Eigen::Ref<const Vector>& x, const Eigen::Ref<const Vec
   return sum;
 }
 
-/// Whether one is a multiple of the other but for a constant and rounding.
-bool proportional(const Vector& a, const Vector& b) {
+/// Whether one is a multiple of the other but for a constant and rounding.   @param largest Σ (b − b̄)²
+bool proportional(const Vector& a, const Vector& b, double largest) {
   constexpr double kRounding = 1e-14;  // of the squares
   constexpr Index kEnough = 4096;
   if (a.size() > 2 * kEnough) {
     // What the best line leaves of some samples is no more than what it leaves of all.
     const Moments part = moments_of(a.head(kEnough), b.head(kEnough));
     const double left = part.xx > 0.0 ? part.yy - part.xy * part.xy / part.xx : part.yy;
-    const double largest = (b.array() - b.mean()).square().sum();
     if (left > 2.0 * kRounding * largest) return false;
   }
   if (!a.allFinite() || !b.allFinite()) return false;
@@ -93,12 +92,16 @@ bool is(const Column& column, const QuantityChannels& quantity) {
 /// model by either way.
 std::optional<Warning> check_columns(const Recording& recording, int axes) {
   const std::vector<Column> columns = columns_of(recording, axes);
+  std::vector<double> squares;  // Σ (x − x̄)²
+  for (const Column& column : columns) {
+    squares.push_back((column.values->array() - column.values->mean()).square().sum());
+  }
   for (std::size_t i = 0; i < columns.size(); ++i) {
     for (std::size_t k = i + 1; k < columns.size(); ++k) {
       const Column &a = columns[i], &b = columns[k];
       const bool same_place = !a.origin->source.empty() && bare(a.origin->source) == bare(b.origin->source);
       const bool by_value =
-          !is(a, kReferenceChannels) && !is(b, kReferenceChannels) && proportional(*a.values, *b.values);
+          !is(a, kReferenceChannels) && !is(b, kReferenceChannels) && proportional(*a.values, *b.values, squares[k]);
       if (!same_place && !by_value) continue;
       return Warning{
           WarningCode::same_column,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -69,10 +70,10 @@ struct Explanation {
 };
 
 /// What one value in a thousand exceeds.
-double largest_but_glitches(Vector values) {
-  const Index at = values.size() - 1 - values.size() / 1000;
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[at];
+double largest_but_glitches(const Vector& values) {
+  Vector largest(values.size() / 1000 + 1);
+  std::partial_sort_copy(values.begin(), values.end(), largest.begin(), largest.end(), std::greater());
+  return largest[largest.size() - 1];
 }
 
 Numbers measure(const std::vector<PreparedTrial>& trials, const Identification& id) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/lagged_regression.h"
@@ -42,12 +43,21 @@ struct Choice {
   Vector errors;
 };
 
-Choice best_rank(const Basis& basis, const Matrix& Y, std::optional<Index> wanted) {
-  const Matrix errors = cross_validated_errors(basis.R * basis.directions, Y, 0, kFolds);
+/// @param moments  of lags −longest … longest
+Choice best_rank(const std::vector<Moments>& moments, Index n, Index memory, Index longest,
+                 std::optional<Index> wanted) {
+  std::vector<Index> columns;
+  for (Index axis = 0; axis < n; ++axis) {
+    for (Index lag = -memory; lag <= memory; ++lag) columns.push_back(axis * (2 * longest + 1) + longest + lag);
+  }
+  const auto kept = of_columns(moments, columns);
+  Matrix products = Matrix::Zero(std::ssize(columns), std::ssize(columns));
+  for (const Moments& fold : kept) products += fold.ZZ;
+  const Matrix errors = cross_validated_errors(in_directions(kept, principal_directions_of_products(products)), 0);
   Index best = 0;
   errors.colwise().mean().minCoeff(&best);
   if (wanted) best = std::min(*wanted, errors.cols() - 1);
-  return {basis.memory, best, errors.col(best)};
+  return {memory, best, errors.col(best)};
 }
 
 /// The first that is not significantly worse than the best.
@@ -110,7 +120,10 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
   }
 
   std::vector<Choice> choices;
-  for (const Index memory : memories) choices.push_back(best_rank(basis_of(signals, memory, rows), Y, options.rank));
+  const Index longest = memories.back();
+  const Matrix stands_for = signals.explained.size() == 0 ? signals.position : Matrix(signals.explained.leftCols(n));
+  const auto moments = lagged_moments({{stands_for, -longest, longest}}, signals.resistance, folds_of(rows, kFolds));
+  for (const Index memory : memories) choices.push_back(best_rank(moments, n, memory, longest, options.rank));
   const Choice chosen = shortest(choices);
   if (chosen.rank == 0) {
     return fail(ErrorKind::not_usable, "no response to the motion predicts the force better than its mean does",
@@ -154,7 +167,7 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
   Matrix derivatives(signals.position.rows(), 3 * n);
   derivatives << signals.acceleration, signals.velocity, signals.position;
   const Matrix motions = centred(rows_of(derivatives, own_rows));
-  const Matrix D = numeric::Lu(R.transpose() * Z).solve(R.transpose() * motions);
+  const Matrix D = numeric::Lu(numeric::products_of(R, Z)).solve(numeric::products_of(R, motions));
   result.model = fit_response_model(D, fit, n);
 
   // M, B, K directly, on the same rows

@@ -32,10 +32,53 @@ using numeric::RowRange;
 /// @param columns N×p, centred    @returns p×r
 [[nodiscard]] Matrix principal_directions(const Matrix& columns, double threshold = 1e-6);
 
+/// The same from the products of the columns, p×p.
+[[nodiscard]] Matrix principal_directions_of_products(const Matrix& products, double threshold = 1e-6);
+
+/// Parts of equal numbers of consecutive rows; a part may reach over several ranges.
+[[nodiscard]] std::vector<std::vector<RowRange>> folds_of(const std::vector<RowRange>& ranges, Index folds);
+
+/// Signals that enter a regression with lags first … last.
+struct LaggedSignals {
+  Matrix u;  ///< N×m
+  Index first = 0, last = 0;
+  [[nodiscard]] Index lags() const { return last - first + 1; }
+  [[nodiscard]] Index columns() const { return u.cols() * lags(); }  ///< in the order of lagged()
+};
+
+/// lagged(a)ᵀ lagged(b) of the rows of the ranges, without those columns: with P(i, j) = Σ_t a[t − i] b[t − j] over
+/// rows s … e − 1,
+///   P(i + 1, j + 1) = P(i, j) + a[s − 1 − i] b[s − 1 − j] − a[e − 1 − i] b[e − 1 − j]
+[[nodiscard]] Matrix lagged_products(const LaggedSignals& a, const LaggedSignals& b,
+                                     const std::vector<RowRange>& ranges);
+
+/// Second moments of the rows of one fold.
+struct Moments {
+  Matrix ZZ;  ///< p×p, ZᵀZ
+  Matrix ZY;  ///< p×q, ZᵀY
+  Vector YY;  ///< q, of the columns of Y
+  Index rows = 0;
+};
+
+/// Moments of the columns [lagged(signals₁) lagged(signals₂) …] and of Y, each column less its mean over all folds.
+/// @param Y  as many rows as the signals, ×q
+[[nodiscard]] std::vector<Moments> lagged_moments(const std::vector<LaggedSignals>& signals, const Matrix& Y,
+                                                  const std::vector<std::vector<RowRange>>& folds);
+
+/// Moments of those columns, in that order.
+[[nodiscard]] std::vector<Moments> of_columns(const std::vector<Moments>& folds, const std::vector<Index>& columns);
+
+/// Moments of the columns [Z₁ V, Z₂], Z₁ being as many first columns of Z as V has rows.
+[[nodiscard]] std::vector<Moments> in_directions(const std::vector<Moments>& folds, const Matrix& V);
+
 /// Mean squared errors of prediction by the first r of p columns, r = base … p, each fold of consecutive rows
-/// predicted by the fit to the others; of several outputs, the mean of their errors over their variances.
-/// @param Z N×p, centred, columns that can be distinguished    @param Y N×q, centred
+/// predicted by the fit to the others; of several outputs, the mean of their errors over their variances. Columns and
+/// outputs are centred over all folds, the columns can be distinguished.
 /// @returns folds×(p − base + 1)
+[[nodiscard]] Matrix cross_validated_errors(const std::vector<Moments>& folds, Index base);
+
+/// The same from the rows themselves.
+/// @param Z N×p, centred    @param Y N×q, centred
 [[nodiscard]] Matrix cross_validated_errors(const Matrix& Z, const Matrix& Y, Index base, Index folds);
 
 /// Coefficients of y = Z θ + e with instruments R, and their covariance where e is an autoregression that is

@@ -61,6 +61,54 @@ TEST(CrossValidation, IsWhatFittingEachFoldByItselfGives) {
   }
 }
 
+TEST(Folds, HoldEachRowOnceAndInOrder) {
+  const auto folds = folds_of({{3, 10}, {20, 22}, {30, 38}}, 4);
+  std::vector<Index> rows;
+  for (const auto& fold : folds) {
+    EXPECT_NEAR(static_cast<double>(row_count(fold)), 17.0 / 4.0, 1.0);
+    for (const RowRange& range : fold) {
+      for (Index row = range.begin; row < range.end; ++row) rows.push_back(row);
+    }
+  }
+  EXPECT_EQ(rows, (std::vector<Index>{3, 4, 5, 6, 7, 8, 9, 20, 21, 30, 31, 32, 33, 34, 35, 36, 37}));
+}
+
+TEST(LaggedMoments, AreThoseOfTheRowsThemselves) {
+  const Matrix u = white_noise(200, 2, 1).array() + 0.7, v = white_noise(200, 1, 5).cwiseAbs();
+  const Matrix Y = white_noise(200, 2, 9).array() - 0.4;
+  const std::vector<RowRange> ranges = {{10, 60}, {75, 76}, {90, 190}};
+  const auto folds = folds_of(ranges, 3);
+  Matrix Z(row_count(ranges), 2 * 5 + 7);
+  Z << lagged(u, -2, 2, ranges), lagged(v, 3, 9, ranges);
+  Z = centred(Z);
+  const Matrix outputs = centred(rows_of(Y, ranges));
+  const auto found = lagged_moments({{u, -2, 2}, {v, 3, 9}}, Y, folds);
+  ASSERT_EQ(found.size(), 3u);
+  Index at = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index rows = row_count(folds[k]);
+    const Matrix part = Z.middleRows(at, rows), output = outputs.middleRows(at, rows);
+    EXPECT_EQ(found[k].rows, rows);
+    EXPECT_LT((found[k].ZZ - part.transpose() * part).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_LT((found[k].ZY - part.transpose() * output).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_LT((found[k].YY - output.colwise().squaredNorm().transpose()).cwiseAbs().maxCoeff(), 1e-11);
+    at += rows;
+  }
+  const Matrix V = white_noise(17, 4, 20);
+  const Matrix turned = Z.topRows(row_count(folds[0])) * V;
+  EXPECT_LT((in_directions(found, V)[0].ZZ - turned.transpose() * turned).cwiseAbs().maxCoeff(), 1e-9);
+  const Matrix first = white_noise(10, 3, 40);
+  Matrix partly(row_count(folds[0]), 3 + 7);
+  partly << Z.topRows(row_count(folds[0])).leftCols(10) * first, Z.topRows(row_count(folds[0])).rightCols(7);
+  const auto turned_partly = in_directions(found, first);
+  EXPECT_LT((turned_partly[0].ZZ - partly.transpose() * partly).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((turned_partly[0].ZY - partly.transpose() * outputs.topRows(row_count(folds[0]))).cwiseAbs().maxCoeff(),
+            1e-9);
+  const auto kept = of_columns(found, {12, 3});
+  EXPECT_EQ(kept[1].ZZ(0, 1), found[1].ZZ(12, 3));
+  EXPECT_EQ(kept[1].ZY(1, 0), found[1].ZY(3, 0));
+}
+
 TEST(FitLagged, HasTheErrorsThatRepetitionsHave) {
   constexpr Index kRows = 1500;
   constexpr int kRuns = 200;

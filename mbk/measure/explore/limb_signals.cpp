@@ -8,6 +8,7 @@
 #include "mbk/base/core/units.h"
 #include "mbk/base/dsp/decimate.h"
 #include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/lagged_regression.h"
@@ -50,10 +51,10 @@ void explain(const Matrix& reference, LimbSignals& signals) {
   const Matrix Y = centred(rows_of(motion, usable));
   const auto response = [&](Index from, Index count) {
     const auto part = X.middleRows(from, count);
-    Matrix gram = part.transpose() * part;
+    Matrix gram = numeric::gram_of({part});
     constexpr double kRidge = 1e-9;
     gram.diagonal().array() += kRidge * gram.trace() / static_cast<double>(gram.rows());
-    return Matrix(numeric::PivotedCholesky(gram).solve(part.transpose() * Y.middleRows(from, count)));
+    return Matrix(numeric::PivotedCholesky(gram).solve(numeric::products_of(part, Y.middleRows(from, count))));
   };
   Matrix explained(total, 3 * n);
   explained.topRows(half) = X.topRows(half) * response(half, total - half);
@@ -102,6 +103,7 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
     if (!part) return tl::unexpected(part.error());
     const Index ends = signals.every > 1 ? kEnds : 0;
     if (part->rows() <= 2 * ends) return bad_data("a trial is too short for the low-pass", "record longer");
+    signals.first_sample = kStencil.half_window() + ends * signals.every;
     *part = part->middleRows(ends, part->rows() - 2 * ends).eval();
     const Index rows = part->rows();
     const Index split = std::clamp<Index>(trial.split / signals.every - ends, 0, rows);

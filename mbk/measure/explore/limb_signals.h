@@ -26,6 +26,7 @@ struct LimbSignals {
   Matrix explained;                      ///< N×3n, [x ẋ ẍ] as the reference explains them; empty where it does not
   Vector explained_share;                ///< n, of the variance of x that the reference explains; empty without one
   std::vector<RowRange> pieces;          ///< rows without a break
+  Index first_sample = 0;                ///< of each trial: the one of its first row
   std::vector<RowRange> identification;  ///< rows that are fitted
   std::vector<RowRange> validation;      ///< rows that are predicted; empty where nothing was held out
 };

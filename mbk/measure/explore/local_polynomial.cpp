@@ -19,9 +19,10 @@ namespace {
 
 constexpr Index kOrder = 2;
 constexpr Index kTerms = kOrder + 1;
-constexpr Index kMinFreedom = 8;    ///< of the residual: its variance is known to about a third
-constexpr double kRounding = 1e-9;  ///< of the strongest line: a window without one more than that is not excited
-constexpr double kTold = 1e-4;      ///< least pivot of the regressors, of columns of length 1
+constexpr Index kMinFreedom = 8;     ///< of the residual: its variance is known to about a third
+constexpr double kRounding = 1e-9;   ///< of the strongest line: a window without one more than that is not excited
+constexpr double kMostChance = 1.0;  ///< power that noise alone would seem to explain, of its own
+constexpr double kTold = 1e-4;       ///< least pivot of the regressors, of columns of length 1
 
 /// Spectra of the signals of a trial: rows are outputs, inputs and, behind them, the reference; column k is line k.
 Eigen::MatrixXcd record_spectra(const ExplorationTrial& trial, Index samples, Index lines, bool with_reference) {
@@ -54,7 +55,6 @@ struct LocalFit {
   Eigen::MatrixXcd response;    ///< of Z to X at the line
   Eigen::MatrixXcd input_part;  ///< (KᴴK)⁻¹ of the response, n_x×n_x
   Eigen::MatrixXcd residual;    ///< covariance of V
-  Eigen::VectorXd power;        ///< of y that the response to u explains, mean over the lines
   bool determined = false;
 };
 
@@ -150,6 +150,13 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
     const Index low = std::clamp<Index>(line - width / 2, 1, lines - width);
     const LocalFit fit = local_fit(spectra, strongest, outputs, by_reference, line, low, width);
     if (!fit.determined) continue;
+    Eigen::MatrixXcd driving = Eigen::MatrixXcd::Zero(inputs, inputs);  // mean power of X
+    for (const Eigen::MatrixXcd& X : spectra) {
+      const auto lines_of_X = X.block(by_reference ? both : outputs, low, inputs, width);
+      driving += lines_of_X * lines_of_X.adjoint() / static_cast<double>(count * width);
+    }
+    const double chance = fit.input_part.cwiseProduct(driving).sum().real();
+    if (!(chance < kMostChance)) continue;  // few lines of the window are excited: told by their leakage alone
     Eigen::MatrixXcd G = fit.response, residual = fit.residual, part = fit.input_part;
     if (by_reference) {
       const Eigen::MatrixXcd inverse = fit.response.bottomRows(inputs).inverse();
@@ -167,11 +174,10 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
       }
     }
     for (Index i = 0; i < outputs; ++i) {
-      double power = 0.0;
-      for (const Eigen::MatrixXcd& X : spectra) {
-        power += (G.row(i) * X.block(outputs, low, inputs, width)).squaredNorm() / static_cast<double>(count * width);
-      }
-      coherences.push_back(power / (power + residual(i, i).real()));
+      const double noise = fit.residual(i, i).real();
+      const double all = (fit.response.row(i) * driving * fit.response.row(i).adjoint())(0, 0).real();
+      const double power = std::max(0.0, all - chance * noise);  // without what noise alone would explain
+      coherences.push_back(power / (power + noise));
     }
     frequencies.push_back(static_cast<double>(line) * spacing);
     found.response.push_back(std::move(G));

@@ -16,9 +16,10 @@ namespace mbk::explore {
 /// - the order of N, up to 5: the lowest within one standard error of the least cross-validated error.
 ///
 /// A reflex is found where stretch in one direction predicts the force better than no delayed response, by two standard
-/// errors over the folds, and better than
-/// one that answers both directions alike (a linear limb with a long memory), and where |eᵀẋ| adds to the latter, by an
-/// F test of the whitened rows at 0.1 %, Bonferroni over axes and directions.
+/// errors over the folds; better than stretch in the opposite direction, by as much and by a tenth of its error (an
+/// even nonlinearity, such as the geometry of a limb of two links, answers both); better than motion in both directions
+/// alike (a linear limb with a long memory); and where |eᵀẋ| adds to the latter, by an F test of the whitened rows at
+/// 0.1 %, Bonferroni over axes and directions.
 /// @returns `not_identifiable` where there are fewer than ten rows for each coefficient
 /// @fails  a force or motion that does not vary
 [[nodiscard]] Result<ParallelCascadeEstimate> parallel_cascade(const LimbSignals& signals);

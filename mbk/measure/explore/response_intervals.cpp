@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "mbk/base/numeric/statistics.h"
 
@@ -29,6 +30,7 @@ void add_intervals(FrequencyResponseEstimate& estimate) {
   const Index entries = lines > 0 ? estimate.response.front().size() : 0;
   estimate.magnitude_low.resize(lines, entries);
   estimate.magnitude_high.resize(lines, entries);
+  estimate.phase_half_width.resize(lines, entries);
   estimate.radius95.resize(lines, entries);
   std::map<double, std::pair<double, double>> known;
   for (Index k = 0; k < lines; ++k) {
@@ -41,6 +43,8 @@ void add_intervals(FrequencyResponseEstimate& estimate) {
       const double magnitude = std::abs(estimate.response[at].reshaped()[e]);
       estimate.magnitude_low(k, e) = std::max(0.0, magnitude - half * deviation);
       estimate.magnitude_high(k, e) = magnitude + half * deviation;
+      estimate.phase_half_width(k, e) =
+          half * deviation < magnitude ? std::asin(half * deviation / magnitude) : std::numbers::pi;
       estimate.radius95(k, e) = radius * deviation;
     }
   }

@@ -6,10 +6,12 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/measure/identify/regression.h"
 
@@ -38,16 +40,32 @@ Matrix coefficients_of(const impedance::Model& model, const Vector& centre, doub
 }
 
 /// x₀ of a limb that is free in one direction is NaN.
-impedance::Model model_with_equilibrium(const Matrix& coefficients, const Vector& centre, double handle_mass) {
+/// @param free  of the free fit: what its stiffness is zero beside
+impedance::Model model_with_equilibrium(const Matrix& coefficients, const Vector& centre, double handle_mass,
+                                        const impedance::Model& free) {
   impedance::Model model = model_of(coefficients, centre, handle_mass);
-  if (smallest_eigenvalue(model.K) <= kZero * model.K.norm()) {
+  if (smallest_eigenvalue(model.K) <= kZero * free.K.norm()) {
     model.x0.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return model;
 }
 
-double mean_square(const Matrix& rows) {
-  return rows.squaredNorm() / static_cast<double>(rows.rows());
+/// |Y − Z θ|²/N of three θ, and |Z Δ|²/N; block by block, so that the rows come from memory once.
+std::array<double, 4> residual_powers(const numeric::MatrixPart& Z, const numeric::MatrixPart& Y,
+                                      const std::array<const Matrix*, 3>& theta, const Matrix& change) {
+  constexpr Index kBlock = 1024;
+  std::array<double, 4> powers{};
+  const Matrix none = Matrix::Zero(std::min(kBlock, Z.rows()), Y.cols());
+  for (Index begin = 0; begin < Z.rows(); begin += kBlock) {
+    const Index rows = std::min(kBlock, Z.rows() - begin);
+    const auto part = Z.middleRows(begin, rows);
+    for (std::size_t k = 0; k < theta.size(); ++k) {
+      powers[k] += numeric::residuals_of({part}, Y.middleRows(begin, rows), *theta[k]).squaredNorm();
+    }
+    powers[3] += numeric::residuals_of({part}, none.topRows(rows), change).squaredNorm();
+  }
+  for (double& power : powers) power /= static_cast<double>(Z.rows());
+  return powers;
 }
 
 }  // namespace
@@ -105,13 +123,13 @@ Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials,
   if (trials.empty() || !std::ranges::all_of(trials, [&](const auto& trial) { return trial.axes == found.axes; })) {
     return foreign();
   }
-  const Regression r = stack(trials);
+  const Regression r = stack_motion_and_force(trials);
   const bool all = found.parameters_from == ParametersFrom::all;
   const std::vector<RowRange> ranges = all ? joined(r.identification, r.validation) : joined(r.identification, {});
-  const Matrix Z = rows_of(r.Z, ranges), Y = rows_of(r.Y, ranges);
-  if (Z.rows() != found.samples || Z.rows() == 0) return foreign();
-  const auto nearest = [&](const impedance::Model& model, const Matrix& rows) {
-    return nearest_consistent(coefficients_of(model, r.centre, found.handle_mass), rows.transpose() * rows,
+  const SelectedRows Z(r.Z, ranges), Y(r.Y, ranges);
+  if (Z->rows() != found.samples || Z->rows() == 0) return foreign();
+  const auto nearest = [&](const impedance::Model& model, const SelectedRows& rows) {
+    return nearest_consistent(coefficients_of(model, r.centre, found.handle_mass), numeric::gram_of({*rows}),
                               found.structure, found.handle_mass);
   };
   if (!impedance::stacked(found.model).allFinite() || !impedance::stacked(found.judged).allFinite()) {
@@ -122,13 +140,13 @@ Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials,
   if (!fit) return tl::unexpected(fit.error());
   // Not copied: the copy of a Result must not throw, and this one may want memory.
   std::optional<Result<ConsistentCoefficients>> of_judged;
-  if (all && !r.validation.empty()) of_judged.emplace(nearest(found.judged, rows_of(r.Z, r.identification)));
+  if (all && !r.validation.empty()) of_judged.emplace(nearest(found.judged, SelectedRows(r.Z, r.identification)));
   const Result<ConsistentCoefficients>& check = of_judged ? *of_judged : fit;
   if (!check) return tl::unexpected(check.error());
 
   ConsistentFit result;
-  result.model = model_with_equilibrium(fit->coefficients, r.centre, found.handle_mass);
-  result.judged = model_with_equilibrium(check->coefficients, r.centre, found.handle_mass);
+  result.model = model_with_equilibrium(fit->coefficients, r.centre, found.handle_mass, found.model);
+  result.judged = model_with_equilibrium(check->coefficients, r.centre, found.handle_mass, found.judged);
   result.centre = r.centre;
   result.force_at_centre = fit->coefficients.bottomRows(1).transpose();
   result.inertia = compare(found.model.M, result.model.M);
@@ -136,10 +154,11 @@ Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials,
   result.stiffness = compare(found.model.K, result.model.K);
   result.fit = judge(r, check->coefficients);
   const Matrix free = coefficients_of(found.model, r.centre, found.handle_mass);
-  result.residual_power_free = mean_square(Y - Z * free);
-  result.residual_power_tied = mean_square(Y - Z * fit->tied);
-  result.residual_power = mean_square(Y - Z * fit->coefficients);
-  result.force_change = std::sqrt(mean_square(Z * (fit->coefficients - free)));
+  const auto powers = residual_powers(*Z, *Y, {&free, &fit->tied, &fit->coefficients}, fit->coefficients - free);
+  result.residual_power_free = powers[0];
+  result.residual_power_tied = powers[1];
+  result.residual_power = powers[2];
+  result.force_change = std::sqrt(powers[3]);
   const Index matrices = 3 * found.model.M.size();
   const Vector change = (impedance::stacked(result.model) - impedance::stacked(found.model)).head(matrices);
   const Vector error = impedance::stacked(found.standard_error).head(matrices);

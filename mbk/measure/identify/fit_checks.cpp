@@ -133,11 +133,12 @@ class Checker {
            "check the force sensor and its channel");
       id_.usable = false;
     } else if (const double least = std::min(fit.vaf.minCoeff(), fit.vaf_in_sample.minCoeff()); least < kPoorVaf) {
-      warn(WarningCode::fit_poor,
-           fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}{}", least, what,
-                       least < fit.vaf.minCoeff() ? " that made them" : ""),
-           "the limb may have acted, or its reflexes may be strong: do not read M, B and K as a passive limb's; 'mbk "
-           "passivity' shows by the energy whether it acted");
+      warn(
+          WarningCode::fit_poor,
+          fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}{}", least, what,
+                      least < fit.vaf.minCoeff() ? " that made them" : ""),
+          "the limb may have acted, or its reflexes may be strong, as 'mbk explore' shows: do not read M, B and K as a "
+          "passive limb's; 'mbk passivity' shows by the energy whether it acted");
       if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;
     }
   }
@@ -204,7 +205,8 @@ class Checker {
                    "delay",
                    1e3 * size, test.size > 0.0 ? "late" : "early"),
                "find the delay of the force sensor with a known mass and 'mbk sensor delay', and give it with "
-               "--force-delay-ms; hold the handle more rigidly");
+               "--force-delay-ms; hold the handle more rigidly; 'mbk explore' shows what the force does beside M, B "
+               "and K");
           break;
         case Assumption::linear_stiffness:
           warn(
@@ -212,7 +214,9 @@ class Checker {
               fmt::format("the stiffness depends on the amplitude: at that of this motion the limb is {:.0f} % {} than "
                           "for small motion",
                           100.0 * size, test.size > 0.0 ? "stiffer" : "less stiff"),
-              "perturb less, and state the amplitude beside M, B and K");
+              "perturb less, and state the amplitude beside M, B and K; 'mbk explore' of trials with other phases "
+              "shows how "
+              "much of the force is not linear");
           break;
         case Assumption::no_dry_friction:
           warn(WarningCode::dry_friction,
@@ -228,7 +232,9 @@ class Checker {
                    "the stiffness changed during the recording, by {:.0f} % (standard deviation): M, B and K are "
                    "means of it",
                    100.0 * size),
-               "measure the parts with --from and --to, and ask for the same state throughout");
+               "'mbk explore' shows its course over time; measure the parts with --from and --to, and ask for the same "
+               "state "
+               "throughout");
           break;
         case Assumption::constant_rest:
           warn(WarningCode::force_drifts,
@@ -285,12 +291,19 @@ class Checker {
 
 }  // namespace
 
-Excitation measure_excitation(const Matrix& Z, const Matrix& Y, const impedance::Model& model, int rank) {
+Spread spread_of(const numeric::MatrixPart& Z, const numeric::MatrixPart& Y) {
+  const auto motion = Z.leftCols(Z.cols() - 1);
+  const Matrix centred = motion.rowwise() - motion.colwise().mean();
+  Spread spread{numeric::gram_of({centred}) / static_cast<double>(std::max<Index>(Z.rows() - 1, 1)), Vector(Y.cols())};
+  for (Index j = 0; j < Y.cols(); ++j) spread.force[j] = numeric::variance(Y.col(j));
+  return spread;
+}
+
+Excitation measure_excitation(const Spread& spread, const impedance::Model& model, int rank) {
   const Index n = model.axes();
+  const Matrix& cov = spread.motion;
   Excitation result;
   result.rank = rank;
-  const Matrix centred = Z.leftCols(3 * n).rowwise() - Z.leftCols(3 * n).colwise().mean();
-  const Matrix cov = centred.transpose() * centred / static_cast<double>(std::max<Index>(Z.rows() - 1, 1));
 
   const Vector motion = numeric::symmetric_eigen(cov.block(2 * n, 2 * n, n, n)).values;
   result.motion = std::sqrt(std::max(0.0, motion[n - 1]));
@@ -308,7 +321,7 @@ Excitation measure_excitation(const Matrix& Z, const Matrix& Y, const impedance:
       cov.topLeftCorner(n, n) - cov.topRightCorner(n, 2 * n) * others.solve(cov.bottomLeftCorner(2 * n, n));
   result.inertia_share = std::numeric_limits<double>::infinity();
   for (Index j = 0; j < n; ++j) {
-    const double force = numeric::variance(Y.col(j));
+    const double force = spread.force[j];
     const double inertial = model.M.row(j) * own * model.M.row(j).transpose();
     result.inertia_share = std::min(result.inertia_share, force > 0.0 ? std::max(0.0, inertial) / force : 0.0);
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mbk/base/numeric/block_bootstrap.h"
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/statistics.h"
@@ -47,6 +48,8 @@ class Fitter {
 
   Result<void> prepare();
   Result<void> find_instruments();
+  Result<void> find(Method method);
+  /// @param method one that was found
   Result<Identification> identify(Method method);
   [[nodiscard]] Disagreement compare() const;
 
@@ -59,6 +62,8 @@ class Fitter {
   [[nodiscard]] impedance::Model model_from(const Estimate& estimate) const;
   [[nodiscard]] Result<Replicates> resample(Method method) const;
   [[nodiscard]] Matrix covariance_of_robot(Method method, const Estimate& estimate) const;
+  /// Ω of the scores of a method that was found or, where both were, those of both in one pass.
+  [[nodiscard]] const Matrix& long_run(Method method);
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
   void describe(Identification& result) const;
 
@@ -78,6 +83,10 @@ class Fitter {
   bool all_ = false;
   std::optional<Instruments> instruments_;
   std::array<std::optional<Estimate>, 2> estimates_;        ///< by method
+  std::array<std::optional<Estimate>, 2> judged_;           ///< from the identification data alone, where these differ
+  std::array<Matrix, 2> omegas_;                            ///< long-run covariances of their scores
+  Matrix omega_of_both_;                                    ///< of [instrumental variables | least squares]
+  std::optional<Spread> spread_;                            ///< of the rows behind the parameters
   std::array<Vector, 2> errors_;                            ///< standard errors of their coefficients, stacked
   std::optional<std::vector<AssumptionTest>> assumptions_;  ///< of the data, by whichever method comes first
 };
@@ -159,13 +168,14 @@ Result<void> Fitter::prepare() {
 }
 
 Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ranges, Index step) const {
-  const Matrix Z = rows_of(r_.Z, ranges, step), Y = rows_of(r_.Y, ranges, step);
+  const SelectedRows Z(r_.Z, ranges, step), Y(r_.Y, ranges, step);
   if (method == Method::least_squares) {
-    auto fit = numeric::fit_least_squares(Z, Y, S_);
+    auto fit = numeric::fit_least_squares(*Z, *Y, S_);
     if (!fit) return tl::unexpected(fit.error());
     return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse_gram), fit->rank};
   }
-  auto fit = numeric::fit_instrumental_variables(Z, rows_of(instruments_->R, ranges, step), Y, S_);
+  const SelectedRows R(instruments_->R, ranges, step);
+  auto fit = numeric::fit_instrumental_variables(*Z, *R, *Y, S_);
   if (!fit) return tl::unexpected(fit.error());
   return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse), fit->rank};
 }
@@ -179,10 +189,9 @@ impedance::Model Fitter::model_from(const Estimate& estimate) const {
 }
 
 Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& range) const {
-  const Matrix residual =
-      r_.Y.middleRows(range.begin, range.size()) - r_.Z.middleRows(range.begin, range.size()) * estimate.coefficients;
-  const Matrix R = instruments(method).middleRows(range.begin, range.size());
-  return numeric::regression_scores(R, residual, estimate.structure, {0, range.size()});
+  const auto of_range = [&](const Matrix& all) { return all.middleRows(range.begin, range.size()); };
+  const Matrix residual = numeric::residuals_of({of_range(r_.Z)}, of_range(r_.Y), estimate.coefficients);
+  return numeric::regression_scores(of_range(instruments(method)), residual, estimate.structure, {0, range.size()});
 }
 
 /// What the coefficients of the robot, on which the force rests, leave open of φ: D V Dᵀ with D = ∂φ/∂θ, found by the
@@ -236,19 +245,49 @@ Result<void> Fitter::find_instruments() {
   return {};
 }
 
+Result<void> Fitter::find(Method method) {
+  if (method == Method::instrumental_variables) {
+    if (auto ok = find_instruments(); !ok) return ok;
+  }
+  const auto at = static_cast<std::size_t>(method);
+  auto fit = estimate(method, r_.identification);
+  if (!fit) return tl::unexpected(fit.error());
+  if (all_ && !r_.validation.empty()) {
+    judged_[at] = std::move(*fit);
+    fit = estimate(method, ranges_);
+    if (!fit) return tl::unexpected(fit.error());
+  }
+  estimates_[at] = std::move(*fit);
+  return {};
+}
+
+const Matrix& Fitter::long_run(Method method) {
+  constexpr auto kLs = Method::least_squares, kIv = Method::instrumental_variables;
+  Matrix& wanted = omegas_[static_cast<std::size_t>(method)];
+  if (wanted.size() > 0) return wanted;
+  const auto &ls = estimates_[0], &iv = estimates_[1];
+  if (!ls || !iv || !is_full(*ls) || !is_full(*iv)) {
+    const Estimate& one = *estimates_[static_cast<std::size_t>(method)];
+    wanted = numeric::long_run_covariance(one.bread.rows(), ranges_, lags_,
+                                          [&](const RowRange& range) { return scores(method, one, range); });
+    return wanted;
+  }
+  const Index k = iv->bread.rows();
+  omega_of_both_ = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
+    Matrix both(range.size(), 2 * k);
+    both << scores(kIv, *iv, range), scores(kLs, *ls, range);
+    return both;
+  });
+  omegas_[static_cast<std::size_t>(kIv)] = omega_of_both_.topLeftCorner(k, k);
+  omegas_[static_cast<std::size_t>(kLs)] = omega_of_both_.bottomRightCorner(k, k);
+  return wanted;
+}
+
 Result<Identification> Fitter::identify(Method method) {
   const Index n = r_.axes();
-  if (method == Method::instrumental_variables) {
-    if (auto ok = find_instruments(); !ok) return tl::unexpected(ok.error());
-  }
-  const auto check = estimate(method, r_.identification);
-  if (!check) return tl::unexpected(check.error());
-  // Not copied: the copy of a Result must not throw, and this one may want memory.
-  std::optional<Result<Estimate>> of_all;
-  if (all_ && !r_.validation.empty()) of_all.emplace(estimate(method, ranges_));
-  const Result<Estimate>& fit = of_all ? *of_all : check;
-  if (!fit) return tl::unexpected(fit.error());
-  estimates_[static_cast<std::size_t>(method)] = *fit;
+  const auto at = static_cast<std::size_t>(method);
+  const Estimate* const fit = &*estimates_[at];
+  const Estimate* const check = judged_[at] ? &*judged_[at] : fit;
 
   Identification result;
   describe(result);
@@ -259,12 +298,9 @@ Result<Identification> Fitter::identify(Method method) {
   const auto count = static_cast<Index>(result.parameters.size());
   result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
   if (is_full(*fit)) {
-    const Matrix omega = numeric::long_run_covariance(
-        fit->bread.rows(), ranges_, lags_, [&](const RowRange& range) { return scores(method, *fit, range); });
-    const Matrix V = fit->bread * omega * fit->bread.transpose();
+    const Matrix V = fit->bread * long_run(method) * fit->bread.transpose();
     result.covariance = model_covariance(fit->structure, widening_ * widening_ * V, result.model, r_.centre);
-    errors_[static_cast<std::size_t>(method)] =
-        widening_ * (fit->structure * V * fit->structure.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+    errors_[at] = widening_ * (fit->structure * V * fit->structure.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
     if (r_.robot_covariance.size() > 0) {
       const Matrix of_robot =
           model_covariance(fit->structure, covariance_of_robot(method, *fit), result.model, r_.centre);
@@ -277,7 +313,7 @@ Result<Identification> Fitter::identify(Method method) {
     result.instrument = InstrumentCheck{instruments_->from, instruments_->strength, Vector::Constant(n, std::nan(""))};
   }
   if (instruments_ && is_full(*fit)) {
-    const Matrix residual = r_.Y - r_.Z * fit->coefficients;
+    const Matrix residual = numeric::residuals_of({r_.Z}, r_.Y, fit->coefficients);
     const Vector fraction = coherent_residual_fraction(r_, *instruments_, residual, ranges_);
     if (result.instrument) result.instrument->coherent_residual = fraction;
     result.response = response_in(residual, fraction);
@@ -288,7 +324,8 @@ Result<Identification> Fitter::identify(Method method) {
     if (!replicates) return tl::unexpected(replicates.error());
     result.replicates = std::move(*replicates);
   }
-  result.excitation = measure_excitation(rows_of(r_.Z, ranges_), rows_of(r_.Y, ranges_), result.model, fit->rank);
+  if (!spread_) spread_ = spread_of(*SelectedRows(r_.Z, ranges_), *SelectedRows(r_.Y, ranges_));
+  result.excitation = measure_excitation(*spread_, result.model, fit->rank);
   result.excitation.duration = static_cast<double>(samples_) * r_.sample_time;
 
   if (options_.decimate_check) {
@@ -325,7 +362,7 @@ Result<Replicates> Fitter::resample(Method method) const {
 
 UnmodelledResponse Fitter::response_in(const Matrix& residual, const Vector& fraction) const {
   const Index n = r_.axes();
-  const Matrix left = rows_of(residual, ranges_), force = rows_of(r_.Y, ranges_);
+  const SelectedRows left(residual, ranges_), force(r_.Y, ranges_);
   Vector at_rest = Vector::Zero(n);
   double weight = 0.0;
   for (const PreparedTrial& trial : trials_) {
@@ -337,7 +374,7 @@ UnmodelledResponse Fitter::response_in(const Matrix& residual, const Vector& fra
   result.coherent.resize(n);
   if (weight > 0.0) result.induced.resize(n);
   for (Index j = 0; j < n; ++j) {
-    const double all = numeric::variance(force.col(j)), unexplained = numeric::variance(left.col(j));
+    const double all = numeric::variance(force->col(j)), unexplained = numeric::variance(left->col(j));
     result.coherent[j] = all > 0.0 ? fraction[j] * unexplained / all : std::nan("");
     if (weight > 0.0)
       result.induced[j] = all > 0.0 ? std::max(0.0, unexplained - at_rest[j] / weight) / all : std::nan("");
@@ -355,20 +392,14 @@ const std::vector<AssumptionTest>& Fitter::assumptions_tested(Method method, con
 }
 
 Disagreement Fitter::compare() const {
-  constexpr auto kLs = Method::least_squares, kIv = Method::instrumental_variables;
   const auto &ls = estimates_[0], &iv = estimates_[1];
   Disagreement result;
   if (!ls || !iv || !is_full(*ls) || !is_full(*iv)) return result;
   const Index n = r_.axes(), p = 3 * n + 1;
   const Index k = iv->bread.rows();
-  const Matrix omega = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
-    Matrix both(range.size(), 2 * k);
-    both << scores(kIv, *iv, range), scores(kLs, *ls, range);
-    return both;
-  });
   Matrix bread(k, 2 * k);
   bread << iv->bread, -ls->bread;
-  const Matrix V = bread * omega * bread.transpose();
+  const Matrix V = bread * omega_of_both_ * bread.transpose();
   const Vector variance = (iv->structure * V * iv->structure.transpose()).diagonal();
   const std::vector<std::string> names = parameter_names(static_cast<int>(n));
   double largest = -std::numeric_limits<double>::infinity();
@@ -408,7 +439,9 @@ Result<Identification> identify_impedance(const std::vector<PreparedTrial>& tria
   if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
   Fitter fitter(trials, options);
   if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
-  return fitter.identify(options.method.value_or(Method::least_squares));
+  const Method method = options.method.value_or(Method::least_squares);
+  if (auto ok = fitter.find(method); !ok) return tl::unexpected(ok.error());
+  return fitter.identify(method);
 }
 
 Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, const Options& options) {
@@ -416,6 +449,9 @@ Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, con
   Fitter fitter(trials, options);
   if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
   if (auto ok = fitter.find_instruments(); !ok) return tl::unexpected(ok.error());
+  for (const Method method : {Method::least_squares, Method::instrumental_variables}) {
+    if (auto ok = fitter.find(method); !ok) return tl::unexpected(ok.error());
+  }
   auto ls = fitter.identify(Method::least_squares);
   if (!ls) return tl::unexpected(ls.error());
   auto iv = fitter.identify(Method::instrumental_variables);

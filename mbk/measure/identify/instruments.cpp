@@ -98,13 +98,31 @@ Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_ti
 /// [motion 1] with the means of the rows that count removed.
 Matrix with_constant(const Matrix& motion, const std::vector<RowRange>& ranges) {
   Matrix R(motion.rows(), motion.cols() + 1);
-  const Vector mean = rows_of(motion, ranges).colwise().mean();
-  R << motion.rowwise() - mean.transpose(), Vector::Ones(motion.rows());
+  const Vector mean = SelectedRows(motion, ranges)->colwise().mean();
+  R.leftCols(motion.cols()) = motion.rowwise() - mean.transpose();
+  R.rightCols(1).setOnes();
   return R;
 }
 
 Vector strength_of(const Regression& r, const Matrix& R, const std::vector<RowRange>& ranges, Index lags) {
-  return numeric::first_stage_strength(rows_of(r.Z, ranges), rows_of(R, ranges), packed(ranges), lags);
+  const SelectedRows Z(r.Z, ranges), by(R, ranges);
+  return numeric::first_stage_strength(*Z, *by, packed(ranges), lags);
+}
+
+/// 1 + 2 Σ r[l] over the lags before the autocorrelation first falls below a tenth, of a quarter of the samples at
+/// most.
+double memory_of(const Eigen::Ref<const Vector>& e, double power) {
+  constexpr double kForgotten = 0.1;
+  constexpr Index kAtOnce = 72;
+  double memory = 1.0;
+  for (Index first = 1; first < e.size() / 4; first += kAtOnce) {
+    const Vector sums = numeric::lagged_products(e, first, std::min(kAtOnce, e.size() / 4 - first));
+    for (const double sum : sums) {
+      if (sum / power < kForgotten) return memory;
+      memory += 2.0 * (sum / power);
+    }
+  }
+  return memory;
 }
 
 /// The reference as a force, and what it makes of a nominal limb on the robot.
@@ -112,15 +130,16 @@ Instruments from_force(const Regression& r, const std::vector<RowRange>& ranges,
   const Index n = r.axes();
   const Matrix force = with_constant(r.reference.rightCols(n), ranges).leftCols(n);
   const std::vector<RowRange> whole = joined(r.identification, r.validation);
-  const Matrix Z = rows_of(r.Z, ranges), target = rows_of(force, ranges);
+  const SelectedRows Z(r.Z, ranges), target(force, ranges);
   Instruments result;
   result.from = ReferenceQuantity::force;
   const double fastest = 0.5 / r.sample_time;  // [rad/s] about the top of the band that the rows carry
-  Matrix total = numeric::PivotedQr(Z).solve(target);
+  Matrix total = numeric::PivotedQr(*Z).solve(*target);
   for (int pass = 0; pass <= kPasses; ++pass) {
     result.R = with_constant(simulate(stable(total, fastest), force, r.sample_time, whole), ranges);
     if (pass == kPasses) break;
-    const auto fit = numeric::fit_instrumental_variables(Z, rows_of(result.R, ranges), target);
+    const SelectedRows R(result.R, ranges);
+    const auto fit = numeric::fit_instrumental_variables(*Z, *R, *target);
     if (!fit || !fit->coefficients.allFinite()) break;
     total = fit->coefficients;
   }
@@ -195,13 +214,7 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
   // Independent samples: those of the residual's own correlation.
   Vector share(n);
   for (Index j = 0; j < n; ++j) {
-    const double power = Y.col(j).squaredNorm();
-    double memory = 1.0;
-    for (Index lag = 1; lag < Y.rows() / 4; ++lag) {
-      const double one = Y.col(j).head(Y.rows() - lag).dot(Y.col(j).tail(Y.rows() - lag)) / power;
-      if (one < 0.1) break;
-      memory += 2.0 * one;
-    }
+    const double power = Y.col(j).squaredNorm(), memory = memory_of(Y.col(j), power);
     const double chance = static_cast<double>(columns - 1) * memory / static_cast<double>(count);
     const double explained = power > 0.0 ? weights.dot(along.col(j).cwiseAbs2()) / power : 0.0;
     share[j] = chance < 1.0 ? std::clamp((explained - chance) / (1.0 - chance), 0.0, 1.0) : std::nan("");

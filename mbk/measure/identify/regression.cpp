@@ -11,10 +11,84 @@
 namespace mbk::identify {
 namespace {
 
-Vector vaf(const Matrix& Y, const Matrix& residual) {
+Vector vaf(const numeric::MatrixPart& Y, const Matrix& residual) {
   Vector result(Y.cols());
   for (Index j = 0; j < Y.cols(); ++j) result[j] = numeric::variance_accounted_for(Y.col(j), residual.col(j));
   return result;
+}
+
+/// Where a segment of a trial stands in the regression.
+struct Place {
+  const PreparedTrial* trial;
+  const Segment* segment;
+  Index row;
+};
+
+/// An empty row keeps ranges apart between which time is broken; it belongs to none.
+std::vector<Place> places_of(const std::vector<PreparedTrial>& trials) {
+  std::vector<Place> places;
+  Index row = 0;
+  for (const PreparedTrial& trial : trials) {
+    Index last_end = -1;
+    for (const Segment& segment : trial.segments) {
+      const bool broken = segment.begin != last_end ||
+                          trial.time[segment.begin] - trial.time[segment.begin - 1] > 1.5 * trial.sample_time;
+      if (row > 0 && broken) ++row;
+      last_end = segment.end;
+      places.push_back({&trial, &segment, row});
+      row += segment.size();
+    }
+  }
+  return places;
+}
+
+Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
+  const Index n = trials.front().axes;
+  const std::vector<Place> places = places_of(trials);
+  const Index rows = places.empty() ? 0 : places.back().row + places.back().segment->size();
+  Regression r;
+  r.sample_time = trials.front().sample_time;
+  r.Z.resize(rows, 3 * n + 1);
+  r.Y.resize(rows, n);
+  const bool known = with_rest && std::ranges::all_of(trials, [](const PreparedTrial& trial) {
+                       return trial.reference_motion.size() > 0;
+                     });
+  if (known) r.reference.resize(rows, 3 * n);
+  const bool computed = with_rest && std::ranges::all_of(trials, [](const PreparedTrial& trial) {
+                          return trial.force_sensitivity.size() > 0;
+                        });
+  if (computed) {
+    r.robot_covariance = trials.front().robot_covariance;
+    r.force_sensitivity.resize(rows, trials.front().force_sensitivity.cols());
+  }
+  Index written = 0;
+  for (const auto& [of, segment, row] : places) {
+    const PreparedTrial& trial = *of;
+    const Index begin = segment->begin, size = segment->size();
+    for (Matrix* all : {&r.Z, &r.Y, &r.reference, &r.force_sensitivity}) {
+      if (all->size() > 0) all->middleRows(written, row - written).setZero();
+    }
+    r.Z.block(row, 0, size, n) = trial.acceleration.middleRows(begin, size);
+    r.Z.block(row, n, size, n) = trial.velocity.middleRows(begin, size);
+    r.Z.block(row, 2 * n, size, n) = trial.position.middleRows(begin, size);
+    r.Z.block(row, 3 * n, size, 1).setOnes();
+    r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(begin, size);
+    if (known) r.reference.middleRows(row, size) = trial.reference_motion.middleRows(begin, size);
+    if (computed) r.force_sensitivity.middleRows(row, size) = trial.force_sensitivity.middleRows(begin, size);
+    (segment->purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
+    written = row + size;
+  }
+  r.centre = Vector::Zero(n);
+  Index count = 0;
+  for (const RowRange& range : r.identification.empty() ? r.validation : r.identification) {
+    r.centre += r.Z.block(range.begin, 2 * n, range.size(), n).colwise().sum().transpose();
+    count += range.size();
+  }
+  r.centre /= static_cast<double>(std::max<Index>(count, 1));
+  for (const RowRange& range : joined(r.identification, r.validation)) {
+    r.Z.block(range.begin, 2 * n, range.size(), n).rowwise() -= r.centre.transpose();
+  }
+  return r;
 }
 
 }  // namespace
@@ -35,60 +109,11 @@ std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<R
 }
 
 Regression stack(const std::vector<PreparedTrial>& trials) {
-  const Index n = trials.front().axes;
-  Index rows = 0;
-  for (const PreparedTrial& trial : trials) {
-    for (const Segment& segment : trial.segments) rows += segment.size() + 1;
-  }
-  Regression r;
-  r.sample_time = trials.front().sample_time;
-  r.Z.setZero(rows, 3 * n + 1);
-  r.Y.setZero(rows, n);
-  const bool known = std::ranges::all_of(trials, [](const auto& trial) { return trial.reference_motion.size() > 0; });
-  if (known) r.reference.setZero(rows, 3 * n);
-  const bool computed =
-      std::ranges::all_of(trials, [](const auto& trial) { return trial.force_sensitivity.size() > 0; });
-  if (computed) {
-    r.robot_covariance = trials.front().robot_covariance;
-    r.force_sensitivity.setZero(rows, trials.front().force_sensitivity.cols());
-  }
-  Index row = 0;
-  for (const PreparedTrial& trial : trials) {
-    Index last_end = -1;
-    for (const Segment& segment : trial.segments) {
-      const Index size = segment.size();
-      const bool broken = segment.begin != last_end ||
-                          trial.time[segment.begin] - trial.time[segment.begin - 1] > 1.5 * trial.sample_time;
-      if (row > 0 && broken) ++row;  // an empty row keeps the ranges apart; it belongs to none
-      last_end = segment.end;
-      r.Z.block(row, 0, size, n) = trial.acceleration.middleRows(segment.begin, size);
-      r.Z.block(row, n, size, n) = trial.velocity.middleRows(segment.begin, size);
-      r.Z.block(row, 2 * n, size, n) = trial.position.middleRows(segment.begin, size);
-      r.Z.block(row, 3 * n, size, 1).setOnes();
-      r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(segment.begin, size);
-      if (known) r.reference.middleRows(row, size) = trial.reference_motion.middleRows(segment.begin, size);
-      if (computed) {
-        r.force_sensitivity.middleRows(row, size) = trial.force_sensitivity.middleRows(segment.begin, size);
-      }
-      (segment.purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
-      row += size;
-    }
-  }
-  r.Z.conservativeResize(row, Eigen::NoChange);
-  r.Y.conservativeResize(row, Eigen::NoChange);
-  if (known) r.reference.conservativeResize(row, Eigen::NoChange);
-  if (computed) r.force_sensitivity.conservativeResize(row, Eigen::NoChange);
-  r.centre = Vector::Zero(n);
-  Index count = 0;
-  for (const RowRange& range : r.identification.empty() ? r.validation : r.identification) {
-    r.centre += r.Z.block(range.begin, 2 * n, range.size(), n).colwise().sum().transpose();
-    count += range.size();
-  }
-  r.centre /= static_cast<double>(std::max<Index>(count, 1));
-  for (const RowRange& range : joined(r.identification, r.validation)) {
-    r.Z.block(range.begin, 2 * n, range.size(), n).rowwise() -= r.centre.transpose();
-  }
-  return r;
+  return stacked(trials, true);
+}
+
+Regression stack_motion_and_force(const std::vector<PreparedTrial>& trials) {
+  return stacked(trials, false);
 }
 
 Matrix rows_of(const Matrix& all, const std::vector<RowRange>& ranges, Index step) {
@@ -176,14 +201,15 @@ Matrix model_covariance(const Matrix& structure, const Matrix& V, const impedanc
 
 Fit judge(const Regression& r, const Matrix& coefficients) {
   const auto residual = [&](const std::vector<RowRange>& ranges) {
-    return Matrix(rows_of(r.Y, ranges) - rows_of(r.Z, ranges) * coefficients);
+    const SelectedRows Z(r.Z, ranges), Y(r.Y, ranges);
+    return numeric::residuals_of({*Z}, *Y, coefficients);
   };
   Fit fit;
-  const Matrix in_sample = residual(r.identification);
-  fit.vaf_in_sample = vaf(rows_of(r.Y, r.identification), in_sample);
+  Matrix judged = residual(r.identification);
+  fit.vaf_in_sample = vaf(*SelectedRows(r.Y, r.identification), judged);
   fit.held_out = !r.validation.empty();
-  const Matrix judged = fit.held_out ? residual(r.validation) : in_sample;
-  fit.vaf = fit.held_out ? vaf(rows_of(r.Y, r.validation), judged) : fit.vaf_in_sample;
+  if (fit.held_out) judged = residual(r.validation);
+  fit.vaf = fit.held_out ? vaf(*SelectedRows(r.Y, r.validation), judged) : fit.vaf_in_sample;
   fit.rmse.resize(r.axes());
   for (Index j = 0; j < r.axes(); ++j) fit.rmse[j] = numeric::root_mean_square(judged.col(j));
   return fit;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/model/impedance/model.h"
 #include "mbk/model/trial/identification.h"
@@ -30,12 +31,34 @@ struct Regression {
 /// new range, and where two segments follow each other without one, `joined` may merge them.
 [[nodiscard]] Regression stack(const std::vector<PreparedTrial>& trials);
 
+/// The same without the reference and what the force rests on.
+[[nodiscard]] Regression stack_motion_and_force(const std::vector<PreparedTrial>& trials);
+
 /// Both lists in order; neighbours without a break in between are one range: the residual's correlation does not stop
 /// at the split.
 [[nodiscard]] std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b);
 
 /// Every `step`-th row of the ranges, under each other.
 [[nodiscard]] Matrix rows_of(const Matrix& all, const std::vector<RowRange>& ranges, Index step = 1);
+
+/// The same in place, where every row of one range is asked for; a copy otherwise. What it is made from must stay.
+class SelectedRows {
+ public:
+  SelectedRows(const Matrix& all, const std::vector<RowRange>& ranges, Index step = 1)
+      : copy_(in_place(ranges, step) ? Matrix() : rows_of(all, ranges, step)),
+        rows_(in_place(ranges, step) ? numeric::MatrixPart(all.middleRows(ranges[0].begin, ranges[0].size()))
+                                     : numeric::MatrixPart(copy_)) {}
+  SelectedRows(const SelectedRows&) = delete;
+  SelectedRows& operator=(const SelectedRows&) = delete;
+  ~SelectedRows() = default;
+  [[nodiscard]] const numeric::MatrixPart& operator*() const { return rows_; }
+  [[nodiscard]] const numeric::MatrixPart* operator->() const { return &rows_; }
+
+ private:
+  static bool in_place(const std::vector<RowRange>& ranges, Index step) { return ranges.size() == 1 && step == 1; }
+  Matrix copy_;
+  numeric::MatrixPart rows_;
+};
 
 /// θ = S φ with θ_j = [row j of M, row j of B, row j of K, c_j] stacked over the outputs j.
 [[nodiscard]] Matrix structure_matrix(Structure structure, Index n);

@@ -301,12 +301,14 @@ class Fitter {
   [[nodiscard]] static const Vector* free_weights(const Iterate& at, const Layout& layout, std::size_t experiment) {
     return layout.free && experiment < at.free.size() ? &at.free[experiment] : nullptr;
   }
+  /// What a step of the search needs, or a covariance: the whole of ZᵀZ.
+  enum class For { step, covariance };
   /// @param residuals  y − x̂ of each experiment, where it is not nullptr; without a noise model only
-  [[nodiscard]] Sums sums(const Iterate& at, const Layout& layout, const Vector& noise,
+  [[nodiscard]] Sums sums(const Iterate& at, const Layout& layout, const Vector& noise, For use,
                           std::vector<Vector>* residuals = nullptr) const;
   [[nodiscard]] std::vector<Vector> residuals(const Iterate& at) const {
     std::vector<Vector> all;
-    static_cast<void>(sums(at, layout(false), Vector::Ones(1), &all));
+    static_cast<void>(sums(at, layout(false), Vector::Ones(1), For::step, &all));
     return all;
   }
   [[nodiscard]] Layout layout(bool instruments) const {
@@ -455,23 +457,34 @@ void Fitter::blocks(std::size_t experiment, const Iterate& at, const Layout& lay
   }
 }
 
-Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, std::vector<Vector>* residuals) const {
+Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, For use,
+                  std::vector<Vector>* residuals) const {
   const Index p = layout.parameters(), u = layout.u(), y = layout.y(), rows = layout.rows();
   const Index own = layout.instruments ? 0 : y, own_size = layout.instruments ? layout.z_size() : n_;
   Sums all{Matrix::Zero(p, p), Matrix::Zero(p, p), Vector::Zero(p), 0.0, 0, {}};
   for (std::size_t k = 0; k < experiments_.size(); ++k) {
-    // [Z u e free]ᵀ[u e free −y], and ZᵀZ of what is not in u.
-    dsp::Products across(y, rows - u), within(own_size, own_size);
+    // [Z u e free]ᵀ[u e free −y], and ZᵀZ of what is not in u. Of e beside instruments the square is enough.
+    const bool diagonal = layout.instruments && use == For::step;
+    const Index left = layout.instruments && !layout.free ? layout.e() : y;
+    dsp::Products across(left, rows - u), within(diagonal ? 0 : own_size, own_size);
+    dsp::Squares of_e(1), of_own(diagonal ? own_size : 0);
     Vector e(residuals == nullptr ? 0 : experiments_[k].time.size());
     blocks(k, at, layout, noise, [&](const Block& block) {
       across.add(block.rows, rows_from(block.rows, u), block.columns);
+      of_e.add(rows_from(block.rows, layout.e()), block.columns);
       within.add(rows_from(block.rows, own), rows_from(block.rows, own), block.columns);
+      of_own.add(rows_from(block.rows, own), block.columns);
       if (residuals != nullptr) block.scatter(layout.e(), e);
     });
     Matrix gram = Matrix::Zero(rows, rows);
-    gram.block(0, u, y, rows - u) = across.total();
-    gram.block(u, 0, rows - u, y) = across.total().transpose();
-    gram.block(own, own, own_size, own_size) = within.total();
+    gram.block(0, u, left, rows - u) = across.total();
+    gram.block(u, 0, rows - u, left) = across.total().transpose();
+    gram(layout.e(), layout.e()) = of_e.total()[0];
+    if (diagonal) {
+      gram.diagonal().segment(own, own_size) = of_own.total();
+    } else {
+      gram.block(own, own, own_size, own_size) = within.total();
+    }
     Reduced one = reduce(gram, layout);
     if (residuals != nullptr) {
       if (layout.free) e -= free_motion(at, experiments_[k]).transpose() * one.free_of_e;
@@ -515,7 +528,7 @@ bool stabilise(Vector& a, double min_damping) {
 bool Fitter::step(Search& found, double& change) const {
   const bool first = found.at.b.size() == 0;
   const Layout rows = found.from_clean_input ? layout_of_clean_input(!first) : layout(!first);
-  const Sums now = sums(found.at, rows, found.noise);
+  const Sums now = sums(found.at, rows, found.noise, For::step);
   const Vector delta = solved(now);
   if (!delta.allFinite()) return false;
   const Vector old = first ? Vector(Vector::Zero(n_ + q_)) : found.at.theta();
@@ -592,11 +605,12 @@ Fitter::Search Fitter::search(double pole) const {
     if (((after - before).array().abs() <= options_.tolerance * after.array().abs()).all()) break;
   }
   const bool white = found.noise.size() == 1;
-  found.last = sums(found.at, layout_of_covariance(), found.noise, white ? &found.residuals : nullptr);
+  found.last = sums(found.at, layout_of_covariance(), found.noise, For::covariance, white ? &found.residuals : nullptr);
   found.variance = found.last.ee / static_cast<double>(std::max<Index>(found.last.samples - n_ - q_, 1));
   found.rank = found.variance;
   // With the loop's noise in u the least error is not the truth's.
-  if (options_.reference_instruments) found.rank = sums(found.at, layout_of_clean_input(false), Vector::Ones(1)).ee;
+  if (options_.reference_instruments)
+    found.rank = sums(found.at, layout_of_clean_input(false), Vector::Ones(1), For::step).ee;
   double squares = found.last.ee;
   if (!white) {
     found.residuals = residuals(found.at);

@@ -3,14 +3,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/inspect.h"
+#include "mbk/measure/analyse/ellipses.h"
+#include "mbk/measure/explore/after_onset.h"
 #include "mbk/measure/explore/limb_signals.h"
 #include "mbk/measure/explore/parallel_cascade.h"
+#include "mbk/measure/explore/time_course.h"
+#include "mbk/measure/measurement/course_variable.h"
 #include "mbk/measure/preprocess/exploration_trial_of.h"
 #include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
@@ -32,7 +39,8 @@ Result<Channel> named_channel(const Recording& recording, const std::string& nam
 }
 
 /// The recording as that of one axis: the input in the place of the position, the output in that of −F.
-Result<Recording> with_signals(const Recording& recording, const ExploredSignals& signals) {
+Result<Recording> with_signals(const Recording& recording, const ExploredSignals& signals,
+                               const std::string& schedule) {
   Recording one = recording;
   one.channels.clear();
   const auto add = [&](const std::string& name, const char* as, double sign) -> Result<void> {
@@ -46,15 +54,21 @@ Result<Recording> with_signals(const Recording& recording, const ExploredSignals
   };
   if (auto ok = add(signals.input, "position", signals.input_sign); !ok) return tl::unexpected(ok.error());
   if (auto ok = add(signals.output, "reaction", -signals.output_sign); !ok) return tl::unexpected(ok.error());
-  if (signals.reference.empty()) return one;
-  if (auto ok = add(signals.reference, "reference", 1.0); !ok) return tl::unexpected(ok.error());
+  if (!signals.reference.empty()) {
+    if (auto ok = add(signals.reference, "reference", 1.0); !ok) return tl::unexpected(ok.error());
+  }
+  if (!schedule.empty()) {
+    auto channel = named_channel(recording, schedule);
+    if (!channel) return tl::unexpected(channel.error());
+    if (one.find(channel->name) == nullptr) one.channels.push_back(std::move(*channel));
+  }
   return one;
 }
 
 Result<ExplorationTrial> explored_trial(const Recording& recording, const ExploreOptions& options) {
   if (options.signals) {
     const ExploredSignals& signals = *options.signals;
-    const auto one = with_signals(recording, signals);
+    const auto one = with_signals(recording, signals, options.schedule);
     if (!one) return tl::unexpected(one.error());
     ExploreOptions rest = options;
     rest.signals.reset();
@@ -94,40 +108,136 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
   }
   auto trial = preprocess::exploration_trial_of(*source, inspection, options.preprocess);
   if (trial && jitter) trial->warnings.push_back(std::move(*jitter));
+  if (trial && !options.schedule.empty()) {
+    const auto channel = named_channel(*source, options.schedule);
+    if (!channel) return tl::unexpected(channel.error());
+    trial->scheduling = channel->values.segment(std::llround(trial->from_s / trial->sample_time), trial->samples());
+    if (!trial->scheduling.allFinite()) {
+      return bad_data(fmt::format("'{}' is not finite everywhere in the analysed interval", channel->name),
+                      "choose the interval with --from and --to");
+    }
+    trial->scheduling_label = {channel->name, channel->unit};
+  }
   return trial;
 }
 
+bool wanted(const ExploreOptions& options, ExplorationPart part) {
+  return !options.only || *options.only == part;
+}
+
 /// What needs more than the recording holds is absent, and why stands in the notes.
-void add_responses_in_time(std::span<const ExplorationTrial> trials, const ExploreOptions& options,
-                           Exploration& found) {
+/// @fails  as course_variable
+Result<void> add_responses_in_time(std::span<const ExplorationTrial> trials, const ExploreOptions& options,
+                                   Exploration& found) {
+  const bool response_wanted = wanted(options, ExplorationPart::impulse_response);
+  const bool cascade_wanted = wanted(options, ExplorationPart::reflex);
+  const bool course_wanted = wanted(options, ExplorationPart::time_course);
+  if (!response_wanted && !cascade_wanted && !course_wanted) return {};
   const auto signals = explore::limb_signals(trials);
   if (!signals) {
     found.notes.push_back("no impulse response: " + signals.error().line());
-    return;
+    return {};
   }
-  if (auto response = explore::impulse_response(*signals, options.impulse_response)) {
-    found.impulse_response = std::move(*response);
-  } else {
-    found.notes.push_back("no impulse response: " + response.error().line());
+  if (course_wanted) {
+    const auto variable = course_variable(trials, !options.schedule.empty(), options.align);
+    if (!variable) return tl::unexpected(variable.error());
+    if (auto course = explore::time_course(*signals, *variable, moved_up_to(trials))) {
+      found.time_course = std::move(*course);
+    } else {
+      found.notes.push_back("no change over time: " + course.error().line());
+    }
   }
+  if (response_wanted) {
+    if (auto response = explore::impulse_response(*signals, options.impulse_response)) {
+      found.impulse_response = std::move(*response);
+    } else {
+      found.notes.push_back("no impulse response: " + response.error().line());
+    }
+  }
+  if (!cascade_wanted) return {};
   if (auto cascade = explore::parallel_cascade(*signals)) {
     found.parallel_cascade = std::move(*cascade);
   } else {
     found.notes.push_back("no intrinsic and reflex path: " + cascade.error().line());
   }
+  return {};
+}
+
+/// The trial, or why there is none, with the name of its file.
+Result<ExplorationTrial> named_trial(const Recording& recording, const ExploreOptions& options) {
+  auto trial = explored_trial(recording, options);
+  if (trial || recording.sources.empty()) return trial;
+  return tl::unexpected(trial.error().in(recording.sources.front().path));
+}
+
+/// Where every recording's reference is ramps and holds, or the window on the plateau was given.
+Result<void> add_plateaus(std::span<const Recording> recordings, std::span<const ExplorationTrial> trials,
+                          const ExploreOptions& options, Exploration& found) {
+  const bool asked = options.plateau.asked();
+  const auto displaces = [&](const ExplorationTrial& trial) {
+    return explore::is_ramp_and_hold(trial, options.plateau);
+  };
+  if (options.signals || (!asked && !std::ranges::all_of(trials, displaces))) return {};
+  auto plateaus = plateau_stiffness(recordings, options, found.warnings);
+  if (!plateaus) {
+    if (asked) return tl::unexpected(plateaus.error());
+    found.notes.push_back("no stiffness from ramps and holds: " + plateaus.error().line());
+    return {};
+  }
+  if (!plateaus->usable) found.usable = false;
+  found.plateau_stiffness = std::move(*plateaus);
+  return {};
 }
 
 }  // namespace
+
+void add_ellipse(StiffnessRegression& fit) {
+  if (fit.K.rows() != 2) return;
+  const double t = numeric::student_quantile(0.975, static_cast<int>(fit.degrees_of_freedom));
+  const Eigen::Matrix4d covariance = std::pow(t / numeric::kNormal95, 2) * fit.covariance;
+  fit.ellipse = analyse::ellipse_finding(fit.K, covariance);
+  fit.antisymmetry = analyse::antisymmetry_finding(fit.K, covariance);
+}
+
+Result<PlateauStiffness> plateau_stiffness(std::span<const Recording> recordings, const ExploreOptions& options,
+                                           std::vector<Warning>& warnings) {
+  std::vector<ExplorationTrial> whole;
+  ExploreOptions untouched = options;
+  untouched.preprocess.protocol = Protocol::free;
+  for (const Recording& recording : recordings) {
+    auto trial = named_trial(recording, untouched);
+    if (!trial) return tl::unexpected(trial.error());
+    whole.push_back(std::move(*trial));
+  }
+  if (whole.empty()) return bad_usage("there is no recording to explore");
+  auto found = explore::plateau_stiffness(whole, options.plateau);
+  if (!found) return tl::unexpected(found.error().in("ramps and holds"));
+  add_ellipse(found->fit);
+  for (Warning& warning : explore::judge_plateaus(*found)) warnings.push_back(std::move(warning));
+  return found;
+}
+
+Result<TimeCourseEstimate> time_course(std::span<const Recording> recordings, const ExploreOptions& options) {
+  std::vector<ExplorationTrial> trials;
+  for (const Recording& recording : recordings) {
+    auto trial = explored_trial(recording, options);
+    if (!trial) return tl::unexpected(trial.error());
+    trials.push_back(std::move(*trial));
+  }
+  if (trials.empty()) return bad_usage("there is no recording to explore");
+  const auto signals = explore::limb_signals(trials);
+  if (!signals) return tl::unexpected(signals.error());
+  const auto variable = course_variable(trials, !options.schedule.empty(), options.align);
+  if (!variable) return tl::unexpected(variable.error());
+  return explore::time_course(*signals, *variable, moved_up_to(trials));
+}
 
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
   std::vector<ExplorationTrial> trials;
   Exploration found;
   for (const Recording& recording : recordings) {
-    auto trial = explored_trial(recording, options);
-    if (!trial) {
-      if (recording.sources.empty()) return tl::unexpected(trial.error());
-      return tl::unexpected(trial.error().in(recording.sources.front().path));
-    }
+    auto trial = named_trial(recording, options);
+    if (!trial) return tl::unexpected(trial.error());
     found.recordings.push_back({trial->source, trial->recording_duration, 1.0 / trial->sample_time, trial->from_s,
                                 trial->to_s(), trial->window_rule});
     found.notes.insert(found.notes.end(), trial->notes.begin(), trial->notes.end());
@@ -137,11 +247,22 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   if (trials.empty()) return bad_usage("there is no recording to explore");
   found.axes = trials.front().axes;
   found.motion = trials.front().motion;
-  auto response = explore::frequency_response(trials, options.frequency_response);
-  if (!response) return tl::unexpected(response.error());
-  for (Warning& warning : explore::warnings_of(*response)) found.warnings.push_back(std::move(warning));
-  found.frequency_response = std::move(*response);
-  add_responses_in_time(trials, options, found);
+  found.other_signals = options.signals.has_value();
+  if (options.after_onset_s) {
+    auto after_onset = explore::after_onset(trials, *options.after_onset_s);
+    if (!after_onset) return tl::unexpected(after_onset.error());
+    found.after_onset = std::move(*after_onset);
+  }
+  if (wanted(options, ExplorationPart::frequency_response)) {
+    auto response = explore::frequency_response(trials, options.frequency_response);
+    if (!response) return tl::unexpected(response.error());
+    for (Warning& warning : explore::warnings_of(*response)) found.warnings.push_back(std::move(warning));
+    found.frequency_response = std::move(*response);
+  }
+  if (auto ok = add_responses_in_time(trials, options, found); !ok) return tl::unexpected(ok.error());
+  if (wanted(options, ExplorationPart::ramp_and_hold)) {
+    if (auto ok = add_plateaus(recordings, trials, options, found); !ok) return tl::unexpected(ok.error());
+  }
   return found;
 }
 

@@ -3,11 +3,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
 #include "mbk/measure/explore/frequency_response_of.h"
 #include "mbk/measure/explore/impulse_response.h"
+#include "mbk/measure/explore/measure_plateaus.h"
 #include "mbk/measure/preprocess/options.h"
 #include "mbk/model/trial/exploration.h"
 #include "mbk/model/trial/recording.h"
@@ -27,12 +29,32 @@ struct ExploreOptions {
   std::optional<Hertz> resample;           ///< put the samples on an even clock first
   double force_delay = 0.0;                ///< by which the force was read late, undone first [s]
   std::optional<ExploredSignals> signals;  ///< absent: from the position to −F
+  std::optional<ExplorationPart> only;     ///< absent: every part
   explore::FrequencyResponseOptions frequency_response;
   explore::ImpulseResponseOptions impulse_response;
+  explore::PlateauOptions plateau;      ///< of a reference of ramps and holds
+  std::string schedule;                 ///< channel that M, B and K are followed over; empty: time
+  std::optional<std::string> align;     ///< event, or "reference", since which time counts; absent: the first sample
+  std::optional<double> after_onset_s;  ///< M, B and K from so long after each onset of the reference; absent: not
 };
 
 /// What recordings of one limb in one condition say of it without a model of M, B and K. They are averaged.
 /// @fails  as preprocess::exploration_trial_of and the parts; the message names the file.
 [[nodiscard]] Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options);
+
+/// Adds the ellipse of its symmetric part and its antisymmetric part to a stiffness of two axes, with 95 % intervals as
+/// wide as those of the stiffness, by Student's t.
+void add_ellipse(StiffnessRegression& fit);
+
+/// The stiffness from the ramps and holds of recordings alone, with its ellipse, judged: the rest before the first ramp
+/// counts, so they are taken whole, unless options.preprocess.window says otherwise.
+/// @param warnings  to which what the user must know is added
+/// @fails  as preprocess::exploration_trial_of and explore::plateau_stiffness; the message names the file.
+[[nodiscard]] Result<PlateauStiffness> plateau_stiffness(std::span<const Recording> recordings,
+                                                         const ExploreOptions& options, std::vector<Warning>& warnings);
+/// M, B and K over time, or over what the options name, alone (explore::time_course).
+/// @fails  as explore() and the parts
+[[nodiscard]] Result<TimeCourseEstimate> time_course(std::span<const Recording> recordings,
+                                                     const ExploreOptions& options);
 
 }  // namespace mbk::measurement

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "mbk/measure/preprocess/recorded_handle_mass.h"
 #include "mbk/measure/preprocess/recording_checks.h"
 #include "mbk/measure/preprocess/signals.h"
 #include "mbk/measure/preprocess/trial_clock.h"
@@ -94,6 +97,11 @@ Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const 
   trial.window_rule = plan->rule;
   if (!recording.sources.empty()) trial.source = recording.sources.front();
   trial.recording_duration = inspection.duration + inspection.interval_median;
+  for (Event event : recording.events) {
+    event.time -= recording.time[0];
+    trial.events.push_back(std::move(event));
+  }
+  trial.recorded_handle_mass = recorded_handle_mass(recording);
   trial.notes = recording.notes;
   return trial;
 }

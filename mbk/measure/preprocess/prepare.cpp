@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mbk/measure/preprocess/band.h"
 #include "mbk/measure/preprocess/filters.h"
+#include "mbk/measure/preprocess/recorded_handle_mass.h"
 #include "mbk/measure/preprocess/recording_checks.h"
 #include "mbk/measure/preprocess/signals.h"
 #include "mbk/measure/preprocess/trial_clock.h"
@@ -23,16 +22,6 @@ namespace {
 std::string metadata_of(const Recording& recording, const char* key) {
   const auto found = recording.metadata.find(key);
   return found == recording.metadata.end() ? "" : found->second;
-}
-
-/// As the recording says it; NaN where that is no number.
-std::optional<double> recorded_handle_mass(const Recording& recording) {
-  const std::string text = metadata_of(recording, "handle_mass_kg");
-  if (text.empty()) return std::nullopt;
-  double mass = 0.0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), mass);
-  const bool number = error == std::errc() && stop == text.data() + text.size();
-  return number ? mass : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// PreparedTrial::force_variance_at_rest, from as long before each displacement as that lasts, at most half of the way

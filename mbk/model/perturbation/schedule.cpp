@@ -92,6 +92,15 @@ Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, dou
   return with_countable_cycles(Schedule(Binary{*std::move(sequence), unit_vector(angle)}, quantity, space, duration));
 }
 
+Result<Schedule> Schedule::ramps(const RampAndHold::Options& options, double tail, Space space) {
+  auto schedule = RampAndHold::create(options);
+  if (!schedule) return tl::unexpected(schedule.error());
+  if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is below 0", tail));
+  const double duration = schedule->end() + tail;
+  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, space, duration));
+}
+
 Result<Schedule> Schedule::rest(double duration) {
   if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
   return Schedule(Rest{}, Quantity::position, Space::hand, duration);
@@ -111,6 +120,7 @@ Jet<Eigen::Vector2d> Schedule::at(double t) const {
                            g.second * value + 2.0 * g.first * first + g.value * second};
                  },
                  [&](const PulseSchedule& pulses) { return pulses.at(t); },
+                 [&](const RampAndHold& ramps) { return ramps.at(t); },
                  [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
       shape_);
 }
@@ -127,6 +137,11 @@ std::vector<ScheduleEvent> Schedule::events() const {
       events.push_back({pulse.onset, "onset", pulse.angle});
       events.push_back({pulse.offset, "offset", pulse.angle});
     }
+  } else if (const auto* schedule_of_ramps = std::get_if<RampAndHold>(&shape_)) {
+    for (const RampAndHold::Ramp& ramp : schedule_of_ramps->ramps()) {
+      events.push_back({ramp.onset, "onset", ramp.angle});
+      events.push_back({ramp.offset, "offset", ramp.angle});
+    }
   }
   return events;
 }
@@ -139,6 +154,7 @@ std::pair<Hertz, Hertz> Schedule::band() const {
                           widen(band, sines.second);
                         },
                         [&](const PulseSchedule& pulses) { band.second = pulses.bandwidth(); },
+                        [&](const RampAndHold& ramps) { band.second = ramps.bandwidth(); },
                         [&](const Binary& binary) { band.second = binary.sequence.bandwidth(); }},
              shape_);
   return band;
@@ -166,6 +182,13 @@ std::vector<double> Schedule::breaks() const {
   } else if (const auto* schedule = std::get_if<PulseSchedule>(&shape_)) {
     for (const PulseSchedule::Pulse& pulse : schedule->pulses()) {
       for (const double time : {pulse.onset, pulse.offset, pulse.offset + schedule->options().return_duration}) {
+        times.push_back(time);
+      }
+    }
+  } else if (const auto* ramps = std::get_if<RampAndHold>(&shape_)) {
+    const RampAndHold::Options& o = ramps->options();
+    for (const RampAndHold::Ramp& ramp : ramps->ramps()) {
+      for (const double time : {ramp.onset, ramp.onset + o.ramp, ramp.offset, ramp.offset + o.way_back}) {
         times.push_back(time);
       }
     }
@@ -270,7 +293,9 @@ Result<void> Schedule::check(const Limits& limits) const {
       const bool lines = std::holds_alternative<Sines>(shape_);
       return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {}, throughout, is above the limit {:.4g} Hz",
                                    found.highest_frequency.value, name, limits.bandwidth->value),
-                       lines ? "leave out the lines above it" : "lower the natural frequency of the filter");
+                       lines                                         ? "leave out the lines above it"
+                       : std::holds_alternative<RampAndHold>(shape_) ? "make the ramps slower"
+                                                                     : "lower the natural frequency of the filter");
     }
   }
   if (limits.reachable && quantity_ == Quantity::position) {

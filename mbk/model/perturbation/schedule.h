@@ -15,6 +15,7 @@
 #include "mbk/model/perturbation/jet.h"
 #include "mbk/model/perturbation/minimum_jerk.h"
 #include "mbk/model/perturbation/multisine.h"
+#include "mbk/model/perturbation/ramp_and_hold.h"
 #include "mbk/model/perturbation/random_binary.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
 
@@ -35,8 +36,8 @@ enum class Space { hand, joint };  ///< hand: base frame, Cartesian [m | N]; joi
 /// Something that a schedule does at one instant.
 struct ScheduleEvent {
   double time = 0.0;   ///< [s] from the start of the schedule
-  std::string name;    ///< "onset" or "offset" of a pulse
-  double value = 0.0;  ///< angle of the pulse from +x [rad]
+  std::string name;    ///< "onset" or "offset" of a pulse or ramp
+  double value = 0.0;  ///< its angle from +x [rad]
 };
 
 /// What a schedule demands, over its whole duration with moving in and pauses. u is the unit of its value. Peaks are
@@ -53,7 +54,8 @@ struct Facts {
   Eigen::Vector2d axis_rms = Eigen::Vector2d::Zero();      ///< of each axis [u]
   Eigen::Vector2d crest_factor = Eigen::Vector2d::Zero();  ///< axis_peak/axis_rms; 0 for an axis that rests
   Hertz lowest_frequency;                                  ///< sines: lowest line; else 0
-  Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Rest: 0
+  Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Ramps: of the
+                            ///< velocity. Rest: 0
 };
 
 /// What a schedule must keep to; what is empty is not checked. u is the unit of its value.
@@ -95,6 +97,13 @@ class Schedule {
   [[nodiscard]] static Result<Schedule> random_binary(const RandomBinaryOptions& options, double angle,
                                                       Quantity quantity, double duration, Space space = Space::hand);
 
+  /// Ramps and holds of the position; in Space::joint, direction +x is the first joint's.
+  /// @param tail  from the end of the last way back to the end [s]
+  /// @fails  as RampAndHold::create; the tail is below 0 or not finite; the whole is longer than kLongest; more than
+  /// kMaxCycles of the ramps' bandwidth.
+  [[nodiscard]] static Result<Schedule> ramps(const RampAndHold::Options& options, double tail,
+                                              Space space = Space::hand);
+
   /// Nothing moves: position, Space::hand, zero.   @fails  duration ≤ 0, above kLongest or not finite.
   [[nodiscard]] static Result<Schedule> rest(double duration);
 
@@ -109,7 +118,7 @@ class Schedule {
   /// that each pulse has an onset and an offset; for all else, which never rests, the signal itself. Does not allocate.
   [[nodiscard]] Eigen::Vector2d reference(double t) const;
 
-  /// Onset and offset of every pulse, in time order; empty for all else.
+  /// Onset and offset of every pulse or ramp, in time order; empty for all else.
   [[nodiscard]] std::vector<ScheduleEvent> events() const;
 
   /// Found on a grid of 64 samples to the period of the highest frequency, peaks then refined. Offline: allocates.
@@ -131,7 +140,7 @@ class Schedule {
     RandomBinary sequence;
     Eigen::Vector2d direction_B;
   };
-  using Shape = std::variant<Rest, Sines, PulseSchedule, Binary>;
+  using Shape = std::variant<Rest, Sines, PulseSchedule, Binary, RampAndHold>;
 
   Schedule(Shape shape, Quantity quantity, Space space, double duration)
       : shape_(std::move(shape)), quantity_(quantity), space_(space), duration_(duration) {}

@@ -87,6 +87,12 @@ Result<Schedule> schedule_of(const RandomBinaryPlan& plan, std::uint64_t seed) {
   return Schedule::random_binary(sequence, plan.angle, plan.quantity, plan.duration, plan.space);
 }
 
+Result<Schedule> schedule_of(const RampPlan& plan, std::uint64_t seed) {
+  RampAndHold::Options ramps = plan.ramps;
+  ramps.seed = seed;
+  return Schedule::ramps(ramps, plan.tail, plan.space);
+}
+
 Result<Schedule> schedule_of(const RestPlan& plan, std::uint64_t /*seed*/) {
   return Schedule::rest(plan.duration);
 }

@@ -8,6 +8,7 @@
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/words.h"
 #include "mbk/model/perturbation/optimal_power.h"
+#include "mbk/model/perturbation/ramp_and_hold.h"
 #include "mbk/model/perturbation/random_binary.h"
 #include "mbk/model/perturbation/schedule.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
@@ -72,13 +73,20 @@ struct RandomBinaryPlan {
   double duration = 62.1;             ///< [s]
 };
 
+/// Ramps and holds of the position in random order.
+struct RampPlan {
+  Space space = Space::hand;
+  RampAndHold::Options ramps;
+  double tail = 1.0;  ///< recorded after the last way back [s]
+};
+
 /// Nothing is commanded.
 struct RestPlan {
   double duration = 10.0;  ///< [s]
 };
 
 struct Plan {
-  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan> kind = MultisinePlan{};
+  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan, RampPlan> kind = MultisinePlan{};
   Limits limits;  ///< what the schedule must keep
 };
 

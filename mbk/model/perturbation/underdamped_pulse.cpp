@@ -7,20 +7,10 @@
 #include <numbers>
 
 #include "mbk/base/numeric/random.h"
+#include "mbk/model/perturbation/directions.h"
 
 namespace mbk::perturbation {
 namespace {
-
-/// Unit vector at the angle 2π k/n, exact along the axes.
-Eigen::Vector2d unit_vector(int k, int n) {
-  constexpr double kCosine[] = {1.0, 0.0, -1.0, 0.0};
-  if (4 * k % n == 0) {
-    const int quarter = 4 * k / n;
-    return {kCosine[quarter % 4], kCosine[(quarter + 3) % 4]};
-  }
-  const double angle = 2.0 * std::numbers::pi * k / n;
-  return {std::cos(angle), std::sin(angle)};
-}
 
 Result<void> check(const PulseSchedule::Options& o) {
   if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} is not above 0", o.amplitude));
@@ -65,17 +55,13 @@ Result<PulseSchedule> PulseSchedule::create(const Options& options) {
   if (!shape) return tl::unexpected(shape.error());
 
   PulseSchedule schedule(options, *shape);
-  std::vector<int> order;
-  for (int i = 0; i < options.directions * options.repetitions; ++i) order.push_back(i % options.directions);
   numeric::Random random(options.seed);
-  for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random.below(i + 1)]);
-
   double end = options.quiet;
-  for (const int direction : order) {
+  for (const int direction : shuffled_directions(options.directions, options.repetitions, random)) {
     const double onset = end + random.uniform(options.shortest_pause, options.longest_pause);
     end = onset + random.uniform(options.shortest_duration, options.longest_duration);
     schedule.pulses_.push_back({onset, end, direction, 2.0 * std::numbers::pi * direction / options.directions,
-                                unit_vector(direction, options.directions)});
+                                direction_on_circle(direction, options.directions)});
   }
   return schedule;
 }

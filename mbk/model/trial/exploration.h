@@ -1,16 +1,33 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/words.h"
+#include "mbk/model/trial/after_onset_estimate.h"
 #include "mbk/model/trial/exploration_trial.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/impulse_response_estimate.h"
 #include "mbk/model/trial/parallel_cascade_estimate.h"
+#include "mbk/model/trial/plateau_stiffness.h"
+#include "mbk/model/trial/time_course_estimate.h"
 #include "mbk/model/trial/warning.h"
 
 namespace mbk {
+
+/// What recordings may be asked.
+enum class ExplorationPart { frequency_response, impulse_response, reflex, time_course, ramp_and_hold };
+
+[[nodiscard]] constexpr auto word_table(ExplorationPart) {
+  using enum ExplorationPart;
+  return std::to_array<Word<ExplorationPart>>({{frequency_response, "frequency-response"},
+                                               {impulse_response, "impulse-response"},
+                                               {reflex, "reflex"},
+                                               {time_course, "time-course"},
+                                               {ramp_and_hold, "ramp-and-hold"}});
+}
 
 /// A recording that was explored.
 struct ExploredRecording {
@@ -25,10 +42,14 @@ struct ExploredRecording {
 struct Exploration {
   int axes = 2;
   Motion motion = Motion::translation;
+  bool other_signals = false;  ///< the response is not that of force to motion, but from one channel to another
   std::vector<ExploredRecording> recordings;
   std::optional<FrequencyResponseEstimate> frequency_response;
   std::optional<ImpulseResponseEstimate> impulse_response;
   std::optional<ParallelCascadeEstimate> parallel_cascade;
+  std::optional<PlateauStiffness> plateau_stiffness;
+  std::optional<TimeCourseEstimate> time_course;
+  std::optional<AfterOnsetEstimate> after_onset;  ///< only where it was asked for
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   bool usable = true;

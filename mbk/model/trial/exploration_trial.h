@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,11 @@ struct ExplorationTrial {
   Protocol protocol = Protocol::free;
   std::string protocol_rule, window_rule;  ///< why, in words
   SourceFile source;
-  double recording_duration = 0;  ///< [s]
+  double recording_duration = 0;               ///< [s]
+  std::optional<double> recorded_handle_mass;  ///< [kg] beyond the force sensor, as the recording says it
+  Vector scheduling;  ///< N, of the channel that M, B and K are scheduled by; empty where none was named
+  SignalLabel scheduling_label;
+  std::vector<Event> events;  ///< on the clock of from_s
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   [[nodiscard]] Index samples() const { return input.rows(); }

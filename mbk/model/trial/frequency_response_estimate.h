@@ -75,10 +75,13 @@ struct FrequencyResponseEstimate {
   std::optional<PeriodicFacts> periodic;
   Vector degrees_of_freedom;             ///< complex, of that covariance
   Matrix magnitude_low, magnitude_high;  ///< N×(n_y n_u), ends of the 95 % interval of |G|
+  Matrix phase_half_width;               ///< N×(n_y n_u), of the 95 % interval of arg G [rad], π where it is unknown
   Matrix radius95;                       ///< N×(n_y n_u), of the disc around the estimate that holds G with 95 %
-  Matrix multiple_coherence;  ///< N×n_y, γ² of each output with all inputs; empty where the method gives none
-  Matrix partial_coherence;   ///< N×(n_y n_u), γ² of output and input without what the other inputs explain
-  double averages = 0;        ///< independent segments, or experiments, that were averaged
+  /// N×n_y, γ² of each output with all inputs or, by local polynomials in a loop, with the reference; empty where the
+  /// method gives none.
+  Matrix multiple_coherence;
+  Matrix partial_coherence;  ///< N×(n_y n_u), γ² of output and input without what the other inputs explain
+  double averages = 0;       ///< independent segments, or experiments, that were averaged
   [[nodiscard]] Index size() const { return frequency.size(); }
 };
 

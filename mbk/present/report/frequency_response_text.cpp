@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "mbk/present/report/exploration_parts_text.h"
@@ -95,7 +94,6 @@ std::string unit_of(const SignalLabel& output, const SignalLabel& input) {
 }  // namespace
 
 std::string frequency_response_text(const FrequencyResponseEstimate& found) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   std::string text = "frequency response\n";
   std::vector<std::vector<std::string>> facts = {{"method", name_of(found.method)}};
   if (!found.method_rule.empty()) facts.back().back() += ": " + found.method_rule;

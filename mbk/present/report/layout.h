@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,9 @@
 /// @file
 /// How tables and paragraphs of a terminal are set. For the sources of this module only.
 namespace mbk::report {
+
+inline constexpr double kMillimetres = 1000.0;                ///< in a metre
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< in a radian
 
 /// A value and its half width with the digits that mean something: 1.2002 ± 0.0011.
 [[nodiscard]] std::string with_interval(double value, double half_width);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -14,7 +13,6 @@
 namespace mbk::report {
 
 std::string movement_text(const MovementQuality& found) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const std::string unit = units_of(found.motion).position;
   using Of = std::function<std::optional<double>(const Reach&)>;
   struct Measure {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "mbk/model/trial/identification.h"
@@ -52,7 +51,6 @@ void add_model(const ResponseModel& model, Motion motion, std::vector<std::vecto
 std::string direction_name(const Vector& direction) {
   if (direction.size() == 0) return "both alike";
   if (direction.size() == 1) return direction[0] > 0.0 ? "positive" : "negative";
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   return fmt::format("{:.0f}°", kDegrees * std::atan2(direction[1], direction[0]));
 }
 

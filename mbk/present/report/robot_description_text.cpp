@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "mbk/base/core/printable.h"
@@ -13,9 +12,6 @@
 
 namespace mbk::report {
 namespace {
-
-constexpr double kMillimetres = 1000.0;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 std::string limits_text(const robot::Mechanism& mechanism, int joint) {
   const robot::JointRange range = mechanism.joint_range(joint);

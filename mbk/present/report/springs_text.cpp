@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -11,9 +10,6 @@
 
 namespace mbk::report {
 namespace {
-
-constexpr double kMillimetres = 1000.0;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Millimetres with as many decimals as asked, and never "-0".
 std::string in_mm(double metres, int decimals) {

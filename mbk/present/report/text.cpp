@@ -471,7 +471,6 @@ std::string contents_text(const FileContents& contents, const Error& unrecognise
 }
 
 Chart workspace_chart(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
-  constexpr double kMillimetres = 1e3;
   Chart chart;
   chart.title = "Where the hand can be";
   chart.x = {"x", "mm"};

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "mbk/base/numeric/statistics.h"
@@ -198,7 +197,6 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
 }
 
 std::vector<Chart> response_charts(const TransferFunctionIdentification& found, const FrequencyResponse& response) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const auto values = [](const Vector& vector) { return std::vector<double>(vector.begin(), vector.end()); };
   const auto line = [&](const char* name, const Vector& x, const Vector& y) {
     return ChartSeries{name, values(x), values(y), {}, ChartSeries::Drawn::line};
@@ -247,7 +245,6 @@ std::string inverted_admittance_text(const InvertedAdmittance& inverse) {
   rows = {
       {"Hz", fmt::format("|Z| [{}]", units.damping), "Re Z", "phase [°]", fmt::format("|sZ| [{}]", units.stiffness)}};
   constexpr Index kShown = 10;
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const FrequencyResponse& z = inverse.impedance;
   for (Index k = 0; k < kShown; ++k) {
     const Index i = k * (z.size() - 1) / (kShown - 1);

@@ -64,12 +64,15 @@ Json frequency_response_json(const FrequencyResponseEstimate& found) {
         G[k] = found.response[at](i, j);
         deviation[k] = std::sqrt(std::max(0.0, found.covariance[at](entry, entry).real()));
       }
+      const Vector phase = G.array().arg();
       Json one = {{"input", found.inputs[static_cast<std::size_t>(j)].name},
                   {"output", found.outputs[static_cast<std::size_t>(i)].name},
                   {"magnitude", list(G.cwiseAbs())},
                   {"magnitude_interval95",
                    Json::array({list(found.magnitude_low.col(entry)), list(found.magnitude_high.col(entry))})},
-                  {"phase_deg", list(kDegrees * G.array().arg().matrix())},
+                  {"phase_deg", list(kDegrees * phase)},
+                  {"phase_interval95_deg", Json::array({list(kDegrees * (phase - found.phase_half_width.col(entry))),
+                                                        list(kDegrees * (phase + found.phase_half_width.col(entry)))})},
                   {"real", list(G.real())},
                   {"imaginary", list(G.imag())},
                   {"standard_error", list(deviation)},

@@ -13,6 +13,7 @@
 #include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/model.h"
+#include "mbk/present/result/findings_json.h"
 #include "mbk/present/result/force_comparison_json.h"
 #include "mbk/present/result/joint_domain_json.h"
 #include "mbk/present/result/json_parts.h"
@@ -61,30 +62,13 @@ Json chart_json(const Chart& chart) {
 
 Json ellipses_json(const Findings& findings) {
   Json json = Json::object();
-  const double degrees = 180.0 / std::numbers::pi;
-  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
-    const EllipseFinding& finding = findings.ellipses[k];
-    json[kMatrixNames[k]] = {{"area", number(finding.ellipse.area)},
-                             {"shape", number(finding.ellipse.shape)},
-                             {"orientation_deg", number(degrees * finding.ellipse.orientation)},
-                             {"eigenvalues", {number(finding.ellipse.lambda_min), number(finding.ellipse.lambda_max)}},
-                             {"symmetric_part", rows(finding.symmetric)},
-                             {"interval95",
-                              {{"area", interval(finding.area95)},
-                               {"shape", interval(finding.shape95)},
-                               {"orientation_deg", interval(finding.orientation95, degrees)}}}};
-  }
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) json[kMatrixNames[k]] = ellipse_json(findings.ellipses[k]);
   return json;
 }
 
-Json antisymmetry_json(const Findings& findings) {
-  const auto one = [](const AntisymmetryFinding& finding) {
-    return Json{{"value", number(finding.value)},
-                {"value_interval95", interval(finding.value95)},
-                {"zmean_percent", number(finding.zmean_percent)},
-                {"interval95", interval(finding.zmean95)}};
-  };
-  return {{"inertia", one(findings.antisymmetry[0])}, {"stiffness", one(findings.antisymmetry[1])}};
+Json antisymmetries_json(const Findings& findings) {
+  return {{"inertia", antisymmetry_json(findings.antisymmetry[0])},
+          {"stiffness", antisymmetry_json(findings.antisymmetry[1])}};
 }
 
 Json fit_json(const Fit& fit) {
@@ -204,12 +188,7 @@ Json result_json(const Measurement& measured) {
   json["axes"] = id.axes;
   json["structure"] = word_of(id.structure);
   if (id.motion != Motion::unknown) {
-    const Units units = units_of(id.motion);
-    json["units"] = {{"M", units.inertia},
-                     {"B", units.damping},
-                     {"K", units.stiffness},
-                     {"x0", units.position},
-                     {"force", units.force}};
+    json["units"] = units_json(id.motion);
   }
   json["model"] = model_json(id.model);
   json["standard_error"] = model_json(id.standard_error);
@@ -217,7 +196,7 @@ Json result_json(const Measurement& measured) {
   json["fit"] = fit_json(id.fit);
   if (measured.findings) {
     json["ellipses"] = ellipses_json(*measured.findings);
-    json["antisymmetry"] = antisymmetry_json(*measured.findings);
+    json["antisymmetry"] = antisymmetries_json(*measured.findings);
   }
   if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
   if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
@@ -466,7 +445,7 @@ std::string to_json(const std::vector<Identification>& identifications, const st
     Json json = header("mbk.ellipse/1");
     json["inputs"] = inputs_json(identifications[i].sources);
     json["ellipses"] = ellipses_json(findings[i]);
-    json["antisymmetry"] = antisymmetry_json(findings[i]);
+    json["antisymmetry"] = antisymmetries_json(findings[i]);
     objects.push_back(std::move(json));
   }
   return one_or_list("mbk.ellipses/1", objects);

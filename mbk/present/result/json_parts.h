@@ -11,6 +11,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/version.h"
+#include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/warning.h"
@@ -61,6 +62,15 @@ inline Json rows(const Matrix& matrix) {
 /// Names of files and channels may hold bytes that are not UTF-8, which JSON cannot say: they become U+FFFD.
 inline std::string dumped(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+inline Json units_json(Motion motion) {
+  const Units units = units_of(motion);
+  return {{"M", units.inertia},
+          {"B", units.damping},
+          {"K", units.stiffness},
+          {"x0", units.position},
+          {"force", units.force}};
 }
 
 /// What the fit was judged on.

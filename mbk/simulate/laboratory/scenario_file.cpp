@@ -362,6 +362,11 @@ void along_one_axis(perturbation::Plan& plan) {
     p.repetitions = std::max(1, p.repetitions * p.directions / 2);  // as many as there would be in all directions
     p.directions = 2;
   }
+  if (auto* ramps = std::get_if<perturbation::RampPlan>(&plan.kind)) {
+    perturbation::RampAndHold::Options& r = ramps->ramps;
+    r.repetitions = std::max(1, r.repetitions * r.directions / 2);
+    r.directions = 2;
+  }
 }
 
 }  // namespace

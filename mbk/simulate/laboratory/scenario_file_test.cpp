@@ -502,6 +502,32 @@ TEST(ScenarioFile, OneAxisPulsesAreAsManyToAndFroAsThereWouldBeAllAround) {
   }
 }
 
+TEST(ScenarioFile, ReadsRampsAndHolds) {
+  const std::string kind =
+      "kind = \"ramp_and_hold\"\namplitude_mm = 8\nramp_s = 0.1\nhold_s = 0.4\nreturn_s = 0.2\ndirections = 4\n"
+      "repetitions = 3\nshortest_pause_s = 0.5\nlongest_pause_s = 0.6\nquiet_s = 1\ntail_s = 0.5\n";
+  const auto plan = read(with("", "kind = \"position\"", kind)).front().perturbation;
+  const auto& ramps = std::get<perturbation::RampPlan>(plan.kind);
+  EXPECT_EQ(ramps.ramps.amplitude, 0.008);
+  EXPECT_EQ(ramps.ramps.ramp, 0.1);
+  EXPECT_EQ(ramps.ramps.hold, 0.4);
+  EXPECT_EQ(ramps.ramps.way_back, 0.2);
+  EXPECT_EQ(ramps.ramps.directions * ramps.ramps.repetitions, 12);
+  EXPECT_EQ(ramps.ramps.shortest_pause, 0.5);
+  EXPECT_EQ(ramps.ramps.longest_pause, 0.6);
+  EXPECT_EQ(ramps.ramps.quiet, 1.0);
+  EXPECT_EQ(ramps.tail, 0.5);
+  const auto schedule = perturbation::make_schedule(plan, 3);
+  ASSERT_TRUE(schedule) << schedule.error().line();
+  EXPECT_EQ(schedule->events().size(), 24U);
+  EXPECT_NE(refusal(with("", "kind = \"position\"", "kind = \"ramp_and_hold\"\namplitude_N = 2")).find("amplitude_mm"),
+            std::string::npos);
+  EXPECT_NE(refusal(one_axis("kind = \"ramp_and_hold\"")).find("amplitude_deg"), std::string::npos);
+  const auto along = read(one_axis("kind = \"ramp_and_hold\"\namplitude_deg = 2")).front().perturbation;
+  EXPECT_EQ(std::get<perturbation::RampPlan>(along.kind).ramps.directions, 2);
+  EXPECT_EQ(std::get<perturbation::RampPlan>(along.kind).ramps.repetitions, 40);
+}
+
 TEST(ScenarioFile, MistakesNameFileLineKeyValueAndWhatIsAllowed) {
   const std::pair<std::string, std::vector<std::string>> mistakes[] = {
       {with("peak_degg = 2\n"), {"mine.toml", "line 5", "'peak_degg'", "'peak_deg'"}},

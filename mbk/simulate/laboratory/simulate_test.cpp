@@ -23,6 +23,7 @@ void shorten(Scenario& scenario) {
     pulses->pulses.repetitions = 1;
     pulses->pulses.longest_pause = 2.5;
   }
+  if (auto* ramps = std::get_if<perturbation::RampPlan>(&kind)) ramps->ramps.repetitions = 1;
 }
 
 TEST(Simulate, RunsEveryReadyScenario) {

@@ -24,8 +24,10 @@ constexpr std::array kOfTransferFunction = {JudgedShare{kNominalOrMore, 95.0}, J
                                             JudgedShare{kHardlyEver, 1.0}};
 constexpr std::array kOfReflex = {JudgedShare{kNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0},
                                   JudgedShare{kHardlyEver, 1.0}};
+constexpr std::array kOfChange = {JudgedShare{kHardlyEver, 1.0}, JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfFrequencyResponse = {JudgedShare{kHardlyEver, 1.0}, JudgedShare{kNearlyAlways, 100.0},
                                              JudgedShare{kNominal, 95.0, 5.0}};
+constexpr std::array kOfDisplacements = {JudgedShare{kNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
 constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfFaultsAtAll = {JudgedShare{kNearNominal, 100.0}, JudgedShare{kHardlyEver, 0.0, 10.0}};
@@ -54,9 +56,14 @@ std::span<const Study> studies() {
             transfer_function_study},
       Study{"frequency-response", "frequency responses without a model, and noise told from distortion",
             kOfFrequencyResponse, 2, frequency_response_study},
+      Study{"ramp-and-hold", "stiffness of a relaxed arm from the plateaus of ramps and holds", kOfDisplacements, 2,
+            ramp_and_hold_study},
+      Study{"servo-displacement", "stiffness of a hand that reaches, displaced from its predicted way",
+            kOfDisplacements, 2, servo_displacement_study},
       Study{"one-dimensional", "no linear model holds for a rigid arm along one axis", {}, 4, one_dimensional_study},
       Study{"reflex", "impulse response, intrinsic and reflex force of limbs that have them or not", kOfReflex, 2,
             reflex_study},
+      Study{"change", "M, B and K over time, of arms that change and that do not", kOfChange, 2, change_study},
       Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated",
             kOfTeleoperation, 1, teleoperation_study},
       Study{"participant", "when the simulated participant is active or passive", kOfParticipant, 2, participant_study},

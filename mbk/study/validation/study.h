@@ -111,6 +111,19 @@ inline constexpr int kTrialsWithoutController = 16;
 /// of 92 to 98 %; at the stiff robot a variance over realisations of a linear arm within 10 % of that of noise.
 [[nodiscard]] Result<ValidationTable> frequency_response_study(const StudyOptions& options);
 
+/// Stiffness from ramps and holds (measure/explore) of the ready scenario relaxed_ramp_and_hold, with shorter holds and
+/// pauses: bias and coverage of each entry of K, of the antisymmetric part and of the ellipse, and whether a window in
+/// which the hand still moves is refused. A run is one recording of 80 ramps. Expected: a median error of K of 5 % of
+/// its norm at most, a bias below 1 % of the largest entry, coverage of 92 to 98 %.
+[[nodiscard]] Result<ValidationTable> ramp_and_hold_study(const StudyOptions& options);
+
+/// Stiffness of a hand that reaches, displaced by 8 mm relative to a prediction of its own way (measure/explore), of
+/// simulated reaches that differ in duration, length, bend and target (simulated_reaches.h): bias and coverage of each
+/// entry of K with the prediction from the reach's own past, and for comparison with the mean of the undisturbed
+/// reaches subtracted. A run is 40 undisturbed reaches and 80 displaced ones. Expected: coverage of 92 to 98 %, a bias
+/// below 2 % of the largest entry, a median error of 10 % of the norm of K at most.
+[[nodiscard]] Result<ValidationTable> servo_displacement_study(const StudyOptions& options);
+
 /// Does a linear time-invariant model hold for a rigid arm along one axis (Dyck 2013, §4.4.2: table 4.4 and fig. 4.7 in
 /// form)? The ready scenario one_axis_random_binary, ±2 N: output-error models of 4 poles and 3 zeros from place to
 /// force, judged on the last 10 s of each trial and on the other trials; beside it the same arm with its controller
@@ -125,6 +138,12 @@ inline constexpr int kTrialsWithoutController = 16;
 /// and how often a limb without a reflex is credited with one: M-B-K alone, with a slow linear response beside it, with
 /// a hardening spring. A run is one record of each limb.
 [[nodiscard]] Result<ValidationTable> reflex_study(const StudyOptions& options);
+
+/// M, B and K over time (explore::time_course) of a relaxed arm in the closed loop: how often an arm is called changing
+/// whose stiffness is constant, also while the zero of the force drifts, and whose stiffness triples, doubles slowly or
+/// swings; and how far its course is off. A run is one trial of each. Expected: hardly ever, nearly always, and of the
+/// stiffness that triples a course within 15 %.
+[[nodiscard]] Result<ValidationTable> change_study(const StudyOptions& options);
 
 /// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of
 /// the four architectures, half of them with delay, held by random terminations where it is stable, and by the

@@ -31,7 +31,7 @@ export function readReport(json: ReportDocument): Report {
   };
 }
 
-const basename = (path: string): string => path.split(/[\\/]/).at(-1) ?? path;
+export const basename = (path: string): string => path.split(/[\\/]/).at(-1) ?? path;
 
 export const fileOf = (trial: Trial): string => trial.result.inputs.map((input) => basename(input.file)).join(", ");
 

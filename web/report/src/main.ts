@@ -4,13 +4,14 @@ import apacheNotice from "echarts/NOTICE?raw";
 import d3 from "echarts/licenses/LICENSE-d3?raw";
 import tslib from "tslib/CopyrightNotice.txt?raw";
 import zrender from "zrender/LICENSE?raw";
-import type { TransferFunctionReport } from "@mbk/shared/documents";
+import type { ExplorationReport, TransferFunctionReport } from "@mbk/shared/documents";
 import { facts, h, heading, type HeadingLevel } from "@mbk/shared/dom";
 import type { Trial } from "@mbk/shared/result";
 import { followPageAndPrinter } from "./charts";
 import { conditionOf, fileOf, participantOf, readReport, type Report } from "./data";
 import { diagnosticElements } from "./diagnostics";
 import { energySection } from "./energy";
+import { explorationHead, explorationSections } from "./exploration";
 import { forceFieldSection } from "./force_field";
 import { methodsSection } from "./methods";
 import { inOrder, nameOf, overviewSection } from "./overview";
@@ -18,7 +19,7 @@ import { passivityDetails, passivitySection } from "./passivity";
 import { ellipsesSection, identityFacts, modelSection, provenanceSection, simulatedNote } from "./sections";
 import { summarySection, verdict, warningsSection } from "./summary";
 import { transferFunctionHead, transferFunctionSections } from "./transfer_function";
-import { glossary, transferFunctionGlossary } from "./words";
+import { explorationGlossary, glossary, transferFunctionGlossary } from "./words";
 import "./style.css";
 
 function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLElement[] {
@@ -116,6 +117,11 @@ function drawTransferFunction(report: TransferFunctionReport): void {
   show(transferFunctionHead(report), contents(sections), sections);
 }
 
+function drawExploration(report: ExplorationReport): void {
+  const sections = [...explorationSections(report), reproduceSection(report.command, report.software), glossarySection(explorationGlossary)];
+  show(explorationHead(report), contents(sections), sections);
+}
+
 function draw(report: Report): void {
   const several = report.trials.length > 1 || report.failed.length > 0;
   const sections = several
@@ -131,6 +137,7 @@ function draw(report: Report): void {
 try {
   const json = JSON.parse(document.getElementById("report-data")?.textContent ?? "");
   if (json.schema === "mbk.tf_report/1") drawTransferFunction(json);
+  else if (json.schema === "mbk.explore_report/1") drawExploration(json);
   else draw(readReport(json));
 } catch (error) {
   document.getElementById("report")?.replaceWith(

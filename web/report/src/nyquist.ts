@@ -1,7 +1,15 @@
 // The Nyquist plot: a curve in the complex plane, a metre of it as long across as up, in the region that holds it.
-import type { FrequencyResponse } from "@mbk/shared/documents";
+import type { Value } from "@mbk/shared/documents";
 import { h, svg } from "@mbk/shared/dom";
 import { plain, significant } from "@mbk/shared/format";
+
+/** A response, and the ellipse around it that holds it with 95 %, at each frequency. */
+export interface Region {
+  frequency_hz: Value[];
+  real: Value[];
+  imaginary: Value[];
+  region95: { longer_half_axis: Value[]; shorter_half_axis: Value[]; angle_deg: Value[] };
+}
 
 interface Point {
   f: number;
@@ -21,7 +29,7 @@ interface Box {
 
 const [width, tallest, margin] = [660, 520, { left: 74, right: 22, top: 26, bottom: 44 }];
 
-function points(response: FrequencyResponse): Point[] {
+function points(response: Region): Point[] {
   const { frequency_hz: f, real, imaginary, region95: r } = response;
   return f.flatMap((at, k) => {
     const values = [at, real[k], imaginary[k], r.longer_half_axis[k], r.shorter_half_axis[k], r.angle_deg[k]];
@@ -71,7 +79,7 @@ function marked(all: Point[], place: (p: Point) => [number, number]): Point[] {
   return chosen;
 }
 
-export function nyquist(response: FrequencyResponse, band: { from: number; to: number; name: string } | undefined, id: string, title: string, unit: string): HTMLElement {
+export function nyquist(response: Region, band: { from: number; to: number; name: string } | undefined, id: string, title: string, unit: string, name = "model"): HTMLElement {
   const all = points(response);
   if (all.length === 0) return h("p", {}, "There is no Nyquist plot: the response is undefined.");
   const inside = band ? all.filter((p) => p.f >= band.from && p.f <= band.to) : all;
@@ -120,8 +128,8 @@ export function nyquist(response: FrequencyResponse, band: { from: number; to: n
   const stroke = (kind: string): SVGElement => svg("svg", { width: 34, height: 10, "aria-hidden": "true", class: "nyquist" }, svg("path", { d: "M1 5H33", class: kind }));
   return h("figure", { class: "nyquist-figure", "aria-label": title },
     h("ul", { class: "legend" },
-      key(band ? "model, in the excited band" : "model", stroke("curve")),
-      band ? key("model, beyond it", stroke("beyond")) : "",
+      key(band ? `${name}, in the excited band` : name, stroke("curve")),
+      band ? key(`${name}, beyond it`, stroke("beyond")) : "",
       key("95 % region", svg("svg", { width: 22, height: 12, "aria-hidden": "true", class: "nyquist" }, svg("g", { class: "region" }, svg("rect", { x: 0.5, y: 0.5, width: 21, height: 11 }))))),
     drawing,
     h("figcaption", {}, h("strong", {}, "How to read this. "), "Each point is one frequency: its distance from the origin is the magnitude, its direction the phase. The shaded region holds the true curve at each frequency with 95 %."));

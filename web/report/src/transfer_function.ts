@@ -2,7 +2,9 @@
 import type { FrequencyResponse, Root, TransferFunction, TransferFunctionReport, Value } from "@mbk/shared/documents";
 import { facts, h, heading, scrolling, table } from "@mbk/shared/dom";
 import { data, fixed, plain, significant, superscript, withHalfWidth } from "@mbk/shared/format";
-import { type Chart, figure, type Panel, styles } from "./charts";
+import { bode, type Curve, ratioUnit, shownUnit } from "./bode";
+import { figure, styles } from "./charts";
+import { basename } from "./data";
 import { nyquist } from "./nyquist";
 import { verdict, warningsSection } from "./summary";
 import { transferFunctionWarnings } from "./words";
@@ -14,16 +16,6 @@ const methods: Record<TransferFunction["method"], string> = {
   oe: "output error, discrete time (OE)",
   bj: "Box–Jenkins, discrete time (BJ)",
 };
-
-/** "N·m" as "N.m" is written in files. */
-const shownUnit = (unit: string): string => unit.replaceAll(".", "·");
-
-const ratioUnit = ({ input, output }: TransferFunction): string => {
-  const wrapped = /[·./]/.test(input.unit) ? `(${shownUnit(input.unit)})` : input.unit;
-  return !input.unit || !output.unit ? "" : input.unit === output.unit ? "" : `${shownUnit(output.unit)}/${wrapped}`;
-};
-
-const basename = (path: string): string => path.split(/[\\/]/).at(-1) ?? path;
 
 export function transferFunctionHead({ result, note }: TransferFunctionReport): HTMLElement {
   const title = `${result.input.name} → ${result.output.name}`;
@@ -151,74 +143,16 @@ function impedanceSection(result: TransferFunction): HTMLElement | undefined {
       title: "Impedance, force per velocity",
       unit: impedance.units.B,
       howToRead: "A falling line is stiffness, a level one damping, a rising one inertia. Only the excited band is shown.",
-      real: true,
     })),
     nyquist(impedance.force_per_velocity, undefined, "impedance-nyquist", "Impedance, force per velocity", impedance.units.B));
 }
 
-interface BodeWords {
-  id: string;
-  title: string;
-  unit: string;
-  howToRead: string;
-  band?: { from: number; to: number; name: string } | undefined;
-  real?: boolean;
-}
-
-const intervalColor = "rgba(213,94,0,0.28)"; // unlike the excited band's
-
-/** The phase with lines at whole parts of a turn. */
-function phasePanel(response: FrequencyResponse): Pick<Panel, "range" | "interval"> {
-  const known = [response.phase_deg, ...response.phase_interval95_deg].flat().filter((v): v is number => v !== null);
-  const line = response.phase_deg.filter((v): v is number => v !== null);
-  if (line.length === 0) return {};
-  const low = Math.max(Math.min(...known), Math.min(...line) - 180);
-  const high = Math.min(Math.max(...known), Math.max(...line) + 180);
-  const interval = [15, 30, 45, 90, 180, 360].find((one) => (high - low) / one <= 5) ?? 720;
-  return { range: [interval * Math.floor(low / interval), interval * Math.max(Math.ceil(high / interval), Math.floor(low / interval) + 1)], interval };
-}
-
-const within = (ends: [Value[], Value[]], [low, high]: [number, number]): [Value[], Value[]] =>
-  ends.map((end) => end.map((v) => (v === null ? null : Math.min(Math.max(v, low), high)))) as [Value[], Value[]];
-
-/** Whole powers of ten around the line, and around its interval where that is no more than ten times as far. */
-function decades(response: FrequencyResponse): [number, number] {
-  const known = (values: Value[]): number[] => values.filter((v): v is number => v !== null && v > 0).map(Math.log10);
-  const line = known(response.magnitude);
-  if (line.length === 0) return [0.1, 1];
-  const [least, most] = [Math.min(...line), Math.max(...line)];
-  const [low, high] = response.magnitude_interval95.map(known) as [number[], number[]];
-  const bottom = Math.floor(Math.max(Math.min(least, ...low), least - 1));
-  const top = Math.ceil(Math.min(Math.max(most, ...high), most + 1));
-  return [10 ** bottom, 10 ** Math.max(top, bottom + 1)];
-}
-
-function bode(response: FrequencyResponse, words: BodeWords): Chart {
-  const { frequency_hz: x } = response;
-  const [from, to] = [x[0] ?? 0, x.at(-1) ?? 0];
-  const band = words.band ? { from: Math.max(words.band.from, from), to: Math.min(words.band.to, to), name: words.band.name } : undefined;
-  const line = (name: string, y: Value[], [low, high]: [Value[], Value[]]) => ({ name, x, y, style: styles.first, between: { low, high, name: "95 % interval", color: intervalColor } });
-  const range = decades(response);
-  const phase = phasePanel(response);
-  const panels: Panel[] = [
-    { title: "Magnitude", unit: words.unit, log: true, range, ...(band ? { band } : {}), series: [line("model", response.magnitude, within(response.magnitude_interval95, range))] },
-    { title: "Phase", unit: "°", ...phase, ...(band ? { band } : {}), series: [line("model", response.phase_deg, within(response.phase_interval95_deg, phase.range ?? [-180, 180]))] },
-  ];
-  if (words.real) panels.push({ title: "Real part", unit: words.unit, zero: true, series: [line("model", response.real, response.real_interval95)] });
-  return {
-    id: words.id,
-    title: words.title,
-    howToRead: words.howToRead,
-    description: `Magnitude from ${significant(response.magnitude[0])} at ${significant(from)} Hz to ${significant(response.magnitude.at(-1))} at ${significant(to)} Hz; phase from ${significant(response.phase_deg[0])} to ${significant(response.phase_deg.at(-1))} degrees.`,
-    x: { name: "frequency", unit: "Hz", log: true, range: [from, to] },
-    panels,
-  };
-}
+const withoutRealPart = ({ real: _, real_interval95: __, ...response }: FrequencyResponse): Curve => response;
 
 function responseSection(result: TransferFunction): HTMLElement {
   const unit = ratioUnit(result);
   return h("section", { id: "response" }, heading(2, "Frequency response"),
-    figure(bode(result.frequency_response, {
+    figure(bode(withoutRealPart(result.frequency_response), {
       id: "bode",
       title: "Bode plot",
       unit,

@@ -36,6 +36,24 @@ export const transferFunctionGlossary: [string, string][] = [
   ["Admittance, impedance", "Motion over force, and force over motion: each the inverse of the other."],
 ];
 
+/** Terms of a report on what recordings say without a model. */
+export const explorationGlossary: [string, string][] = [
+  ["Dynamic stiffness", "Force per displacement at each frequency, D = −F/X. Where inertia, damping and stiffness hold it is K − M ω² + j ω B."],
+  ["Bode plot", "Magnitude and phase of output over input, at each frequency."],
+  ["Nyquist plot", "The same as one curve: at each frequency, magnitude and phase are length and angle of an arrow from the origin."],
+  ["Coherence", "At each frequency, the share of the output that follows the inputs linearly: from 0, nothing, to 1, everything."],
+  ["Partial coherence", "The same for one input alone, once what the others explain is taken from both."],
+  ["Realisation", "A perturbation of the same lines with other phases. Nonlinear distortion changes with the phases, a linear response does not."],
+  ["Even, odd distortion", "What a limb that is not linear adds at frequencies that the perturbation leaves empty: even where pushing and pulling differ, odd where size matters."],
+  ["Impulse response", "What a short displacement now does to the force before and after it; to the left of 0 stands what the force did before the motion."],
+  ["Memory", "How far back and ahead motion tells of the force."],
+  ["Reflex", "Force that answers stretch in one direction, later than the limb itself can."],
+  ["Gain of the reflex", "Force for a steady stretch of 1 m/s (1 rad/s); positive resists the stretch."],
+  ["VAF", "Variance accounted for: the share of the force's variation that is explained, in per cent."],
+  ["± and brackets", "95 % intervals: of a hundred such intervals, about 95 hold the true value."],
+  ["Held-out data", "Validation data: a part of the recording that was not used for fitting."],
+];
+
 /** A verdict on passivity: a sign and a word, so that nothing hangs on colour. What it is about, the statement says. */
 export const verdictWords = {
   passive: { kind: "good", sign: "✓", word: "passive" },

@@ -1,0 +1,239 @@
+#include "mbk/measure/explore/after_onset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "mbk/base/core/nan.h"
+#include "mbk/base/core/units.h"
+#include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/explore/reference_onsets.h"
+
+namespace mbk::explore {
+namespace after_onset_detail {
+
+constexpr double kBaseline = 0.1;    ///< [s]
+constexpr double kSmoothing = 0.03;  ///< [s], between the first and the last sample of the filter
+constexpr int kOrder = 4;
+constexpr Index kMinOnsets = 4;  ///< for each axis
+/// Largest motion in the time before an onset, of that after it: above it, the limb did not rest.
+constexpr double kRest = 0.5;
+constexpr double kNarrow = 0.5;  ///< half width of the interval of an eigenvalue, of the largest one
+
+/// The moment after one onset, less the mean before it.
+struct Response {
+  Matrix motion;      ///< N×3n, [Δẍ Δẋ Δx]
+  Matrix force;       ///< N×n, −ΔF_h
+  Vector step;        ///< n
+  double way = 0;     ///< largest |Δx|
+  double before = 0;  ///< the same in the time before the onset
+};
+
+/// Counts in samples.
+struct Lengths {
+  dsp::SavitzkyGolay filter;
+  Index baseline = 0, window = 0;
+  /// Before the onset: the first sample of the first filter window.
+  [[nodiscard]] Index before() const { return baseline + 2 * filter.half_window(); }
+};
+
+Lengths lengths_of(double sample_time, double window_s) {
+  Lengths lengths;
+  const auto half = static_cast<int>(std::max(std::lround(0.5 * kSmoothing / sample_time), 3L));
+  lengths.filter = {kOrder, 2 * half + 1};
+  lengths.baseline = std::llround(kBaseline / sample_time);
+  lengths.window = std::llround(window_s / sample_time);
+  return lengths;
+}
+
+Result<Response> response_after(const ExplorationTrial& trial, const Onset& onset, const Lengths& lengths) {
+  const Index n = trial.axes, first = onset.sample - lengths.before(), half = lengths.filter.half_window();
+  const auto rows = Eigen::seqN(first, lengths.before() + lengths.window);
+  Matrix both(rows.size(), 2 * n);
+  both << trial.input(rows, Eigen::all), trial.output(rows, Eigen::all);
+  const Hertz rate(1.0 / trial.sample_time);
+  Matrix smooth;  // row k is sample first + half + k
+  for (int derivative = 2; derivative >= 0; --derivative) {
+    const auto part = dsp::savitzky_golay(lengths.filter, derivative, derivative > 0 ? both.leftCols(n) : both, rate);
+    if (!part) return tl::unexpected(part.error());
+    smooth.conservativeResize(part->rows(), smooth.cols() + part->cols());
+    smooth.rightCols(part->cols()) = *part;
+  }
+  // Windows of the first rows end before the onset.
+  const Vector mean = smooth.topRows(lengths.baseline).colwise().mean();
+  smooth.rowwise() -= mean.transpose();
+  Response response;
+  const Index after = smooth.rows() - (onset.sample - first - half);
+  response.motion = smooth.bottomRows(after).leftCols(3 * n);
+  response.force = smooth.bottomRows(after).rightCols(n);
+  response.step = onset.step;
+  const auto largest = [&](const auto& place) { return std::sqrt(place.rowwise().squaredNorm().maxCoeff()); };
+  response.way = largest(response.motion.rightCols(n));
+  response.before = largest(smooth.topRows(lengths.baseline).middleCols(2 * n, n));
+  return response;
+}
+
+/// What the steps of the other onsets move at the same time, N×3n.
+std::vector<Matrix> instruments_of(const std::vector<Response>& responses) {
+  const Index n = responses.front().step.size(), columns = 3 * n, rows = responses.front().motion.rows();
+  Matrix steps = Matrix::Zero(n, n);
+  std::vector<Matrix> moved(static_cast<std::size_t>(n), Matrix::Zero(rows, columns));  // Σ Z_h u_h[j]
+  for (const Response& one : responses) {
+    steps += one.step * one.step.transpose();
+    for (Index j = 0; j < n; ++j) moved[static_cast<std::size_t>(j)] += one.step[j] * one.motion;
+  }
+  std::vector<Matrix> instruments;
+  for (const Response& one : responses) {
+    const Vector weights = numeric::PivotedCholesky(steps - one.step * one.step.transpose()).solve(one.step);
+    Matrix R = Matrix::Zero(rows, columns);
+    for (Index j = 0; j < n; ++j) R += weights[j] * (moved[static_cast<std::size_t>(j)] - one.step[j] * one.motion);
+    instruments.push_back(std::move(R));
+  }
+  return instruments;
+}
+
+/// Whether each axis is stepped along by some of the onsets, also without any one of them.
+bool steps_along_all_axes(const std::vector<Response>& responses) {
+  const Index n = responses.front().step.size();
+  if (n == 1) return true;
+  Matrix steps = Matrix::Zero(n, n);
+  for (const Response& one : responses) steps += one.step * one.step.transpose();
+  constexpr double kAlongOneLine = 0.01;
+  return std::ranges::all_of(responses, [&](const Response& one) {
+    const Vector values = numeric::symmetric_eigenvalues(steps - one.step * one.step.transpose());
+    return values[0] > kAlongOneLine * values[n - 1];
+  });
+}
+
+/// RᵀZ and RᵀY.
+struct OnsetMoments {
+  Matrix of_motion, of_force;
+  [[nodiscard]] Matrix coefficients() const { return numeric::Lu(of_motion).solve(of_force); }
+};
+
+/// @param theta 3n×n    @param covariance of its stacked columns    @param part 0, 1, 2 for M, B, K
+MatrixEstimate estimate_of(const Matrix& theta, const Matrix& covariance, Index part, double handle, double quantile) {
+  const Index n = theta.cols(), p = theta.rows();
+  MatrixEstimate estimate;
+  estimate.value = theta.middleRows(part * n, n).transpose();
+  estimate.value.diagonal().array() -= handle;
+  std::vector<Index> places;  // of the entries of the matrix, columns stacked, in the covariance
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < n; ++i) places.push_back(i * p + part * n + j);
+  }
+  const Matrix V = covariance(places, places);
+  estimate.half_width = quantile * V.diagonal().cwiseMax(0.0).cwiseSqrt().reshaped(n, n);
+  const auto [values, vectors] = numeric::symmetric_eigen(0.5 * (estimate.value + estimate.value.transpose()));
+  estimate.eigenvalue = values;
+  estimate.eigenvalue_half_width.resize(n);
+  for (Index k = 0; k < n; ++k) {  // dλ = vᵀ dZ v
+    const Vector gradient = (vectors.col(k) * vectors.col(k).transpose()).reshaped();
+    estimate.eigenvalue_half_width[k] = quantile * std::sqrt(std::max(0.0, gradient.dot(V * gradient)));
+  }
+  estimate.identifiable = values[n - 1] > 0.0 && estimate.eigenvalue_half_width.maxCoeff() < kNarrow * values[n - 1];
+  return estimate;
+}
+
+/// The mass that all trials name; 0 where they do not.
+double handle_mass_of(std::span<const ExplorationTrial> trials) {
+  const auto first = trials.front().recorded_handle_mass;
+  const bool one = first && std::ranges::all_of(trials, [&](const ExplorationTrial& trial) {
+                     return trial.recorded_handle_mass == first && trial.motion == Motion::translation;
+                   });
+  return one ? *first : 0.0;
+}
+
+}  // namespace after_onset_detail
+
+Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials, double window_s) {
+  using namespace after_onset_detail;
+  if (trials.empty()) return bad_usage("there is no trial whose onsets could be found");
+  if (!(window_s > 2.0 * kSmoothing)) {
+    return bad_usage(
+        fmt::format("{:g} ms after an onset are too short for a filter of {:g} ms", 1e3 * window_s, 1e3 * kSmoothing),
+        "choose 100 to 200 ms");
+  }
+  AfterOnsetEstimate found;
+  found.axes = trials.front().axes;
+  found.window_s = window_s;
+  found.baseline_s = kBaseline;
+  const Index n = found.axes;
+  std::vector<Response> responses;
+  Index seen = 0;
+  std::optional<Lengths> lengths;
+  for (const ExplorationTrial& trial : trials) {
+    if (trial.axes != found.axes) return bad_data("trials of one axis and of two cannot be explored together");
+    if (trial.reference.size() == 0) {
+      return bad_data("without a reference there are no onsets",
+                      "record the perturbation as channel reference (xr, yr), or leave out --after-onset");
+    }
+    const Lengths own = lengths_of(trial.sample_time, window_s);
+    if (lengths && lengths->window != own.window) return bad_data("trials have other sample rates", "use --resample");
+    lengths = own;
+    for (const Onset& onset : reference_onsets(trial.reference, own.before())) {
+      ++seen;
+      if (onset.sample < own.before() || onset.sample + own.window > trial.samples()) continue;
+      auto response = response_after(trial, onset, own);
+      if (!response) return tl::unexpected(response.error());
+      if (response->before > kRest * response->way) continue;
+      responses.push_back(std::move(*response));
+    }
+  }
+  found.onsets = static_cast<Index>(responses.size());
+  found.omitted = seen - found.onsets;
+  if (found.onsets < kMinOnsets * n) {
+    return bad_data(
+        fmt::format("{} onset{} of the reference after {:.0f} ms of rest, {} of which the limb rested before: "
+                    "at least {} are needed",
+                    seen, seen == 1 ? "" : "s", 1e3 * kBaseline, found.onsets, kMinOnsets * n),
+        "perturb with steps or pulses, with pauses between them; pool FILEs of one condition");
+  }
+  if (!steps_along_all_axes(responses)) {
+    return bad_data("the reference steps along one line, which tells nothing of the other axis",
+                    "perturb in several directions, or explore the one axis: --axes 1");
+  }
+
+  const std::vector<Matrix> instruments = instruments_of(responses);
+  std::vector<OnsetMoments> own;
+  OnsetMoments all{Matrix::Zero(3 * n, 3 * n), Matrix::Zero(3 * n, n)};
+  for (std::size_t g = 0; g < responses.size(); ++g) {
+    own.push_back({instruments[g].transpose() * responses[g].motion, instruments[g].transpose() * responses[g].force});
+    all.of_motion += own.back().of_motion;
+    all.of_force += own.back().of_force;
+    found.displacement += responses[g].way / static_cast<double>(found.onsets);
+  }
+  const Matrix theta = all.coefficients();
+  if (!theta.allFinite()) return bad_data("the motion after the onsets does not tell M, B and K apart");
+  Matrix covariance = Matrix::Zero(3 * n * n, 3 * n * n);
+  for (const OnsetMoments& one : own) {
+    const OnsetMoments rest{all.of_motion - one.of_motion, all.of_force - one.of_force};
+    const Vector change = (rest.coefficients() - theta).reshaped();
+    covariance += change * change.transpose();
+  }
+  const auto count = static_cast<double>(found.onsets);
+  covariance *= (count - 1.0) / count;
+  found.degrees_of_freedom = std::floor(count / static_cast<double>(n)) - 1.0;
+  const double quantile = numeric::student_quantile(0.975, static_cast<int>(found.degrees_of_freedom));
+  found.handle_mass = handle_mass_of(trials);
+  found.M = estimate_of(theta, covariance, 0, found.handle_mass, quantile);
+  found.B = estimate_of(theta, covariance, 1, 0.0, quantile);
+  found.K = estimate_of(theta, covariance, 2, 0.0, quantile);
+  for (Index i = 0; i < n; ++i) {
+    double power = 0.0, rest = 0.0;
+    Index rows = 0;
+    for (const Response& one : responses) {
+      power += one.force.col(i).squaredNorm();
+      rest += (one.force.col(i) - one.motion * theta.col(i)).squaredNorm();
+      rows += one.force.rows();
+    }
+    found.explained.push_back({100.0 * (1.0 - rest / power), kNaN, std::sqrt(rest / static_cast<double>(rows))});
+  }
+  return found;
+}
+
+}  // namespace mbk::explore

@@ -1,0 +1,56 @@
+#include "mbk/measure/explore/servo_displacement.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "mbk/measure/explore/motion_share.h"
+#include "mbk/measure/explore/stiffness_regression.h"
+
+namespace mbk::explore {
+
+Result<ServoDisplacementStiffness> servo_displacement_stiffness(std::span<const RecordedReach> undisturbed,
+                                                                std::span<const DisplacedReach> displaced,
+                                                                double sample_time,
+                                                                const ServoDisplacementOptions& options) {
+  const auto prediction = ReachPrediction::create(undisturbed, sample_time, options.prediction);
+  if (!prediction) return tl::unexpected(prediction.error());
+  const auto from = static_cast<Index>(std::llround(options.from / sample_time)),
+             to = static_cast<Index>(std::llround(options.to / sample_time));
+  if (!(from >= 0 && to - from >= 4 && to <= prediction->future_rows())) {
+    return bad_usage(fmt::format("a plateau from {:g} ms to {:g} ms after the trigger is no window of the prediction",
+                                 1e3 * options.from, 1e3 * options.to));
+  }
+  std::vector<DisplacedHand> hands;
+  MotionShare motion;
+  for (const DisplacedReach& one : displaced) {
+    const RecordedReach& reach = one.reach;
+    if (reach.trigger + to > reach.position.rows() || reach.force_hand_on_robot.rows() != reach.position.rows()) {
+      return bad_data("a displaced reach ends before its plateau, or has no force");
+    }
+    const auto predicted = prediction->predict(reach);
+    if (!predicted) return tl::unexpected(predicted.error());
+    if (predicted->force_hand_on_robot.size() == 0) return bad_data("the undisturbed reaches have no force");
+    const Index rows = to - from;
+    const Matrix away =
+        reach.position.middleRows(reach.trigger + from, rows) - predicted->position.middleRows(from, rows);
+    const Matrix force = reach.force_hand_on_robot.middleRows(reach.trigger + from, rows) -
+                         predicted->force_hand_on_robot.middleRows(from, rows);
+    hands.push_back({static_cast<double>(reach.trigger) * sample_time, 0, one.commanded,
+                     away.colwise().mean().transpose(), -force.colwise().mean().transpose()});
+    motion.add(away, sample_time, one.commanded);
+  }
+  auto fit = regress_stiffness(hands);
+  if (!fit) return tl::unexpected(fit.error());
+  ServoDisplacementStiffness found;
+  found.fit = std::move(*fit);
+  found.components = prediction->components();
+  found.prediction_error = prediction->left_out_error()[(from + to) / 2];
+  found.motion_share = motion.value();
+  found.verdict = judge_stiffness(found.fit, found.motion_share);
+  return found;
+}
+
+}  // namespace mbk::explore

@@ -1,0 +1,26 @@
+#include "mbk/model/perturbation/directions.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace mbk::perturbation {
+
+Eigen::Vector2d direction_on_circle(int k, int n) {
+  constexpr double kCosine[] = {1.0, 0.0, -1.0, 0.0};
+  if (4 * k % n == 0) {
+    const int quarter = 4 * k / n;
+    return {kCosine[quarter % 4], kCosine[(quarter + 3) % 4]};
+  }
+  const double angle = 2.0 * std::numbers::pi * k / n;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+std::vector<int> shuffled_directions(int directions, int repetitions, numeric::Random& random) {
+  std::vector<int> order;
+  for (int i = 0; i < directions * repetitions; ++i) order.push_back(i % directions);
+  for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random.below(i + 1)]);
+  return order;
+}
+
+}  // namespace mbk::perturbation

@@ -1,0 +1,73 @@
+#include "mbk/model/perturbation/ramp_and_hold.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/model/perturbation/directions.h"
+
+namespace mbk::perturbation {
+namespace {
+
+Result<void> check_ramps(const RampAndHold::Options& o) {
+  const auto positive = [](const char* what, double value, const char* unit) -> Result<void> {
+    if (value > 0.0 && std::isfinite(value)) return {};
+    return bad_usage(fmt::format("{} {}{} is not above 0", what, value, unit));
+  };
+  if (auto ok = positive("amplitude of the ramps", o.amplitude, ""); !ok) return ok;
+  if (auto ok = positive("duration of a ramp", o.ramp, " s"); !ok) return ok;
+  if (auto ok = positive("duration of the hold", o.hold, " s"); !ok) return ok;
+  if (auto ok = positive("duration of the way back", o.way_back, " s"); !ok) return ok;
+  if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
+  if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
+  if (o.repetitions > RampAndHold::kMaxRamps / o.directions) {
+    return bad_usage(fmt::format("{} directions, {} times each, are more than {} ramps", o.directions, o.repetitions,
+                                 RampAndHold::kMaxRamps));
+  }
+  if (!(o.shortest_pause >= 0.0 && o.shortest_pause <= o.longest_pause && std::isfinite(o.longest_pause))) {
+    return bad_usage(fmt::format("pauses from {} s to {} s are no range from 0", o.shortest_pause, o.longest_pause));
+  }
+  if (!(o.quiet >= 0.0 && std::isfinite(o.quiet))) return bad_usage(fmt::format("quiet time {} s is below 0", o.quiet));
+  return {};
+}
+
+}  // namespace
+
+RampAndHold::RampAndHold(const Options& options)
+    : options_(options),
+      out_({0.0, 0.0, 0.0}, {options.amplitude, 0.0, 0.0}, options.ramp),
+      back_({options.amplitude, 0.0, 0.0}, {0.0, 0.0, 0.0}, options.way_back) {}
+
+Result<RampAndHold> RampAndHold::create(const Options& options) {
+  if (auto ok = check_ramps(options); !ok) return tl::unexpected(ok.error());
+  RampAndHold schedule(options);
+  numeric::Random random(options.seed);
+  double rest = options.quiet;
+  for (const int direction : shuffled_directions(options.directions, options.repetitions, random)) {
+    const double onset = rest + random.uniform(options.shortest_pause, options.longest_pause);
+    const double offset = onset + options.ramp + options.hold;
+    schedule.ramps_.push_back({onset, offset, direction, 2.0 * std::numbers::pi * direction / options.directions,
+                               direction_on_circle(direction, options.directions)});
+    rest = offset + options.way_back;
+  }
+  return schedule;
+}
+
+Jet<Eigen::Vector2d> RampAndHold::at(double t) const {
+  const auto next = std::ranges::upper_bound(ramps_, t, {}, &Ramp::onset);
+  if (next == ramps_.begin()) return {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  const Ramp& ramp = *std::prev(next);
+  const Jet<double> along = t < ramp.offset ? out_.at(t - ramp.onset) : back_.at(t - ramp.offset);
+  return {along.value * ramp.direction_B, along.first * ramp.direction_B, along.second * ramp.direction_B};
+}
+
+Hertz RampAndHold::bandwidth() const {
+  constexpr double kHalfPower = 0.6874;  // root of 15 j₂(πu)/(πu)² = 1/√2
+  return Hertz(kHalfPower / std::min(options_.ramp, options_.way_back));
+}
+
+}  // namespace mbk::perturbation

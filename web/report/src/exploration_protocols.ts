@@ -1,0 +1,91 @@
+// Parts of an exploration that belong to a protocol or to time: change, the first moment after onset, ramps and holds.
+import type { AfterOnsetEstimate, Exploration, PlateauStiffnessEstimate, TimeCourseEstimate, Value } from "@mbk/shared/documents";
+import { facts, h, heading, table } from "@mbk/shared/dom";
+import { data, fixed, significant } from "@mbk/shared/format";
+import { figure, type Panel, styles } from "./charts";
+
+export interface ImpedanceUnits {
+  M: string;
+  B: string;
+  K: string;
+}
+
+const matrices = [["inertia", "M"], ["damping", "B"], ["stiffness", "K"]] as const;
+
+/** value ± half width with the digits that the half width leaves. */
+export const margin = (value: Value, half: Value, name: string): HTMLElement =>
+  data(value, value === null ? "undefined" : half === null ? significant(value, 3) : `${significant(value, 3)} ± ${significant(half, 2)}`, name);
+
+const milliseconds = (seconds: Value): string => `${significant(seconds === null ? null : 1000 * seconds, 3)} ms`;
+const entries = (axes: number): string[] => (axes === 1 ? ["value ± 95 %"] : ["xx", "xy", "yx", "yy"]);
+const chance = (p: Value): string => (p !== null && p < 1e-12 ? "p < 10⁻¹²" : `p = ${significant(p, 2)}`);
+
+/** The k-th entry of a matrix that stands column by column. */
+const entryName = (axes: number, k: number): string => (axes === 1 ? "" : `_${"xy"[k % 2]}${"xy"[Math.floor(k / 2)]}`);
+
+export function courseSection(found: TimeCourseEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
+  const panels = matrices.flatMap(([, symbol]): Panel[] => {
+    const one = found[symbol];
+    return (one.value ?? []).map((value, k) => {
+      const half = one.half_width95?.[k] ?? [];
+      const end = (sign: number): Value[] => value.map((v, i) => (v === null || (half[i] ?? null) === null ? null : v + sign * (half[i] as number)));
+      const constant = one.constant[k % axes]?.[Math.floor(k / axes)] ?? null;
+      return {
+        title: `${symbol}${entryName(axes, k)}`,
+        unit: units[symbol],
+        series: [
+          { name: "along it", x: found.at, y: value, style: styles.first, between: { low: end(-1), high: end(1), name: "95 % interval, pointwise" } },
+          { name: "if nothing changed", x: found.at, y: value.map(() => constant), style: styles.second },
+        ],
+      };
+    });
+  });
+  const rows = matrices.map(([name, symbol]) => [`${name} ${symbol}`, ...found[symbol].constant.flatMap((row, i) => row.map((value, j) => margin(value, found[symbol].constant_half_width95[i]?.[j] ?? null, `constant-${symbol}${i}${j}`))), units[symbol]]);
+  return h("section", { id: "course" }, heading(2, "Change over time"),
+    h("p", {}, h("strong", {}, found.verdict === "changes" ? "The limb changes. " : "No change is detected. "), `${found.why.charAt(0).toUpperCase()}${found.why.slice(1)}. `,
+      found.instruments ? "What the reference explains of the motion stood for it." : "Least squares, without a reference: biased where the force moves the robot."),
+    panels.length > 0
+      ? figure({
+          id: "course-chart",
+          title: `M, B and K over ${found.variable}`,
+          howToRead: "Where the dashed line leaves the band, the entry is not what a constant limb has. A spline rounds a sudden change.",
+          description: `${found.varying} along ${found.variable}.`,
+          x: { name: found.variable, unit: found.unit },
+          panels,
+          panelHeight: 120,
+        })
+      : undefined,
+    table("If nothing changed; ± is the 95 % interval", ["", ...entries(axes), "unit"], rows, "numbers"));
+}
+
+export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
+  const rows = matrices.map(([name, symbol]) => {
+    const one = found[symbol];
+    return [`${name} ${symbol}`, ...one.value.flatMap((row, i) => row.map((value, j) => margin(value, one.half_width95[i]?.[j] ?? null, `onset-${symbol}${i}${j}`))), units[symbol], one.identifiable ? "" : h("strong", {}, "not identifiable")];
+  });
+  return h("section", { id: "onset" }, heading(2, "The first moment after onset"),
+    h("p", {}, `The first ${milliseconds(found.window_s)} after ${found.onsets} onsets of the reference, before anyone can answer; ${found.omitted_onsets} more were omitted, since the limb did not rest before them or the recording ends.`),
+    table("M, B and K of the limb alone; ± is the 95 % interval", ["", ...entries(axes), "unit", ""], rows, "numbers"),
+    facts([["Explained", found.VAF.map((value) => `${fixed(value ?? NaN, 1)} %`).join(", ")]]));
+}
+
+export function plateauSection(found: PlateauStiffnessEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
+  const { stiffness } = found;
+  const entry = (i: number, j: number): HTMLElement => {
+    const [low, high] = stiffness.interval95[i]?.[j] ?? [null, null];
+    const value = stiffness.K[i]?.[j] ?? null;
+    return h("span", {}, data(value, significant(value, 3), `plateau-K${i}${j}`), ` [${significant(low ?? null, 3)}, ${significant(high ?? null, 3)}]`);
+  };
+  const ellipse = stiffness.ellipse;
+  return h("section", { id: "plateaus" }, heading(2, "Ramps and holds"),
+    h("p", {}, `The force while the hand is held, ${milliseconds(found.plateau_s[0] ?? null)} to ${milliseconds(found.plateau_s[1] ?? null)} after the onset (${found.window_rule}), over ${stiffness.displacements} displacements in ${stiffness.directions} directions.`),
+    found.usable
+      ? table("Stiffness; brackets are 95 % intervals", ["", ...(axes === 1 ? ["value [95 %]"] : ["xx", "xy", "yx", "yy"]), "unit"],
+          [["stiffness K", ...stiffness.K.flatMap((row, i) => row.map((_, j) => entry(i, j))), units.K]], "numbers")
+      : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable, and is not shown; the warnings say why."),
+    facts([
+      ["Ellipse", found.usable && ellipse ? `shape ${significant(ellipse.shape, 3)} [${significant(ellipse.interval95.shape[0] ?? null, 3)}, ${significant(ellipse.interval95.shape[1] ?? null, 3)}], orientation ${fixed(ellipse.orientation_deg ?? NaN, 1)}° [${fixed(ellipse.interval95.orientation_deg[0] ?? NaN, 1)}, ${fixed(ellipse.interval95.orientation_deg[1] ?? NaN, 1)}]` : undefined],
+      ["One stiffness for all directions", `${chance(stiffness.linear_p ?? null)} of such a lack of fit by chance`],
+      ["Reached", `${fixed(100 * (stiffness.reached ?? NaN), 0)} % of what was commanded`],
+    ]));
+}
