@@ -2,11 +2,11 @@
 """How long do many recordings take? `mbk identify` on N logs of 62.1 s at 1 kHz, several at a time.
 
 Makes a few logs with make_log and links them under N names, so that what is timed is the work and not the disk; once
-as make_log writes them (MAT v7, compressed) and once uncompressed (MAT v5). `mbk identify --mode reference` takes turns
-with bench/joblib_pipeline.py (A B A B ...) where numpy, scipy and joblib can be imported; of the latter the imports do
-not count, of mbk the whole process does. Both must give the same M, B and K to 1e-6 of each matrix's largest element.
-`mbk measure`, which computes more, is shown beside. Page faults and the greatest memory are those that the system
-counts. Times are reported and never judged: the exit code is 0 unless a program fails or the answers differ.
+as make_log writes them (MAT v7, compressed) and once uncompressed (MAT v5). `mbk identify`, in its default mode and in
+--mode reference, and `mbk measure` take turns with bench/joblib_pipeline.py where numpy, scipy and joblib can be
+imported; of the latter the imports do not count, of mbk the whole process does. It finds M, B and K alone, to compare
+with `mbk identify`, and with --measure the parts of `mbk measure`. In reference mode both must give the same M, B and K
+to 1e-6 of each matrix's largest element. Page faults and the greatest memory are those that the system counts. Times are reported and never judged: the exit code is 0 unless a program fails or the answers differ.
 
 usage: many_files.py [--bin build/release/bin] [--files 100] [--threads 2] [--runs 3] [--python /usr/bin/python3]
 """
@@ -84,36 +84,49 @@ def row(name, runs, count):
 def compare(title, names, arguments, joblib):
     mbk = arguments.bin / "mbk"
     threads = ["--threads", str(arguments.threads), "--quiet", "--json"]
-    identify = [mbk, "identify", "--mode", "reference", *threads, *names]
-    peer = [arguments.python, HERE / "joblib_pipeline.py", "--workers", str(arguments.threads), *names]
-    run(identify)  # warms up
-    ours, theirs, default = [], [], []
+    peer = [arguments.python, HERE / "joblib_pipeline.py", "--workers", str(arguments.threads)]
+    commands = {
+        "mbk identify --mode reference": [mbk, "identify", "--mode", "reference", *threads, *names],
+        "mbk identify": [mbk, "identify", *threads, *names],
+        "mbk measure": [mbk, "measure", *threads, *names],
+    }
+    peers = {
+        "joblib_pipeline.py": [*peer, *names],
+        "joblib_pipeline.py --measure": [*peer, "--measure", *names],
+    }
+    took = {name: [] for name in [*commands, *peers]}
+    answers = {}
+    run(commands["mbk identify"])  # warms up
     for _ in range(arguments.runs):
-        text, *took = run(identify)
-        ours.append(took)
-        models = [one["model"] for one in json.loads(text)["results"]]
-        default.append(run([mbk, "measure", *threads, *names])[1:])
-        if joblib:
-            other = json.loads(run(peer)[0])
-            theirs.append((other["wall_s"], other["cpu_s"]))
+        for name, command in commands.items():
+            answers[name], *one = run(command)
+            took[name].append(one)
+        for name, command in peers.items() if joblib else ():
+            answers[name] = run(command)[0]
+            other = json.loads(answers[name])
+            took[name].append((other["wall_s"], other["cpu_s"]))
     print(f"\n{title}, {names[0].stat().st_size / 1e6:.1f} MB each")
     print(f"  {'':<44}{'wall s':>9}{'CPU s':>9}{'ms a file':>12}{'faults a file':>14}{'most MB':>10}")
-    row("mbk identify --mode reference", ours, len(names))
-    row("mbk measure", default, len(names))
+    for name in commands:
+        row(name, took[name], len(names))
     if not joblib:
         return
-    row("joblib_pipeline.py, without imports", theirs, len(names))
+    for name in peers:
+        row(f"{name}, without imports", took[name], len(names))
     if (arguments.bin / "bench_floor").exists():
         floor = json.loads(run([arguments.bin / "bench_floor", names[0], "11"])[0])
         parts = [1e3 * floor[part] for part in ("read_s", "inflate_s", "sha256_s")]
-        alone = 1e3 * statistics.median(cpu for _, cpu in theirs) / len(names) / sum(parts)
+        alone = 1e3 * statistics.median(cpu for _, cpu in took["joblib_pipeline.py"]) / len(names) / sum(parts)
         print(f"  ms a file to read, unpack and hash it, by themselves: {parts[0]:.1f}, {parts[1]:.1f} and {parts[2]:.1f}; "
               f"joblib over these alone: {alone:.1f}")
-    for what, which in (("wall", 0), ("CPU", 1)):
-        ratios = [b[which] / a[which] for a, b in zip(ours, theirs)]
-        print(f"  joblib over mbk identify, {what}: {' '.join(f'{ratio:.2f}' for ratio in ratios)}")
-    difference = largest_difference(other["models"], models)
-    print(f"  M, B and K differ by at most {difference:.1e} (limit {AGREEMENT:g})")
+    for name, other in (("mbk identify --mode reference", "joblib_pipeline.py"), ("mbk identify", "joblib_pipeline.py"),
+                        ("mbk measure", "joblib_pipeline.py --measure")):
+        for what, which in (("wall", 0), ("CPU", 1)):
+            ratios = [b[which] / a[which] for a, b in zip(took[name], took[other])]
+            print(f"  joblib over {name}, {what}: {' '.join(f'{ratio:.2f}' for ratio in ratios)}")
+    models = [one["model"] for one in json.loads(answers["mbk identify --mode reference"])["results"]]
+    difference = largest_difference(json.loads(answers["joblib_pipeline.py"])["models"], models)
+    print(f"  M, B and K of the reference mode differ by at most {difference:.1e} (limit {AGREEMENT:g})")
     if not difference <= AGREEMENT:
         sys.exit("many_files.py: the two answers differ")
 

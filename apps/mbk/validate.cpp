@@ -45,7 +45,7 @@ struct ValidateArguments {
   unsigned threads = 0;
   std::optional<std::filesystem::path> charts;
   Link link = Link::function;
-  std::vector<std::string> faults;
+  std::vector<std::string> faults, conditions;
   bool json = false, quiet = false, overwrite = false, page = false;
 };
 
@@ -103,6 +103,10 @@ Result<void> write_charts(const ValidationTable& table, const std::filesystem::p
 
 Result<ValidationTable> perform(const validation::Study& study, const validation::StudyOptions& options,
                                 const ValidateArguments& arguments) {
+  if (!arguments.conditions.empty()) {
+    if (study.name == "misspecification") return validation::misspecification_study(options, arguments.conditions);
+    return bad_usage("--condition belongs to 'mbk validate misspecification'", "leave it out");
+  }
   if (arguments.link == Link::function && arguments.faults.empty()) return study.perform(options);
   if (study.name != "faults" || arguments.link != Link::udp) {
     return bad_usage("--link and --fault belong to 'mbk validate faults --link udp'", "leave them out");
@@ -178,6 +182,8 @@ Action add_validate(CLI::App& app) {
   command->add_option("--fault", arguments->faults, "of 'faults --link udp': only this one; may be repeated")
       ->type_name("NAME")
       ->check(suggests(fault_names()));
+  command->add_option("--condition", arguments->conditions, "of 'misspecification': only this one; may be repeated")
+      ->type_name("NAME");
   command->add_flag("--page", arguments->page,
                     "of 'faults': writes docs/guide/safety.md, from the tables of both links");
   command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/2");

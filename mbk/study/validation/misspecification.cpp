@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -246,11 +248,24 @@ void add_rows(const Misspecification& condition, const std::vector<MisspecifiedT
   }
 }
 
-}  // namespace
-
-Result<ValidationTable> misspecification_study(const StudyOptions& options) {
+std::vector<Misspecification> all_conditions() {
   std::vector<Misspecification> conditions = honest();
   for (Misspecification& condition : broken()) conditions.push_back(std::move(condition));
+  return conditions;
+}
+
+}  // namespace
+
+Result<ValidationTable> misspecification_study(const StudyOptions& options, std::span<const std::string> only) {
+  std::vector<Misspecification> conditions = all_conditions();
+  for (const std::string& name : only) {
+    if (std::ranges::count(conditions, name, &Misspecification::name) > 0) continue;
+    const auto names = conditions | std::views::transform(&Misspecification::name);
+    return bad_usage(fmt::format("'{}' is no condition", name), fmt::format("name one of: {}", fmt::join(names, "; ")));
+  }
+  if (!only.empty()) {
+    std::erase_if(conditions, [&](const Misspecification& one) { return std::ranges::count(only, one.name) == 0; });
+  }
   const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<std::vector<MisspecifiedTrial>> {
     std::vector<MisspecifiedTrial> outcomes;
     for (const Misspecification& condition : conditions) {

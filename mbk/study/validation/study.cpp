@@ -45,7 +45,7 @@ std::span<const Study> studies() {
       Study{"passivity", "what is said of passivity, of relaxed arms and of arms that give energy", kOfPassivity, 2,
             passivity_study},
       Study{"misspecification", "what is said where M, B and K do not hold, and where they do", kOfMisspecification, 2,
-            misspecification_study},
+            [](const StudyOptions& options) { return misspecification_study(options); }},
       Study{"live-estimate", "how often the 95 % intervals hold the truth while the trial still runs", kOfLiveEstimate,
             2, live_estimate_study},
       Study{"springs", "stiffness and mass of the thesis's rigs, identified against true", {}, 3, springs_study},

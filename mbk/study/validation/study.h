@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "mbk/base/core/result.h"
@@ -75,7 +76,10 @@ struct Study {
 /// beside conditions in which they hold. Is it said, how often do the intervals hold the truth, and how far is what was
 /// found from it? A run is one trial of each. Expected: a warning nearly always where one recording can show what is
 /// wrong, and hardly ever where nothing is.
-[[nodiscard]] Result<ValidationTable> misspecification_study(const StudyOptions& options);
+/// @param only  conditions by name; empty: all of them
+/// @fails  usage: a name that no condition has
+[[nodiscard]] Result<ValidationTable> misspecification_study(const StudyOptions& options,
+                                                             std::span<const std::string> only = {});
 
 /// Trials without the voluntary controller in each run of closed_loop_study, each measured by itself.
 inline constexpr int kTrialsWithoutController = 16;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
+#include <string>
 
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/test_short_study.h"
@@ -78,6 +80,19 @@ TEST(MisspecificationStudy, WarnsWhereTheModelDoesNotHoldAndIsSilentWhereItDoes)
   EXPECT_GE(std::ranges::count_if(table->rows, warned), 40);
   EXPECT_GE(std::ranges::count_if(table->rows, &ValidationRow::judged), 30);
   expect_nothing_refuted(*table);
+}
+
+TEST(MisspecificationStudy, PerformsTheConditionsAskedForAndNoOthers) {
+  const std::array<std::string, 2> two = {"force late by 20 ms", "multisine"};
+  const auto table = misspecification_study({.runs = 1}, two);
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  EXPECT_EQ(table->rows.size(), 2u * 9);
+  EXPECT_EQ(table->rows.front().what, "multisine: warned") << "in the order of the whole table";
+  const std::array<std::string, 1> unknown = {"force late by 20 m"};
+  const auto refused = misspecification_study({.runs = 1}, unknown);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+  EXPECT_NE(refused.error().remedy.find("force late by 20 ms;"), std::string::npos) << refused.error().remedy;
 }
 
 TEST(PassivityStudy, NeverCallsARelaxedArmActiveAndHearsTheEnergyOfOneThatActs) {
