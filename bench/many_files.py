@@ -74,7 +74,7 @@ def linked(folder, logs, count):
 
 def row(name, runs, count):
     walls, cpus = [one[0] for one in runs], [one[1] for one in runs]
-    text = f"  {name:<44}{statistics.median(walls):9.2f}{statistics.median(cpus):9.2f}"
+    text = f"  {name:<46}{statistics.median(walls):9.2f}{statistics.median(cpus):9.2f}"
     text += f"{1e3 * statistics.median(cpus) / count:12.1f}"
     if len(runs[0]) > 2:
         text += f"{statistics.median(one[2] for one in runs) / count:14.0f}{max(one[3] for one in runs):10.0f}"
@@ -85,47 +85,47 @@ def compare(title, names, arguments, joblib):
     mbk = arguments.bin / "mbk"
     threads = ["--threads", str(arguments.threads), "--quiet", "--json"]
     peer = [arguments.python, HERE / "joblib_pipeline.py", "--workers", str(arguments.threads)]
+    reference = [mbk, "identify", "--mode", "reference", *threads, *names]
     commands = {
-        "mbk identify --mode reference": [mbk, "identify", "--mode", "reference", *threads, *names],
-        "mbk identify": [mbk, "identify", *threads, *names],
-        "mbk measure": [mbk, "measure", *threads, *names],
+        "reference": reference,
+        "identify": [mbk, "identify", *threads, *names],
+        "measure": [mbk, "measure", *threads, *names],
     }
-    peers = {
-        "joblib_pipeline.py": [*peer, *names],
-        "joblib_pipeline.py --measure": [*peer, "--measure", *names],
-    }
-    took = {name: [] for name in [*commands, *peers]}
-    answers = {}
-    run(commands["mbk identify"])  # warms up
+    peers = {"identify": [*peer, *names], "measure": [*peer, "--measure", *names]} if joblib else {}
+    ours, theirs = {name: [] for name in commands}, {name: [] for name in peers}
+    run(reference)  # warms up
     for _ in range(arguments.runs):
         for name, command in commands.items():
-            answers[name], *one = run(command)
-            took[name].append(one)
-        for name, command in peers.items() if joblib else ():
-            answers[name] = run(command)[0]
-            other = json.loads(answers[name])
-            took[name].append((other["wall_s"], other["cpu_s"]))
+            text, *took = run(command)
+            ours[name].append(took)
+            if name == "reference":
+                models = [one["model"] for one in json.loads(text)["results"]]
+        for name, command in peers.items():
+            other = json.loads(run(command)[0])
+            theirs[name].append((other["wall_s"], other["cpu_s"]))
+            if name == "identify":
+                other_models = other["models"]
     print(f"\n{title}, {names[0].stat().st_size / 1e6:.1f} MB each")
-    print(f"  {'':<44}{'wall s':>9}{'CPU s':>9}{'ms a file':>12}{'faults a file':>14}{'most MB':>10}")
-    for name in commands:
-        row(name, took[name], len(names))
+    print(f"  {'':<46}{'wall s':>9}{'CPU s':>9}{'ms a file':>12}{'faults a file':>14}{'most MB':>10}")
+    row("mbk identify --mode reference", ours["reference"], len(names))
+    row("mbk identify", ours["identify"], len(names))
+    row("mbk measure", ours["measure"], len(names))
     if not joblib:
         return
-    for name in peers:
-        row(f"{name}, without imports", took[name], len(names))
+    row("joblib_pipeline.py, without imports", theirs["identify"], len(names))
+    row("joblib_pipeline.py --measure, without imports", theirs["measure"], len(names))
     if (arguments.bin / "bench_floor").exists():
         floor = json.loads(run([arguments.bin / "bench_floor", names[0], "11"])[0])
         parts = [1e3 * floor[part] for part in ("read_s", "inflate_s", "sha256_s")]
-        alone = 1e3 * statistics.median(cpu for _, cpu in took["joblib_pipeline.py"]) / len(names) / sum(parts)
+        alone = 1e3 * statistics.median(cpu for _, cpu in theirs["identify"]) / len(names) / sum(parts)
         print(f"  ms a file to read, unpack and hash it, by themselves: {parts[0]:.1f}, {parts[1]:.1f} and {parts[2]:.1f}; "
               f"joblib over these alone: {alone:.1f}")
-    for name, other in (("mbk identify --mode reference", "joblib_pipeline.py"), ("mbk identify", "joblib_pipeline.py"),
-                        ("mbk measure", "joblib_pipeline.py --measure")):
+    for title, one, other in (("identify --mode reference", "reference", "identify"),
+                              ("identify", "identify", "identify"), ("measure", "measure", "measure")):
         for what, which in (("wall", 0), ("CPU", 1)):
-            ratios = [b[which] / a[which] for a, b in zip(took[name], took[other])]
-            print(f"  joblib over {name}, {what}: {' '.join(f'{ratio:.2f}' for ratio in ratios)}")
-    models = [one["model"] for one in json.loads(answers["mbk identify --mode reference"])["results"]]
-    difference = largest_difference(json.loads(answers["joblib_pipeline.py"])["models"], models)
+            ratios = [b[which] / a[which] for a, b in zip(ours[one], theirs[other])]
+            print(f"  joblib over mbk {title}, {what}: {' '.join(f'{ratio:.2f}' for ratio in ratios)}")
+    difference = largest_difference(other_models, models)
     print(f"  M, B and K of the reference mode differ by at most {difference:.1e} (limit {AGREEMENT:g})")
     if not difference <= AGREEMENT:
         sys.exit("many_files.py: the two answers differ")

@@ -1,8 +1,12 @@
 #include "mbk/base/dsp/complex_transform.h"
 
+#include <algorithm>
+#include <array>
 #include <complex>
 #include <cstddef>
+#include <mutex>
 #include <numbers>
+#include <vector>
 
 #include "mbk/base/core/vector4.h"
 
@@ -83,6 +87,69 @@ template <int radix, class V>
 template <class V, class Turn>
 [[gnu::always_inline]] inline Value<V> turned(const Value<V>& a, const Turn& re, const Turn& im) {
   return {a.re * re - a.im * im, a.re * im + a.im * re};
+}
+
+}  // namespace
+
+/// What a transform of one length does, whatever its values are.
+struct TransformPlan {
+  struct Stage {
+    Index radix;
+    Index groups, stride;  ///< of the `radix`·groups·stride = n values
+    Index turns;           ///< where e^(−2πj q k/(radix·groups)) begins: k = 1 … radix − 1, q = 0 … groups − 1
+  };
+  Index length;
+  std::vector<Stage> stages;
+  std::vector<double> turns_real, turns_imaginary;
+
+  explicit TransformPlan(Index of_length) : length(of_length) {
+    Index rest = length, stride = 1, turns = 0;
+    const auto add = [&](Index radix) {
+      for (; rest % radix == 0; rest /= radix, stride *= radix) {
+        stages.push_back({radix, rest / radix, stride, turns});
+        turns += (radix - 1) * (rest / radix);
+      }
+    };
+    for (const Index radix : {4, 5, 3, 2}) add(radix);  // fours first: from then on whole vectors are side by side
+    for (Index radix = 7; rest > 1; radix += 2) add(radix);
+    const std::vector<std::complex<double>> all = circle(length);
+    turns_real.resize(static_cast<std::size_t>(turns));
+    turns_imaginary.resize(static_cast<std::size_t>(turns));
+    auto re = turns_real.begin(), im = turns_imaginary.begin();
+    for (const Stage& stage : stages) {
+      for (Index k = 1; k < stage.radix; ++k) {
+        auto turn = all.begin();
+        for (Index q = 0; q < stage.groups; ++q, turn += k * stage.stride) {
+          *re++ = turn->real();
+          *im++ = turn->imag();
+        }
+      }
+    }
+  }
+};
+
+namespace {
+
+/// A plan that was made lately, or a new one: what a recording is asked takes few lengths, many times each.
+std::shared_ptr<const TransformPlan> plan_of(Index length) {
+  constexpr Index kLongest = 1 << 16;  // longer ones take long themselves, and much memory
+  if (length > kLongest) return std::make_shared<const TransformPlan>(length);
+  static std::mutex mutex;
+  static std::array<std::shared_ptr<const TransformPlan>, 6> latest;
+  {
+    const std::scoped_lock lock(mutex);
+    const auto found =
+        std::ranges::find_if(latest, [length](const auto& plan) { return plan != nullptr && plan->length == length; });
+    if (found != latest.end()) {
+      std::rotate(latest.begin(), found, found + 1);
+      return latest.front();
+    }
+  }
+  auto made = std::make_shared<const TransformPlan>(length);
+  const std::scoped_lock lock(mutex);
+  std::ranges::rotate(latest, latest.end() - 1);
+  latest.front() = made;
+  return made;
 }
 
 }  // namespace
@@ -192,11 +259,12 @@ struct TransformLoops {
 
   static void run(ComplexTransform& transform) {
     const auto fast = has_x86_64_v3() ? pass_v3 : pass_any;
-    for (const ComplexTransform::Stage& stage : transform.stages_) {
+    const TransformPlan& plan = *transform.plan_;
+    for (const TransformPlan::Stage& stage : plan.stages) {
       (stage.radix <= 5 ? fast : pass_plain)(
           stage.radix, {transform.real_.data(), transform.imaginary_.data(), transform.other_real_.data(),
-                        transform.other_imaginary_.data(), transform.turns_real_.data() + stage.turns,
-                        transform.turns_imaginary_.data() + stage.turns, stage.groups, stage.stride});
+                        transform.other_imaginary_.data(), plan.turns_real.data() + stage.turns,
+                        plan.turns_imaginary.data() + stage.turns, stage.groups, stage.stride});
       transform.real_.swap(transform.other_real_);
       transform.imaginary_.swap(transform.other_imaginary_);
     }
@@ -210,25 +278,12 @@ struct TransformLoops {
 };
 
 ComplexTransform::ComplexTransform(Index length)
-    : real_(length), imaginary_(length), other_real_(length), other_imaginary_(length), length_(length) {
-  const std::vector<std::complex<double>> turns = circle(length);
-  Index rest = length, stride = 1;
-  const auto add = [&](Index radix) {
-    for (; rest % radix == 0; rest /= radix, stride *= radix) {
-      const Index groups = rest / radix;
-      stages_.push_back({radix, groups, stride, static_cast<Index>(turns_real_.size())});
-      for (Index k = 1; k < radix; ++k) {
-        for (Index q = 0; q < groups; ++q) {
-          const std::complex<double> turn = turns[static_cast<std::size_t>(q * k * stride)];
-          turns_real_.push_back(turn.real());
-          turns_imaginary_.push_back(turn.imag());
-        }
-      }
-    }
-  };
-  for (const Index radix : {4, 5, 3, 2}) add(radix);  // fours first: from then on whole vectors are side by side
-  for (Index radix = 7; rest > 1; radix += 2) add(radix);
-}
+    : plan_(plan_of(length)),
+      real_(length),
+      imaginary_(length),
+      other_real_(length),
+      other_imaginary_(length),
+      length_(length) {}
 
 void ComplexTransform::run() {
   TransformLoops::run(*this);

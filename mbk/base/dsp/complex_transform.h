@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <memory>
 
 #include "mbk/base/core/linear_algebra.h"
 
@@ -24,13 +24,7 @@ class ComplexTransform {
 
  private:
   friend struct TransformLoops;
-  struct Stage {
-    Index radix;
-    Index groups, stride;  // of the `radix`·groups·stride = n values
-    Index turns;  // where e^(−2πj q k/(radix·groups)) begins: k = 1 … radix − 1, q = 0 … groups − 1
-  };
-  std::vector<Stage> stages_;
-  std::vector<double> turns_real_, turns_imaginary_;
+  std::shared_ptr<const struct TransformPlan> plan_;  // shared by transforms of one length
   Vector real_, imaginary_, other_real_, other_imaginary_;
   Index length_;
 };

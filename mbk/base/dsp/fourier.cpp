@@ -17,12 +17,32 @@ Eigen::VectorXcd lines_of(ComplexTransform& transform, Index lines) {
   return values;
 }
 
-Eigen::VectorXcd directly(const Vector& signal) {
-  ComplexTransform transform(signal.size());
-  transform.real() = signal;
-  transform.imaginary().setZero();
-  transform.run();
-  return lines_of(transform, signal.size() / 2 + 1);
+/// With Z the transform of a + j b: A_k = (Z_k + Z*_{n−k})/2, B_k = (Z_k − Z*_{n−k})/(2j).
+Eigen::MatrixXcd directly(const Matrix& signals) {
+  const Index n = signals.rows(), lines = n / 2 + 1;
+  ComplexTransform transform(n);
+  const Vector &re = transform.real(), &im = transform.imaginary();
+  Eigen::MatrixXcd all(lines, signals.cols());
+  for (Index first = 0; first < signals.cols(); first += 2) {
+    const bool two = first + 1 < signals.cols();
+    transform.real() = signals.col(first);
+    if (two) {
+      transform.imaginary() = signals.col(first + 1);
+    } else {
+      transform.imaginary().setZero();
+    }
+    transform.run();
+    if (!two) {
+      all.col(first) = lines_of(transform, lines);
+      continue;
+    }
+    for (Index k = 0; k < lines; ++k) {
+      const Index mirror = k == 0 ? 0 : n - k;
+      all(k, first) = {0.5 * (re[k] + re[mirror]), 0.5 * (im[k] - im[mirror])};
+      all(k, first + 1) = {0.5 * (im[k] + im[mirror]), 0.5 * (re[mirror] - re[k])};
+    }
+  }
+  return all;
 }
 
 /// e^(jπ i²/n), i = 0 … n − 1.
@@ -55,8 +75,14 @@ Eigen::VectorXcd by_chirp(const Vector& signal) {
 }  // namespace
 
 Eigen::VectorXcd fourier_transform(const Vector& signal) {
-  const Index n = signal.size();
-  return fast_length_below(n) == n ? directly(signal) : by_chirp(signal);
+  return fourier_transforms(signal);
+}
+
+Eigen::MatrixXcd fourier_transforms(const Matrix& signals) {
+  if (fast_length_below(signals.rows()) == signals.rows()) return directly(signals);
+  Eigen::MatrixXcd all(signals.rows() / 2 + 1, signals.cols());
+  for (Index k = 0; k < signals.cols(); ++k) all.col(k) = by_chirp(signals.col(k));
+  return all;
 }
 
 }  // namespace mbk::dsp

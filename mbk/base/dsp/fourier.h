@@ -11,4 +11,9 @@ namespace mbk::dsp {
 /// @param signal  not empty
 [[nodiscard]] Eigen::VectorXcd fourier_transform(const Vector& signal);
 
+/// The same of each column, (⌊n/2⌋ + 1)×signals. Two columns pass as one, so that rounding of the larger one is left in
+/// the smaller: signals of like size belong together.
+/// @param signals  n×signals, n ≥ 1
+[[nodiscard]] Eigen::MatrixXcd fourier_transforms(const Matrix& signals);
+
 }  // namespace mbk::dsp

@@ -41,6 +41,21 @@ TEST(FourierTransform, IsTheSumOfItsDefinitionAtAnyLength) {
   }
 }
 
+TEST(FourierTransform, OfColumnsIsThatOfEachByItself) {
+  for (const Index n : {1, 2, 135, 1000, 997}) {
+    for (const Index signals : {1, 2, 3, 4}) {
+      const Matrix columns = noise(n * signals).reshaped(n, signals);
+      const Eigen::MatrixXcd got = fourier_transforms(columns);
+      ASSERT_EQ(got.rows(), n / 2 + 1);
+      ASSERT_EQ(got.cols(), signals);
+      for (Index k = 0; k < signals; ++k) {
+        EXPECT_LT((got.col(k) - plain(columns.col(k))).cwiseAbs().maxCoeff(), 1e-12 * std::sqrt(static_cast<double>(n)))
+            << n << ", column " << k << " of " << signals;
+      }
+    }
+  }
+}
+
 TEST(FourierTransform, OfACosineIsOneLine) {
   constexpr Index kSamples = 1009, kLine = 17;
   Vector signal(kSamples);

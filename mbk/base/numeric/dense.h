@@ -29,8 +29,19 @@ struct SymmetricEigen {
 /// Descending.
 [[nodiscard]] Vector singular_values(const Matrix& A);
 
+/// A = U diag(values) Vᵀ, with k = min(m, n).
+struct ThinSvd {
+  Matrix U;       ///< m×k
+  Vector values;  ///< k, descending
+  Matrix V;       ///< n×k
+};
+[[nodiscard]] ThinSvd thin_svd(const Matrix& A);
+
 /// A⁻¹ by Gaussian elimination with row pivots; not finite where A is singular.
 [[nodiscard]] Matrix inverse(const Matrix& A);
+[[nodiscard]] Eigen::MatrixXcd complex_inverse(const Eigen::MatrixXcd& A);
+/// |the last pivot| of Gaussian elimination with pivots from the whole matrix: 0 where A is singular.
+[[nodiscard]] double least_pivot(const Eigen::MatrixXcd& A);
 
 /// e^A of a square matrix.
 [[nodiscard]] Matrix matrix_exponential(const Matrix& A);
@@ -106,6 +117,20 @@ class PivotedQr : public DenseSolver<Eigen::ColPivHouseholderQR<Matrix>> {
   [[nodiscard]] Matrix inverse() const;
   /// What the columns of A cannot make of `of`: (I − Q₁ Q₁ᵀ) of.
   [[nodiscard]] Matrix rest(Matrix of) const;
+};
+
+/// The same of a complex matrix.
+class ComplexPivotedQr {
+ public:
+  explicit ComplexPivotedQr(const Eigen::MatrixXcd& A);
+  /// Of R's diagonal, the least absolute value.
+  [[nodiscard]] double least_pivot() const;
+  [[nodiscard]] Eigen::MatrixXcd solve(const Eigen::MatrixXcd& right) const;
+  /// P R⁻¹, whose product with its adjoint is (A* A)⁻¹, for an A of full column rank.
+  [[nodiscard]] Eigen::MatrixXcd inverse_root() const;
+
+ private:
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> factor_;
 };
 
 /// The least-norm solution where A lacks rank.

@@ -143,9 +143,7 @@ std::optional<Periods> periods_of(const Columns& reference, double rate) {
 
 /// Complex amplitudes of the harmonics 0, 1 … (rows) in each column of one period: x = Re(X e^(jωt)).
 Eigen::MatrixXcd amplitudes(const Matrix& period) {
-  Eigen::MatrixXcd all(period.rows() / 2 + 1, period.cols());
-  for (Index axis = 0; axis < period.cols(); ++axis) all.col(axis) = dsp::fourier_transform(period.col(axis));
-  return all * (2.0 / static_cast<double>(period.rows()));
+  return dsp::fourier_transforms(period) * (2.0 / static_cast<double>(period.rows()));
 }
 
 std::vector<Index> harmonics_of(const Columns& whole, const Periods& periods, double rate) {

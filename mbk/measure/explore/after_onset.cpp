@@ -78,24 +78,66 @@ Result<Response> response_after(const ExplorationTrial& trial, const Onset& onse
   return response;
 }
 
-/// What the steps of the other onsets move at the same time, N×3n.
-std::vector<Matrix> instruments_of(const std::vector<Response>& responses) {
-  const Index n = responses.front().step.size(), columns = 3 * n, rows = responses.front().motion.rows();
-  Matrix steps = Matrix::Zero(n, n);
-  std::vector<Matrix> moved(static_cast<std::size_t>(n), Matrix::Zero(rows, columns));  // Σ Z_h u_h[j]
-  for (const Response& one : responses) {
-    steps += one.step * one.step.transpose();
-    for (Index j = 0; j < n; ++j) moved[static_cast<std::size_t>(j)] += one.step[j] * one.motion;
+/// Sums over onsets g of w_g(t) = [−ΔF_h, Δẍ, Δẋ, Δx](t) and the steps u_g, from which the estimate follows.
+class OnsetSums {
+ public:
+  explicit OnsetSums(const Response& like)
+      : n_(like.step.size()),
+        steps_(Matrix::Zero(n_, n_)),
+        squares_(Matrix::Zero(4 * n_, 4 * n_)),
+        moved_(static_cast<std::size_t>(n_), Matrix::Zero(like.motion.rows(), 4 * n_)),
+        own_(static_cast<std::size_t>(n_ * n_), squares_) {}
+
+  /// @param sign  1, or −1 to take an onset out again
+  void add(const Response& one, double sign) {
+    Matrix w(one.motion.rows(), 4 * n_);
+    w << one.force, one.motion;
+    const Matrix square = w.transpose() * w;
+    count_ += sign;
+    steps_ += sign * one.step * one.step.transpose();
+    squares_ += sign * square;
+    for (Index j = 0; j < n_; ++j) {
+      moved_[place(j)] += sign * one.step[j] * w;
+      for (Index i = 0; i < n_; ++i) own_[place(i + n_ * j)] += sign * one.step[i] * one.step[j] * square;
+    }
   }
-  std::vector<Matrix> instruments;
-  for (const Response& one : responses) {
-    const Vector weights = numeric::PivotedCholesky(steps - one.step * one.step.transpose()).solve(one.step);
-    Matrix R = Matrix::Zero(rows, columns);
-    for (Index j = 0; j < n; ++j) R += weights[j] * (moved[static_cast<std::size_t>(j)] - one.step[j] * one.motion);
-    instruments.push_back(std::move(R));
+
+  /// θ, 3n×n; not finite where the motion does not tell M, B and K apart.
+  [[nodiscard]] Matrix coefficients() const {
+    const Matrix weights = numeric::inverse(steps_);
+    Matrix A = Matrix::Zero(4 * n_, 4 * n_);  // Σ_{g≠h} u_gᵀ (Σ u uᵀ)⁻¹ u_h w_gᵀ w_h
+    for (Index i = 0; i < n_; ++i) {
+      for (Index j = 0; j < n_; ++j) {
+        A += weights(i, j) * (moved_[place(i)].transpose() * moved_[place(j)] - own_[place(i + n_ * j)]);
+      }
+    }
+    A = (0.5 * (A + A.transpose())).eval();
+    const Vector unit = squares_.diagonal().cwiseSqrt().cwiseInverse();
+    Matrix theta(3 * n_, n_);
+    for (Index k = 0; k < n_; ++k) {
+      std::vector<Index> columns = {k};
+      for (Index l = n_; l < 4 * n_; ++l) columns.push_back(l);
+      const Vector scale = unit(columns);
+      const Matrix a = scale.asDiagonal() * A(columns, columns) * scale.asDiagonal();
+      const Matrix h = scale.asDiagonal() * squares_(columns, columns) * scale.asDiagonal();
+      const double least = numeric::generalized_symmetric_eigen(a, h).values[0], part = (1.0 - least) / count_;
+      const Matrix left = a - (least - part) / (1.0 - part) * h;
+      const Index p = 3 * n_;
+      theta.col(k) = numeric::Lu(left.bottomRightCorner(p, p)).solve(left.col(0).tail(p)).cwiseProduct(scale.tail(p)) /
+                     scale[0];
+    }
+    return theta;
   }
-  return instruments;
-}
+
+ private:
+  static std::size_t place(Index index) { return static_cast<std::size_t>(index); }
+
+  Index n_;
+  double count_ = 0.0;
+  Matrix steps_, squares_;     ///< Σ u uᵀ, Σ wᵀw
+  std::vector<Matrix> moved_;  ///< Σ u[j] w
+  std::vector<Matrix> own_;    ///< Σ u[i] u[j] wᵀw
+};
 
 /// Whether each axis is stepped along by some of the onsets, also without any one of them.
 bool steps_along_all_axes(const std::vector<Response>& responses) {
@@ -109,12 +151,6 @@ bool steps_along_all_axes(const std::vector<Response>& responses) {
     return values[0] > kAlongOneLine * values[n - 1];
   });
 }
-
-/// RᵀZ and RᵀY.
-struct OnsetMoments {
-  Matrix of_motion, of_force;
-  [[nodiscard]] Matrix coefficients() const { return numeric::Lu(of_motion).solve(of_force); }
-};
 
 /// @param theta 3n×n    @param covariance of its stacked columns    @param part 0, 1, 2 for M, B, K
 MatrixEstimate estimate_of(const Matrix& theta, const Matrix& covariance, Index part, double handle, double quantile) {
@@ -198,20 +234,17 @@ Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials,
                     "perturb in several directions, or explore the one axis: --axes 1");
   }
 
-  const std::vector<Matrix> instruments = instruments_of(responses);
-  std::vector<OnsetMoments> own;
-  OnsetMoments all{Matrix::Zero(3 * n, 3 * n), Matrix::Zero(3 * n, n)};
-  for (std::size_t g = 0; g < responses.size(); ++g) {
-    own.push_back({instruments[g].transpose() * responses[g].motion, instruments[g].transpose() * responses[g].force});
-    all.of_motion += own.back().of_motion;
-    all.of_force += own.back().of_force;
-    found.displacement += responses[g].way / static_cast<double>(found.onsets);
+  OnsetSums sums(responses.front());
+  for (const Response& one : responses) {
+    sums.add(one, 1.0);
+    found.displacement += one.way / static_cast<double>(found.onsets);
   }
-  const Matrix theta = all.coefficients();
+  const Matrix theta = sums.coefficients();
   if (!theta.allFinite()) return bad_data("the motion after the onsets does not tell M, B and K apart");
   Matrix covariance = Matrix::Zero(3 * n * n, 3 * n * n);
-  for (const OnsetMoments& one : own) {
-    const OnsetMoments rest{all.of_motion - one.of_motion, all.of_force - one.of_force};
+  for (const Response& one : responses) {
+    OnsetSums rest = sums;
+    rest.add(one, -1.0);
     const Vector change = (rest.coefficients() - theta).reshaped();
     covariance += change * change.transpose();
   }

@@ -10,12 +10,14 @@ namespace mbk::explore {
 
 /// M, B and K from the first `window_s` after the onsets of the reference (reference_onsets.h), before the person can
 /// answer. Force and position pass a Savitzky–Golay filter of order 4 over 31 ms and no other; the mean of each signal
-/// over the 100 ms before an onset is subtracted, and the rows of all onsets are pooled:
-///   θ = (RᵀZ)⁻¹RᵀY,   Z = [Δẍ Δẋ Δx], Y = −ΔF_h,
-/// with instruments R that are what the steps u of the other onsets move at the same time after them,
-/// R_g(t) = Ĥ₋g(t) u_g, Ĥ₋g = Σ Z_h(t) u_hᵀ (Σ u_h u_hᵀ)⁻¹ over h ≠ g: neither noise of the position nor what the limb
-/// does on its own account is taken for mechanics. The covariance is the jackknife's over onsets
-/// (G − 1)/G Σ_g (θ₋g − θ)(θ₋g − θ)ᵀ, as onsets are independent and rows of one are not; the intervals are those of
+/// over the 100 ms before an onset is subtracted. With w_g(t) = [−ΔF_h, Δẍ, Δẋ, Δx] after onset g, whose step is u_g,
+///   A = Σ_t Σ_{g≠h} u_gᵀ(Σ u uᵀ)⁻¹u_h w_g(t)ᵀ w_h(t),   H = Σ_t Σ_g w_g(t)ᵀ w_g(t),
+///   θ = (A_zz − α H_zz)⁻¹ (A_zf − α H_zf)
+/// for each force f: instrumental variables by what other onsets move at the same time, so that neither noise of the
+/// position nor what the limb does on its own account is taken for mechanics, with α from the least root of |A − a H| = 0
+/// and Fuller's correction by 1/G (Hausman, Newey, Woutersen, Chao & Swanson 2012): where the response to the steps hardly
+/// tells M, B and K apart, the estimate stays finite, drawn towards least squares. The covariance is the jackknife's over
+/// onsets (G − 1)/G Σ_g (θ₋g − θ)(θ₋g − θ)ᵀ, as onsets are independent and rows of one are not; the intervals are those of
 /// Student's t with G/n − 1 degrees of freedom: each onset tells of one direction.
 /// The handle mass, where all trials name the same, is subtracted from M.
 /// @param window_s above twice the filter's window

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 
 #include "mbk/base/dsp/fourier.h"
 #include "mbk/base/dsp/spectrum.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/measure/explore/alike.h"
 #include "mbk/measure/explore/response_intervals.h"
 
@@ -29,11 +28,9 @@ Eigen::MatrixXcd record_spectra(const ExplorationTrial& trial, Index samples, In
   const Index n = trial.input.cols();
   Eigen::MatrixXcd spectra(trial.output.cols() + n * (with_reference ? 2 : 1), lines);
   const auto transform = [&](const Matrix& signals, Index row) {
-    for (Index k = 0; k < signals.cols(); ++k) {
-      const Vector x = signals.col(k).head(samples).array() - signals.col(k).head(samples).mean();
-      spectra.row(row + k) =
-          dsp::fourier_transform(x).head(lines).transpose() / std::sqrt(static_cast<double>(samples));
-    }
+    const Matrix x = signals.topRows(samples).rowwise() - signals.topRows(samples).colwise().mean();
+    spectra.middleRows(row, x.cols()) =
+        dsp::fourier_transforms(x).topRows(lines).transpose() / std::sqrt(static_cast<double>(samples));
   };
   transform(trial.output, 0);
   transform(trial.input, trial.output.cols());
@@ -84,17 +81,14 @@ LocalFit local_fit(const std::vector<Eigen::MatrixXcd>& spectra, const Vector& s
   const Vector length = K.colwise().norm().transpose();
   if (!(length.minCoeff() > 0.0) || (length.head(inputs).array() <= kRounding * strongest.array()).any()) return fit;
   K = K * length.cwiseInverse().asDiagonal();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(K);
-  if (!(qr.matrixR().diagonal().cwiseAbs().head(unknowns).minCoeff() > kTold)) return fit;
+  const numeric::ComplexPivotedQr qr(K);
+  if (!(qr.least_pivot() > kTold)) return fit;
   const Eigen::MatrixXcd theta = qr.solve(Z);
   const Eigen::MatrixXcd V = Z - K * theta;
   const Eigen::MatrixXcd scaled = length.head(inputs).cwiseInverse().asDiagonal() * theta.topRows(inputs);
   fit.response = scaled.transpose();
   fit.residual = V.transpose() * V.conjugate() / static_cast<double>(rows - unknowns);
-  const Eigen::MatrixXcd R = qr.matrixR().topRows(unknowns).template triangularView<Eigen::Upper>();
-  const Eigen::MatrixXcd root = qr.colsPermutation() * R.template triangularView<Eigen::Upper>().solve(
-                                                           Eigen::MatrixXcd::Identity(unknowns, unknowns));
-  const Eigen::MatrixXcd top = length.head(inputs).cwiseInverse().asDiagonal() * root.topRows(inputs);
+  const Eigen::MatrixXcd top = length.head(inputs).cwiseInverse().asDiagonal() * qr.inverse_root().topRows(inputs);
   fit.input_part = top * top.adjoint();
   fit.determined = true;
   return fit;
@@ -159,7 +153,7 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
     if (!(chance < kMostChance)) continue;  // few lines of the window are excited: told by their leakage alone
     Eigen::MatrixXcd G = fit.response, residual = fit.residual, part = fit.input_part;
     if (by_reference) {
-      const Eigen::MatrixXcd inverse = fit.response.bottomRows(inputs).inverse();
+      const Eigen::MatrixXcd inverse = numeric::complex_inverse(fit.response.bottomRows(inputs));
       G = fit.response.topRows(outputs) * inverse;
       if (!G.allFinite()) continue;
       Eigen::MatrixXcd T(outputs, both);

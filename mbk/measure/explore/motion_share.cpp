@@ -1,10 +1,9 @@
 #include "mbk/measure/explore/motion_share.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/trial/plateau_stiffness.h"
 
 namespace mbk::explore {
@@ -44,9 +43,9 @@ void MotionShare::add(const Matrix& place, double sample_time, const Vector& com
 
 double MotionShare::value() const {
   if (squares_.size() == 0) return 0.0;
-  const Matrix inverse = squares_.inverse();
-  return PlateauStiffness::kDampingOverStiffness * (velocity_ * inverse).operatorNorm() +
-         PlateauStiffness::kInertiaOverStiffness * (acceleration_ * inverse).operatorNorm();
+  const Matrix inverse = numeric::inverse(squares_);
+  return PlateauStiffness::kDampingOverStiffness * numeric::singular_values(velocity_ * inverse)[0] +
+         PlateauStiffness::kInertiaOverStiffness * numeric::singular_values(acceleration_ * inverse)[0];
 }
 
 }  // namespace mbk::explore

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "mbk/base/dsp/fourier.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/alike.h"
 #include "mbk/measure/explore/period.h"
@@ -47,10 +47,9 @@ struct Averages {
 Cx spectra_of(const ExplorationTrial& trial, Index begin, const Sizes& sizes, bool with_reference) {
   Cx spectra(sizes.outputs + sizes.inputs * (with_reference ? 2 : 1), sizes.lines);
   const auto transform = [&](const Matrix& signals, Index row) {
-    for (Index k = 0; k < signals.cols(); ++k) {
-      const CxVector X = dsp::fourier_transform(signals.col(k).segment(begin, sizes.period));
-      spectra.row(row + k) = X.segment(1, sizes.lines).transpose() / static_cast<double>(sizes.period);
-    }
+    const Cx X = dsp::fourier_transforms(signals.middleRows(begin, sizes.period));
+    spectra.middleRows(row, X.cols()) =
+        X.middleRows(1, sizes.lines).transpose() / static_cast<double>(sizes.period);
   };
   transform(trial.output, 0);
   transform(trial.input, sizes.outputs);
@@ -489,12 +488,11 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
     }
     constexpr double kSmallest = 1e-3;  // singular value of the directions, of unit vectors
     Cx unit = powerU.cwiseSqrt().cwiseInverse().asDiagonal() * A * powerR.cwiseSqrt().cwiseInverse().asDiagonal();
-    const Eigen::FullPivLU<Cx> lu(unit);
-    if (!unit.allFinite() || std::abs(lu.matrixLU().diagonal().cwiseAbs().minCoeff()) < kSmallest) {
+    if (!unit.allFinite() || numeric::least_pivot(unit) < kSmallest) {
       ++facts.skipped_lines;
       continue;
     }
-    inverses.push_back(A.inverse());
+    inverses.push_back(numeric::complex_inverse(A));
     known.at.push_back(k);
     known.G.push_back(B * inverses.back());
   }

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::explore {
 namespace reach_prediction {
@@ -32,12 +33,12 @@ struct PastAndFuture {
     made.mean_future = Y.colwise().mean().transpose();
     P.rowwise() -= made.mean_past.transpose();
     Y.rowwise() -= made.mean_future.transpose();
-    const Eigen::JacobiSVD<Matrix> svd(P, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Vector& size = svd.singularValues();
+    const numeric::ThinSvd svd = numeric::thin_svd(P);
+    const Vector& size = svd.values;
     Index kept = 0;
     while (kept < std::min<Index>(components, size.size()) && size[kept] > 1e-9 * size[0]) ++kept;
-    made.directions = svd.matrixV().leftCols(kept);
-    made.weights = Y.transpose() * svd.matrixU().leftCols(kept);
+    made.directions = svd.V.leftCols(kept);
+    made.weights = Y.transpose() * svd.U.leftCols(kept);
     for (Index k = 0; k < kept; ++k) made.weights.col(k) /= size[k];
     return made;
   }

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {
@@ -90,19 +88,19 @@ Result<StiffnessRegression> regress_stiffness(std::span<const DisplacedHand> dis
     f.row(i) = one.force.transpose();
   }
   if (!z.allFinite() || !d.allFinite() || !f.allFinite()) return bad_data("a displacement or its force is not finite");
-  const Eigen::SelfAdjointEigenSolver<Matrix> spread(z.transpose() * z);
-  if (!(spread.eigenvalues()[0] > kOneLine * spread.eigenvalues()[axes - 1])) {
+  const Matrix squares = z.transpose() * z;
+  const Vector spread = numeric::symmetric_eigenvalues(squares);
+  if (!(spread[0] > kOneLine * spread[axes - 1])) {
     return bad_data("the displacements lie along one line: the stiffness across it is not identifiable",
                     "displace the hand in several directions, best in eight");
   }
   StiffnessRegression fit;
-  const Matrix follows = d.transpose() * z * (z.transpose() * z).inverse();
-  fit.reached = Eigen::JacobiSVD<Matrix>(follows).singularValues()[axes - 1];
   const Matrix crossed = d.transpose() * z;
+  fit.reached = numeric::singular_values(crossed * numeric::inverse(squares))[axes - 1];
   if (!(fit.reached > 1e-6)) {
     return bad_data("the hand does not follow the reference at all", "look at the units and the order of the channels");
   }
-  const Matrix a = z * crossed.inverse();  // rows a_iᵀ
+  const Matrix a = z * numeric::inverse(crossed);  // rows a_iᵀ
   fit.K = f.transpose() * a;
   const Matrix residuals = f - d * fit.K.transpose();
   fit.covariance = Matrix::Zero(axes * axes, axes * axes);

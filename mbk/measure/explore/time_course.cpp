@@ -19,7 +19,7 @@ constexpr double kRowsPerBand = 4.0;  ///< rate over the band: half power at 1.6
 constexpr Index kEnds = 6;            ///< rows at each end of a trial that the low-pass made of what it added there
 constexpr Index kRowsPerCoefficient = 20;
 constexpr Index kPoints = 41;
-constexpr double kChance = 1e-3;
+constexpr double kChance = 1e-4;
 constexpr double kChange = 0.1;  ///< of M, B or K: that which `mbk measure` warns of
 
 /// Mean of the samples around one; NaN where one of them does not count or there are none.

@@ -22,7 +22,7 @@ struct CourseVariable {
 ///
 /// They change where all of this holds: BIC of whitened rows prefers splines to constants, also to constant M, B and K
 /// with a varying c (a force that drifts is no change of the limb); the F test of White's covariance that all
-/// functions of M, B and K have the same coefficients has a chance below 10⁻³, with Bonferroni's bound over the axes;
+/// functions of M, B and K have the same coefficients has a chance below 10⁻⁴, with Bonferroni's bound over the axes;
 /// and M, B or K change by a tenth. Otherwise constants are given.
 /// @param band_hz  up to which the limb was moved
 /// @fails  a variable that never changes; fewer than 20 rows for each coefficient of constants; rows that do not tell

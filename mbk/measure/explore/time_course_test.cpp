@@ -131,5 +131,30 @@ TEST(VaryingRegression, HasTheBicOfPlainLeastSquares) {
   EXPECT_LT((fit.coefficients - numeric::householder_solve(Z, rows.Y)).norm(), 1e-8);
 }
 
+// In the first half the hand moves along x alone: what K_xy is then nobody can say, and K_xx is not taken from there.
+TEST(ChooseSplines, LetsNoFunctionLiveOnRowsThatMoveTheHandAlongOneLine) {
+  constexpr Index kCount = 2000;
+  for (const bool along_one_line : {true, false}) {
+    VaryingRows rows;
+    rows.s = Vector::LinSpaced(kCount, 0.0, 1.0);
+    rows.Z = Matrix::Ones(kCount, 3);
+    rows.Z.col(0) = binary_motion(kCount, 5);
+    rows.Z.col(1) = binary_motion(kCount, 6);
+    if (along_one_line) {
+      rows.Z.col(0).tail(kCount / 2).setZero();
+      rows.Z.col(1).head(kCount / 2).setZero();
+    }
+    rows.R = rows.Z;
+    rows.ranges = {{0, kCount}};
+    rows.Y = 0.1 * coloured_noise(kCount, 7);
+    for (Index t = 0; t < kCount; ++t) rows.Y(t, 0) += (rows.s[t] < 0.25 ? 1.0 : 2.0) * rows.Z(t, 0) + rows.Z(t, 1);
+    const ChosenSplines chosen = choose_splines(rows, {Vector::Ones(1)}, {3});
+    for (const double knot : chosen.model.basis.knots) {
+      EXPECT_TRUE(!along_one_line) << "a knot at " << knot;
+    }
+    EXPECT_EQ(chosen.model.basis.size() > 4, !along_one_line);
+  }
+}
+
 }  // namespace time_course_test
 }  // namespace mbk::explore

@@ -17,6 +17,7 @@ constexpr Index kRowsPerCoefficient = 5;
 constexpr Index kMaxOrder = 25;
 constexpr int kMoves = 24;
 constexpr std::size_t kMostBefore = 11;  ///< knots from which moving them begins
+constexpr double kLeastTold = 0.03;      ///< of what all rows tell, in the direction of which a function's tell least
 
 /// Whitened products of all columns φ_j(s) z_k on the finest basis, of one output.
 struct Products {
@@ -157,11 +158,53 @@ std::optional<double> rest_of(const SplitProducts& fine, const Matrix& T, Index 
   return rest_of(gram, moment, own.power);
 }
 
+/// How much the rows on which a function lives tell of each combination of the columns that vary first, but for the
+/// constant. Between pulses, or while the limb is moved along one line, they do not tell all coefficients, and BIC would
+/// choose functions that follow what one model leaves of a single pulse.
+class Excitation {
+ public:
+  /// @param varying  of the last columns
+  Excitation(const VaryingRows& rows, const SplineBasis& fine, Index varying) {
+    const Index columns = varying - 1;
+    const Matrix Z = rows.Z.middleCols(rows.Z.cols() - varying, columns);
+    const numeric::Cholesky root(Z.transpose() * Z / static_cast<double>(Z.rows()));
+    if (!root.positive_definite()) return;
+    const Matrix upper = root.upper();  // UᵀU
+    const Matrix even = upper.transpose().triangularView<Eigen::Lower>().solve(Z.transpose());
+    share_ = Vector::Zero(fine.size());
+    moments_.assign(static_cast<std::size_t>(fine.size()), Matrix::Zero(columns, columns));
+    for (Index t = 0; t < Z.rows(); ++t) {
+      const ActiveSplines active = active_splines(fine, rows.s[t]);
+      for (Index j = 0; j <= fine.degree; ++j) {
+        share_[active.first + j] += active.value[j];
+        moments_[static_cast<std::size_t>(active.first + j)] += active.value[j] * even.col(t) * even.col(t).transpose();
+      }
+    }
+  }
+
+  /// @param T  of a basis, its functions as sums of those of the fine one
+  [[nodiscard]] bool tells(const Matrix& T) const {
+    if (moments_.empty()) return false;
+    for (Index j = 0; j < T.rows(); ++j) {
+      Matrix own = Matrix::Zero(moments_.front().rows(), moments_.front().cols());
+      for (Index k = 0; k < T.cols(); ++k) own += T(j, k) * moments_[static_cast<std::size_t>(k)];
+      const double share = T.row(j).dot(share_);
+      if (!(numeric::symmetric_eigenvalues(own).minCoeff() >= kLeastTold * share)) return false;
+    }
+    return true;
+  }
+
+ private:
+  Vector share_;                 ///< Σ φ_k(s_t)
+  std::vector<Matrix> moments_;  ///< Σ φ_k(s_t) z zᵀ in coordinates in which the mean of z zᵀ is I
+};
+
 /// Compares bases.
 class Chooser {
  public:
-  Chooser(const VaryingRows& rows, const std::vector<Vector>& noise, int degree)
-      : p_(rows.Z.cols()), fine_(even_splines(kCells, degree)) {
+  /// @param least  number of last columns that vary
+  Chooser(const VaryingRows& rows, const std::vector<Vector>& noise, int degree, Index least)
+      : p_(rows.Z.cols()), fine_(even_splines(kCells, degree)), excitation_(rows, fine_, least) {
     for (Index i = 0; i < rows.Y.cols(); ++i) {
       fine_products_.push_back(fine_products(rows, i, fine_, noise[static_cast<std::size_t>(i)]));
     }
@@ -196,8 +239,8 @@ class Chooser {
   }
 
  private:
-  static void take(VaryingModel model, double bic, ChosenSplines& chosen) {
-    if (!(bic < chosen.bic)) return;
+  void take(VaryingModel model, double bic, ChosenSplines& chosen) const {
+    if (!(bic < chosen.bic) || !excitation_.tells(in_finer_splines(model.basis, fine_))) return;
     chosen.bic = bic;
     chosen.model = std::move(model);
   }
@@ -280,6 +323,7 @@ class Chooser {
 
   Index p_;
   SplineBasis fine_;
+  Excitation excitation_;
   std::vector<Products> fine_products_;
 };
 
@@ -317,9 +361,9 @@ std::vector<Vector> noise_of(const VaryingRows& rows, const VaryingModel& model)
 
 ChosenSplines choose_splines(const VaryingRows& rows, const std::vector<Vector>& noise,
                              const std::vector<Index>& varying) {
-  ChosenSplines cubic = varying_detail::Chooser(rows, noise, 3).choose(varying);
+  ChosenSplines cubic = varying_detail::Chooser(rows, noise, 3, varying.front()).choose(varying);
   if (cubic.model.basis.size() == 1) return cubic;
-  ChosenSplines straight = varying_detail::Chooser(rows, noise, 1).choose(varying);
+  ChosenSplines straight = varying_detail::Chooser(rows, noise, 1, varying.front()).choose(varying);
   ChosenSplines& best = straight.bic < cubic.bic ? straight : cubic;
   best.bic_last = std::min(cubic.bic_last, straight.bic_last);
   return best;

@@ -105,7 +105,7 @@ Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTria
     const Complex Sur = S.block(0, r, inputs, inputs), Syr = S.block(inputs, r, outputs, inputs);
     const Complex Srr = S.block(r, r, inputs, inputs), Suu = S.topLeftCorner(inputs, inputs);
     const Complex Syu = S.block(inputs, 0, outputs, inputs), Syy = S.block(inputs, inputs, outputs, outputs);
-    const Complex A = Sur.inverse();
+    const Complex A = numeric::complex_inverse(Sur);
     const Complex G = Syr * A;
     const Complex Svv = (Syy - G * Syu.adjoint() - Syu * G.adjoint() + G * Suu * G.adjoint()) * (n / dof);
     const Complex W = A.transpose() * Srr.transpose() * A.conjugate() / n;
