@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "mbk/base/numeric/random.h"
 #include "mbk/measure/explore/test_signals.h"
@@ -96,6 +97,24 @@ TEST(AfterOnset, SaysThatTheStiffnessIsNotIdentifiableInNoise) {
   EXPECT_FALSE(in_noise->K.identifiable);
   EXPECT_TRUE(without->M.identifiable);
   EXPECT_TRUE(without->K.identifiable);
+}
+
+// A jackknife estimate without Fuller's correction is worthless wherever the least root comes near zero: of pooled
+// trials as of one.
+TEST(AfterOnset, TellsMoreWhereMoreTrialsArePooled) {
+  const Limb limb = arm();
+  double half_width = std::numeric_limits<double>::infinity();
+  for (const int count : {1, 4, 16}) {
+    std::vector<ExplorationTrial> trials;
+    for (int k = 0; k < count; ++k) trials.push_back(pulses(limb, 0.3, 300 + static_cast<std::uint64_t>(k)));
+    const auto found = after_onset(trials, kWindow);
+    ASSERT_TRUE(found) << found.error().line();
+    const double width = found->K.half_width.norm();
+    EXPECT_LT(width, 0.8 * half_width) << count << " trials";
+    half_width = width;
+    for (const ExplainedForce& force : found->explained) EXPECT_GT(force.vaf, 60.0) << count << " trials";
+    EXPECT_LT((found->M.value - limb.M).norm(), 3.0 * found->M.half_width.norm()) << count << " trials";
+  }
 }
 
 TEST(AfterOnset, SubtractsTheHandleThatAllTrialsName) {
