@@ -27,7 +27,7 @@ struct ExploreArguments {
   double force_delay_ms = 0.0;
   std::optional<ExplorationPart> only;
   std::optional<double> after_onset_ms;
-  std::string schedule, align;
+  std::string schedule, align, trigger;
   explore::FrequencyResponseOptions response;
   std::optional<double> plateau_from_ms, plateau_to_ms;
   std::string input, output_signal, reference;
@@ -48,6 +48,9 @@ Result<measurement::ExploreOptions> options_of(const ExploreArguments& a) {
   options.frequency_response = a.response;
   if (a.plateau_from_ms) options.plateau.from_s = *a.plateau_from_ms / kMilliseconds;
   if (a.plateau_to_ms) options.plateau.to_s = *a.plateau_to_ms / kMilliseconds;
+  options.reaches.from_s = options.plateau.from_s;
+  options.reaches.to_s = options.plateau.to_s;
+  if (!a.trigger.empty()) options.reaches.trigger = a.trigger;
   options.schedule = a.schedule;
   if (!a.align.empty()) options.align = a.align;
   if (a.after_onset_ms) options.after_onset_s = *a.after_onset_ms / kMilliseconds;
@@ -163,13 +166,21 @@ Action add_explore(CLI::App& app, const std::string& typed) {
       ->group(group);
   command
       ->add_option("--plateau-from", arguments->plateau_from_ms,
-                   "begin of the window in which the force is averaged, ms after the onset (when the hand rests)")
+                   "begin of the window in which the force is averaged, ms after the onset (when the hand rests; 140 "
+                   "in a reach)")
       ->type_name("MS")
       ->check(not_negative())
       ->group("Ramps and holds");
-  command->add_option("--plateau-to", arguments->plateau_to_ms, "its end, ms after the onset (300)")
+  command->add_option("--plateau-to", arguments->plateau_to_ms, "its end, ms after the onset (300; 200 in a reach)")
       ->type_name("MS")
       ->check(positive())
+      ->group("Ramps and holds");
+  command
+      ->add_option("--trigger", arguments->trigger,
+                   "event of each reach at which the hand is displaced, or would be, relative to its predicted way "
+                   "(trigger)")
+      ->type_name("EVENT")
+      ->check(not_empty())
       ->group("Ramps and holds");
   const char* const in_time = "Change over time";
   command

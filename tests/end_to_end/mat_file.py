@@ -8,7 +8,7 @@ import zlib
 KINDS = {1: "b", 2: "B", 3: "h", 4: "H", 5: "i", 6: "I", 7: "f", 9: "d", 12: "q", 13: "Q"}  # of data elements
 CLASSES = {"d": (6, 9), "f": (7, 7), "h": (10, 3), "i": (12, 5)}  # array.typecode: class of the matrix, data element
 MATRIX, COMPRESSED, INT32, UINT32, INT8 = 14, 15, 5, 6, 1
-STRUCTURE = 2  # class of an array
+CELLS, STRUCTURE, CHARACTERS, UINT16 = 1, 2, 4, 4  # classes of arrays; the last one is a kind of element
 
 
 def elements(data):
@@ -69,7 +69,28 @@ def matrix(name, rows, typecode="d"):
                    + element(INT8, name.encode()) + element(data_kind, values.tobytes()))
 
 
-def write(path, variables, typecode="d"):
+def texts(name, lines):
+    """A column cell array of texts."""
+    def text(line):
+        data = line.encode("utf-16-le")
+        return element(MATRIX, element(UINT32, struct.pack("<II", CHARACTERS, 0))
+                       + element(INT32, struct.pack("<ii", 1, len(line))) + element(INT8, b"") + element(UINT16, data))
+    return element(MATRIX, element(UINT32, struct.pack("<II", CELLS, 0))
+                   + element(INT32, struct.pack("<ii", len(lines), 1)) + element(INT8, name.encode())
+                   + b"".join(text(line) for line in lines))
+
+
+def events(times, names):
+    """The structure `events` of a recording."""
+    fields = (matrix("", [[time] for time in times]), texts("", names), matrix("", [[0.0] for _ in times]))
+    return element(MATRIX, element(UINT32, struct.pack("<II", STRUCTURE, 0)) + element(INT32, struct.pack("<ii", 1, 1))
+                   + element(INT8, b"events") + element(INT32, struct.pack("<i", 32))
+                   + element(INT8, b"".join(name.ljust(32, b"\0") for name in (b"time", b"name", b"value")))
+                   + b"".join(fields))
+
+
+def write(path, variables, typecode="d", more=b""):
+    """@param more  further variables, as `events` makes them"""
     header = b"MATLAB 5.0 MAT-file, written by a test of mbk".ljust(124) + struct.pack("<H2s", 0x0100, b"IM")
-    path.write_bytes(header + b"".join(matrix(name, rows, typecode) for name, rows in variables.items()))
+    path.write_bytes(header + b"".join(matrix(name, rows, typecode) for name, rows in variables.items()) + more)
     return path

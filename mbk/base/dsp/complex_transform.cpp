@@ -96,7 +96,7 @@ struct TransformPlan {
   struct Stage {
     Index radix;
     Index groups, stride;  ///< of the `radix`·groups·stride = n values
-    Index turns;           ///< where e^(−2πj q k/(radix·groups)) begins: k = 1 … radix − 1, q = 0 … groups − 1
+    Index turns;  ///< where e^(−2πj q k/(radix·groups)) begins: k = 1 … radix − 1, q = 0 … groups − 1
   };
   Index length;
   std::vector<Stage> stages;

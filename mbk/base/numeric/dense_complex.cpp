@@ -26,8 +26,7 @@ Eigen::MatrixXcd ComplexPivotedQr::solve(const Eigen::MatrixXcd& right) const {
 Eigen::MatrixXcd ComplexPivotedQr::inverse_root() const {
   const Index n = factor_.cols();
   const Eigen::MatrixXcd R = factor_.matrixR().topRows(n);
-  return factor_.colsPermutation() *
-         R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXcd::Identity(n, n)).eval();
+  return factor_.colsPermutation() * R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXcd::Identity(n, n)).eval();
 }
 
 }  // namespace mbk::numeric

@@ -123,8 +123,8 @@ class OnsetSums {
       const double least = numeric::generalized_symmetric_eigen(a, h).values[0], part = (1.0 - least) / count_;
       const Matrix left = a - (least - part) / (1.0 - part) * h;
       const Index p = 3 * n_;
-      theta.col(k) = numeric::Lu(left.bottomRightCorner(p, p)).solve(left.col(0).tail(p)).cwiseProduct(scale.tail(p)) /
-                     scale[0];
+      theta.col(k) =
+          numeric::Lu(left.bottomRightCorner(p, p)).solve(left.col(0).tail(p)).cwiseProduct(scale.tail(p)) / scale[0];
     }
     return theta;
   }

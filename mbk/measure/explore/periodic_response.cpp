@@ -48,8 +48,7 @@ Cx spectra_of(const ExplorationTrial& trial, Index begin, const Sizes& sizes, bo
   Cx spectra(sizes.outputs + sizes.inputs * (with_reference ? 2 : 1), sizes.lines);
   const auto transform = [&](const Matrix& signals, Index row) {
     const Cx X = dsp::fourier_transforms(signals.middleRows(begin, sizes.period));
-    spectra.middleRows(row, X.cols()) =
-        X.middleRows(1, sizes.lines).transpose() / static_cast<double>(sizes.period);
+    spectra.middleRows(row, X.cols()) = X.middleRows(1, sizes.lines).transpose() / static_cast<double>(sizes.period);
   };
   transform(trial.output, 0);
   transform(trial.input, sizes.outputs);

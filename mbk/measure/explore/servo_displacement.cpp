@@ -45,11 +45,11 @@ Result<ServoDisplacementStiffness> servo_displacement_stiffness(std::span<const 
   auto fit = regress_stiffness(hands);
   if (!fit) return tl::unexpected(fit.error());
   ServoDisplacementStiffness found;
-  found.fit = std::move(*fit);
-  found.components = prediction->components();
-  found.prediction_error = prediction->left_out_error()[(from + to) / 2];
-  found.motion_share = motion.value();
-  found.verdict = judge_stiffness(found.fit, found.motion_share);
+  found.by.fit = std::move(*fit);
+  found.by.components = prediction->components();
+  found.by.prediction_error = prediction->left_out_error()[(from + to) / 2];
+  found.by.motion_share = motion.value();
+  found.verdict = judge_stiffness(found.by.fit, found.by.motion_share);
   return found;
 }
 

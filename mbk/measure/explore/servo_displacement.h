@@ -7,6 +7,7 @@
 #include "mbk/measure/explore/judge_stiffness.h"
 #include "mbk/measure/explore/reach_prediction.h"
 #include "mbk/model/trial/plateau_stiffness.h"
+#include "mbk/model/trial/reach_stiffness.h"
 
 namespace mbk::explore {
 
@@ -23,10 +24,7 @@ struct ServoDisplacementOptions {
 
 /// Stiffness of a hand while it moves.
 struct ServoDisplacementStiffness {
-  StiffnessRegression fit;
-  int components = 0;           ///< of a reach's past that predict it; 0: the mean of the undisturbed reaches
-  double prediction_error = 0;  ///< of left-out undisturbed reaches in the middle of the window, root mean square [m]
-  double motion_share = 0;      ///< as in PlateauStiffness, of the motion relative to the prediction
+  ReachPredictor by;
   StiffnessVerdict verdict;
 };
 

@@ -112,8 +112,8 @@ TEST(ReachPrediction, RefusesReachesThatDoNotReachFarEnough) {
 TEST(ServoDisplacement, FindsTheStiffnessOfAHandThatMovesExactly) {
   const auto found = servo_displacement_stiffness(undisturbed(20, 0.1, 0.0, 1), displaced(16, 8, 0.1, 0.0, 2), kT);
   ASSERT_TRUE(found) << found.error().line();
-  EXPECT_NEAR((found->fit.K - kStiffness).norm(), 0.0, 1e-4);
-  EXPECT_LT(found->motion_share, 1e-6);
+  EXPECT_NEAR((found->by.fit.K - kStiffness).norm(), 0.0, 1e-4);
+  EXPECT_LT(found->by.motion_share, 1e-6);
   EXPECT_TRUE(found->verdict.usable);
   EXPECT_TRUE(found->verdict.warnings.empty());
 }
@@ -138,8 +138,8 @@ TEST(ServoDisplacement, IsMoreCertainByTheOwnPastThanByTheMeanOfOthers) {
   crude.prediction.max_components = 0;
   const auto mean = servo_displacement_stiffness(rest, moved, kT, crude);
   ASSERT_TRUE(own && mean);
-  EXPECT_LT(own->fit.standard_error.norm(), 0.5 * mean->fit.standard_error.norm());
-  EXPECT_EQ(mean->components, 0);
+  EXPECT_LT(own->by.fit.standard_error.norm(), 0.5 * mean->by.fit.standard_error.norm());
+  EXPECT_EQ(mean->by.components, 0);
 }
 
 TEST(ServoDisplacement, NeedsDirectionsForcesAndAPlateau) {

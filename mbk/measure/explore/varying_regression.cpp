@@ -159,8 +159,8 @@ std::optional<double> rest_of(const SplitProducts& fine, const Matrix& T, Index 
 }
 
 /// How much the rows on which a function lives tell of each combination of the columns that vary first, but for the
-/// constant. Between pulses, or while the limb is moved along one line, they do not tell all coefficients, and BIC would
-/// choose functions that follow what one model leaves of a single pulse.
+/// constant. Between pulses, or while the limb is moved along one line, they do not tell all coefficients, and BIC
+/// would choose functions that follow what one model leaves of a single pulse.
 class Excitation {
  public:
   /// @param varying  of the last columns

@@ -43,8 +43,8 @@ struct ChosenSplines {
 /// The splines of degree 1 or 3 of least BIC. Rows are whitened by the noise first, so that each counts as one sample.
 /// Candidates are constants, straight lines, parabolas, cubics, and splines with 1 to 23 knots at equal distances, for
 /// each of several numbers of columns that vary; the best of them then gains and loses knots on a grid of 48 cells as
-/// long as BIC falls, each such knot counting as one parameter more. A basis is taken only where the rows of each of its
-/// functions move the columns that vary first (without the constant) in all directions: λ_min(G⁻¹ Σ φ_j z zᵀ) ≥
+/// long as BIC falls, each such knot counting as one parameter more. A basis is taken only where the rows of each of
+/// its functions move the columns that vary first (without the constant) in all directions: λ_min(G⁻¹ Σ φ_j z zᵀ) ≥
 /// 0.03 Σ φ_j, with G the mean of z zᵀ over all rows.
 /// @param varying  numbers of last columns that may vary together, ascending
 [[nodiscard]] ChosenSplines choose_splines(const VaryingRows& rows, const std::vector<Vector>& noise,

@@ -170,6 +170,24 @@ Result<ExplorationTrial> named_trial(const Recording& recording, const ExploreOp
   return tl::unexpected(trial.error().in(recording.sources.front().path));
 }
 
+Result<std::vector<ExplorationTrial>> named_trials(std::span<const Recording> recordings,
+                                                   const ExploreOptions& options) {
+  std::vector<ExplorationTrial> trials;
+  for (const Recording& recording : recordings) {
+    auto trial = named_trial(recording, options);
+    if (!trial) return tl::unexpected(trial.error());
+    trials.push_back(std::move(*trial));
+  }
+  if (trials.empty()) return bad_usage("there is no recording to explore");
+  return trials;
+}
+
+/// The same, from the first sample to the last, unless the options say otherwise.
+Result<std::vector<ExplorationTrial>> whole_trials(std::span<const Recording> recordings, ExploreOptions options) {
+  options.preprocess.protocol = Protocol::free;
+  return named_trials(recordings, options);
+}
+
 /// Where every recording's reference is ramps and holds, or the window on the plateau was given.
 Result<void> add_plateaus(std::span<const Recording> recordings, std::span<const ExplorationTrial> trials,
                           const ExploreOptions& options, Exploration& found) {
@@ -189,6 +207,30 @@ Result<void> add_plateaus(std::span<const Recording> recordings, std::span<const
   return {};
 }
 
+/// Recordings with a trigger are of reaches, of which there is that part alone unless another was asked for.
+bool are_reaches(std::span<const Recording> recordings, const ExploreOptions& options) {
+  if (options.signals || options.only) return options.only == ExplorationPart::servo_displacement;
+  return std::ranges::all_of(recordings, [&](const Recording& recording) {
+    return std::ranges::find(recording.events, options.reaches.trigger, &Event::name) != recording.events.end();
+  });
+}
+
+Result<void> add_reaches(std::span<const ExplorationTrial> whole, const ExploreOptions& options, Exploration& found) {
+  auto reaches = explore::reach_stiffness(whole, options.reaches, found.warnings);
+  if (!reaches) return tl::unexpected(reaches.error().in("reaches"));
+  add_ellipse(reaches->own_past.fit);
+  add_ellipse(reaches->mean_reach.fit);
+  found.usable = reaches->usable;
+  found.reach_stiffness = std::move(*reaches);
+  if (!options.only) {
+    found.notes.push_back(
+        fmt::format("the recordings hold the event '{}', so that they are taken for reaches, and "
+                    "nothing else is explored; --only names another part",
+                    options.reaches.trigger));
+  }
+  return {};
+}
+
 }  // namespace
 
 void add_ellipse(StiffnessRegression& fit) {
@@ -201,16 +243,9 @@ void add_ellipse(StiffnessRegression& fit) {
 
 Result<PlateauStiffness> plateau_stiffness(std::span<const Recording> recordings, const ExploreOptions& options,
                                            std::vector<Warning>& warnings) {
-  std::vector<ExplorationTrial> whole;
-  ExploreOptions untouched = options;
-  untouched.preprocess.protocol = Protocol::free;
-  for (const Recording& recording : recordings) {
-    auto trial = named_trial(recording, untouched);
-    if (!trial) return tl::unexpected(trial.error());
-    whole.push_back(std::move(*trial));
-  }
-  if (whole.empty()) return bad_usage("there is no recording to explore");
-  auto found = explore::plateau_stiffness(whole, options.plateau);
+  const auto whole = whole_trials(recordings, options);
+  if (!whole) return tl::unexpected(whole.error());
+  auto found = explore::plateau_stiffness(*whole, options.plateau);
   if (!found) return tl::unexpected(found.error().in("ramps and holds"));
   add_ellipse(found->fit);
   for (Warning& warning : explore::judge_plateaus(*found)) warnings.push_back(std::move(warning));
@@ -218,36 +253,41 @@ Result<PlateauStiffness> plateau_stiffness(std::span<const Recording> recordings
 }
 
 Result<TimeCourseEstimate> time_course(std::span<const Recording> recordings, const ExploreOptions& options) {
-  std::vector<ExplorationTrial> trials;
-  for (const Recording& recording : recordings) {
-    auto trial = explored_trial(recording, options);
-    if (!trial) return tl::unexpected(trial.error());
-    trials.push_back(std::move(*trial));
-  }
-  if (trials.empty()) return bad_usage("there is no recording to explore");
-  const auto signals = explore::limb_signals(trials);
+  const auto trials = named_trials(recordings, options);
+  if (!trials) return tl::unexpected(trials.error());
+  const auto signals = explore::limb_signals(*trials);
   if (!signals) return tl::unexpected(signals.error());
-  const auto variable = course_variable(trials, !options.schedule.empty(), options.align);
+  const auto variable = course_variable(*trials, !options.schedule.empty(), options.align);
   if (!variable) return tl::unexpected(variable.error());
-  return explore::time_course(*signals, *variable, moved_up_to(trials));
+  return explore::time_course(*signals, *variable, moved_up_to(*trials));
+}
+
+Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings, const ExploreOptions& options) {
+  if (!options.after_onset_s) return bad_usage("how long after the onset is not said");
+  const auto trials = named_trials(recordings, options);
+  if (!trials) return tl::unexpected(trials.error());
+  return explore::after_onset(*trials, *options.after_onset_s);
 }
 
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
-  std::vector<ExplorationTrial> trials;
+  const bool reaches = !recordings.empty() && are_reaches(recordings, options);
+  const auto named = reaches ? whole_trials(recordings, options) : named_trials(recordings, options);
+  if (!named) return tl::unexpected(named.error());
+  const std::vector<ExplorationTrial>& trials = *named;
   Exploration found;
-  for (const Recording& recording : recordings) {
-    auto trial = named_trial(recording, options);
-    if (!trial) return tl::unexpected(trial.error());
-    found.recordings.push_back({trial->source, trial->recording_duration, 1.0 / trial->sample_time, trial->from_s,
-                                trial->to_s(), trial->window_rule});
-    found.notes.insert(found.notes.end(), trial->notes.begin(), trial->notes.end());
-    found.warnings.insert(found.warnings.end(), trial->warnings.begin(), trial->warnings.end());
-    trials.push_back(std::move(*trial));
+  for (const ExplorationTrial& trial : trials) {
+    found.recordings.push_back({trial.source, trial.recording_duration, 1.0 / trial.sample_time, trial.from_s,
+                                trial.to_s(), trial.window_rule});
+    found.notes.insert(found.notes.end(), trial.notes.begin(), trial.notes.end());
+    found.warnings.insert(found.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   }
-  if (trials.empty()) return bad_usage("there is no recording to explore");
   found.axes = trials.front().axes;
   found.motion = trials.front().motion;
   found.other_signals = options.signals.has_value();
+  if (reaches) {
+    if (auto ok = add_reaches(trials, options, found); !ok) return tl::unexpected(ok.error());
+    return found;
+  }
   if (options.after_onset_s) {
     auto after_onset = explore::after_onset(trials, *options.after_onset_s);
     if (!after_onset) return tl::unexpected(after_onset.error());

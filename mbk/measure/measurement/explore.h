@@ -10,6 +10,7 @@
 #include "mbk/measure/explore/frequency_response_of.h"
 #include "mbk/measure/explore/impulse_response.h"
 #include "mbk/measure/explore/measure_plateaus.h"
+#include "mbk/measure/explore/measure_reaches.h"
 #include "mbk/measure/preprocess/options.h"
 #include "mbk/model/trial/exploration.h"
 #include "mbk/model/trial/recording.h"
@@ -33,6 +34,7 @@ struct ExploreOptions {
   explore::FrequencyResponseOptions frequency_response;
   explore::ImpulseResponseOptions impulse_response;
   explore::PlateauOptions plateau;      ///< of a reference of ramps and holds
+  explore::ReachOptions reaches;        ///< of recordings of reaches
   std::string schedule;                 ///< channel that M, B and K are followed over; empty: time
   std::optional<std::string> align;     ///< event, or "reference", since which time counts; absent: the first sample
   std::optional<double> after_onset_s;  ///< M, B and K from so long after each onset of the reference; absent: not
@@ -55,6 +57,11 @@ void add_ellipse(StiffnessRegression& fit);
 /// M, B and K over time, or over what the options name, alone (explore::time_course).
 /// @fails  as explore() and the parts
 [[nodiscard]] Result<TimeCourseEstimate> time_course(std::span<const Recording> recordings,
+                                                     const ExploreOptions& options);
+/// M, B and K from so long after each onset of the reference as options.after_onset_s says, alone
+/// (explore::after_onset).
+/// @fails  usage: the option is absent. As explore() and the part.
+[[nodiscard]] Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings,
                                                      const ExploreOptions& options);
 
 }  // namespace mbk::measurement

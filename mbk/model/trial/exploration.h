@@ -12,13 +12,21 @@
 #include "mbk/model/trial/impulse_response_estimate.h"
 #include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/plateau_stiffness.h"
+#include "mbk/model/trial/reach_stiffness.h"
 #include "mbk/model/trial/time_course_estimate.h"
 #include "mbk/model/trial/warning.h"
 
 namespace mbk {
 
 /// What recordings may be asked.
-enum class ExplorationPart { frequency_response, impulse_response, reflex, time_course, ramp_and_hold };
+enum class ExplorationPart {
+  frequency_response,
+  impulse_response,
+  reflex,
+  time_course,
+  ramp_and_hold,
+  servo_displacement
+};
 
 [[nodiscard]] constexpr auto word_table(ExplorationPart) {
   using enum ExplorationPart;
@@ -26,7 +34,8 @@ enum class ExplorationPart { frequency_response, impulse_response, reflex, time_
                                                {impulse_response, "impulse-response"},
                                                {reflex, "reflex"},
                                                {time_course, "time-course"},
-                                               {ramp_and_hold, "ramp-and-hold"}});
+                                               {ramp_and_hold, "ramp-and-hold"},
+                                               {servo_displacement, "servo-displacement"}});
 }
 
 /// A recording that was explored.
@@ -48,6 +57,7 @@ struct Exploration {
   std::optional<ImpulseResponseEstimate> impulse_response;
   std::optional<ParallelCascadeEstimate> parallel_cascade;
   std::optional<PlateauStiffness> plateau_stiffness;
+  std::optional<ReachStiffness> reach_stiffness;
   std::optional<TimeCourseEstimate> time_course;
   std::optional<AfterOnsetEstimate> after_onset;  ///< only where it was asked for
   std::vector<std::string> notes;

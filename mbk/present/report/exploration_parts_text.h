@@ -8,6 +8,7 @@
 #include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/plateau_stiffness.h"
 #include "mbk/model/trial/prepared_trial.h"
+#include "mbk/model/trial/reach_stiffness.h"
 #include "mbk/model/trial/time_course_estimate.h"
 
 /// @file
@@ -19,6 +20,7 @@ namespace mbk::report {
 [[nodiscard]] std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion motion);
 [[nodiscard]] std::string stiffness_regression_text(const StiffnessRegression& fit, Motion motion);
 [[nodiscard]] std::string plateau_stiffness_text(const PlateauStiffness& found, Motion motion);
+[[nodiscard]] std::string reach_stiffness_text(const ReachStiffness& found, Motion motion);
 [[nodiscard]] std::string time_course_text(const TimeCourseEstimate& found, Motion motion);
 [[nodiscard]] std::string after_onset_text(const AfterOnsetEstimate& found, Motion motion);
 

@@ -21,6 +21,7 @@ std::string exploration_text(const Exploration& found) {
   if (found.impulse_response) text += "\n" + impulse_response_text(*found.impulse_response, found.motion);
   if (found.parallel_cascade) text += "\n" + parallel_cascade_text(*found.parallel_cascade, found.motion);
   if (found.plateau_stiffness) text += "\n" + plateau_stiffness_text(*found.plateau_stiffness, found.motion);
+  if (found.reach_stiffness) text += "\n" + reach_stiffness_text(*found.reach_stiffness, found.motion);
   if (found.time_course) text += "\n" + time_course_text(*found.time_course, found.motion);
   if (found.after_onset) text += "\n" + after_onset_text(*found.after_onset, found.motion);
   for (const std::string& note : found.notes) text += paragraph("  ", note);

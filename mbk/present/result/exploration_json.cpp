@@ -27,6 +27,7 @@ Json document(const Exploration& found) {
   if (found.impulse_response) json["impulse_response"] = impulse_response_json(*found.impulse_response);
   if (found.parallel_cascade) json["parallel_cascade"] = parallel_cascade_json(*found.parallel_cascade);
   if (found.plateau_stiffness) json["ramp_and_hold"] = plateau_stiffness_json(*found.plateau_stiffness);
+  if (found.reach_stiffness) json["servo_displacement"] = reach_stiffness_json(*found.reach_stiffness);
   if (found.time_course) json["time_course"] = time_course_json(*found.time_course);
   if (found.after_onset) json["after_onset"] = after_onset_json(*found.after_onset);
   json["notes"] = found.notes;

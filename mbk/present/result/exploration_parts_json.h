@@ -5,6 +5,7 @@
 #include "mbk/model/trial/impulse_response_estimate.h"
 #include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/plateau_stiffness.h"
+#include "mbk/model/trial/reach_stiffness.h"
 #include "mbk/model/trial/time_course_estimate.h"
 #include "mbk/present/result/json_parts.h"
 
@@ -16,6 +17,7 @@ namespace mbk::result {
 [[nodiscard]] Json parallel_cascade_json(const ParallelCascadeEstimate& found);
 [[nodiscard]] Json stiffness_regression_json(const StiffnessRegression& fit);
 [[nodiscard]] Json plateau_stiffness_json(const PlateauStiffness& found);
+[[nodiscard]] Json reach_stiffness_json(const ReachStiffness& found);
 [[nodiscard]] Json time_course_json(const TimeCourseEstimate& found);
 [[nodiscard]] Json after_onset_json(const AfterOnsetEstimate& found);
 

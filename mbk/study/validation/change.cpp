@@ -130,14 +130,13 @@ Result<ValidationTable> study(const StudyOptions& options) {
         all[c].name + ": called changing", own, [](const ChangeRun& run) { return run.changes; },
         constant ? kHardlyEver : kNearlyAlways));
     if (!constant) {
-      // A smooth curve through a fast wave is only reported.
-      const bool judged = !all[c].steps.empty();
-      table.rows.push_back(share_row(
-          all[c].name + ": course of K within 15 %", own,
-          [](const ChangeRun& run) { return run.changes && run.off <= kWithin; },
-          judged ? std::optional(kNearlyAlways) : std::nullopt));
+      table.rows.push_back(share_row(all[c].name + ": course of K within 15 %", own,
+                                     [](const ChangeRun& run) { return run.changes && run.off <= kWithin; }, {}));
     }
-    table.rows.push_back(mean_row(all[c].name + ": K off at most", off, {}, "%"));
+    // A smooth curve through a fast wave is only reported.
+    const bool judged = !all[c].steps.empty();
+    table.rows.push_back(mean_row(all[c].name + ": K off at most", off,
+                                  judged ? std::optional(Range{0.0, 100.0 * kWithin}) : std::nullopt, "%"));
     table.rows.push_back(share_row(all[c].name + ": K held by the pointwise intervals",
                                    static_cast<int>(std::lround(held)), static_cast<int>(own.size()), {}));
   }

@@ -33,19 +33,19 @@ Result<ReachStiffness> measured(const ReachesOfOneRun& reaches, const Matrix& tr
   auto found =
       explore::servo_displacement_stiffness(reaches.undisturbed, reaches.displaced, reaches.sample_time, options);
   if (!found) return tl::unexpected(found.error());
-  measurement::add_ellipse(found->fit);
+  measurement::add_ellipse(found->by.fit);
   ReachStiffness one;
   for (Index entry = 0; entry < 4; ++entry) {
     const auto at = static_cast<std::size_t>(entry);
-    one.error[at] = found->fit.K(entry / 2, entry % 2) - truth(entry / 2, entry % 2);
-    one.held[at] = std::abs(one.error[at]) <= found->fit.half_width95(entry / 2, entry % 2);
+    one.error[at] = found->by.fit.K(entry / 2, entry % 2) - truth(entry / 2, entry % 2);
+    one.held[at] = std::abs(one.error[at]) <= found->by.fit.half_width95(entry / 2, entry % 2);
   }
-  one.relative_error = 100.0 * (found->fit.K - truth).norm() / truth.norm();
-  const auto& [low, high] = found->fit.ellipse->area95;
+  one.relative_error = 100.0 * (found->by.fit.K - truth).norm() / truth.norm();
+  const auto& [low, high] = found->by.fit.ellipse->area95;
   const double area = impedance::ellipse(truth).area;
   one.area_held = low <= area && area <= high;
   one.usable = found->verdict.usable;
-  one.prediction_error = 1e3 * found->prediction_error;
+  one.prediction_error = 1e3 * found->by.prediction_error;
   return one;
 }
 

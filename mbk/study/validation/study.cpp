@@ -64,6 +64,7 @@ std::span<const Study> studies() {
       Study{"reflex", "impulse response, intrinsic and reflex force of limbs that have them or not", kOfReflex, 2,
             reflex_study},
       Study{"change", "M, B and K over time, of arms that change and that do not", kOfChange, 2, change_study},
+      Study{"after-onset", "what the first 120 ms after a pulse tell of a rigid arm", kOfChange, 2, after_onset_study},
       Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated",
             kOfTeleoperation, 1, teleoperation_study},
       Study{"participant", "when the simulated participant is active or passive", kOfParticipant, 2, participant_study},

@@ -8,7 +8,7 @@ import { data, fixed, listed, plain, significant } from "@mbk/shared/format";
 import { bode, type Curve, ratioUnit } from "./bode";
 import { type Chart, figure, type Panel, type Series, styleOf, styles } from "./charts";
 import { basename } from "./data";
-import { courseSection, margin, onsetSection, plateauSection } from "./exploration_protocols";
+import { courseSection, margin, onsetSection, plateauSection, reachSection } from "./exploration_protocols";
 import { nyquist } from "./nyquist";
 import { verdict, warningsSection } from "./summary";
 
@@ -391,6 +391,7 @@ export function explorationSections(report: ExplorationReport): HTMLElement[] {
     reflexSection(report),
     result.time_course ? courseSection(result.time_course, result, units) : undefined,
     result.after_onset ? onsetSection(result.after_onset, result, units) : undefined,
+    result.servo_displacement ? reachSection(result.servo_displacement, result, units) : undefined,
     result.ramp_and_hold ? plateauSection(result.ramp_and_hold, result, units) : undefined,
     provenance(report.result),
   ].filter((section): section is HTMLElement => section !== undefined);

@@ -1,5 +1,5 @@
 // Parts of an exploration that belong to a protocol or to time: change, the first moment after onset, ramps and holds.
-import type { AfterOnsetEstimate, Exploration, PlateauStiffnessEstimate, TimeCourseEstimate, Value } from "@mbk/shared/documents";
+import type { AfterOnsetEstimate, Exploration, PlateauStiffnessEstimate, ReachPredictor, ReachStiffnessEstimate, StiffnessRegression, TimeCourseEstimate, Value } from "@mbk/shared/documents";
 import { facts, h, heading, table } from "@mbk/shared/dom";
 import { data, fixed, significant } from "@mbk/shared/format";
 import { figure, type Panel, styles } from "./charts";
@@ -69,23 +69,51 @@ export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, u
     facts([["Explained", found.VAF.map((value) => `${fixed(value ?? NaN, 1)} %`).join(", ")]]));
 }
 
-export function plateauSection(found: PlateauStiffnessEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
-  const { stiffness } = found;
+/// Each entry of K with its 95 % interval.
+function stiffnessRow(label: string, name: string, stiffness: StiffnessRegression, unit: string): (string | HTMLElement)[] {
   const entry = (i: number, j: number): HTMLElement => {
     const [low, high] = stiffness.interval95[i]?.[j] ?? [null, null];
-    const value = stiffness.K[i]?.[j] ?? null;
-    return h("span", {}, data(value, significant(value, 3), `plateau-K${i}${j}`), ` [${significant(low ?? null, 3)}, ${significant(high ?? null, 3)}]`);
+    return h("span", {}, data(stiffness.K[i]?.[j] ?? null, significant(stiffness.K[i]?.[j] ?? null, 3), `${name}-K${i}${j}`), ` [${significant(low ?? null, 3)}, ${significant(high ?? null, 3)}]`);
   };
-  const ellipse = stiffness.ellipse;
+  return [label, ...stiffness.K.flatMap((row, i) => row.map((_, j) => entry(i, j))), unit];
+}
+
+const stiffnessHeads = (axes: number): string[] => ["", ...(axes === 1 ? ["value [95 %]"] : ["xx", "xy", "yx", "yy"]), "unit"];
+
+function ellipseWords({ ellipse }: StiffnessRegression): string | undefined {
+  if (!ellipse) return undefined;
+  const [shapeLow, shapeHigh] = ellipse.interval95.shape;
+  const [turnLow, turnHigh] = ellipse.interval95.orientation_deg;
+  return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation ${fixed(ellipse.orientation_deg ?? NaN, 1)}° [${fixed(turnLow ?? NaN, 1)}, ${fixed(turnHigh ?? NaN, 1)}]`;
+}
+
+export function plateauSection(found: PlateauStiffnessEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
+  const { stiffness } = found;
   return h("section", { id: "plateaus" }, heading(2, "Ramps and holds"),
     h("p", {}, `The force while the hand is held, ${milliseconds(found.plateau_s[0] ?? null)} to ${milliseconds(found.plateau_s[1] ?? null)} after the onset (${found.window_rule}), over ${stiffness.displacements} displacements in ${stiffness.directions} directions.`),
     found.usable
-      ? table("Stiffness; brackets are 95 % intervals", ["", ...(axes === 1 ? ["value [95 %]"] : ["xx", "xy", "yx", "yy"]), "unit"],
-          [["stiffness K", ...stiffness.K.flatMap((row, i) => row.map((_, j) => entry(i, j))), units.K]], "numbers")
+      ? table("Stiffness; brackets are 95 % intervals", stiffnessHeads(axes), [stiffnessRow("stiffness K", "plateau", stiffness, units.K)], "numbers")
       : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable, and is not shown; the warnings say why."),
     facts([
-      ["Ellipse", found.usable && ellipse ? `shape ${significant(ellipse.shape, 3)} [${significant(ellipse.interval95.shape[0] ?? null, 3)}, ${significant(ellipse.interval95.shape[1] ?? null, 3)}], orientation ${fixed(ellipse.orientation_deg ?? NaN, 1)}° [${fixed(ellipse.interval95.orientation_deg[0] ?? NaN, 1)}, ${fixed(ellipse.interval95.orientation_deg[1] ?? NaN, 1)}]` : undefined],
+      ["Ellipse", found.usable ? ellipseWords(stiffness) : undefined],
       ["One stiffness for all directions", `${chance(stiffness.linear_p ?? null)} of such a lack of fit by chance`],
       ["Reached", `${fixed(100 * (stiffness.reached ?? NaN), 0)} % of what was commanded`],
+    ]));
+}
+
+export function reachSection(found: ReachStiffnessEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
+  const { own_past: own, mean_reach: mean } = found;
+  const off = (by: ReachPredictor): string => `${fixed(1e3 * (by.prediction_error ?? NaN), 1)} mm`;
+  return h("section", { id: "reaches" }, heading(2, "Stiffness while the hand reaches"),
+    h("p", {}, `The force ${milliseconds(found.window_s[0] ?? null)} to ${milliseconds(found.window_s[1] ?? null)} after the event “${found.trigger}”, over ${own.stiffness.displacements} displacements in ${own.stiffness.directions} directions, relative to where ${found.undisturbed} undisturbed reaches and each reach's own past say that the hand would have been.`),
+    found.usable
+      ? table("Stiffness; brackets are 95 % intervals", stiffnessHeads(axes), [
+          stiffnessRow("from each reach's own past", "reach", own.stiffness, units.K),
+          stiffnessRow("for comparison: less the mean reach", "mean-reach", mean.stiffness, units.K)], "numbers")
+      : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable, and is not shown; the warnings say why."),
+    facts([
+      ["Ellipse", found.usable ? ellipseWords(own.stiffness) : undefined],
+      ["Left-out reaches are predicted within", `${off(own)}; by the mean reach within ${off(mean)}`],
+      ["Reached", `${fixed(100 * (own.stiffness.reached ?? NaN), 0)} % of what was commanded`],
     ]));
 }
