@@ -94,6 +94,7 @@ std::vector<Misspecification> honest() {
       {"remnant of 0.3 N", sine, silence, [](Scenario& s) { arm(s).remnant.floor = 0.3; }},
       {"2000 Hz", sine, silence, [](Scenario& s) { s.rate = Hertz(2000.0); }},
       {"500 Hz", sine, silence, [](Scenario& s) { s.rate = Hertz(500.0); }},
+      {"200 Hz", sine, silence, [](Scenario& s) { s.rate = Hertz(200.0); }},
       {"35 s", sine, silence, [](Scenario& s) { sines(s).duration = 35.0; }},
       {"springs and a mass", "rig_table_5_1", silence},
       {"springs and a mass, pulses", "rig_table_3_1", silence}};
