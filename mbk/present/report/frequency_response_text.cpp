@@ -66,7 +66,7 @@ std::vector<std::vector<std::string>> periodic_rows(const FrequencyResponseEstim
                     "not known: the perturbation excites even lines too, so that none shows even "
                     "distortion alone"});
   } else if (!facts.odd_lines) {
-    rows.push_back({"odd", "not known from one realisation: no odd line between the excited ones is left empty"});
+    rows.push_back({"odd", "not known: fewer than three odd lines between the excited ones are left empty"});
   }
   return rows;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/option_limits.h"
+#include "mbk/model/robot/hand_kinematics.h"
 
 namespace mbk::laboratory {
 namespace {
@@ -106,10 +107,8 @@ auto ClosedLoop<Axes>::derivative(const State& state, TrueState<Axes>* seen) con
   const RobotOf<Axes>& robot = options_.robot;
   const Values theta = state.template segment<Axes>(kTheta), rate = state.template segment<Axes>(kRate);
   const Values motor_rate = options_.capstan ? Values(state.template segment<Axes>(kMotorRate)) : rate;
-  const Matrix J = jacobian(robot.geometry, theta);
-  const Matrix J_rate = jacobian_rate(robot.geometry, theta, rate);
-  const participant::HandState<Axes> hand = {hand_position(robot.geometry, theta), J * rate, theta[Axes - 1],
-                                             rate[Axes - 1]};
+  const auto [place, J, J_rate] = hand_kinematics(robot.geometry, theta, rate);
+  const participant::HandState<Axes> hand = {place, J * rate, theta[Axes - 1], rate[Axes - 1]};
 
   const Values friction = robot.friction_torque(motor_rate);
   Matrix I = robot.inertia.matrix(theta);
@@ -180,7 +179,7 @@ const TrueState<Axes>& ClosedLoop<Axes>::hold(const Values& motor_torque, double
   load_->tick(time_, sample_time, hand_of(before), true_state_.force_hand_on_robot);
   torque_ = motor_torque;
   sample_time_ = sample_time;
-  true_state_ = state();
+  change_ = derivative(state_, &true_state_);
   true_state_.acceleration = 0.5 * (before.acceleration + true_state_.acceleration);
   true_state_.force_hand_on_robot = 0.5 * (before.force_hand_on_robot + true_state_.force_hand_on_robot);
   return true_state_;
@@ -190,7 +189,7 @@ template <int Axes>
 void ClosedLoop<Axes>::advance() {
   const double step = sample_time_ / options_.steps_per_tick;
   for (int k = 0; k < options_.steps_per_tick; ++k) {
-    const State first = derivative(state_);
+    const State first = k == 0 ? change_ : derivative(state_);
     const State second = derivative(state_ + 0.5 * step * first);
     const State third = derivative(state_ + 0.5 * step * second);
     const State fourth = derivative(state_ + step * third);

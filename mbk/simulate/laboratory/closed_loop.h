@@ -87,7 +87,7 @@ class ClosedLoop {
   /// either limit would be half a tick off the motion.
   const TrueState<Axes>& hold(const Values& motor_torque, double sample_time);
 
-  /// Moves on to the end of the tick.
+  /// Moves on to the end of the tick. Neither torque nor load may change between `hold` and this.
   void advance();
 
  private:
@@ -104,6 +104,7 @@ class ClosedLoop {
   double sample_time_ = 0.0;
   Values torque_ = Values::Zero();
   State state_ = State::Zero();
+  State change_ = State::Zero();  ///< of the state, where `hold` has left it
   TrueState<Axes> true_state_;
 };
 

@@ -18,42 +18,44 @@ Vector2d turned(const Vector2d& v) {
   return {-v.y(), v.x()};
 }
 
-struct Links {
-  Vector2d upper_arm, forearm;  // base frame
-};
-
-Links links(const ArmGeometry& geometry, const Vector2d& q) {
-  return {link(geometry.upper_arm, geometry.rotation + q[0]), link(geometry.forearm, geometry.rotation + q[0] + q[1])};
-}
-
 Matrix2d columns(const Vector2d& first, const Vector2d& second) {
   return (Matrix2d() << first, second).finished();
 }
 
 }  // namespace
 
+ArmLinks arm_links(const ArmGeometry& geometry, const Vector2d& q) {
+  return {link(geometry.upper_arm, geometry.rotation + q[0]), link(geometry.forearm, geometry.rotation + q[0] + q[1])};
+}
+
+Matrix2d jacobian(const ArmLinks& links) {
+  return columns(turned(links.upper_arm + links.forearm), turned(links.forearm));
+}
+
+Matrix2d jacobian_rate(const ArmLinks& links, const Vector2d& q_rate) {
+  const Vector2d forearm = -(q_rate[0] + q_rate[1]) * links.forearm;
+  return columns(forearm - q_rate[0] * links.upper_arm, forearm);
+}
+
 Vector2d hand_position(const ArmGeometry& geometry, const Vector2d& q) {
-  const Links at = links(geometry, q);
+  const ArmLinks at = arm_links(geometry, q);
   return geometry.shoulder + at.upper_arm + at.forearm;
 }
 
 Vector2d elbow_position(const ArmGeometry& geometry, const Vector2d& q) {
-  return geometry.shoulder + links(geometry, q).upper_arm;
+  return geometry.shoulder + arm_links(geometry, q).upper_arm;
 }
 
 Matrix2d jacobian(const ArmGeometry& geometry, const Vector2d& q) {
-  const Links at = links(geometry, q);
-  return columns(turned(at.upper_arm + at.forearm), turned(at.forearm));
+  return jacobian(arm_links(geometry, q));
 }
 
 Matrix2d jacobian_rate(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& q_rate) {
-  const Links at = links(geometry, q);
-  const Vector2d forearm = -(q_rate[0] + q_rate[1]) * at.forearm;
-  return columns(forearm - q_rate[0] * at.upper_arm, forearm);
+  return jacobian_rate(arm_links(geometry, q), q_rate);
 }
 
 Matrix2d force_curvature(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& force) {
-  const Links at = links(geometry, q);
+  const ArmLinks at = arm_links(geometry, q);
   const double forearm = -force.dot(at.forearm);
   return (Matrix2d() << forearm - force.dot(at.upper_arm), forearm, forearm, forearm).finished();
 }

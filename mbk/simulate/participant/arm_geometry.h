@@ -23,6 +23,14 @@ struct ArmGeometry {
 /// The elbow in the base frame [m].
 [[nodiscard]] Vector2d elbow_position(const ArmGeometry& geometry, const Vector2d& q);
 
+/// Shoulder to elbow and elbow to hand, base frame [m]: what J and J̇ are made of.
+struct ArmLinks {
+  Vector2d upper_arm, forearm;
+};
+[[nodiscard]] ArmLinks arm_links(const ArmGeometry& geometry, const Vector2d& q);
+[[nodiscard]] Matrix2d jacobian(const ArmLinks& links);
+[[nodiscard]] Matrix2d jacobian_rate(const ArmLinks& links, const Vector2d& q_rate);
+
 /// J = ∂p/∂q [m]; det J = l₁l₂ sin q₂.
 [[nodiscard]] Matrix2d jacobian(const ArmGeometry& geometry, const Vector2d& q);
 

@@ -101,13 +101,14 @@ Vector2d TwoLinkArm::elastic_torque(const Vector2d& q) const {
 
 LoadDynamics<2> TwoLinkArm::dynamics(const HandState<2>& hand) const {
   const Vector2d q = joint_angles(options_.geometry, hand.position);
-  const Matrix2d J_inverse = jacobian(options_.geometry, q).inverse();
+  const ArmLinks links = arm_links(options_.geometry, q);
+  const Matrix2d J_inverse = jacobian(links).inverse();
   const Vector2d q_rate = J_inverse * hand.velocity;
   // q̈ = J⁻¹ (ẍ − J̇ q̇)
   const Matrix2d inertia = J_inverse.transpose() * inertia_.matrix(q[1]) * J_inverse;
   const Vector2d torque =
       inertia_.coriolis_torque(q[1], q_rate) + damping_scale_ * options_.joints.damping * q_rate + elastic_torque(q);
-  const Vector2d convective = jacobian_rate(options_.geometry, q, q_rate) * q_rate;
+  const Vector2d convective = jacobian_rate(links, q_rate) * q_rate;
   return {inertia, J_inverse.transpose() * torque - inertia * convective, 0.0};
 }
 
