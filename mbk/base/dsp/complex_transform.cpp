@@ -54,25 +54,25 @@ template <class V>
   plus = {a.re - b.im, a.im + b.re};
 }
 
-/// The transform of `radix` values, in place.
-template <int radix, class V>
-[[gnu::always_inline]] inline void butterfly(Value<V> (&a)[radix]) {
-  if constexpr (radix == 2) {
+/// The transform of `Radix` values, in place.
+template <int Radix, class V>
+[[gnu::always_inline]] inline void butterfly(Value<V> (&a)[Radix]) {
+  if constexpr (Radix == 2) {
     const Value<V> first = a[0];
     a[0] = first + a[1];
     a[1] = first - a[1];
-  } else if constexpr (radix == 3) {
+  } else if constexpr (Radix == 3) {
     constexpr double kSine = 0.5 * std::numbers::sqrt3;
     const Value<V> sum = a[1] + a[2], middle = a[0] - 0.5 * sum, apart = kSine * (a[1] - a[2]);
     a[0] = a[0] + sum;
     across(middle, apart, a[1], a[2]);
-  } else if constexpr (radix == 4) {
+  } else if constexpr (Radix == 4) {
     const Value<V> even = a[0] + a[2], even_apart = a[0] - a[2], odd = a[1] + a[3], odd_apart = a[1] - a[3];
     a[0] = even + odd;
     a[2] = even - odd;
     across(even_apart, odd_apart, a[1], a[3]);
   } else {
-    static_assert(radix == 5);
+    static_assert(Radix == 5);
     // cos and sin of 2π/5 and 4π/5
     constexpr double kRoot5 = 2.2360679774997896964, kCos1 = 0.25 * (kRoot5 - 1.0), kCos2 = -0.25 * (kRoot5 + 1.0);
     constexpr double kSin1 = 0.95105651629515357212, kSin2 = 0.58778525229247312917;
@@ -111,7 +111,11 @@ struct TransformPlan {
       }
     };
     for (const Index radix : {4, 5, 3, 2}) add(radix);  // fours first: from then on whole vectors are side by side
-    for (Index radix = 7; rest > 1; radix += 2) add(radix);
+    Index prime = 7;
+    while (rest > 1) {
+      add(prime);
+      prime += 2;
+    }
     const std::vector<std::complex<double>> all = circle(length);
     turns_real.resize(static_cast<std::size_t>(turns));
     turns_imaginary.resize(static_cast<std::size_t>(turns));
@@ -165,34 +169,34 @@ struct TransformLoops {
   };
 
   /// As many values of one group as V holds, which share their turns.
-  template <int radix, class V>
+  template <int Radix, class V>
   [[gnu::always_inline]] static inline void one_group(const Pass& pass, Index q, Index t) {
-    Value<V> a[radix];
-    for (Index i = 0; i < radix; ++i) {
+    Value<V> a[Radix];
+    for (Index i = 0; i < Radix; ++i) {
       const Index at = t + pass.stride * (q + pass.groups * i);
       get(pass.re + at, a[i].re);
       get(pass.im + at, a[i].im);
     }
-    butterfly<radix>(a);
-    for (Index k = 0; k < radix; ++k) {
+    butterfly<Radix>(a);
+    for (Index k = 0; k < Radix; ++k) {
       const Index turn = (k - 1) * pass.groups + q;
       if (k > 0) a[k] = turned(a[k], pass.turns_re[turn], pass.turns_im[turn]);
-      const Index at = t + pass.stride * (radix * q + k);
+      const Index at = t + pass.stride * (Radix * q + k);
       put(a[k].re, pass.to_re + at);
       put(a[k].im, pass.to_im + at);
     }
   }
 
   /// The first value of four groups, where the stride is 1.
-  template <int radix>
+  template <int Radix>
   [[gnu::always_inline]] static inline void four_groups(const Pass& pass, Index q) {
-    Value<Vector4> a[radix];
-    for (Index i = 0; i < radix; ++i) {
+    Value<Vector4> a[Radix];
+    for (Index i = 0; i < Radix; ++i) {
       get(pass.re + q + pass.groups * i, a[i].re);
       get(pass.im + q + pass.groups * i, a[i].im);
     }
-    butterfly<radix>(a);
-    for (Index k = 0; k < radix; ++k) {
+    butterfly<Radix>(a);
+    for (Index k = 0; k < Radix; ++k) {
       const Index turn = (k - 1) * pass.groups + q;
       if (k > 0) {
         Vector4 re, im;  // not by reference: that would take them for aligned
@@ -201,22 +205,22 @@ struct TransformLoops {
         a[k] = turned(a[k], re, im);
       }
       for (Index lane = 0; lane < 4; ++lane) {
-        pass.to_re[radix * (q + lane) + k] = a[k].re[lane];
-        pass.to_im[radix * (q + lane) + k] = a[k].im[lane];
+        pass.to_re[Radix * (q + lane) + k] = a[k].re[lane];
+        pass.to_im[Radix * (q + lane) + k] = a[k].im[lane];
       }
     }
   }
 
-  template <int radix>
+  template <int Radix>
   [[gnu::always_inline]] static inline void pass_of(const Pass& pass) {
     Index q = 0;
     if (pass.stride == 1) {
-      for (; q + 4 <= pass.groups; q += 4) four_groups<radix>(pass, q);
+      for (; q + 4 <= pass.groups; q += 4) four_groups<Radix>(pass, q);
     }
     for (; q < pass.groups; ++q) {
       Index t = 0;
-      for (; t + 4 <= pass.stride; t += 4) one_group<radix, Vector4>(pass, q, t);
-      for (; t < pass.stride; ++t) one_group<radix, double>(pass, q, t);
+      for (; t + 4 <= pass.stride; t += 4) one_group<Radix, Vector4>(pass, q, t);
+      for (; t < pass.stride; ++t) one_group<Radix, double>(pass, q, t);
     }
   }
 

@@ -478,15 +478,16 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
   std::vector<Cx> inverses;
   for (const Index k : excited) {
     Cx A = Cx::Zero(sizes.inputs, sizes.inputs), B = Cx::Zero(sizes.outputs, sizes.inputs);
-    Vector powerU = Vector::Zero(sizes.inputs), powerR = powerU;
+    Vector input_power = Vector::Zero(sizes.inputs), reference_power = input_power;
     for (const Averages& one : averages) {
       A += one.U.col(k) * one.R.col(k).adjoint();
       B += one.Y.col(k) * one.R.col(k).adjoint();
-      powerU += one.U.col(k).cwiseAbs2();
-      powerR += one.R.col(k).cwiseAbs2();
+      input_power += one.U.col(k).cwiseAbs2();
+      reference_power += one.R.col(k).cwiseAbs2();
     }
     constexpr double kSmallest = 1e-3;  // singular value of the directions, of unit vectors
-    Cx unit = powerU.cwiseSqrt().cwiseInverse().asDiagonal() * A * powerR.cwiseSqrt().cwiseInverse().asDiagonal();
+    Cx unit = input_power.cwiseSqrt().cwiseInverse().asDiagonal() * A *
+              reference_power.cwiseSqrt().cwiseInverse().asDiagonal();
     if (!unit.allFinite() || numeric::least_pivot(unit) < kSmallest) {
       ++facts.skipped_lines;
       continue;
@@ -524,14 +525,14 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
   for (Index i = 0; i < lines; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const Index k = known.at[at];
-    const Cx &G = known.G[at], &Ainv = inverses[at];
+    const Cx &G = known.G[at], &A_inverse = inverses[at];
     const Index entries = G.size();
     found.frequency[i] = static_cast<double>(k + 1) / period_s;
     Cx noise = Cx::Zero(entries, entries), total = noise, weights = Cx::Zero(sizes.inputs, sizes.inputs), sum;
     Vector explained = Vector::Zero(sizes.outputs), rest = explained;
     for (Index m = 0; m < count; ++m) {
       const Averages& one = averages[static_cast<std::size_t>(m)];
-      const Cx row = one.R.col(k).adjoint() * Ainv;
+      const Cx row = one.R.col(k).adjoint() * A_inverse;
       const Cx C = covariance_of_residual(one.covariance[static_cast<std::size_t>(k)], G);
       const Cx W = row.transpose() * row.conjugate();
       noise += kronecker(W, C) / static_cast<double>(one.periods);
