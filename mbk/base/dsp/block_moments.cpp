@@ -19,139 +19,122 @@ namespace {
   return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
 }
 
-/// Samples that are equally far from the centre go together; two signals at a time, so that the sums stay in registers.
-[[gnu::always_inline]] inline void moments_body(const BlockFilter& f, const double* const* columns, const double* less,
-                                                Index first_block, Index blocks, double* moments) {
-  constexpr std::size_t kAtOnce = 2;
+/// Moments of one signal, before their four parts are added up.
+struct MomentParts {
+  Vector4 of[kMoments] = {};
+  /// Samples that are equally far from the centre go together.
+  [[gnu::always_inline]] void add(const double* older_at, const double* newer_at, const double* shape, double twice) {
+    const Vector4 older = four(older_at), backwards = four(newer_at);
+    const Vector4 newer = __builtin_shufflevector(backwards, backwards, 3, 2, 1, 0);
+    const Vector4 even = (newer + older) - twice, odd = newer - older;
+    for (std::size_t k = 0; k < kMoments; ++k) of[k] += four(shape + 4 * k) * (k % 2 == 0 ? even : odd);
+  }
+};
+
+[[gnu::always_inline]] inline void take_moments_body(const BlockFilter& f, const double* const* columns,
+                                                     const double* less, Index blocks, double* moments) {
+  constexpr Index kLine = 8, kAhead = 128 * kLine;
   const Index length = f.length, pairs = (length + 1) / 2;
-  for (Index b = first_block; b < first_block + blocks; ++b, moments += 4 * kMoments) {
-    Vector4 sum[kLanes][kMoments];
-    for (std::size_t first = 0; first < kLanes; first += kAtOnce) {
-      Vector4 part[kAtOnce][kMoments] = {};
-      const double* shape = f.shapes.data();
-      for (Index i = 0; i < pairs; i += 4, shape += 4 * kMoments) {
-        for (std::size_t c = 0; c < kAtOnce; ++c) {
-          const double* const x = columns[first + c] + b * length;
-          const Vector4 older = four(x + i), towards_older = four(x + length - 4 - i);
-          const Vector4 newer = __builtin_shufflevector(towards_older, towards_older, 3, 2, 1, 0);
-          const Vector4 even = (newer + older) - 2.0 * less[first + c], odd = newer - older;
-          for (std::size_t k = 0; k < kMoments; ++k) part[c][k] += four(shape + 4 * k) * (k % 2 == 0 ? even : odd);
-        }
-      }
-      for (std::size_t c = 0; c < kAtOnce; ++c) std::copy_n(part[c], kMoments, sum[first + c]);
+  const double *const x0 = columns[0], *const x1 = columns[1], *const x2 = columns[2], *const x3 = columns[3];
+  const double less0 = 2.0 * less[0], less1 = 2.0 * less[1], less2 = 2.0 * less[2], less3 = 2.0 * less[3];
+  for (Index b = 0; b < blocks; ++b, moments += 4 * kMoments) {
+    MomentParts parts0, parts1, parts2, parts3;
+    const double* shape = f.shapes.data();
+    const Index begin = b * length;
+    // Processors look ahead within a page, and along fewer columns.
+    for (Index i = begin; i < begin + length; i += kLine) {
+      for (const double* const x : {x0, x1, x2, x3}) __builtin_prefetch(x + i + kAhead);
+    }
+    for (Index i = begin, j = begin + length - 4; i < begin + pairs; i += 4, j -= 4, shape += 4 * kMoments) {
+      parts0.add(x0 + i, x0 + j, shape, less0);
+      parts1.add(x1 + i, x1 + j, shape, less1);
+      parts2.add(x2 + i, x2 + j, shape, less2);
+      parts3.add(x3 + i, x3 + j, shape, less3);
     }
     for (std::size_t k = 0; k < kMoments; ++k) {
-      four(moments + 4 * k) = sums_of(sum[0][k], sum[1][k], sum[2][k], sum[3][k]);
+      four(moments + 4 * k) = sums_of(parts0.of[k], parts1.of[k], parts2.of[k], parts3.of[k]);
     }
   }
 }
 
+/// @param states of the first block to be taken    @param step from one block to the next, 1 or −1
 template <std::size_t States>
-[[gnu::always_inline]] inline void drive_body(const BlockFilter& f, Index blocks, const double* moments, double* back,
-                                              double* ahead) {
-  double drive[kMoments][States];
-  for (std::size_t k = 0; k < kMoments; ++k) std::copy_n(f.drive.data() + k * States, States, drive[k]);
-  for (Index b = 0; b < blocks; ++b, moments += 4 * kMoments, back += 4 * States, ahead += 4 * States) {
-    for (std::size_t s = 0; s < States; ++s) {
-      const Vector4 even = drive[0][s] * four(moments) + drive[2][s] * four(moments + 8);
-      const Vector4 odd = drive[1][s] * four(moments + 4) + drive[3][s] * four(moments + 12);
-      four(back + 4 * s) = even + odd;
-      four(ahead + 4 * s) = even - odd;
-    }
+[[gnu::always_inline]] inline void advance_modes_body(const BlockFilter& f, double parity, Index step, Index blocks,
+                                                      const double* moments, double* states) {
+  double drive[kMoments][States], power[States];
+  for (std::size_t k = 0; k < kMoments; ++k) {
+    for (std::size_t s = 0; s < States; ++s) drive[k][s] = (k % 2 == 0 ? 1.0 : parity) * f.drive[k * States + s];
   }
-}
-
-/// First the moments of some blocks, which stay in the first cache, then what they add to the states.
-template <std::size_t States>
-[[gnu::always_inline]] inline void take_moments_body(const BlockFilter& f, const double* const* columns,
-                                                     const double* less, Index blocks, double* moments, double* back,
-                                                     double* ahead) {
-  constexpr Index kAtOnce = 32;
-  for (Index b = 0; b < blocks; b += kAtOnce) {
-    const Index some = std::min(kAtOnce, blocks - b);
-    double* const now = moments + 4 * static_cast<Index>(kMoments) * b;
-    constexpr Index kState = 4 * static_cast<Index>(States);
-    moments_body(f, columns, less, b, some, now);
-    drive_body<States>(f, some, now, back + kState * b, ahead + kState * b);
-  }
-}
-
-/// to += pᴸ from
-template <std::size_t States>
-[[gnu::always_inline]] inline void advance_modes(const double* power, const double* from, double* to) {
-  if constexpr (States % 2 == 1) four(to) += power[0] * four(from);
-  for (std::size_t s = States % 2; s < States; s += 2) {
-    const Vector4 real = four(from + 4 * s), imaginary = four(from + 4 * s + 4);
-    four(to + 4 * s) += power[s] * real - power[s + 1] * imaginary;
-    four(to + 4 * s + 4) += power[s] * imaginary + power[s + 1] * real;
-  }
-}
-template <std::size_t States>
-[[gnu::always_inline]] inline void sweep_body(const BlockFilter& f, Index blocks, double* back, double* ahead) {
-  constexpr Index kRow = 4 * States;
-  double power[States];
   std::copy_n(f.power.data(), States, power);
-  for (Index b = 1; b < blocks; ++b) {
-    advance_modes<States>(power, back + kRow * (b - 1), back + kRow * b);
-    advance_modes<States>(power, ahead + kRow * (blocks - b), ahead + kRow * (blocks - b - 1));
+  Vector4 x[States];
+  for (std::size_t s = 0; s < States; ++s) x[s] = four(states - 4 * static_cast<Index>(States) * step + 4 * s);
+  for (Index b = 0; b < blocks; ++b) {
+    for (std::size_t s = States % 2; s < States; s += 2) {
+      const Vector4 real = x[s], imaginary = x[s + 1];
+      x[s] = power[s] * real - power[s + 1] * imaginary;
+      x[s + 1] = power[s] * imaginary + power[s + 1] * real;
+    }
+    if constexpr (States % 2 == 1) x[0] *= power[0];
+    for (std::size_t s = 0; s < States; ++s) {
+      Vector4 added = drive[0][s] * four(moments);
+      for (std::size_t k = 1; k < kMoments; ++k) added += drive[k][s] * four(moments + 4 * k);
+      four(states + 4 * s) = x[s] += added;
+    }
+    moments += 4 * static_cast<Index>(kMoments) * step;
+    states += 4 * static_cast<Index>(States) * step;
   }
 }
 
 /// Several sums at a time share a weight that has been read.
 template <std::size_t Derivatives, Index AtOnce>
-[[gnu::always_inline]] inline void weighted_sums_body(const double* weight, const Terms* terms, double* to,
-                                                      Index apart) {
+[[gnu::always_inline]] inline void weighted_body(const double* weight, const Terms& terms, Sums how, double* to,
+                                                 Index apart) {
   Vector4 sum[AtOnce][Derivatives] = {};
-  for (const Terms* part = terms; part < terms + 3; ++part) {
-    const double* at = part->at;
-    for (Index term = 0; term < part->count; ++term, at += 4, weight += Derivatives) {
-      for (Index a = 0; a < AtOnce; ++a) {
-        const Vector4 value = four(at + a * part->apart);
-        for (std::size_t d = 0; d < Derivatives; ++d) sum[a][d] += weight[d] * value;
-      }
+  const double* at = terms.at;
+  for (Index term = 0; term < terms.count; ++term, at += 4, weight += Derivatives) {
+    for (Index a = 0; a < AtOnce; ++a) {
+      const Vector4 value = four(at + a * terms.apart);
+      for (std::size_t d = 0; d < Derivatives; ++d) sum[a][d] += weight[d] * value;
     }
   }
   for (Index a = 0; a < AtOnce; ++a) {
-    for (std::size_t d = 0; d < Derivatives; ++d) four(to + a * apart + static_cast<Index>(4 * d)) = sum[a][d];
+    for (std::size_t d = 0; d < Derivatives; ++d) {
+      double* const result = to + a * apart + static_cast<Index>(4 * d);
+      four(result) = how == Sums::added ? four(result) + sum[a][d] : sum[a][d];
+    }
   }
 }
 template <std::size_t Derivatives>
-[[gnu::always_inline]] inline void all_sums_body(const double* weights, std::array<Terms, 3> terms, Index sums,
-                                                 double* to, Index apart) {
+[[gnu::always_inline]] inline void weighted_sums_body(const double* weights, Terms terms, Index sums, Sums how,
+                                                      double* to, Index apart) {
   constexpr Index kAtOnce = 4;
-  const auto go_on = [&](Index by) [[gnu::always_inline]] {
-    for (Terms& part : terms) part.at += by * part.apart;
-    to += by * apart;
-  };
   Index i = 0;
-  for (; i + kAtOnce <= sums; i += kAtOnce) {
-    weighted_sums_body<Derivatives, kAtOnce>(weights, terms.data(), to, apart);
-    go_on(kAtOnce);
+  for (; i + kAtOnce <= sums; i += kAtOnce, terms.at += kAtOnce * terms.apart, to += kAtOnce * apart) {
+    weighted_body<Derivatives, kAtOnce>(weights, terms, how, to, apart);
   }
-  for (; i < sums; ++i) {
-    weighted_sums_body<Derivatives, 1>(weights, terms.data(), to, apart);
-    go_on(1);
+  for (; i < sums; ++i, terms.at += terms.apart, to += apart) {
+    weighted_body<Derivatives, 1>(weights, terms, how, to, apart);
   }
 }
 
 // ---- for each kind of processor; those with AVX-512 have twice the registers for the same four values ----
 
-#define MBK_BLOCK_LOOPS(NAME, TARGET)                                                                                 \
-  struct NAME {                                                                                                       \
-    template <std::size_t States>                                                                                     \
-    TARGET static void take_moments(const BlockFilter& f, const double* const* columns, const double* less,           \
-                                    Index blocks, double* moments, double* back, double* ahead) {                     \
-      take_moments_body<States>(f, columns, less, blocks, moments, back, ahead);                                      \
-    }                                                                                                                 \
-    template <std::size_t States>                                                                                     \
-    TARGET static void sweep(const BlockFilter& f, Index blocks, double* back, double* ahead) {                       \
-      sweep_body<States>(f, blocks, back, ahead);                                                                     \
-    }                                                                                                                 \
-    template <std::size_t Derivatives>                                                                                \
-    TARGET static void sums(const double* weights, const std::array<Terms, 3>& terms, Index count, double* to,        \
-                            Index apart) {                                                                            \
-      all_sums_body<Derivatives>(weights, terms, count, to, apart);                                                   \
-    }                                                                                                                 \
+#define MBK_BLOCK_LOOPS(NAME, TARGET)                                                                             \
+  struct NAME {                                                                                                   \
+    TARGET static void take_moments(const BlockFilter& f, const double* const* columns, const double* less,       \
+                                    Index blocks, double* moments) {                                              \
+      take_moments_body(f, columns, less, blocks, moments);                                                       \
+    }                                                                                                             \
+    template <std::size_t States>                                                                                 \
+    TARGET static void advance_modes(const BlockFilter& f, double parity, Index step, Index blocks,               \
+                                     const double* moments, double* states) {                                     \
+      advance_modes_body<States>(f, parity, step, blocks, moments, states);                                       \
+    }                                                                                                             \
+    template <std::size_t Derivatives>                                                                            \
+    TARGET static void weighted_sums(const double* weights, const Terms& terms, Index sums, Sums how, double* to, \
+                                     Index apart) {                                                               \
+      weighted_sums_body<Derivatives>(weights, terms, sums, how, to, apart);                                      \
+    }                                                                                                             \
   };
 MBK_BLOCK_LOOPS(BlockAny, )
 MBK_BLOCK_LOOPS(BlockV3, MBK_X86_64_V3)
@@ -159,17 +142,15 @@ MBK_BLOCK_LOOPS(BlockV4, MBK_X86_64_V4)
 #undef MBK_BLOCK_LOOPS
 
 struct BlockLoops {
-  using TakeMoments = void (*)(const BlockFilter&, const double* const*, const double*, Index, double*, double*,
-                               double*);
-  using Sweep = void (*)(const BlockFilter&, Index, double*, double*);
-  using Sums = void (*)(const double*, const std::array<Terms, 3>&, Index, double*, Index);
-  std::array<TakeMoments, kMaxModalStates> take_moments;  ///< by the number of states, less one
-  std::array<Sweep, kMaxModalStates> sweep;
-  std::array<Sums, kMaxDerivatives> sums;
+  using Advance = void (*)(const BlockFilter&, double, Index, Index, const double*, double*);
+  using WeightedSums = void (*)(const double*, const Terms&, Index, Sums, double*, Index);
+  void (*take_moments)(const BlockFilter&, const double* const*, const double*, Index, double*);
+  std::array<Advance, kMaxModalStates> advance_modes;  ///< by the number of states, less one
+  std::array<WeightedSums, kMaxDerivatives> weighted_sums;
 };
 template <class Kind, std::size_t... S, std::size_t... D>
 constexpr BlockLoops block_loops_of(std::index_sequence<S...>, std::index_sequence<D...>) {
-  return {{Kind::template take_moments<S + 1>...}, {Kind::template sweep<S + 1>...}, {Kind::template sums<D + 1>...}};
+  return {Kind::take_moments, {Kind::template advance_modes<S + 1>...}, {Kind::template weighted_sums<D + 1>...}};
 }
 const BlockLoops& block_loops() {
   constexpr auto kStates = std::make_index_sequence<kMaxModalStates>();
@@ -183,17 +164,21 @@ const BlockLoops& block_loops() {
 }  // namespace
 
 void take_moments(const BlockFilter& filter, const FourColumns& columns, const FourValues& less, Index blocks,
-                  double* moments, double* back, double* ahead) {
-  block_loops().take_moments[filter.states - 1](filter, columns.data(), less.data(), blocks, moments, back, ahead);
+                  double* moments) {
+  block_loops().take_moments(filter, columns.data(), less.data(), blocks, moments);
 }
 
-void sweep(const BlockFilter& filter, Index blocks, double* back, double* ahead) {
-  block_loops().sweep[filter.states - 1](filter, blocks, back, ahead);
+void advance_modes(const BlockFilter& filter, Looking way, Index blocks, const double* moments, double* states) {
+  const bool back = way == Looking::back;
+  const Index first = back ? 0 : blocks - 1;
+  block_loops().advance_modes[filter.states - 1](filter, back ? 1.0 : -1.0, back ? 1 : -1, blocks,
+                                                 moments + 4 * static_cast<Index>(kMoments) * first,
+                                                 states + 4 * static_cast<Index>(filter.states) * first);
 }
 
-void weighted_sums(const std::vector<double>& weights, std::size_t derivatives, const std::array<Terms, 3>& terms,
-                   Index sums, double* to, Index apart) {
-  block_loops().sums[derivatives - 1](weights.data(), terms, sums, to, apart);
+void weighted_sums(const std::vector<double>& weights, std::size_t derivatives, const Terms& terms, Index sums,
+                   Sums how, double* to, Index apart) {
+  block_loops().weighted_sums[derivatives - 1](weights.data(), terms, sums, how, to, apart);
 }
 
 }  // namespace mbk::dsp

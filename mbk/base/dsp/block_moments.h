@@ -24,14 +24,17 @@ struct BlockFilter {
   std::vector<double> power;   ///< pᴸ of each mode: as many values as states
 };
 
-/// Moments of blocks that follow each other, four values for each, and what they add to the states of both directions:
-/// Σ p⁻ᵗ x to those that look back, Σ pᵗ x to those that look ahead.
+/// Moments of blocks that follow each other, four values for each.
 /// @param columns  of L·blocks samples    @param less taken from each value
 void take_moments(const BlockFilter& filter, const FourColumns& columns, const FourValues& less, Index blocks,
-                  double* moments, double* back, double* ahead);
+                  double* moments);
 
-/// back[b] += pᴸ back[b − 1] in order, ahead[b] += pᴸ ahead[b + 1] against it, in place.
-void sweep(const BlockFilter& filter, Index blocks, double* back, double* ahead);
+/// Which of the other blocks a state is the sum over.
+enum class Looking { back, ahead };
+
+/// States of blocks from their moments: Σ p⁻ᵗ x of the block itself, and pᴸ times those of the block before; or
+/// Σ pᵗ x, and pᴸ times those of the block behind. That one's row is there, before the first or behind the last.
+void advance_modes(const BlockFilter& filter, Looking way, Index blocks, const double* moments, double* states);
 
 /// Terms of a weighted sum that lie one after the other, four values each.
 struct Terms {
@@ -40,10 +43,12 @@ struct Terms {
   Index apart;  ///< doubles from one sum to the next
 };
 
+/// Whether sums take the place of what is there.
+enum class Sums { written, added };
+
 /// Σ w_d[term] term for several sums and `derivatives` sets of weights: 4·derivatives values for each sum.
-/// @param weights derivative by derivative for each term, the terms of all three in order
-/// @param apart  doubles from one result to the next
-void weighted_sums(const std::vector<double>& weights, std::size_t derivatives, const std::array<Terms, 3>& terms,
-                   Index sums, double* to, Index apart);
+/// @param weights of all derivatives for each term    @param apart  doubles from one result to the next
+void weighted_sums(const std::vector<double>& weights, std::size_t derivatives, const Terms& terms, Index sums,
+                   Sums how, double* to, Index apart);
 
 }  // namespace mbk::dsp

@@ -58,25 +58,6 @@ class FourSum {
 
 }  // namespace
 
-/// The moments of all blocks and the states of both directions, with blocks of nothing on either side.
-struct DecimatedChain::Blocks {
-  Index before, count, after;
-  Interleaved moments, back, ahead;
-
-  Blocks(Index blocks_before, Index blocks, Index blocks_after, std::size_t states)
-      : before(blocks_before + 1),
-        count(blocks),
-        after(blocks_after + 1),
-        moments(before + count + after, 4 * kMoments),
-        back(before + count + after, static_cast<Index>(4 * states)),
-        ahead(before + count + after, static_cast<Index>(4 * states)) {
-    for (Interleaved* const rows : {&moments, &back, &ahead}) {
-      std::fill_n(rows->row(0), before * rows->width(), 0.0);
-      std::fill_n(rows->row(before + count), after * rows->width(), 0.0);
-    }
-  }
-};
-
 /// Upper half plane only; nothing where they cannot be told apart.
 std::optional<std::vector<DecimatedChain::Mode>> DecimatedChain::modes_of(const SectionCascade& lowpass,
                                                                           double& kappa) {
@@ -131,31 +112,11 @@ Result<std::optional<DecimatedChain>> DecimatedChain::plan(const FilterChain& ch
   auto modes = modes_of(chain.lowpass, made.kappa_);
   if (!modes || modes->empty()) return std::nullopt;
   made.modes_ = std::move(*modes);
-  std::size_t states = 0;
-  double fastest = 0.0;
-  for (const Mode& mode : made.modes_) {
-    states += mode.weight > 1.0 ? 2 : 1;
-    fastest = std::max(fastest, std::abs(std::log(mode.p)));
-  }
-  if (states > kMaxModalStates || (states % 2 == 0) != (made.modes_.front().weight > 1.0)) return std::nullopt;
-
-  const auto longest = static_cast<Index>(kShort / fastest);
-  constexpr auto kShortest = static_cast<Index>(kMoments);
-  Index length = std::min(longest, every);
-  if (every <= longest) {
-    made.rows_per_block_ = longest / every;
-    length = every * made.rows_per_block_;
-  } else {
-    while (length >= kShortest && every % length != 0) --length;
-    if (length > 0) made.blocks_per_row_ = every / length;
-  }
-  if (length < kShortest) return std::nullopt;
-
   made.every_ = every;
   made.half_ = chain.smoothing.half_window();
   made.padding_ = chain.padding;
   made.direct_ = made.kappa_ * OneWay::gain(chain.lowpass);
-  const Index h = made.half_;
+  if (!made.choose_blocks()) return std::nullopt;
   for (const int derivative : derivatives) {
     auto weights = savitzky_golay_weights(chain.smoothing, derivative);
     if (!weights) return tl::unexpected(weights.error());
@@ -164,80 +125,115 @@ Result<std::optional<DecimatedChain>> DecimatedChain::plan(const FilterChain& ch
     smoothing.parity = derivative % 2 == 0 ? 1.0 : -1.0;
     for (const Mode& mode : made.modes_) {
       std::vector<Complex>& U = smoothing.U.emplace_back();
-      U.reserve(static_cast<std::size_t>(2 * h + 1));
+      U.reserve(static_cast<std::size_t>(smoothing.weights.size()));
       Complex value = 0.0;
-      for (Index j = 2 * h; j >= 0; --j) U.push_back(value = product(mode.p, value) + smoothing.weights[j]);
+      for (Index j = smoothing.weights.size() - 1; j >= 0; --j) {
+        U.push_back(value = product(mode.p, value) + smoothing.weights[j]);
+      }
     }
   }
+  const Matrix shapes = orthonormal_polynomials(made.filter_.length);
+  made.prepare_blocks(shapes);
+  made.prepare_rows(shapes);
+  return made;
+}
 
-  BlockFilter& filter = made.filter_;
-  filter.length = length;
-  filter.states = states;
-  const Matrix shapes = orthonormal_polynomials(length);
-  const Index pairs = (length + 1) / 2;
-  filter.shapes.resize(static_cast<std::size_t>(divided_up(pairs, 4) * 4 * shapes.rows()));
+bool DecimatedChain::choose_blocks() {
+  double fastest = 0.0;
+  filter_.states = 0;
+  for (const Mode& mode : modes_) {
+    filter_.states += mode.weight > 1.0 ? 2 : 1;
+    fastest = std::max(fastest, std::abs(std::log(mode.p)));
+  }
+  const bool one_real_at_most = (filter_.states % 2 == 0) == (modes_.front().weight > 1.0);
+  if (filter_.states > kMaxModalStates || !one_real_at_most) return false;
+
+  constexpr auto kShortest = static_cast<Index>(kMoments);
+  const auto longest = static_cast<Index>(kShort / fastest);
+  Index length = std::min(longest, every_);
+  if (every_ <= longest) {
+    rows_per_block_ = longest / every_;
+    length = every_ * rows_per_block_;
+  } else {
+    while (length >= kShortest && every_ % length != 0) --length;
+    if (length >= kShortest) blocks_per_row_ = every_ / length;
+  }
+  if (length < kShortest) return false;
+  filter_.length = length;
+  // A row stands in the middle of its part of the block.
+  place_ = rows_per_block_ > 1 ? every_ / 2 : length / 2;
+  first_ = -((length - ((half_ - place_) % length + length) % length) % length);
+  before_ = divided_up(half_ - 1 - place_, length);
+  after_ = std::max<Index>(0, divided_up(half_ + place_ + (rows_per_block_ - 1) * every_, length) - 1);
+  return true;
+}
+
+void DecimatedChain::prepare_blocks(const Matrix& shapes) {
+  const Index length = filter_.length, pairs = (length + 1) / 2;
+  filter_.shapes.resize(static_cast<std::size_t>(divided_up(pairs, 4) * 4 * shapes.rows()));
   for (Index i = 0; i < pairs; ++i) {
     const double share = 2 * i + 1 == length ? 0.5 : 1.0;  // the centre is taken twice
     for (Index k = 0; k < shapes.rows(); ++k) {
-      filter.shapes[static_cast<std::size_t>((i / 4 * shapes.rows() + k) * 4 + i % 4)] = share * shapes(k, length - 1 - i);
+      filter_.shapes[static_cast<std::size_t>((i / 4 * shapes.rows() + k) * 4 + i % 4)] =
+          share * shapes(k, length - 1 - i);
     }
   }
-  Matrix drive(static_cast<Index>(states), shapes.rows());
+  Matrix drive(static_cast<Index>(filter_.states), shapes.rows());
   Index state = 0;
-  for (const Mode& mode : made.modes_) {
+  for (const Mode& mode : modes_) {
     const Complex log_p = std::log(mode.p), over_block = std::exp(static_cast<double>(length) * log_p);
+    const Complex backwards = 1.0 / mode.p;
     Vector real(length), imaginary(length);  // p⁻ᵗ
     Complex value = std::exp(0.5 * static_cast<double>(length - 1) * log_p);
-    for (Index i = 0; i < length; ++i, value /= mode.p) {
+    for (Index i = 0; i < length; ++i, value = product(value, backwards)) {
       real[i] = value.real();
       imaginary[i] = value.imag();
     }
     drive.row(state++) = shapes * real;
-    filter.power.push_back(over_block.real());
+    filter_.power.push_back(over_block.real());
     if (mode.weight == 1.0) continue;
     drive.row(state++) = shapes * imaginary;
-    filter.power.push_back(over_block.imag());
+    filter_.power.push_back(over_block.imag());
   }
-  filter.drive.assign(drive.data(), drive.data() + drive.size());
+  filter_.drive.assign(drive.data(), drive.data() + drive.size());
+}
 
-  // A row stands in the middle of its part of the block.
-  const Index place = made.rows_per_block_ > 1 ? every / 2 : length / 2;
-  made.first_ = -((length - ((h - place) % length + length) % length) % length);
-  made.before_ = divided_up(h - 1 - place, length);
-  made.after_ = std::max<Index>(0, divided_up(h + place + (made.rows_per_block_ - 1) * every, length) - 1);
-  const Index reach = std::max((made.before_ + 1), (made.after_ + 1)) * length + length;
+void DecimatedChain::prepare_rows(const Matrix& shapes) {
+  const Index length = filter_.length, reach = (std::max(before_, after_) + 2) * length;
   std::vector<Vector> kernels;
-  for (const Smoothing& smoothing : made.smoothing_) kernels.push_back(made.kernel(smoothing, reach));
-  for (Index r = 0; r < made.rows_per_block_; ++r) {
-    const Index at = place + r * every;
-    std::vector<double>& weights = made.sums_.emplace_back();
-    for (Index block = -made.before_; block <= made.after_; ++block) {
-      Matrix of_block(shapes.rows(), std::ssize(kernels));
-      for (Index d = 0; d < of_block.cols(); ++d) {  // λ = row − sample falls from sample to sample
+  for (const Smoothing& smoothing : smoothing_) kernels.push_back(kernel(smoothing, reach));
+  for (Index r = 0; r < rows_per_block_; ++r) {
+    const Index at = place_ + r * every_;
+    Row& row = rows_.emplace_back();
+    for (Index block = -before_; block <= after_; ++block) {
+      Matrix of_block(std::ssize(kernels), shapes.rows());
+      for (Index d = 0; d < of_block.rows(); ++d) {  // λ = row − sample falls from sample to sample
         const Vector& kernel = kernels[static_cast<std::size_t>(d)];
-        of_block.col(d) = shapes * kernel.segment(reach + at - block * length - (length - 1), length).reverse();
+        of_block.row(d) = shapes * kernel.segment(reach + at - (block + 1) * length + 1, length).reverse();
       }
-      for (Index k = 0; k < shapes.rows(); ++k) weights.insert(weights.end(), of_block.row(k).begin(), of_block.row(k).end());
+      row.near.insert(row.near.end(), of_block.data(), of_block.data() + of_block.size());
     }
     const double middle = 0.5 * static_cast<double>(length - 1);
-    const double behind = static_cast<double>(at + (made.before_ + 1) * length) - middle;
-    const double in_front = static_cast<double>((made.after_ + 1) * length - at) + middle;
-    for (const bool ahead : {false, true}) {
-      for (std::size_t m = 0; m < made.modes_.size(); ++m) {
-        const Mode& mode = made.modes_[m];
-        const Complex distance =
-            mode.weight * mode.c * std::exp(((ahead ? in_front : behind) - static_cast<double>(h)) * std::log(mode.p));
-        std::vector<double> imaginary;
-        for (const Smoothing& smoothing : made.smoothing_) {
-          const Complex weight = (ahead ? smoothing.parity : 1.0) * distance * smoothing.U[m].back();
-          weights.push_back(weight.real());
-          imaginary.push_back(-weight.imag());
-        }
-        if (mode.weight > 1.0) weights.insert(weights.end(), imaginary.begin(), imaginary.end());
-      }
-    }
+    row.back = weights_of_states(static_cast<double>(at + (before_ + 1) * length) - middle, false);
+    row.ahead = weights_of_states(static_cast<double>((after_ + 1) * length - at) + middle, true);
   }
-  return made;
+}
+
+/// What the states of a block count in a row so many samples from its centre.
+std::vector<double> DecimatedChain::weights_of_states(double distance, bool ahead) const {
+  std::vector<double> weights;
+  for (std::size_t m = 0; m < modes_.size(); ++m) {
+    const Mode& mode = modes_[m];
+    const Complex power = mode.weight * mode.c * std::exp((distance - static_cast<double>(half_)) * std::log(mode.p));
+    std::vector<double> imaginary;
+    for (const Smoothing& smoothing : smoothing_) {
+      const Complex weight = (ahead ? smoothing.parity : 1.0) * power * smoothing.U[m].back();
+      weights.push_back(weight.real());
+      imaginary.push_back(-weight.imag());
+    }
+    if (mode.weight > 1.0) weights.insert(weights.end(), imaginary.begin(), imaginary.end());
+  }
+  return weights;
 }
 
 /// g(λ), λ = −reach … reach.
@@ -265,15 +261,14 @@ Index DecimatedChain::shortest() const {
   return 2 * half_ + 1 + padding_.samples + 4 * filter_.length;
 }
 
-void DecimatedChain::take_blocks(const FourColumns& columns, Index length, const FourValues& less, Blocks& to) const {
-  const Index size = filter_.length;
-  const auto take = [&](const FourColumns& from, const FourValues& reference, Index block, Index count) {
-    const Index at = to.before + block;
-    take_moments(filter_, from, reference, count, to.moments.row(at), to.back.row(at), to.ahead.row(at));
-  };
-  // The blocks at the ends are filled up by reflection in the point, which leaves no step in them.
-  std::vector<double> padded(kLanes * static_cast<std::size_t>(size));
+/// Moments of blocks [first, end); those at the ends of the signal are filled up by reflection in a point, which leaves
+/// no step in them.
+void DecimatedChain::take_blocks(const FourColumns& columns, Index length, const FourValues& less, Index first,
+                                 Index end, double* moments) const {
+  const Index size = filter_.length, count = divided_up(length - first_, size);
+  const auto row_of = [&](Index block) { return moments + 4 * static_cast<Index>(kMoments) * (block - first); };
   const auto take_padded = [&](Index block) {
+    std::vector<double> padded(kLanes * static_cast<std::size_t>(size));
     FourColumns from{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       double* const value = padded.data() + static_cast<Index>(lane) * size;
@@ -281,18 +276,17 @@ void DecimatedChain::take_blocks(const FourColumns& columns, Index length, const
       from[lane] = value;
       for (Index i = 0; i < size; ++i) {
         const Index t = first_ + block * size + i;
-        const double inside = t < 0 ? 2.0 * x[0] - x[-t] : t < length ? x[t] : 2.0 * x[length - 1] - x[2 * length - 2 - t];
-        value[i] = inside - less[lane];
+        value[i] = t < 0 ? 2.0 * x[0] - x[-t] : t < length ? x[t] : 2.0 * x[length - 1] - x[2 * length - 2 - t];
       }
     }
-    take(from, {}, block, 1);
+    take_moments(filter_, from, less, 1, row_of(block));
   };
+  const Index inside = std::max<Index>(first, 1), outside = std::min(end, count - 1);
+  if (first == 0) take_padded(0);
   FourColumns from = columns;
-  for (const double*& column : from) column += first_ + size;
-  take_padded(0);
-  take(from, less, 1, to.count - 2);
-  take_padded(to.count - 1);
-  sweep(filter_, to.count, to.back.row(to.before), to.ahead.row(to.before));
+  for (const double*& column : from) column += first_ + inside * size;
+  take_moments(filter_, from, less, outside - inside, row_of(inside));
+  if (end == count) take_padded(count - 1);
 }
 
 /// @param filled samples beyond the end with which its block was filled up
@@ -307,7 +301,9 @@ DecimatedChain::End DecimatedChain::end_of(const FourColumns& columns, Index len
   }
   interleave(from, count, less, 1.0, end.samples.row(0));
   if (last) {
-    for (Index i = 0, j = count - 1; i < j; ++i, --j) std::swap_ranges(end.samples.row(i), end.samples.row(i) + 4, end.samples.row(j));
+    for (Index i = 0, j = count - 1; i < j; ++i, --j) {
+      std::swap_ranges(end.samples.row(i), end.samples.row(i) + kLanes, end.samples.row(j));
+    }
   }
   // Derivatives change their sign with the direction.
   std::vector<double> weights;
@@ -340,8 +336,8 @@ DecimatedChain::End DecimatedChain::end_of(const FourColumns& columns, Index len
 /// The i-th smoothed row beyond the end.
 Eigen::Array4d DecimatedChain::extended(const End& end, std::size_t derivative, Index i) const {
   const auto row = [&](Index k) {
-    return Eigen::Map<const Eigen::Array4d>(
-        end.smoothed.data() + kLanes * (smoothing_.size() * static_cast<std::size_t>(k) + derivative));
+    return Eigen::Map<const Eigen::Array4d>(end.smoothed.data() +
+                                            kLanes * (smoothing_.size() * static_cast<std::size_t>(k) + derivative));
   };
   switch (padding_.extension) {
     case Extension::odd:
@@ -377,37 +373,37 @@ void DecimatedChain::add_modes(const std::vector<FourComplex>& amplitudes, Index
   }
 }
 
-/// Σ_{t ≤ n − 1} p^(n − 1 − t) x[t] with n rows of smoothed samples.
-DecimatedChain::FourComplex DecimatedChain::sum_up_to(Index n, std::size_t mode, const FourColumns& columns,
-                                                      const FourValues& less, const Blocks& blocks) const {
-  std::size_t state = 0;
-  for (std::size_t m = 0; m < mode; ++m) state += modes_[m].weight > 1.0 ? 2 : 1;
-  const Mode& of = modes_[mode];
-  const Index block = (n - first_) / filter_.length - 1, next = first_ + (block + 1) * filter_.length;
-  const double* const back = blocks.back.row(blocks.before + block) + kLanes * state;
+/// Σ_{t < n} p^(n − 1 − t) x[t] of each mode.
+/// @param states  that look back, of the last block that ends before n
+std::vector<DecimatedChain::FourComplex> DecimatedChain::sums_before(Index n, const double* states,
+                                                                     const FourColumns& columns,
+                                                                     const FourValues& less) const {
+  const Index next = first_ + last_block_before(n) * filter_.length + filter_.length;
   const double from_centre = static_cast<double>(n - next) + 0.5 * static_cast<double>(filter_.length - 1);
-  const Complex power = std::exp(from_centre * std::log(of.p));
-  FourComplex sum = FourComplex::Zero();
-  for (Index t = next; t < n; ++t) {
-    sum *= of.p;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) sum[static_cast<Index>(lane)] += columns[lane][t] - less[lane];
+  std::vector<FourComplex> sums;
+  for (const Mode& mode : modes_) {
+    const Complex power = std::exp(from_centre * std::log(mode.p));
+    FourComplex& sum = sums.emplace_back(FourComplex::Zero());
+    for (Index t = next; t < n; ++t) {
+      sum *= mode.p;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) sum[static_cast<Index>(lane)] += columns[lane][t] - less[lane];
+    }
+    const bool complex = mode.weight > 1.0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      sum[static_cast<Index>(lane)] += power * Complex(states[lane], complex ? states[kLanes + lane] : 0.0);
+    }
+    states += complex ? 2 * kLanes : kLanes;
   }
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    sum[static_cast<Index>(lane)] += power * Complex(back[lane], of.weight > 1.0 ? back[kLanes + lane] : 0.0);
-  }
-  return sum;
+  return sums;
 }
 
 /// What the rows behind the end add: those of the padding, and that the way back begins at rest,
 ///   Σ_p ρ_p p^(N − i) (f[N] p/(1 − p) − Σ_q ρ_q F_q pq/(1 − pq))
 /// with N the last padded row, F_q = Σ_{m ≤ N} q^(N − m) s[m], and f[N] = Σ_q ρ_q F_q + κ s[N] of the way there.
-std::vector<DecimatedChain::FourComplex> DecimatedChain::behind_end(const End& start, const End& end,
-                                                                    const FourColumns& columns, Index length,
-                                                                    const FourValues& less,
-                                                                    const Blocks& blocks) const {
-  const Index n = length - 2 * half_, pad = padding_.samples;
-  std::vector<FourComplex> sums(modes_.size()), amplitudes;
-  for (std::size_t m = 0; m < modes_.size(); ++m) sums[m] = sum_up_to(n, m, columns, less, blocks);
+std::vector<DecimatedChain::FourComplex> DecimatedChain::behind_end(const End& start, const End& end, Index n,
+                                                                    const std::vector<FourComplex>& sums) const {
+  const Index pad = padding_.samples;
+  std::vector<FourComplex> amplitudes;
   for (std::size_t d = 0; d < smoothing_.size(); ++d) {
     const std::size_t first = d * modes_.size();
     std::vector<FourComplex> F = sums;
@@ -443,32 +439,83 @@ std::vector<DecimatedChain::FourComplex> DecimatedChain::behind_end(const End& s
   return amplitudes;
 }
 
-void DecimatedChain::run(const FourColumns& columns, Index length, const FourValues& less, double* values) const {
-  const Index rows = (length - 2 * half_ - 1) / every_ + 1, size = filter_.length;
-  const Index count = divided_up(length - first_, size);
-  Blocks blocks(before_, count, after_, filter_.states);
-  take_blocks(columns, length, less, blocks);
-  const auto width = static_cast<Index>(kLanes * smoothing_.size());
+/// Calls use(r, first, end) for the r-th row of a block: its rows [first, end) in blocks [begin, behind), counted
+/// without the other rows of a block.
+template <class Use>
+void DecimatedChain::for_rows(Index begin, Index behind, Index rows, Use&& use) const {
   for (Index r = 0; r < rows_per_block_; ++r) {
-    const Index at = blocks.before + (half_ + r * every_ - first_) / size;
-    const auto terms = [&](const Interleaved& of, Index first, Index many) {
-      return Terms{of.row(first), many * of.width() / static_cast<Index>(kLanes), blocks_per_row_ * of.width()};
-    };
-    weighted_sums(sums_[static_cast<std::size_t>(r)], smoothing_.size(),
-                  {terms(blocks.moments, at - before_, before_ + 1 + after_), terms(blocks.back, at - before_ - 1, 1),
-                   terms(blocks.ahead, at + after_ + 1, 1)},
-                  divided_up(rows - r, rows_per_block_), values + width * r, width * rows_per_block_);
+    const Index at = block_of(r), all = divided_up(rows - r, rows_per_block_);
+    const Index first = divided_up(begin - at, blocks_per_row_);
+    const Index end = std::min(all, divided_up(behind - at, blocks_per_row_));
+    if (first < end) use(r, first, end);
   }
+}
+
+void DecimatedChain::run(const FourColumns& columns, Index length, const FourValues& less, double* values) const {
+  constexpr Index kChunk = 64;  // blocks that stay in the first cache
+  const Index n = length - 2 * half_, rows = (n - 1) / every_ + 1, count = divided_up(length - first_, filter_.length);
+  const auto width = static_cast<Index>(kLanes * smoothing_.size());
+  const auto states = static_cast<Index>(filter_.states);
+  const auto sum = [&](const std::vector<double>& weights, const Terms& terms, Sums how, Index r, Index first,
+                       Index end) {
+    weighted_sums(weights, smoothing_.size(), terms, end - first, how, values + width * (rows_per_block_ * first + r),
+                  width * rows_per_block_);
+  };
+  // Before the first block and behind the last there is nothing.
+  Interleaved moments(before_ + count + after_ + 1, 4 * kMoments);
+  std::fill_n(moments.row(0), before_ * moments.width(), 0.0);
+  std::fill_n(moments.row(before_ + count), (after_ + 1) * moments.width(), 0.0);
+
+  // In order: what is near to a row, as soon as it is there, and what is before it.
+  const Index past = before_ + 1 + after_, whole = last_block_before(n);
+  Interleaved back(past + kChunk, 4 * states);
+  std::fill_n(back.row(0), past * back.width(), 0.0);
+  std::vector<double> at_end(static_cast<std::size_t>(back.width()));
+  for (Index begin = 0, ready = 0; begin < count; begin += kChunk) {
+    const Index some = std::min(kChunk, count - begin);
+    take_blocks(columns, length, less, begin, begin + some, moments.row(before_ + begin));
+    advance_modes(filter_, Looking::back, some, moments.row(before_ + begin), back.row(past));
+    if (whole >= begin && whole < begin + some) {
+      std::copy_n(back.row(past + whole - begin), back.width(), at_end.data());
+    }
+    const Index soon = begin + some == count ? count : begin + some - after_;
+    for_rows(ready, soon, rows, [&](Index r, Index first, Index end) {
+      const Index block = block_of(r) + blocks_per_row_ * first;
+      const Row& row = rows_[static_cast<std::size_t>(r)];
+      sum(row.near, {moments.row(block), past * static_cast<Index>(kMoments), blocks_per_row_ * moments.width()},
+          Sums::written, r, first, end);
+      sum(row.back, {back.row(past + block - before_ - 1 - begin), states, blocks_per_row_ * back.width()}, Sums::added,
+          r, first, end);
+    });
+    ready = soon;
+    std::copy_n(back.row(some), past * back.width(), back.row(0));
+  }
+
   const End start = end_of(columns, length, less, false, -first_);
-  const End end = end_of(columns, length, less, true, first_ + count * size - length);
+  const End end = end_of(columns, length, less, true, first_ + count * filter_.length - length);
   std::vector<FourComplex> before_start;
   for (std::size_t k = 0; k < start.missing.size(); ++k) {
     const Mode& mode = modes_[k % modes_.size()];
     before_start.emplace_back(mode.weight * mode.c * start.missing[k]);
   }
   add_modes(before_start, 0, false, rows, values);
-  add_modes(behind_end(start, end, columns, length, less, blocks), length - 2 * half_ - 1 - (rows - 1) * every_, true,
+  add_modes(behind_end(start, end, n, sums_before(n, at_end.data(), columns, less)), n - 1 - (rows - 1) * every_, true,
             rows, values);
+
+  // Against the order: what is behind a row.
+  Interleaved ahead(kChunk + 1, 4 * states);
+  std::fill_n(ahead.row(0), ahead.width(), 0.0);
+  for (Index behind = count; behind > 0;) {
+    const Index begin = std::max<Index>(0, behind - kChunk), some = behind - begin;
+    std::copy_n(ahead.row(0), ahead.width(), ahead.row(some));
+    advance_modes(filter_, Looking::ahead, some, moments.row(before_ + begin + after_ + 1), ahead.row(0));
+    for_rows(begin, behind, rows, [&](Index r, Index first, Index last) {
+      const Index block = block_of(r) + blocks_per_row_ * first;
+      sum(rows_[static_cast<std::size_t>(r)].ahead, {ahead.row(block - begin), states, blocks_per_row_ * ahead.width()},
+          Sums::added, r, first, last);
+    });
+    behind = begin;
+  }
 }
 
 }  // namespace mbk::dsp

@@ -66,30 +66,45 @@ class DecimatedChain {
     explicit End(Index count) : samples(count) {}
     [[nodiscard]] auto sample(Index t) const { return Eigen::Map<const Eigen::Array4d>(samples.row(t)); }
   };
-  struct Blocks;
+  /// Weights of the sums that give one row of a block, of all derivatives for each term.
+  struct Row {
+    std::vector<double> near, back, ahead;
+  };
 
   [[nodiscard]] static std::optional<std::vector<Mode>> modes_of(const SectionCascade& lowpass, double& kappa);
+  [[nodiscard]] bool choose_blocks();
+  void prepare_blocks(const Matrix& shapes);
+  void prepare_rows(const Matrix& shapes);
+  [[nodiscard]] std::vector<double> weights_of_states(double distance, bool ahead) const;
   [[nodiscard]] Vector kernel(const Smoothing& smoothing, Index reach) const;
   [[nodiscard]] End end_of(const FourColumns& columns, Index length, const FourValues& less, bool last,
                            Index filled) const;
-  void take_blocks(const FourColumns& columns, Index length, const FourValues& less, Blocks& to) const;
+  void take_blocks(const FourColumns& columns, Index length, const FourValues& less, Index first, Index end,
+                   double* moments) const;
   [[nodiscard]] Eigen::Array4d extended(const End& end, std::size_t derivative, Index i) const;
-  [[nodiscard]] FourComplex sum_up_to(Index n, std::size_t mode, const FourColumns& columns, const FourValues& less,
-                                      const Blocks& blocks) const;
-  [[nodiscard]] std::vector<FourComplex> behind_end(const End& start, const End& end, const FourColumns& columns,
-                                                    Index length, const FourValues& less, const Blocks& blocks) const;
+  [[nodiscard]] std::vector<FourComplex> sums_before(Index n, const double* states, const FourColumns& columns,
+                                                     const FourValues& less) const;
+  [[nodiscard]] std::vector<FourComplex> behind_end(const End& start, const End& end, Index n,
+                                                    const std::vector<FourComplex>& sums) const;
   void add_modes(const std::vector<FourComplex>& amplitudes, Index offset, bool backwards, Index rows,
                  double* values) const;
+  template <class Use>
+  void for_rows(Index begin, Index behind, Index rows, Use&& use) const;
+  /// The last block that ends before sample n.
+  [[nodiscard]] Index last_block_before(Index n) const { return (n - first_) / filter_.length - 1; }
+  /// The block in which the r-th row is.
+  [[nodiscard]] Index block_of(Index r) const { return (half_ + r * every_ - first_) / filter_.length; }
 
   Index every_ = 1, half_ = 0, rows_per_block_ = 1, blocks_per_row_ = 1;
-  Index first_ = 0;              ///< sample at which the first block begins, ≤ 0
+  Index place_ = 0;               ///< of the first row of a block
+  Index first_ = 0;               ///< sample at which the first block begins, ≤ 0
   Index before_ = 0, after_ = 0;  ///< blocks on either side that are near to a row
   Padding padding_;
   std::vector<Mode> modes_;
-  double kappa_ = 0.0, direct_ = 0.0;  ///< H(0 of z⁻¹ at infinity), and κ H(∞)
+  double kappa_ = 0.0, direct_ = 0.0;  ///< of H, and κ H(∞)
   std::vector<Smoothing> smoothing_;
   BlockFilter filter_;
-  std::vector<std::vector<double>> sums_;  ///< weights of each row of a block
+  std::vector<Row> rows_;  ///< of each block
 };
 
 }  // namespace mbk::dsp

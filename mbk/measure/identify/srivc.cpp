@@ -395,8 +395,7 @@ void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const
     of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
   }
   const dsp::SegmentFilter source_filter(of_input, of_source.topRows(n_));
-  Filters<dsp::SegmentFilter> filters{
-      layout.reference ? from_rest(of_input, kInput) : source_filter, {}, {}, {}, {}};
+  Filters<dsp::SegmentFilter> filters{layout.reference ? from_rest(of_input, kInput) : source_filter, {}, {}, {}, {}};
   if (layout.output) filters.y = from_rest(negative, kOutput);
   if (layout.reference) filters.clean_u = source_filter;
   if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
