@@ -21,7 +21,7 @@ namespace mbk::dsp {
 ///   y[i] = Σ_t g(i + h − t) x[t],   g(λ) = Σ_j w_j r(λ + j),   r(l) = Σ_p c_p p^|l| + κ H(∞) δ_l.
 /// So y needs the samples near to it, and the sums Σ p^|…| x over all before and all after, which go on from block to
 /// block. In a block that is short beside the period of the cutoff, g is a polynomial of third degree to 5·10⁻⁵, and
-/// what it is not meets only what the signal is not: the moments of a block stand for its samples to kForgotten.
+/// what it is not meets only what the signal is not: the moments of a block stand for its samples to kDecimationError.
 ///
 /// The ends differ from those of a signal that goes on by sums of exponentials, too. Rows before the first are
 /// s[−m] = 2 s[0] − s[m] of what has been smoothed (or as the padding says), and then constant; behind the last padded

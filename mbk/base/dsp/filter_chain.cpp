@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -311,15 +310,6 @@ Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Col
   auto all = filter_all(chain, columns, outputs, sample_rate);
   if (!all || every == 1) return all;
   return Matrix((*all)(Eigen::seqN(0, (*left - 1) / every + 1, every), Eigen::all));
-}
-
-Index memory_of(const SectionCascade& filter, double fraction) {
-  double slowest = 0.0;
-  for (const SecondOrderSection& s : filter) {
-    const double discriminant = s.a1 * s.a1 / 4.0 - s.a2;
-    slowest = std::max(slowest, discriminant < 0.0 ? std::sqrt(s.a2) : std::abs(s.a1) / 2.0 + std::sqrt(discriminant));
-  }
-  return slowest > 0.0 ? static_cast<Index>(std::ceil(std::log(fraction) / std::log(slowest))) : 0;
 }
 
 }  // namespace mbk::dsp
