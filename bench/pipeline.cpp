@@ -40,12 +40,12 @@ nlohmann::json run(const std::vector<dsp::Column>& columns, Index every) {
   const double start = seconds();
   const dsp::FilterChain chain{{6, 101}, value_of(dsp::butterworth_lowpass(5, Hertz(5.0), kRate)), {}};
   const std::vector<dsp::FilterOutput> outputs = {{0, 2}, {1, 2}, {0, 1}, {1, 1}, {0, 0}, {1, 0}, {2, 0}, {3, 0}};
-  const Matrix signals = value_of(dsp::smooth_then_lowpass(chain, columns, outputs, kRate, every));
+  Matrix signals = value_of(dsp::smooth_then_lowpass(chain, columns, outputs, kRate, every));
   const double filtered = seconds();
   const Index rows = (kIdentify - 1) / every + 1;
-  Matrix Z(rows, 7);
-  Z << signals.topLeftCorner(rows, 6), Vector::Ones(rows);
-  const auto fit = value_of(numeric::fit_least_squares(Z, -signals.topRightCorner(rows, 2)));
+  const Matrix negative_force = -signals.topRightCorner(rows, 2);
+  signals.col(6).setOnes();  // beside the six signals, where the force was
+  const auto fit = value_of(numeric::fit_least_squares(signals.topLeftCorner(rows, 7), negative_force));
   const double done = seconds();
   nlohmann::json json = {{"filters_s", filtered - start}, {"all_s", done - start}};
   const char* const names[] = {"M", "B", "K"};

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "mbk/base/dsp/decimated_chain.h"
 #include "mbk/base/dsp/simd_lanes.h"
 
 namespace mbk::dsp {
@@ -264,72 +266,30 @@ Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> colu
   return answer;
 }
 
-/// Forward and backward, without the gain of the way back.
-/// @param at_rest  begins at the reference, else as after a constant of the first value
-Interleaved lowpassed(const SectionCascade& filter, const FourColumns& columns, Index length,
-                      const FourValues& reference, bool at_rest) {
-  constexpr Index kChunk = 512;
-  Interleaved rows(length);
-  const double gain = OneWay::gain(filter);
-  OneWay forward(filter, rows.width()), backward(filter, rows.width());
-  FourColumns at = columns;
-  for (Index begin = 0; begin < length; begin += kChunk) {
-    const Index some = std::min(kChunk, length - begin);
-    interleave(at, some, reference, gain, rows.row(begin));
-    if (begin == 0 && !at_rest) forward.settle(rows.row(0));
-    forward.run(rows.row(begin), some, 1);
-    for (const double*& column : at) column += some;
-  }
-  backward.settle(rows.row(length - 1));
-  backward.run(rows.row(length - 1), length, -1);
-  return rows;
-}
-
-/// Low-pass first, then the smoothing where it is asked for: right wherever the low-pass has forgotten the ends.
-/// @param answer its rows [first, end) are written, row i from sample i·every on
-Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Column> columns,
-                                 std::span<const FilterOutput> outputs, Index every, Hertz rate, Index first, Index end,
-                                 Matrix& answer) {
-  const Index length = columns.front().size();
-  // A long signal goes block by block, each with so much before and after it that nothing is left of where it was cut.
-  constexpr double kNothing = 1e-20;
-  constexpr Index kBlock = 1 << 20;
-  const Index lead = memory_of(chain.lowpass, kNothing);
-  const Index at_once = std::max<Index>(1, std::max(kBlock, 8 * lead) / every);
+/// Every so many rows, where blocks of samples can do; nothing where they cannot.
+Result<std::optional<Matrix>> filter_blocks(const FilterChain& chain, std::span<const Column> columns,
+                                            std::span<const FilterOutput> outputs, Index every, Hertz rate) {
+  const Index length = columns.front().size(), count = (length - chain.smoothing.window) / every + 1;
+  Matrix answer(count, static_cast<Index>(outputs.size()));
   for (const Batch& batch : batches_of(outputs)) {
-    std::vector<double> weights;
-    for (const int derivative : batch.derivatives) {
-      auto one = savitzky_golay_weights(chain.smoothing, derivative);
-      if (!one) return tl::unexpected(one.error());
-      *one *= std::pow(rate.value, derivative) * OneWay::gain(chain.lowpass);
-      weights.insert(weights.end(), one->begin(), one->end());
-    }
+    const auto blocks = DecimatedChain::plan(chain, batch.derivatives, rate, every);
+    if (!blocks) return tl::unexpected(blocks.error());
+    if (!*blocks || length < (*blocks)->shortest()) return std::nullopt;
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);
-    const std::size_t derivatives = batch.derivatives.size();
-    for (Index begin = first; begin < end; begin += at_once) {
-      const Index behind = std::min(end, begin + at_once);
-      const Index from = std::max<Index>(0, begin * every - lead),
-                  to = std::min(length, (behind - 1) * every + chain.smoothing.window + lead);
-      FourColumns here = lanes;
-      for (const double*& lane : here) lane += from;
-      const Interleaved rows = lowpassed(chain.lowpass, here, to - from, reference, from == 0);
-      std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(behind - begin));
-      correlate_every(weights, derivatives, rows.row(begin * every - from), every, behind - begin, values.data());
-      for (const auto& [source, target] : batch.outputs) {
-        const double plus = batch.derivatives[source / kLanes] == 0 ? reference[source % kLanes] : 0.0;
-        const double* value = values.data() + source;
-        for (Index i = begin; i < behind; ++i, value += kLanes * derivatives) answer(i, target) = *value + plus;
+    const std::size_t width = kLanes * batch.derivatives.size();
+    const auto values = std::make_unique_for_overwrite<double[]>(width * static_cast<std::size_t>(count));
+    (*blocks)->run(lanes, length, reference, values.get());
+    for (std::size_t order = 0; order < batch.derivatives.size(); ++order) {
+      std::array<double*, kLanes> to{};
+      for (const auto& [from, target] : batch.outputs) {
+        if (from / kLanes == order) to[from % kLanes] = answer.col(target).data();
       }
+      separate(values.get() + kLanes * order, static_cast<Index>(width), count, 1.0,
+               batch.derivatives[order] == 0 ? reference : FourValues{}, to);
     }
   }
-  return {};
-}
-
-std::vector<Column> part_of(std::span<const Column> columns, Index first, Index count) {
-  std::vector<Column> part;
-  for (const Column& column : columns) part.emplace_back(column.data() + first, count);
-  return part;
+  return answer;
 }
 
 }  // namespace
@@ -342,38 +302,14 @@ Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Col
   const auto left = smoothed_length(chain, *length);
   if (!left) return tl::unexpected(left.error());
 
-  const Index count = (*left - 1) / every + 1;
-  const Index memory = memory_of(chain.lowpass, kForgotten);
-  // An end is `memory` rows long, and another `memory` behind it to forget where the piece was cut off.
-  const Index piece = 2 * memory + chain.smoothing.window + chain.padding.samples;
-  if (every == 1 || *length < 2 * piece || !OneWay::can_run(chain.lowpass)) {
-    auto all = filter_all(chain, columns, outputs, sample_rate);
-    if (!all || every == 1) return all;
-    return Matrix((*all)(Eigen::seqN(0, count, every), Eigen::all));
+  if (every > 1) {
+    auto some = filter_blocks(chain, columns, outputs, every, sample_rate);
+    if (!some) return tl::unexpected(some.error());
+    if (*some) return std::move(**some);
   }
-  const Index first = (memory + every - 1) / every, end = (*left - memory + every - 1) / every;  // rows of the inside
-  Matrix answer(count, static_cast<Index>(outputs.size()));
-  if (auto ok = lowpass_then_smooth(chain, columns, outputs, every, sample_rate, first, end, answer); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  if (memory == 0) return answer;
-  const auto at_start = filter_all(chain, part_of(columns, 0, piece), outputs, sample_rate);
-  if (!at_start) return at_start;
-  answer.topRows(first) = (*at_start)(Eigen::seqN(0, first, every), Eigen::all);
-  const Index begin = *length - piece;
-  const auto at_end = filter_all(chain, part_of(columns, begin, piece), outputs, sample_rate);
-  if (!at_end) return at_end;
-  answer.bottomRows(count - end) = (*at_end)(Eigen::seqN(end * every - begin, count - end, every), Eigen::all);
-  return answer;
-}
-
-Index memory_of(const SectionCascade& filter, double fraction) {
-  double slowest = 0.0;
-  for (const SecondOrderSection& s : filter) {
-    const double discriminant = s.a1 * s.a1 / 4.0 - s.a2;
-    slowest = std::max(slowest, discriminant < 0.0 ? std::sqrt(s.a2) : std::abs(s.a1) / 2.0 + std::sqrt(discriminant));
-  }
-  return slowest > 0.0 ? static_cast<Index>(std::ceil(std::log(fraction) / std::log(slowest))) : 0;
+  auto all = filter_all(chain, columns, outputs, sample_rate);
+  if (!all || every == 1) return all;
+  return Matrix((*all)(Eigen::seqN(0, (*left - 1) / every + 1, every), Eigen::all));
 }
 
 }  // namespace mbk::dsp

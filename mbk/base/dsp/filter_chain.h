@@ -32,19 +32,15 @@ using Column = Eigen::Map<const Vector>;
 /// and start anew after each half window, so that rounding has no time to grow; an output is a sum of N + 1 of
 /// them. Four columns go side by side.
 ///
-/// Where only every Nth row is asked for, the outputs are right to kForgotten of the signals: away from the ends the
-/// two filters commute, so that the low-pass goes first and the smoothing is evaluated where it is asked for. Near the
-/// ends, where the low-pass still remembers how the signal was continued, and for short signals, every row is computed.
+/// Where only every Nth row is asked for, the outputs are right to kDecimationError of the signals, ends included:
+/// blocks of samples are kept as a few moments, and no other row is computed (decimated_chain.h). Where blocks cannot
+/// do, every row is.
 /// @param columns of equal length L, evenly sampled
 /// @returns ⌈(L − W + 1)/every⌉×outputs; row i belongs to sample half window + i·every.   Offline: allocates.
 /// @fails as savitzky_golay and filter_zero_phase; every < 1.
 [[nodiscard]] Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                                  std::span<const FilterOutput> outputs, Hertz sample_rate,
                                                  Index every = 1);
-inline constexpr double kForgotten = 1e-7;
-
-/// Samples after which the response of a filter to what was before is below a fraction of it: log(fraction)/log|p| of
-/// its slowest pole p, and 0 without one.
-[[nodiscard]] Index memory_of(const SectionCascade& filter, double fraction);
+inline constexpr double kDecimationError = 1e-7;
 
 }  // namespace mbk::dsp

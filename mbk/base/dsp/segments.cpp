@@ -13,9 +13,10 @@
 namespace mbk::dsp {
 namespace {
 
-/// Rows and columns of products that fit the registers.
+/// Rows and columns of products that fit the registers, with the rows of the left and one of the right beside them.
 template <class Lanes>
-constexpr int kTileOf = Lanes::kWidth == Eight::kWidth ? 4 : 3;
+constexpr int kTileLeft = Lanes::kWidth == Eight::kWidth ? 4 : 3;
+constexpr int kTileRight = 4;
 
 /// @param state  n rows of 16, then the last input    N is n, or 0: any up to kMaxStates
 constexpr Index kMaxStates = 32;
@@ -113,11 +114,15 @@ template <class Lanes, int Left, int Right>
     for (Index j = 0; j < Right; ++j) sum[i][j] = Lanes::at(sums + 8 * (i * across + j));
   }
   for (Index c = 0; c < columns; c += Lanes::kWidth) {
-    V b[Right];
-    for (Index j = 0; j < Right; ++j) b[j] = Lanes::at(right.data + j * right.stride + c);
+    V a[Left];
     for (Index i = 0; i < Left; ++i) {
-      const V a = Lanes::at(left.data + i * left.stride + c);
-      for (Index j = 0; j < Right; ++j) sum[i][j] += a * b[j];
+      a[i] = Lanes::at(left.data + i * left.stride + c);
+      keep_in_register<Lanes>(a[i]);
+    }
+    for (Index j = 0; j < Right; ++j) {
+      V b = Lanes::at(right.data + j * right.stride + c);
+      keep_in_register<Lanes>(b);
+      for (Index i = 0; i < Left; ++i) sum[i][j] += a[i] * b;
     }
   }
   for (Index i = 0; i < Left; ++i) {
@@ -126,10 +131,9 @@ template <class Lanes, int Left, int Right>
 }
 template <class Lanes, int Left>
 [[gnu::always_inline]] inline void tiles_across(Rows left, Rows right, Index across, Index columns, double* sums) {
-  constexpr int kTile = kTileOf<Lanes>;
   Index j = 0;
-  for (; j + kTile <= across; j += kTile) {
-    tile<Lanes, Left, kTile>(left, {right.row(j), right.stride}, columns, sums + 8 * j, across);
+  for (; j + kTileRight <= across; j += kTileRight) {
+    tile<Lanes, Left, kTileRight>(left, {right.row(j), right.stride}, columns, sums + 8 * j, across);
   }
   const Rows rest{right.row(j), right.stride};
   switch (across - j) {
@@ -146,7 +150,7 @@ template <class Lanes, int Left>
 template <class Lanes>
 [[gnu::always_inline]] inline void products_body(Rows left, Index down, Rows right, Index across, Index columns,
                                                  double* sums) {
-  constexpr int kTile = kTileOf<Lanes>;
+  constexpr int kTile = kTileLeft<Lanes>;
   Index i = 0;
   for (; i + kTile <= down; i += kTile) {
     tiles_across<Lanes, kTile>({left.row(i), left.stride}, right, across, columns, sums + 8 * i * across);
@@ -168,19 +172,23 @@ template <class Lanes>
 /// @param sums  eight doubles for each row
 template <class Lanes, int Count>
 [[gnu::always_inline]] inline void squares_of(Rows rows, Index columns, double* sums) {
-  typename Lanes::V sum[Count];
-  for (int i = 0; i < Count; ++i) sum[i] = Lanes::at(sums + 8 * i);
-  for (Index c = 0; c < columns; c += Lanes::kWidth) {
+  constexpr Index kParts = kSegments / Lanes::kWidth;  // of a sum, which do not wait for each other
+  typename Lanes::V sum[Count][kParts] = {};
+  for (Index c = 0; c < columns; c += kSegments) {
     for (int i = 0; i < Count; ++i) {
-      const typename Lanes::V a = Lanes::at(rows.data + i * rows.stride + c);
-      sum[i] += a * a;
+      for (Index w = 0; w < kParts; ++w) {
+        const typename Lanes::V a = Lanes::at(rows.data + i * rows.stride + c + w * Lanes::kWidth);
+        sum[i][w] += a * a;
+      }
     }
   }
-  for (int i = 0; i < Count; ++i) Lanes::at(sums + 8 * i) = sum[i];
+  for (int i = 0; i < Count; ++i) {
+    for (Index w = 0; w < kParts; ++w) Lanes::at(sums + 8 * i) += sum[i][w];
+  }
 }
 template <class Lanes>
 [[gnu::always_inline]] inline void squares_body(Rows rows, Index count, Index columns, double* sums) {
-  constexpr int kAtOnce = 4;
+  constexpr int kAtOnce = 2;
   Index i = 0;
   for (; i + kAtOnce <= count; i += kAtOnce) {
     squares_of<Lanes, kAtOnce>({rows.row(i), rows.stride}, columns, sums + 8 * i);

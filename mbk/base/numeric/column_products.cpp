@@ -11,14 +11,6 @@ namespace {
 constexpr Index kBlock = 256;  // rows that stay in the first cache while all pairs of columns are taken
 constexpr Index kTile = 3;     // a tile of 3×3 dot products fills the registers, and none waits for another
 
-/// What is read once and used three times: the compiler would rather read it three times.
-template <class Lanes>
-[[gnu::always_inline]] inline void keep_in_register([[maybe_unused]] typename Lanes::V& lanes) {
-#if defined(__x86_64__) && defined(__GNUC__)
-  if constexpr (Lanes::kWidth == Eight::kWidth) asm("" : "+v"(lanes));  // of eight, where there is such a register
-#endif
-}
-
 /// The sum of all lanes, by halves.
 template <class Lanes>
 [[gnu::always_inline]] inline double added_up(const typename Lanes::V& lanes) {

@@ -103,11 +103,13 @@ struct Iterate {
 };
 
 /// Where the rows of a block stand: [those of Z that X has not | u | ∂x̂/∂τ | e | free motion | −y].
+/// Without the rows of the output there is no ZᵀX.
 struct Layout {
   Index n, q;                         ///< poles; coefficients of the numerator
   bool instruments, reference, free;  ///< present
   Index input = 0;                    ///< which signal is taken for u: kInput or kCleanInput
   bool delay = false;                 ///< τ is a parameter, too, behind a and b; q ≤ n
+  bool output = true;                 ///< filtered, too; not needed for ZᵀZ of instruments
   [[nodiscard]] Index of_input() const { return delay ? q + 1 : q; }
   [[nodiscard]] Index parameters() const { return n + of_input(); }
   [[nodiscard]] Index z_size() const { return !instruments ? 0 : (reference ? parameters() : n); }
@@ -116,7 +118,9 @@ struct Layout {
   [[nodiscard]] Index free_at() const { return e() + 1; }
   [[nodiscard]] Index free_size() const { return free ? n + 1 : 0; }
   [[nodiscard]] Index y() const { return free_at() + free_size(); }
-  [[nodiscard]] Index rows() const { return y() + n; }
+  [[nodiscard]] Index rows() const { return y() + (output ? n : 0); }
+  /// All states of the filtered input are written, before what follows them.
+  [[nodiscard]] Index written() const { return std::max(rows(), u() + n); }
   /// Rows that are X, in the order of [a, b, τ].
   [[nodiscard]] std::vector<Index> x_rows() const {
     std::vector<Index> rows_of;
@@ -190,7 +194,7 @@ constexpr Index kInput = 0, kOutput = 1, kCleanInput = 2;
 
 /// One experiment's rows with the free motion projected out.
 struct Reduced {
-  Matrix M, S;                  ///< ZᵀX, ZᵀZ (of which a step of the search needs the diagonal only)
+  Matrix M, S;                  ///< ZᵀX (0 without the output), ZᵀZ (a step of the search needs its diagonal only)
   Vector g;                     ///< Zᵀe
   double ee = 0;                ///< eᵀe
   Matrix free_of_x, free_of_z;  ///< (NᵀN)⁺NᵀX, (NᵀN)⁺NᵀZ
@@ -213,14 +217,14 @@ Reduced reduce(const Matrix& gram, const Layout& at) {
   const Index f = at.free_size();
   const std::vector<Index> x = at.x_rows(), z = at.z_rows();
   Reduced r;
-  r.M = gram(z, x);
+  r.M = at.output ? Matrix(gram(z, x)) : Matrix::Zero(at.parameters(), at.parameters());
   r.S = gram(z, z);
   r.g = gram(z, at.e());
   r.ee = gram(at.e(), at.e());
   if (f == 0) return r;
   const auto free = Eigen::seqN(at.free_at(), f);
   const Matrix inverse = pseudo_inverse(gram(free, free));
-  const Matrix NZ = gram(free, z), NX = gram(free, x);
+  const Matrix NZ = gram(free, z), NX = at.output ? Matrix(gram(free, x)) : Matrix::Zero(f, at.parameters());
   const Vector Ne = gram(free, at.e());
   r.free_of_x = inverse * NX;
   r.free_of_z = inverse * NZ;
@@ -279,8 +283,8 @@ class Fitter {
 
   template <class Filter>
   struct Filters {
-    Filter y, u;
-    std::optional<Filter> clean_u, free, x;
+    Filter u;
+    std::optional<Filter> y, clean_u, free, x;
   };
   /// The samples of a block.
   struct Inputs {
@@ -318,6 +322,7 @@ class Fitter {
   [[nodiscard]] Layout layout_of_covariance() const {
     Layout all = layout(true);
     all.delay = options_.delay_found && q_ <= n_;
+    all.output = all.reference || all.delay;  // (ZᵀX)⁻¹ is the bread of a closed loop, and moves a delay
     return all;
   }
   [[nodiscard]] Layout layout_of_clean_input(bool instruments) const {
@@ -348,7 +353,7 @@ void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Ind
   const dsp::Rows u = rows_from(now, layout.u()), free = rows_from(now, layout.free_at());
   if (filters.clean_u) take_input(*filters.clean_u, from.clean_input, rows_from(now, n_));
   take_input(filters.u, from.input, u);
-  filters.y.run(from.output, count, rows_from(now, layout.y()));
+  if (filters.y) filters.y->run(from.output, count, rows_from(now, layout.y()));
   if (filters.free) {
     filters.free->run(none, count, free);
     std::fill_n(free.row(n_), columns, 1.0);
@@ -390,8 +395,8 @@ void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const
     of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
   }
   const dsp::SegmentFilter source_filter(of_input, of_source.topRows(n_));
-  Filters<dsp::SegmentFilter> filters{
-      from_rest(negative, kOutput), layout.reference ? from_rest(of_input, kInput) : source_filter, {}, {}, {}};
+  Filters<dsp::SegmentFilter> filters{layout.reference ? from_rest(of_input, kInput) : source_filter, {}, {}, {}, {}};
+  if (layout.output) filters.y = from_rest(negative, kOutput);
   if (layout.reference) filters.clean_u = source_filter;
   if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
   if (layout.instruments) {
@@ -399,7 +404,7 @@ void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const
     if (c != nullptr) starts -= of_free.bottomRows(n_);
     filters.x.emplace(negative, starts);
   }
-  Table table(layout.rows(), past + kBlock), filtered(layout.rows(), kBlock);
+  Table table(layout.written(), past + kBlock), filtered(layout.rows(), kBlock);
   const dsp::Rows now = table.from(past);
   for (Index begin = 0; begin < length + order; begin += kSteps) {
     const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kSegments;
@@ -427,11 +432,11 @@ template <class Use>
 void Fitter::blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const {
   const SignalPair& pair = experiments_[experiment];
   const Vector rest = Vector::Zero(n_);
-  Filters<Pass> filters{
-      Pass(at.a, pair, at.scale, rest, -1.0), Pass(at.a, pair, at.scale, rest, 1.0, pair.held), {}, {}, {}};
+  Filters<Pass> filters{Pass(at.a, pair, at.scale, rest, 1.0, pair.held), {}, {}, {}, {}};
+  if (layout.output) filters.y.emplace(at.a, pair, at.scale, rest, -1.0);
   if (layout.free) filters.free.emplace(at.a, pair, at.scale, Vector::Unit(n_, n_ - 1));
   if (layout.instruments) filters.x.emplace(at.a, pair, at.scale, rest, -1.0);
-  Table table(layout.rows(), kBlock), signals(2, kBlock);
+  Table table(layout.written(), kBlock), signals(2, kBlock);
   double* const input = signals.from(0).row(0);
   double* const output = signals.from(0).row(1);
   for (Index begin = 0; begin < pair.time.size(); begin += kBlock) {
