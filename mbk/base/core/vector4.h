@@ -73,7 +73,7 @@ struct Eight {
 /// What is read once and used several times: the compiler would rather read it for each use.
 template <class Lanes>
 [[gnu::always_inline]] inline void keep_in_register([[maybe_unused]] typename Lanes::V& lanes) {
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
   if constexpr (Lanes::kWidth == Eight::kWidth) asm("" : "+v"(lanes));  // of eight, where there is such a register
 #endif
 }

@@ -32,8 +32,8 @@ typedef unsigned char Bytes16 __attribute__((vector_size(16)));  // NOLINT(moder
 struct Interleaved {
   Bytes16 low, high;
   Interleaved(const Bytes16& a, const Bytes16& b)
-      : low(__builtin_shuffle(a, b, Bytes16{0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23})),
-        high(__builtin_shuffle(a, b, Bytes16{8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31})) {}
+      : low(__builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23)),
+        high(__builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31)) {}
 };
 
 /// Shuffled, the first bytes of all elements stand first, then all the second bytes. Of elements of eight bytes,
