@@ -24,7 +24,7 @@
 namespace mbk::identify {
 namespace {
 
-constexpr Index kSteps = 16;  // of all segments in a block: what fits the nearest cache
+constexpr Index kSteps = 24;  // of all segments in a block: what fits the nearest cache
 constexpr Index kBlock = kSteps * dsp::kSegments;
 constexpr Index kMaxPoles = 20;
 
