@@ -21,7 +21,7 @@ class WayPrediction {
   static constexpr double kLag = 0.05;      ///< [s]
   static constexpr int kKnots = 64;         ///< places of the future, one every kStep
   static constexpr double kStep = 0.01;     ///< [s]
-  static constexpr double kSigma = 0.0005;  ///< σ [m]
+  static constexpr double kSigma = 0.0002;  ///< σ [m]
   static constexpr int kFeatures = 1 + 2 * kLags;
 
   using Past = Eigen::Matrix<double, kFeatures, 1>;    ///< φ: 1, then places kLag, 2 kLag, … before [m]
