@@ -230,8 +230,8 @@ class TerminalOperator : public conduct::Operator {
                          : fmt::format("not measured: {}\n", measured->error().line());
     }
     if (performed.attempt.plan.schedule.reaches() != nullptr) {
-      text_ += fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n",
-                           performed.outcome.recording.string());
+      text_ +=
+          fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n", performed.outcome.recording.string());
     }
     const auto written = Output().write(text_);
     if (!notes_.empty()) {

@@ -99,7 +99,8 @@ bool ReachServo::stays_within_limits(const WayPrediction::Way& way, const Vector
   constexpr int kPlaces = 16;
   for (int i = 0; i <= kPlaces; ++i) {
     const double t = end * i / kPlaces;
-    const Vector2d place = origin_ + way.at(t).value + schedule_.options().amplitude * schedule_.shape(t).value * direction;
+    const Vector2d place =
+        origin_ + way.at(t).value + schedule_.options().amplitude * schedule_.shape(t).value * direction;
     const double distance = place.norm();
     if (!(distance < geometry_.d1 + geometry_.d2 && distance > std::abs(geometry_.d1 - geometry_.d2))) return false;
     const auto angles = robot::joint_angles(geometry_, place);

@@ -19,14 +19,15 @@ namespace mbk::control {
 /// for the next reach. After `create` nothing allocates.
 class ReachServo {
  public:
-  static constexpr double kHomeRadius = 0.02;   ///< the hand is at home within it [m]
-  static constexpr double kRest = 0.2;          ///< that long at home before a reach [s]: the past of the prediction
-  static constexpr double kMaxApproach = 0.8;   ///< from leaving home to the trigger [s]
-  static constexpr double kMaxAside = 0.06;     ///< from the line to the target, at the trigger [m]
-  static constexpr double kRelease = 0.05;      ///< time in which the servo lets go [s]
-  static constexpr double kMaxLeverage = 1.0;   ///< of a prediction (WayPrediction::Way::leverage)
+  static constexpr double kHomeRadius = 0.02;  ///< the hand is at home within it [m]
+  static constexpr double kRest = 0.2;         ///< that long at home before a reach [s]: the past of the prediction
+  static constexpr double kMaxApproach = 0.8;  ///< from leaving home to the trigger [s]
+  static constexpr double kMaxAside = 0.06;    ///< from the line to the target, at the trigger [m]
+  static constexpr double kRelease = 0.05;     ///< time in which the servo lets go [s]
+  static constexpr double kMaxLeverage = 1.0;  ///< of a prediction (WayPrediction::Way::leverage)
 
-  /// @param home  where reaches begin [m], base frame   @param sample_time  [s] > 0, of which WayPrediction::kStep is a multiple
+  /// @param home  where reaches begin [m], base frame   @param sample_time  [s] > 0, of which WayPrediction::kStep is a
+  /// multiple
   /// @fails  usage: a displacement lasts longer than what is predicted; home or the target is out of reach; another
   ///         sample time; as JointPositionControl.
   [[nodiscard]] static Result<ReachServo> create(const JointPositionControl::Gains& gains,

@@ -55,7 +55,9 @@ class TrialControl {
   [[nodiscard]] bool follows_position() const { return std::holds_alternative<JointPositionControl>(law_); }
 
   /// Whether the last torque held them to joint_reference().
-  [[nodiscard]] bool following() const noexcept { return reaches() != nullptr ? reaches()->following() : follows_position(); }
+  [[nodiscard]] bool following() const noexcept {
+    return reaches() != nullptr ? reaches()->following() : follows_position();
+  }
 
   /// What displaces a hand that reaches; null where the schedule is none of reaches.
   [[nodiscard]] const ReachServo* reaches() const noexcept { return std::get_if<ReachServo>(&law_); }

@@ -24,8 +24,8 @@ class WayPrediction {
   static constexpr double kSigma = 0.0002;  ///< σ [m]
   static constexpr int kFeatures = 1 + 2 * kLags;
 
-  using Past = Eigen::Matrix<double, kFeatures, 1>;    ///< φ: 1, then places kLag, 2 kLag, … before [m]
-  using Future = Eigen::Matrix<double, 2, kKnots>;     ///< places kStep, 2 kStep, … after the trigger [m]
+  using Past = Eigen::Matrix<double, kFeatures, 1>;  ///< φ: 1, then places kLag, 2 kLag, … before [m]
+  using Future = Eigen::Matrix<double, 2, kKnots>;   ///< places kStep, 2 kStep, … after the trigger [m]
 
   /// How the hand goes on from the place at the trigger.
   class Way {

@@ -13,17 +13,14 @@ namespace way_prediction_test {
 /// A hand that passes the trigger at t = 0 on a cubic of its own.
 struct Hand {
   Vector2d speed, acceleration, jerk;
-  [[nodiscard]] Vector2d at(double t) const {
-    return t * speed + t * t / 2.0 * acceleration + t * t * t / 6.0 * jerk;
-  }
+  [[nodiscard]] Vector2d at(double t) const { return t * speed + t * t / 2.0 * acceleration + t * t * t / 6.0 * jerk; }
   [[nodiscard]] Vector2d velocity_at(double t) const { return speed + t * acceleration + t * t / 2.0 * jerk; }
 };
 
 Hand drawn(numeric::Random& random) {
   const auto about = [&](double mean, double spread) { return mean + spread * random.normal(); };
-  return {{about(0.02, 0.03), about(0.5, 0.05)},
-          {about(0.0, 0.2), about(1.0, 0.5)},
-          {about(0.0, 1.0), about(-8.0, 2.0)}};
+  return {
+      {about(0.02, 0.03), about(0.5, 0.05)}, {about(0.0, 0.2), about(1.0, 0.5)}, {about(0.0, 0.2), about(-8.0, 0.3)}};
 }
 
 WayPrediction::Past past_of(const Hand& hand) {

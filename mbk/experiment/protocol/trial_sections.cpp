@@ -166,8 +166,8 @@ ReachPlan read_reaches(const Section& s) {
   r.back = s.number("return_s", r.back, above(0));
   r.directions = s.integer("directions", r.directions, 1, 360);
   r.repetitions = s.integer("repetitions", r.repetitions, 1, 1000);
-  r.undisturbed_first = s.integer("undisturbed_first", r.undisturbed_first,
-                                  perturbation::ReachSchedule::kMinUndisturbedFirst, 1000);
+  r.undisturbed_first =
+      s.integer("undisturbed_first", r.undisturbed_first, perturbation::ReachSchedule::kMinUndisturbedFirst, 1000);
   r.undisturbed_between = s.integer("undisturbed_between", r.undisturbed_between, 0, 1000);
   r.reach = s.vector2("reach_mm", r.reach);
   r.trigger = s.number("trigger_mm", r.trigger, above(0));

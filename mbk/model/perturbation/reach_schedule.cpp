@@ -48,9 +48,9 @@ Result<void> check(const ReachSchedule::Options& o) {
         fmt::format("the trigger after {:g} m is not before the target, {:g} m away", o.trigger, o.reach.norm()));
   }
   if (!(o.interval >= 2.0 * o.reach_time && std::isfinite(o.interval))) {
-    return bad_usage(fmt::format("an interval of {:g} s is shorter than two reaches of {:g} s", o.interval,
-                                 o.reach_time),
-                     "the hand has to come back too");
+    return bad_usage(
+        fmt::format("an interval of {:g} s is shorter than two reaches of {:g} s", o.interval, o.reach_time),
+        "the hand has to come back too");
   }
   return {};
 }

@@ -312,10 +312,10 @@ Result<void> Schedule::check(const Limits& limits) const {
       const bool lines = std::holds_alternative<Sines>(shape_);
       return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {}, throughout, is above the limit {:.4g} Hz",
                                    found.highest_frequency.value, name, limits.bandwidth->value),
-                       lines                                         ? "leave out the lines above it"
+                       lines ? "leave out the lines above it"
                        : std::holds_alternative<RampAndHold>(shape_) || reaches() != nullptr
                            ? "make the ramps slower"
-                                                                     : "lower the natural frequency of the filter");
+                           : "lower the natural frequency of the filter");
     }
   }
   if (limits.reachable && quantity_ == Quantity::position) {

@@ -24,8 +24,9 @@ TEST(Reaching, WithoutSpreadIsAMinimumJerkPathThereAndBack) {
     const double share = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
     const double begin = o.first + 2.0 * o.interval;
     EXPECT_LT((reaching.at(begin + s * o.duration).value - o.start - share * o.reach).norm(), 1e-12);
-    EXPECT_LT((reaching.at(begin + o.duration + o.stay + s * o.way_back).value - o.start - (1 - share) * o.reach).norm(),
-              1e-12);
+    EXPECT_LT(
+        (reaching.at(begin + o.duration + o.stay + s * o.way_back).value - o.start - (1 - share) * o.reach).norm(),
+        1e-12);
   }
   EXPECT_EQ(reaching.at(0.5).value, o.start);
   EXPECT_EQ(reaching.at(1e4).value, o.start);
@@ -42,8 +43,8 @@ TEST(Reaching, HasDerivativesThatAreSlopes) {
 }
 
 TEST(Reaching, VariesAsMuchAsItIsTold) {
-  const Reaching reaching = make({.reaches = 2000, .latest = 0.0, .duration_spread = 0, .length_spread = 0.04,
-                                  .bend = 0.0, .end_spread = 0.005});
+  const Reaching reaching = make(
+      {.reaches = 2000, .latest = 0.0, .duration_spread = 0, .length_spread = 0.04, .bend = 0.0, .end_spread = 0.005});
   const Reaching::Options& o = reaching.options();
   Eigen::Vector2d sum = {0.0, 0.0}, squares = {0.0, 0.0};
   for (int i = 0; i < o.reaches; ++i) {
@@ -92,7 +93,8 @@ TEST(Arm, ThatReachesIsPulledBackToItsWayByItsStiffness) {
   const auto now = meant.at(t);
   arm.tick(t, kTick, {now.value, now.first}, {0.0, 0.0});
   const Eigen::Vector2d away(0.005, -0.003);
-  const Eigen::Vector2d change = arm.dynamics({now.value + away, now.first}).bias - arm.dynamics({now.value, now.first}).bias;
+  const Eigen::Vector2d change =
+      arm.dynamics({now.value + away, now.first}).bias - arm.dynamics({now.value, now.first}).bias;
   EXPECT_LT((change - K * away).norm(), 1e-9);
   EXPECT_LT((arm.impedance(now.value).x0 - now.value).norm(), 1e-12);
 }
