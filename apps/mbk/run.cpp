@@ -229,6 +229,10 @@ class TerminalOperator : public conduct::Operator {
       text_ += *measured ? report::measurement_text(**measured)
                          : fmt::format("not measured: {}\n", measured->error().line());
     }
+    if (performed.attempt.plan.schedule.reaches() != nullptr) {
+      text_ +=
+          fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n", performed.outcome.recording.string());
+    }
     const auto written = Output().write(text_);
     if (!notes_.empty()) {
       if (auto ok = session::annotate(performed.outcome.recording, notes_); !ok) return ok;

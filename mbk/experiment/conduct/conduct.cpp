@@ -76,7 +76,8 @@ class Run {
     }
     operator_.recorded(*outcome);
     Performed performed{attempt, std::move(*outcome), std::nullopt};
-    if (!performed.stopped() && measure_ && !asked_to_end()) {
+    const bool reaches = plan.schedule.reaches() != nullptr;  // M, B and K about one place are not theirs
+    if (!performed.stopped() && measure_ && !reaches && !asked_to_end()) {
       performed.measured = measure_trial(performed.outcome.recording, measure_);
     }
     if (auto ok = operator_.judged(performed); !ok) return fail(ok.error());

@@ -52,6 +52,9 @@ Result<Recording> perturbation_of(const journal::Journal& journal) {
   const auto holds = [&](const char* name) {
     return std::ranges::find(recording->events, name, &Event::name) != recording->events.end();
   };
+  if (holds("trigger")) {
+    return bad_data("a hand that reaches has no M, B and K about one place", "'mbk explore' measures the recording");
+  }
   if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
   if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
   return preprocess::perturbation_only(std::move(*recording));

@@ -167,12 +167,13 @@ Sequencer::Step Sequencer::step(const Vector2d& measured) noexcept {
     case Phase::perturbing: {
       step.perturbation_time = t;
       const Vector2d torque = trial_.torque(t, measured);
-      step.follows = trial_.follows_position();
+      step.follows = trial_.following();
+      step.triggered = trial_.reaches() != nullptr && trial_.reaches()->triggered();
       step.joint_reference = trial_.joint_reference();
       step.reference = trial_.reference(t);
-      const double share = step.follows ? 1.0 : smooth(t / options_.handover);
+      const double share = trial_.follows_position() ? 1.0 : smooth(t / options_.handover);
       step.torque = share * torque + (1.0 - share) * holding;
-      if (step.follows) {
+      if (trial_.follows_position()) {
         held_rate_ = (step.joint_reference - held_) / sample_time_;
         held_ = step.joint_reference;
       }

@@ -52,9 +52,10 @@ class Sequencer {
   struct Step {
     Phase phase = Phase::done;
     Vector2d torque = {0.0, 0.0};           ///< [N·m]
-    Vector2d reference = {0.0, 0.0};        ///< hand's place [m]; of a trial of forces the force [N]
+    Vector2d reference = {0.0, 0.0};        ///< hand's place [m]; force [N]; of reaches TrialControl::reference
     Vector2d joint_reference = {0.0, 0.0};  ///< [rad]; the joints shall be there where `follows`
     bool follows = false;                   ///< a position is controlled
+    bool triggered = false;                 ///< a hand that reaches passed the trigger
     double perturbation_time = -1.0;        ///< of the schedule [s]; negative outside of it
   };
 

@@ -7,6 +7,7 @@
 namespace mbk::control {
 
 using perturbation::Quantity;
+using perturbation::ReachSchedule;
 using perturbation::Schedule;
 using perturbation::Space;
 
@@ -33,7 +34,11 @@ Result<TrialControl> TrialControl::create(const Mode& mode, const Schedule& sche
     return bad_usage("a perturbation of the joints' torques cannot be exerted at the hand", "give it as a force");
   }
   TrialControl control(schedule, geometry, home, *home_angles);
-  if (const auto* follow = std::get_if<PositionMode>(&mode)) {
+  if (const ReachSchedule* reaches = schedule.reaches()) {
+    auto servo = ReachServo::create(std::get<PositionMode>(mode).gains, *reaches, geometry, home, sample_time);
+    if (!servo) return tl::unexpected(servo.error());
+    control.law_ = *servo;
+  } else if (const auto* follow = std::get_if<PositionMode>(&mode)) {
     auto law = JointPositionControl::create(follow->gains, sample_time);
     if (!law) return tl::unexpected(law.error());
     control.law_ = *law;
@@ -55,6 +60,11 @@ Result<TrialControl> TrialControl::create(const Mode& mode, const Schedule& sche
 }
 
 Vector2d TrialControl::torque(double t, const Vector2d& measured) noexcept {
+  if (auto* servo = std::get_if<ReachServo>(&law_)) {
+    const Vector2d torque = servo->step(measured);
+    angles_ = servo->joint_reference();
+    return torque;
+  }
   const perturbation::Jet<Vector2d> now = schedule_.at(t);
   if (auto* follow = std::get_if<JointPositionControl>(&law_)) {
     if (schedule_.space() == Space::joint) {
@@ -70,12 +80,15 @@ Vector2d TrialControl::torque(double t, const Vector2d& measured) noexcept {
 }
 
 Vector2d TrialControl::reference(double t) const noexcept {
+  if (reaches() != nullptr) return reaches()->displacement();
   const Vector2d value = schedule_.reference(t);
   return schedule_.quantity() == Quantity::force ? value : displaced(value);
 }
 
 Vector2d TrialControl::place(double t) const noexcept {
-  return schedule_.quantity() == Quantity::force ? home_ : displaced(schedule_.at(t).value);
+  if (schedule_.quantity() == Quantity::force) return home_;
+  const Vector2d place = displaced(schedule_.at(t).value);
+  return schedule_.reaches() != nullptr ? Vector2d(place + schedule_.reaches()->way(t)) : place;
 }
 
 Vector2d TrialControl::displaced(const Vector2d& displacement) const {

@@ -4,12 +4,14 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/experiment/control/laws.h"
+#include "mbk/experiment/control/reach_servo.h"
 #include "mbk/model/perturbation/schedule.h"
 #include "mbk/model/robot/kinematics.h"
 
 namespace mbk::control {
 
-/// The joints follow a reference; the schedule commands positions.
+/// The joints follow a reference; the schedule commands positions. In a schedule of reaches they follow it where the
+/// hand is displaced, and are free where it is not.
 struct PositionMode {
   JointPositionControl::Gains gains;
 };
@@ -39,16 +41,26 @@ class TrialControl {
   /// τ [N·m] at the time t of the schedule [s].
   [[nodiscard]] Vector2d torque(double t, const Vector2d& measured) noexcept;
 
-  /// What stands in the recording: the hand's place behind a position, or the force [m or N].
+  /// What stands in the recording: the hand's place behind a position, or the force [m or N]. In a schedule of reaches
+  /// the displacement from the predicted way at the last tick [m].
   [[nodiscard]] Vector2d reference(double t) const noexcept;
 
-  /// Where the schedule wants the hand at t [m]; home where it commands a force.
+  /// Where the schedule wants the hand at t [m], or expects it in a reach; home where it commands a force.
   [[nodiscard]] Vector2d place(double t) const noexcept;
 
   /// The angles that the law last held the joints to [rad]; home's where it does not follow a position.
   [[nodiscard]] const Vector2d& joint_reference() const { return angles_; }
 
+  /// Whether the joints follow a position throughout.
   [[nodiscard]] bool follows_position() const { return std::holds_alternative<JointPositionControl>(law_); }
+
+  /// Whether the last torque held them to joint_reference().
+  [[nodiscard]] bool following() const noexcept {
+    return reaches() != nullptr ? reaches()->following() : follows_position();
+  }
+
+  /// What displaces a hand that reaches; null where the schedule is none of reaches.
+  [[nodiscard]] const ReachServo* reaches() const noexcept { return std::get_if<ReachServo>(&law_); }
   [[nodiscard]] const perturbation::Schedule& schedule() const { return schedule_; }
   [[nodiscard]] const Vector2d& home_angles() const { return home_angles_; }  ///< [rad]
 
@@ -60,7 +72,7 @@ class TrialControl {
   perturbation::Schedule schedule_;
   robot::Geometry geometry_;
   Vector2d home_, home_angles_, angles_;
-  std::variant<ForceControl, JointPositionControl, LineConstraint> law_;
+  std::variant<ForceControl, JointPositionControl, LineConstraint, ReachServo> law_;
 };
 
 }  // namespace mbk::control

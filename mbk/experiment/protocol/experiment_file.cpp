@@ -12,9 +12,13 @@ using config::above;
 using config::at_least;
 using config::Section;
 
-control::SequenceOptions read_sequence(const Section& s, const control::Mode& control) {
+/// The way there and back is held with the gains of the trial; of hands that reach, whose servo has to be stiffer than
+/// a robot at rest can be held quietly, with those of a trial of forces.
+control::SequenceOptions read_sequence(const Section& s, const Trial& trial) {
   control::SequenceOptions options;
-  if (const auto* mode = std::get_if<control::PositionMode>(&control)) options.hold = mode->gains;
+  const auto* mode = std::get_if<control::PositionMode>(&trial.control);
+  const bool reaches = std::holds_alternative<perturbation::ReachPlan>(trial.perturbation.kind);
+  if (mode != nullptr && !reaches) options.hold = mode->gains;
   options.soft_start = s.number("soft_start_s", options.soft_start, above(0));
   options.move_speed = s.number("move_speed_mm_per_s", options.move_speed, above(0));
   options.shortest_move = s.number("shortest_move_s", options.shortest_move, above(0));
@@ -104,7 +108,7 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
       for (const char* key : {"steps_per_tick", "capstan"}) robot.leave_to_others(key);
       for (const char* key : {"participant", "rig", "sensors"}) root.leave_to_others(key);
     }
-    trial.sequence = read_sequence(root.section("session"), trial.control);
+    trial.sequence = read_sequence(root.section("session"), trial);
     const Section safety = root.section("safety");
     trial.limits = read_limits(safety);
     trial.from_plan = {!safety.has("speed_mm_per_s"), !safety.has("excursion_mm"), !safety.has("tracking_deg")};

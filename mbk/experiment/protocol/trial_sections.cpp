@@ -23,6 +23,7 @@ using perturbation::PulsePlan;
 using perturbation::Quantity;
 using perturbation::RampPlan;
 using perturbation::RandomBinaryPlan;
+using perturbation::ReachPlan;
 using perturbation::RestPlan;
 using perturbation::Space;
 
@@ -156,6 +157,27 @@ RampPlan read_ramps(const Section& s, const Size& size) {
   return plan;
 }
 
+ReachPlan read_reaches(const Section& s) {
+  ReachPlan plan;
+  perturbation::ReachSchedule::Options& r = plan.reaches;
+  r.amplitude = s.number("amplitude_mm", r.amplitude, above(0));
+  r.out = s.number("ramp_s", r.out, above(0));
+  r.hold = s.number("hold_s", r.hold, above(0));
+  r.back = s.number("return_s", r.back, above(0));
+  r.directions = s.integer("directions", r.directions, 1, 360);
+  r.repetitions = s.integer("repetitions", r.repetitions, 1, 1000);
+  r.undisturbed_first =
+      s.integer("undisturbed_first", r.undisturbed_first, perturbation::ReachSchedule::kMinUndisturbedFirst, 1000);
+  r.undisturbed_between = s.integer("undisturbed_between", r.undisturbed_between, 0, 1000);
+  r.reach = s.vector2("reach_mm", r.reach);
+  r.trigger = s.number("trigger_mm", r.trigger, above(0));
+  r.reach_time = s.number("reach_s", r.reach_time, above(0));
+  r.interval = s.number("interval_s", r.interval, above(0));
+  r.quiet = s.number("quiet_s", r.quiet, at_least(0));
+  plan.tail = s.number("tail_s", plan.tail, at_least(0));
+  return plan;
+}
+
 /// A signal has limits in its own unit.
 perturbation::Limits read_limits(const Section& s, const SizeUnit& unit) {
   perturbation::Limits limits;
@@ -210,7 +232,7 @@ control::Mode read_control(const Section& s) {
 }
 
 Plan read_perturbation(const Section& s, Machine machine) {
-  enum class Kind { none, multisine, pulses, random_binary, ramp_and_hold };
+  enum class Kind { none, multisine, pulses, random_binary, ramp_and_hold, servo_displacement };
   const bool one_axis = machine == Machine::one_axis;
   const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, at_hand = {kMillimetres, kNewtons},
                               of_sines = {kDegrees, kMillimetres, kNewtons};
@@ -223,6 +245,7 @@ Plan read_perturbation(const Section& s, Machine machine) {
                                            {"pulses", Kind::pulses},
                                            {"random_binary", Kind::random_binary},
                                            {"ramp_and_hold", Kind::ramp_and_hold},
+                                           {"servo_displacement", Kind::servo_displacement},
                                            {"none", Kind::none}})) {
     case Kind::none:
       plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
@@ -252,6 +275,10 @@ Plan read_perturbation(const Section& s, Machine machine) {
       unit = size.unit;
       break;
     }
+    case Kind::servo_displacement:
+      if (one_axis) s.reject("kind", "the hand reaches in the plane", "take a planar robot");
+      plan.kind = read_reaches(s);
+      break;
   }
   plan.limits = read_limits(s.section("limits"), unit);
   return plan;

@@ -113,6 +113,7 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     tick.phase = static_cast<std::uint8_t>(step.phase);
     tick.reason = static_cast<std::uint8_t>(gate.trip().reason);
     tick.enabled = decision.enabled ? 1 : 0;
+    tick.triggered = step.triggered ? 1 : 0;
     tick.cut = decision.cut ? 1 : 0;
     ticks.push(tick);
 

@@ -22,7 +22,8 @@ struct Tick {
   float compute = 0.0F;                  ///< that the tick before took [s]
   std::uint8_t phase = 0;                ///< control::Phase
   std::uint8_t reason = 0;               ///< safety::Reason
-  std::uint8_t enabled = 0;              ///< drives on
+  std::uint8_t enabled : 1 = 0;          ///< drives on
+  std::uint8_t triggered : 1 = 0;        ///< a hand that reaches passed the trigger
   std::uint8_t cut = 0;                  ///< the controller asked for more than its limits
 
   [[nodiscard]] bool perturbing() const { return perturbation_time >= 0.0; }

@@ -112,6 +112,7 @@ void add_events(Recording& recording, const Journal& journal) {
   bool perturbing = false;
   std::uint64_t next = 0;
   for (const Tick& tick : journal.ticks) {
+    if (tick.triggered != 0) recording.events.push_back({tick.time, "trigger", 0.0});
     const bool behind_a_gap = tick.number != std::exchange(next, tick.number + 1);
     if (tick.perturbing() == perturbing) continue;
     perturbing = tick.perturbing();

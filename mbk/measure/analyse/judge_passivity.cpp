@@ -36,8 +36,8 @@ constexpr std::array kPoorFit = {WarningCode::fit_poor,         WarningCode::hel
                                  WarningCode::missing_dynamics, WarningCode::nonlinear_stiffness,
                                  WarningCode::dry_friction,     WarningCode::stiffness_changes};
 
-template <std::size_t n>
-bool warns_of(const Identification& id, const std::array<WarningCode, n>& codes) {
+template <std::size_t Size>
+bool warns_of(const Identification& id, const std::array<WarningCode, Size>& codes) {
   return std::ranges::any_of(id.warnings, [&](const Warning& one) { return std::ranges::count(codes, one.code) > 0; });
 }
 

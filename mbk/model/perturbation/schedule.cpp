@@ -101,6 +101,15 @@ Result<Schedule> Schedule::ramps(const RampAndHold::Options& options, double tai
   return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, space, duration));
 }
 
+Result<Schedule> Schedule::reaches(const ReachSchedule::Options& options, double tail) {
+  auto schedule = ReachSchedule::create(options);
+  if (!schedule) return tl::unexpected(schedule.error());
+  if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is below 0", tail));
+  const double duration = schedule->end() + tail;
+  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, Space::hand, duration));
+}
+
 Result<Schedule> Schedule::rest(double duration) {
   if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
   return Schedule(Rest{}, Quantity::position, Space::hand, duration);
@@ -121,6 +130,7 @@ Jet<Eigen::Vector2d> Schedule::at(double t) const {
                  },
                  [&](const PulseSchedule& pulses) { return pulses.at(t); },
                  [&](const RampAndHold& ramps) { return ramps.at(t); },
+                 [&](const ReachSchedule& reaches) { return reaches.at(t); },
                  [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
       shape_);
 }
@@ -155,6 +165,7 @@ std::pair<Hertz, Hertz> Schedule::band() const {
                         },
                         [&](const PulseSchedule& pulses) { band.second = pulses.bandwidth(); },
                         [&](const RampAndHold& ramps) { band.second = ramps.bandwidth(); },
+                        [&](const ReachSchedule& reaches) { band.second = reaches.bandwidth(); },
                         [&](const Binary& binary) { band.second = binary.sequence.bandwidth(); }},
              shape_);
   return band;
@@ -190,6 +201,14 @@ std::vector<double> Schedule::breaks() const {
     for (const RampAndHold::Ramp& ramp : ramps->ramps()) {
       for (const double time : {ramp.onset, ramp.onset + o.ramp, ramp.offset, ramp.offset + o.way_back}) {
         times.push_back(time);
+      }
+    }
+  } else if (const ReachSchedule* displaced = reaches()) {
+    const ReachSchedule::Options& o = displaced->options();
+    for (std::size_t k = 0; k < displaced->reaches().size(); ++k) {
+      const double trigger = displaced->trigger_time(k);
+      for (const double later : {0.0, o.out, o.out + o.hold, displaced->displaced_for()}) {
+        times.push_back(trigger + later);
       }
     }
   } else if (const auto* binary = std::get_if<Binary>(&shape_)) {
@@ -293,9 +312,10 @@ Result<void> Schedule::check(const Limits& limits) const {
       const bool lines = std::holds_alternative<Sines>(shape_);
       return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {}, throughout, is above the limit {:.4g} Hz",
                                    found.highest_frequency.value, name, limits.bandwidth->value),
-                       lines                                         ? "leave out the lines above it"
-                       : std::holds_alternative<RampAndHold>(shape_) ? "make the ramps slower"
-                                                                     : "lower the natural frequency of the filter");
+                       lines ? "leave out the lines above it"
+                       : std::holds_alternative<RampAndHold>(shape_) || reaches() != nullptr
+                           ? "make the ramps slower"
+                           : "lower the natural frequency of the filter");
     }
   }
   if (limits.reachable && quantity_ == Quantity::position) {

@@ -17,6 +17,7 @@
 #include "mbk/model/perturbation/multisine.h"
 #include "mbk/model/perturbation/ramp_and_hold.h"
 #include "mbk/model/perturbation/random_binary.h"
+#include "mbk/model/perturbation/reach_schedule.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
 
 namespace mbk::perturbation {
@@ -104,12 +105,22 @@ class Schedule {
   [[nodiscard]] static Result<Schedule> ramps(const RampAndHold::Options& options, double tail,
                                               Space space = Space::hand);
 
+  /// Displacements of a hand that reaches, relative to its predicted way; position, Space::hand. What it says as a
+  /// function of time is the expected course (ReachSchedule): the person decides when a reach begins.
+  /// @param tail  from the end of the last interval to the end [s]
+  /// @fails  as ReachSchedule::create; the tail is below 0 or not finite; the whole is longer than kLongest; more than
+  /// kMaxCycles of the ramps' bandwidth.
+  [[nodiscard]] static Result<Schedule> reaches(const ReachSchedule::Options& options, double tail);
+
   /// Nothing moves: position, Space::hand, zero.   @fails  duration ≤ 0, above kLongest or not finite.
   [[nodiscard]] static Result<Schedule> rest(double duration);
 
   [[nodiscard]] Quantity quantity() const { return quantity_; }
   [[nodiscard]] Space space() const { return space_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< [s]
+
+  /// The reaches that it displaces; null where it is none of reaches.
+  [[nodiscard]] const ReachSchedule* reaches() const { return std::get_if<ReachSchedule>(&shape_); }
 
   /// r, ṙ, r̈ at t [s]: displacement from home [m or rad] or force [N or N·m]; zero before 0. Does not allocate.
   [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
@@ -140,7 +151,7 @@ class Schedule {
     RandomBinary sequence;
     Eigen::Vector2d direction_B;
   };
-  using Shape = std::variant<Rest, Sines, PulseSchedule, Binary, RampAndHold>;
+  using Shape = std::variant<Rest, Sines, PulseSchedule, Binary, RampAndHold, ReachSchedule>;
 
   Schedule(Shape shape, Quantity quantity, Space space, double duration)
       : shape_(std::move(shape)), quantity_(quantity), space_(space), duration_(duration) {}

@@ -93,6 +93,12 @@ Result<Schedule> schedule_of(const RampPlan& plan, std::uint64_t seed) {
   return Schedule::ramps(ramps, plan.tail, plan.space);
 }
 
+Result<Schedule> schedule_of(const ReachPlan& plan, std::uint64_t seed) {
+  ReachSchedule::Options reaches = plan.reaches;
+  reaches.seed = seed;
+  return Schedule::reaches(reaches, plan.tail);
+}
+
 Result<Schedule> schedule_of(const RestPlan& plan, std::uint64_t /*seed*/) {
   return Schedule::rest(plan.duration);
 }

@@ -10,6 +10,7 @@
 #include "mbk/model/perturbation/optimal_power.h"
 #include "mbk/model/perturbation/ramp_and_hold.h"
 #include "mbk/model/perturbation/random_binary.h"
+#include "mbk/model/perturbation/reach_schedule.h"
 #include "mbk/model/perturbation/schedule.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
 
@@ -80,13 +81,19 @@ struct RampPlan {
   double tail = 1.0;  ///< recorded after the last way back [s]
 };
 
+/// Servo displacements of a hand that reaches.
+struct ReachPlan {
+  ReachSchedule::Options reaches;
+  double tail = 1.0;  ///< recorded after the last interval [s]
+};
+
 /// Nothing is commanded.
 struct RestPlan {
   double duration = 10.0;  ///< [s]
 };
 
 struct Plan {
-  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan, RampPlan> kind = MultisinePlan{};
+  std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan, RampPlan, ReachPlan> kind = MultisinePlan{};
   Limits limits;  ///< what the schedule must keep
 };
 

@@ -122,6 +122,33 @@ std::optional<participant::Departures::Options> read_departures(const Section& s
   return o;
 }
 
+/// How a participant reaches where the perturbation is one of reaches: when and where to follows from that.
+std::optional<participant::Reaching::Options> read_reaching(const Section& s, const perturbation::Plan& perturbation,
+                                                            const Vector2d& home) {
+  const auto* plan = std::get_if<perturbation::ReachPlan>(&perturbation.kind);
+  if (plan == nullptr) {
+    if (s.given()) s.reject("", "the perturbation is not one of reaches", "give it kind = \"servo_displacement\"");
+    return std::nullopt;
+  }
+  const perturbation::ReachSchedule::Options& r = plan->reaches;
+  participant::Reaching::Options o;
+  o.start = home;
+  o.reach = r.reach;
+  o.reaches = r.directions * r.repetitions + r.undisturbed_first + r.undisturbed_between;
+  o.first = r.quiet;
+  o.interval = r.interval;
+  o.latest = s.number("latest_s", o.latest, at_least(0));
+  o.duration = s.number("duration_s", r.reach_time, above(0));
+  o.duration_spread = s.number("duration_spread_percent", o.duration_spread, at_least(0));
+  o.length_spread = s.number("length_spread_percent", o.length_spread, at_least(0));
+  o.bend = s.number("bend_mm", o.bend, at_least(0));
+  o.end_spread = s.number("end_spread_mm", o.end_spread, at_least(0));
+  o.stay = s.number("stay_s", o.stay, at_least(0));
+  o.way_back = s.number("way_back_s", o.way_back, above(0));
+  o.carried_mass = s.number("carried_mass_kg", o.carried_mass, at_least(0));
+  return o;
+}
+
 std::optional<participant::GripOptions> read_grip(const Section& s) {
   if (!s.given()) return std::nullopt;
   participant::GripOptions grip;
@@ -321,7 +348,7 @@ OneAxisTrial read_one_axis(const Section& root, const Section& robot) {
   return trial;
 }
 
-PlanarTrial read_planar(const Section& root, const Section& robot) {
+PlanarTrial read_planar(const Section& root, const Section& robot, const perturbation::Plan& perturbation) {
   PlanarTrial trial;
   trial.robot = read_robot(robot);
   trial.home = robot.vector2("home_mm", kHome);
@@ -345,6 +372,7 @@ PlanarTrial read_planar(const Section& root, const Section& robot) {
             {at.required_number("time_s", at_least(0)), at.required_number("factor", at_least(0))});
       }
       arm.departures = read_departures(person.section("departures"));
+      arm.reaching = read_reaching(person.section("reaching"), perturbation, trial.home);
       trial.grip = read_grip(person.section("grip"));
       if (kind == Kind::arm) arm.limb = read_two_links(person, trial.home);
       if (kind == Kind::linear) arm.limb = read_linear_limb(person, trial.home);
@@ -378,7 +406,7 @@ Scenario read_scenario(const Section& root) {
   const protocol::Machine machine = protocol::read_machine(robot);
   scenario.perturbation = protocol::read_perturbation(root.section("perturbation"), machine);
   if (machine == protocol::Machine::planar) {
-    scenario.trial = read_planar(root, robot);
+    scenario.trial = read_planar(root, robot, scenario.perturbation);
   } else {
     scenario.trial = read_one_axis(root, robot);
     along_one_axis(scenario.perturbation);

@@ -19,6 +19,9 @@ using perturbation::Quantity;
 /// The truth is asked for at every so many ticks.
 constexpr Index kTruthTicks = 100;
 
+/// And at every so many of a displacement's plateau.
+constexpr Index kPlateauTicks = 10;
+
 /// Average of what an arm is while it tenses and relaxes.
 class MeanImpedance {
  public:
@@ -28,12 +31,62 @@ class MeanImpedance {
     axes_ = model.axes();
     ++count_;
   }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
   [[nodiscard]] impedance::Model mean() const { return impedance::unstacked(sum_ / count_, axes_); }
 
  private:
   Vector sum_;
   Index axes_ = 0;
   double count_ = 0;
+};
+
+/// The load's impedance where the hand is as it moves: M and B as at rest there, and K the slope of the force that the
+/// hand exerts against its place, at its velocity and acceleration,
+///   K = ∂/∂x [Λ(x) ẍ + h(x, ẋ)]
+/// by central differences. Of a linear limb that is its K; of one with joints it holds how inertia and damping at the
+/// hand change with place, as any measurement on a hand that moves does.
+impedance::Model impedance_in_motion(const participant::Load<2>& load, const TrueState<2>& state) {
+  constexpr double kStep = 1e-4;  // m
+  const auto force = [&](const Vector2d& place) -> Vector2d {
+    const auto dynamics = load.dynamics({place, state.velocity, state.theta[1], state.theta_rate[1]});
+    return dynamics.inertia * state.acceleration + dynamics.bias;
+  };
+  impedance::Model model = load.impedance(state.position);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Vector2d step = kStep * Vector2d::Unit(axis);
+    model.K.col(axis) = (force(state.position + step) - force(state.position - step)) / (2.0 * kStep);
+  }
+  return model;
+}
+
+/// Collects the truth of the trial as it goes on.
+template <int Axes>
+class Truth {
+ public:
+  explicit Truth(const AxisVector<Axes>& home) : home_(home) {}
+
+  void add(Index tick, const participant::Load<Axes>& load, const TrueState<Axes>& /*state*/,
+           const OneAxisControl& /*command*/) {
+    if (tick % kTruthTicks == 0) at_home_.add(load.impedance(home_));
+  }
+
+  /// Where hands that reach are displaced, that of the plateaus counts.
+  void add(Index tick, const participant::Load<Axes>& load, const TrueState<Axes>& state,
+           const control::TrialControl& command) {
+    if (tick % kTruthTicks == 0) at_home_.add(load.impedance(home_));
+    if constexpr (Axes == 2) {
+      const control::ReachServo* const reaches = command.reaches();
+      if (reaches != nullptr && reaches->holding() && tick % kPlateauTicks == 0) {
+        displaced_.add(impedance_in_motion(load, state));
+      }
+    }
+  }
+
+  [[nodiscard]] impedance::Model mean() const { return displaced_.empty() ? at_home_.mean() : displaced_.mean(); }
+
+ private:
+  AxisVector<Axes> home_;
+  MeanImpedance at_home_, displaced_;
 };
 
 /// One sample of the recording.
@@ -138,7 +191,7 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
   Recording& recording = result.recording;
   recording.time.resize(samples);
   Channels<Axes> channels(groups(experiment), samples);
-  MeanImpedance truth;
+  Truth<Axes> truth(experiment.home);
   for (Index i = 0; i < samples; ++i) {
     const double t = loop->time(), interval = sensors->next_interval();
     const TrueState<Axes>& state = loop->hold(command->torque(t, sensors->encoders(loop->motor_angle())), interval);
@@ -154,7 +207,12 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
     recording.time[i] = sample.time;
     channels.set(i, sample);
     result.energy_exchanged += std::abs(state.force_hand_on_robot.dot(state.velocity)) * interval;
-    if (i % kTruthTicks == 0) truth.add(load.impedance(experiment.home));
+    truth.add(i, load, state, *command);
+    if constexpr (Axes == 2) {
+      if (command->reaches() != nullptr && command->reaches()->triggered()) {
+        recording.events.push_back({sample.time, "trigger", 0.0});
+      }
+    }
     if (experiment.watch) experiment.watch(state);
     result.energy_absorbed = state.energy.absorbed - 0.5 * experiment.robot.handle_mass * state.velocity.squaredNorm();
     loop->advance();

@@ -45,6 +45,10 @@ struct Experiment {
 /// truth_K, truth_x0 (the load's intrinsic impedance about home, without the handle, averaged over the trial, as JSON
 /// arrays with 12 digits) and truth_energy_absorbed_J; rate_hz; and with two axes truth_force_delay_s of the sensor,
 /// handle_mass_kg, and force_samples_clipped where there are any. Nothing that measures reads the truth.
+/// In a trial of reaches the reference is the displacement from the predicted way and zero where there is none, every
+/// reach has an event `trigger`, and truth_M, truth_B, truth_K and truth_x0 are means over the plateaus of the
+/// displacements, where the hand then was: K is the slope of the force that the hand exerts against its place, at its
+/// velocity and acceleration.
 /// @fails  usage: as TrialControl or OneAxisControl, ClosedLoop and SensorSuite. data: the hand leaves the workspace or
 ///         the motion does not stay finite, with the time.
 template <int Axes>

@@ -5,6 +5,13 @@
 namespace mbk::laboratory {
 namespace {
 
+/// Whoever reaches begins when the perturbation does: behind soft start, way to the test location and rest there.
+void reach_after_settling(PlanarTrial& planar, const control::SequenceOptions& sequence) {
+  auto* const arm = std::get_if<participant::ArmOptions>(&planar.load);
+  if (arm == nullptr || !arm->reaching) return;
+  arm->reaching->first += sequence.soft_start + sequence.shortest_move + sequence.settle;
+}
+
 class ScenarioSimulation : public protocol::Simulation {
  public:
   explicit ScenarioSimulation(Scenario scenario) : scenario_(std::move(scenario)) {}
@@ -17,6 +24,7 @@ class ScenarioSimulation : public protocol::Simulation {
     planar.robot.handle_mass = trial.handle_mass;
     planar.home = trial.home;
     planar.control = trial.control;
+    reach_after_settling(planar, trial.sequence);
     return scenario;
   }
 

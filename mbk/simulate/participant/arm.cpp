@@ -13,7 +13,7 @@
 namespace mbk::participant {
 namespace {
 
-constexpr std::uint32_t kControllerStream = 1, kRemnantStream = 2, kDeparturesStream = 3;
+constexpr std::uint32_t kControllerStream = 1, kRemnantStream = 2, kDeparturesStream = 3, kReachingStream = 4;
 
 /// Symmetric parts [xx, yy, xy] of a hand impedance.
 struct HandImpedance {
@@ -107,19 +107,31 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
     if (!made) return tl::unexpected(made.error());
     departures = std::move(*made);
   }
+  std::optional<Reaching> reaching;
+  if (options.reaching) {
+    if (options.controller.position_gain > 0.0 || options.departures) {
+      return bad_usage("an arm that reaches cannot also hold a place, or have departures about one",
+                       "leave out correction.position_gain and departures");
+    }
+    auto made = Reaching::create(*options.reaching, options.seed, kReachingStream);
+    if (!made) return tl::unexpected(made.error());
+    reaching = std::move(*made);
+  }
   return Arm(std::move(*limb), std::move(*controller), *cocontraction, *remnant, std::move(departures),
-             options.stiffness_schedule);
+             std::move(reaching), options.stiffness_schedule);
 }
 
 Arm::Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant,
-         std::optional<Departures> departures, std::vector<StiffnessAt> schedule)
+         std::optional<Departures> departures, std::optional<Reaching> reaching, std::vector<StiffnessAt> schedule)
     : limb_(std::move(limb)),
       controller_(std::move(controller)),
       cocontraction_(cocontraction),
       remnant_(remnant),
       departures_(std::move(departures)),
+      reaching_(std::move(reaching)),
       schedule_(std::move(schedule)) {
   tense(0.0);
+  reach(0.0);
 }
 
 double Arm::scheduled(double t) const {
@@ -136,9 +148,22 @@ void Arm::tense(double t) {
   std::visit([&](auto& limb) { limb.scale(stiffness, cocontraction_.damping_scale()); }, limb_);
 }
 
+void Arm::reach(double t) {
+  if (!reaching_) return;
+  const perturbation::Jet<Vector2d> meant = reaching_->at(t);
+  const LoadDynamics<2> there = std::visit(
+      [&](auto& limb) {
+        limb.rest_at(meant.value);
+        return limb.dynamics({meant.value, meant.first, 0.0, 0.0});
+      },
+      limb_);
+  drive_ = there.inertia * meant.second + there.bias + reaching_->options().carried_mass * meant.second;
+}
+
 void Arm::tick(double t, double /*sample_time*/, const HandState<2>& hand, const Vector2d& force_on_robot) {
   cocontraction_.step(hand.velocity.norm());
   tense(t);
+  reach(t);
   const Matrix2d K = std::visit([&](const auto& limb) { return limb.stiffness(hand.position); }, limb_);
   const Vector2d& voluntary = controller_.step(hand.position, force_on_robot, K, cocontraction_.voluntary_weight());
   noise_ = remnant_.step(voluntary.norm());
@@ -147,7 +172,7 @@ void Arm::tick(double t, double /*sample_time*/, const HandState<2>& hand, const
 
 LoadDynamics<2> Arm::dynamics(const HandState<2>& hand) const {
   LoadDynamics<2> dynamics = std::visit([&](const auto& limb) { return limb.dynamics(hand); }, limb_);
-  dynamics.bias -= controller_.force() + noise_;
+  dynamics.bias -= controller_.force() + noise_ + drive_;
   if (departures_) dynamics.bias += departures_->force(hand);
   return dynamics;
 }

@@ -9,6 +9,7 @@
 #include "mbk/simulate/participant/departures.h"
 #include "mbk/simulate/participant/intermittent_controller.h"
 #include "mbk/simulate/participant/linear_limb.h"
+#include "mbk/simulate/participant/reaching.h"
 #include "mbk/simulate/participant/remnant.h"
 #include "mbk/simulate/participant/two_link_arm.h"
 
@@ -29,7 +30,8 @@ struct ArmOptions {
   Remnant<2>::Options remnant;
   std::vector<StiffnessAt> stiffness_schedule;    ///< in order of time; empty: it does not change by itself
   std::optional<Departures::Options> departures;  ///< what the limb has beside M, B and K
-  std::uint64_t seed = 1;                         ///< of the controller's errors, the remnant and a tremor
+  std::optional<Reaching::Options> reaching;      ///< the hand reaches; absent: it rests where the limb does
+  std::uint64_t seed = 1;                         ///< of the controller's errors, the remnant, a tremor and the reaches
 };
 
 /// An arm that is asked to do nothing: no voluntary force, no co-contraction, a little noise.
@@ -53,11 +55,16 @@ struct ArmOptions {
 
 /// A person's arm: a passive limb, and what the person adds to it,
 ///   F_h = passive limb (stiffness and damping scaled by co-contraction) − departures + F_v + n
-/// F_v of an intermittent controller, n a remnant. All three are decided once a tick and held over it.
+/// F_v of an intermittent controller, n a remnant. All three are decided once a tick and held over it. An arm that
+/// reaches moves the limb's equilibrium along x_d(t) of Reaching and exerts besides, whatever its hand really does, the
+/// force that takes limb and robot there,
+///   F_d = Λ(x_d) ẍ_d + h(x_d, ẋ_d) + m_c ẍ_d
+/// so that F_h = −[Λ (ẍ − ẍ_d) + D (ẋ − ẋ_d) + K (x − x_d)] + m_c ẍ_d + n of a linear limb, m_c the carried mass.
 class Arm : public Load<2> {
  public:
   /// @param sample_time  T [s] of the ticks that will follow
-  /// @fails  as the parts.
+  /// @fails  usage: an arm that reaches corrects its place or has departures, which are about a place of rest; as the
+  ///         parts.
   [[nodiscard]] static Result<Arm> create(const ArmOptions& options, double sample_time);
 
   void tick(double t, double sample_time, const HandState<2>& hand, const Vector2d& force_on_robot) override;
@@ -73,7 +80,8 @@ class Arm : public Load<2> {
  private:
   using Limb = std::variant<TwoLinkArm, LinearLimb>;
   Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant,
-      std::optional<Departures> departures, std::vector<StiffnessAt> schedule);
+      std::optional<Departures> departures, std::optional<Reaching> reaching, std::vector<StiffnessAt> schedule);
+  void reach(double t);
   void tense(double t);
   [[nodiscard]] double scheduled(double t) const;
 
@@ -82,7 +90,9 @@ class Arm : public Load<2> {
   Cocontraction cocontraction_;
   Remnant<2> remnant_;
   std::optional<Departures> departures_;
+  std::optional<Reaching> reaching_;
   std::vector<StiffnessAt> schedule_;
+  Vector2d drive_ = {0.0, 0.0};  // F_d
   Vector2d noise_ = {0.0, 0.0};
 };
 

@@ -18,6 +18,9 @@ class LinearLimb : public Load<2> {
     damping_scale_ = damping;
   }
 
+  /// Moves the place at which it rests [m], base frame. May change between ticks.
+  void rest_at(const Eigen::Vector2d& place) { x0_ = place; }
+
   [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;
   [[nodiscard]] impedance::Model impedance(const Eigen::Vector2d& hand) const override;
 

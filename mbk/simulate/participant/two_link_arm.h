@@ -62,6 +62,12 @@ class TwoLinkArm : public Load<2> {
     damping_scale_ = damping;
   }
 
+  /// Moves the place at which it rests [m], base frame. May change between ticks.
+  void rest_at(const Vector2d& place) {
+    options_.equilibrium = place;
+    q0_ = joint_angles(options_.geometry, place);
+  }
+
   [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;
 
   /// Linearised about a place at which the arm is held at rest, with today's s_K and s_D:
