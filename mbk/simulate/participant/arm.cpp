@@ -43,6 +43,20 @@ Vector2d rest_of(const ArmOptions& options) {
   return std::visit(Rest{}, options.limb);
 }
 
+/// Whether two links can take the hand to its target, with a twentieth of their length to spare for reaches that go
+/// farther.
+Result<void> check_target(const ArmOptions& options) {
+  const auto* arm = std::get_if<TwoLinkArm::Options>(&options.limb);
+  if (arm == nullptr) return {};
+  const Vector2d target = options.reaching->start + options.reaching->reach;
+  const double length = arm->geometry.upper_arm + arm->geometry.forearm;
+  const double distance = (target - arm->geometry.shoulder).norm();
+  if (distance <= 0.95 * length) return {};
+  return bad_usage(
+      fmt::format("the target of the reach is {:.3g} m from the shoulder of an arm of {:.3g} m", distance, length),
+      "move the shoulder, or shorten the reach");
+}
+
 }  // namespace
 
 ArmOptions relaxed_arm_options() {
@@ -113,6 +127,7 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
       return bad_usage("an arm that reaches cannot also hold a place, or have departures about one",
                        "leave out correction.position_gain and departures");
     }
+    if (auto ok = check_target(options); !ok) return tl::unexpected(ok.error());
     auto made = Reaching::create(*options.reaching, options.seed, kReachingStream);
     if (!made) return tl::unexpected(made.error());
     reaching = std::move(*made);

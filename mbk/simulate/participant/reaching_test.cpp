@@ -68,7 +68,7 @@ TEST(Reaching, RefusesWhatItCannotDo) {
 TEST(Arm, ThatReachesStaysOnItsWayWhereTheRobotIsWhatItTakesItFor) {
   ArmOptions options = relaxed_arm_options();
   options.remnant.floor = 0.0;
-  options.reaching = Reaching::Options{.carried_mass = 1.3};
+  options.reaching = Reaching::Options{.reach = {0.0, 0.08}, .carried_mass = 1.3};
   const Reaching meant = Reaching::create(*options.reaching, options.seed, 4).value();
   Arm arm = Arm::create(options, kTick).value();
   for (double t = 3.0; t < 6.0; t += 0.1) {
@@ -105,9 +105,17 @@ TEST(Arm, ThatReachesDoesNotHoldAPlaceBesides) {
   EXPECT_FALSE(Arm::create(options, kTick));
 }
 
+TEST(Arm, OfTwoLinksRefusesATargetOutOfItsReach) {
+  ArmOptions options = relaxed_arm_options();
+  options.reaching = Reaching::Options{.reach = {0.0, 0.25}};
+  EXPECT_FALSE(Arm::create(options, kTick));
+  options.reaching->reach = {0.0, 0.08};
+  EXPECT_TRUE(Arm::create(options, kTick));
+}
+
 TEST(Arm, ThatReachesDoesNotAllocate) {
   ArmOptions options = relaxed_arm_options();
-  options.reaching = Reaching::Options{};
+  options.reaching = Reaching::Options{.reach = {0.0, 0.08}};
   Arm arm = Arm::create(options, kTick).value();
   const long before = testing_support::allocations();
   for (int i = 0; i < 5000; ++i) arm.tick(i * kTick, kTick, {options.reaching->start}, {0.0, 0.0});
