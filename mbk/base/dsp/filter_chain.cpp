@@ -289,7 +289,7 @@ Interleaved lowpassed(const SectionCascade& filter, const FourColumns& columns, 
 /// @param answer its rows [first, end) are written, row i from sample i·every on
 Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Column> columns,
                                  std::span<const FilterOutput> outputs, Index every, Hertz rate, Index first, Index end,
-                                 Matrix& answer) {
+                                 const std::function<void(Index, Index)>& passed, Matrix& answer) {
   const Index length = columns.front().size();
   // A long signal goes block by block, each with so much before and after it that nothing is left of where it was cut.
   constexpr double kNothing = 1e-20;
@@ -314,6 +314,7 @@ Result<void> lowpass_then_smooth(const FilterChain& chain, std::span<const Colum
       FourColumns here = lanes;
       for (const double*& lane : here) lane += from;
       const Interleaved rows = lowpassed(chain.lowpass, here, to - from, reference, from == 0);
+      if (passed) passed(from, to);
       std::vector<double> values(kLanes * derivatives * static_cast<std::size_t>(behind - begin));
       correlate_every(weights, derivatives, rows.row(begin * every - from), every, behind - begin, values.data());
       for (const auto& [source, target] : batch.outputs) {
@@ -335,7 +336,8 @@ std::vector<Column> part_of(std::span<const Column> columns, Index first, Index 
 }  // namespace
 
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every) {
+                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
+                                   const std::function<void(Index, Index)>& passed) {
   if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
   const auto length = length_of(columns);
   if (!length) return tl::unexpected(length.error());
@@ -353,7 +355,7 @@ Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Col
   }
   const Index first = (memory + every - 1) / every, end = (*left - memory + every - 1) / every;  // rows of the inside
   Matrix answer(count, static_cast<Index>(outputs.size()));
-  if (auto ok = lowpass_then_smooth(chain, columns, outputs, every, sample_rate, first, end, answer); !ok) {
+  if (auto ok = lowpass_then_smooth(chain, columns, outputs, every, sample_rate, first, end, passed, answer); !ok) {
     return tl::unexpected(ok.error());
   }
   if (memory == 0) return answer;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -36,11 +37,13 @@ using Column = Eigen::Map<const Vector>;
 /// two filters commute, so that the low-pass goes first and the smoothing is evaluated where it is asked for. Near the
 /// ends, where the low-pass still remembers how the signal was continued, and for short signals, every row is computed.
 /// @param columns of equal length L, evenly sampled
+/// @param passed  absent, or called with each range of samples [first, end) when it has been read, again where it is
+/// read again
 /// @returns ⌈(L − W + 1)/every⌉×outputs; row i belongs to sample half window + i·every.   Offline: allocates.
 /// @fails as savitzky_golay and filter_zero_phase; every < 1.
 [[nodiscard]] Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                                  std::span<const FilterOutput> outputs, Hertz sample_rate,
-                                                 Index every = 1);
+                                                 Index every = 1, const std::function<void(Index, Index)>& passed = {});
 inline constexpr double kForgotten = 1e-7;
 
 /// Samples after which the response of a filter to what was before is below a fraction of it: log(fraction)/log|p| of

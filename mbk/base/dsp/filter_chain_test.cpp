@@ -157,6 +157,17 @@ TEST(FilterChain, GoesThroughALongSignalInBlocksThatLeaveNoTrace) {
   }
 }
 
+TEST(FilterChain, SaysOfEverySampleOfTheInsideThatItWasRead) {
+  const std::vector<Vector> all = signals(20000, 2, 8);
+  std::vector<bool> read(20000, false);
+  const auto passed = [&](Index first, Index end) { std::fill(read.begin() + first, read.begin() + end, true); };
+  const std::vector<FilterOutput> outputs = {{0, 0}, {1, 1}};
+  const auto told = smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), outputs, kRate, 20, passed);
+  EXPECT_EQ(told.value(), smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), outputs, kRate, 20).value());
+  const Index memory = memory_of(chain({6, 101}, 5.0).lowpass, kForgotten);
+  EXPECT_TRUE(std::all_of(read.begin() + memory, read.end() - memory, [](bool one) { return one; }));
+}
+
 TEST(FilterChain, KnowsHowLongAFilterRemembers) {
   // Butterworth of order five: the slowest pole decays as exp(−2π f_c sin(18°) t), to 1e-9 within 2.13 s at 5 Hz.
   const auto lowpass = butterworth_lowpass(5, Hertz(5.0), kRate).value();

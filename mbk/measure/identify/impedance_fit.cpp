@@ -44,7 +44,9 @@ struct Estimate {
 class Fitter {
  public:
   Fitter(const std::vector<PreparedTrial>& trials, const Options& options)
-      : trials_(trials), options_(options), r_(stack(trials)) {}
+      : trials_(trials), options_(options), r_(stack(trials)) {
+    put_on_disk(r_);
+  }
 
   Result<void> prepare();
   Result<void> find_instruments();
