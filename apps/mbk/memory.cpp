@@ -12,8 +12,8 @@ namespace mbk::app {
 void prefer_large_pages() {
 #if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
   constexpr std::uintptr_t kPage = std::uintptr_t{2} << 20, kArena = std::uintptr_t{64} << 20;
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that it takes
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  mallopt(M_MMAP_THRESHOLD, 5 << 20);  // what is larger goes back when it is freed: columns of hours, not of minutes
+  mallopt(M_TRIM_THRESHOLD, 128 << 20);
   mallopt(M_TOP_PAD, static_cast<int>(kArena));
   const auto end_of_heap = [] { return reinterpret_cast<std::uintptr_t>(sbrk(0)); };
   const std::uintptr_t before = end_of_heap();

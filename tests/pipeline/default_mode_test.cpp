@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/files/recording/read.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
@@ -65,6 +66,22 @@ TEST_P(DefaultMode, RecoversTheTruthOfANoisyLogWithinItsOwnErrors) {
   }
   EXPECT_TRUE(id.usable);
   EXPECT_EQ(codes(id), "");
+}
+
+TEST_P(DefaultMode, FindsTheSameInARecordingWhoseNumbersStandInAFile) {
+  const Recording in_memory = generated(motion(11));
+  Recording on_disk = in_memory;
+  recording::DiskPages disk;
+  disk.take(on_disk.time.data(), on_disk.samples());
+  for (Channel& channel : on_disk.channels) disk.take(channel.values.data(), on_disk.samples());
+  const auto expected = measurement::measure(std::vector{in_memory}, {}).value();
+  const auto found = measurement::measure(std::span(&on_disk, 1), {}).value();
+  EXPECT_EQ(flat(found.identification.model), flat(expected.identification.model));
+  EXPECT_EQ(found.identification.covariance, expected.identification.covariance);
+  EXPECT_EQ(codes(found.identification), codes(expected.identification));
+  ASSERT_EQ(found.energies.size(), 1U);
+  EXPECT_EQ(found.energies[0].account.absorbed, expected.energies[0].account.absorbed);
+  EXPECT_EQ(found.energies[0].curve.absorbed, expected.energies[0].curve.absorbed);
 }
 
 TEST_P(DefaultMode, RecoversTheTruthOfALogWithoutNoise) {

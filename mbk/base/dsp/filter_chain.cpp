@@ -268,7 +268,8 @@ Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> colu
 
 /// Every so many rows, where blocks of samples can do; nothing where they cannot.
 Result<std::optional<Matrix>> filter_blocks(const FilterChain& chain, std::span<const Column> columns,
-                                            std::span<const FilterOutput> outputs, Index every, Hertz rate) {
+                                            std::span<const FilterOutput> outputs, Index every, Hertz rate,
+                                            const Passed& passed) {
   const Index length = columns.front().size(), count = (length - chain.smoothing.window) / every + 1;
   Matrix answer(count, static_cast<Index>(outputs.size()));
   for (const Batch& batch : batches_of(outputs)) {
@@ -279,7 +280,7 @@ Result<std::optional<Matrix>> filter_blocks(const FilterChain& chain, std::span<
     const FourValues reference = values_at(lanes, 0);
     const std::size_t width = kLanes * batch.derivatives.size();
     const auto values = std::make_unique_for_overwrite<double[]>(width * static_cast<std::size_t>(count));
-    (*blocks)->run(lanes, length, reference, values.get());
+    (*blocks)->run(lanes, length, reference, passed, values.get());
     for (std::size_t order = 0; order < batch.derivatives.size(); ++order) {
       std::array<double*, kLanes> to{};
       for (const auto& [from, target] : batch.outputs) {
@@ -295,7 +296,8 @@ Result<std::optional<Matrix>> filter_blocks(const FilterChain& chain, std::span<
 }  // namespace
 
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every) {
+                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
+                                   const Passed& passed) {
   if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
   const auto length = length_of(columns);
   if (!length) return tl::unexpected(length.error());
@@ -303,7 +305,7 @@ Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Col
   if (!left) return tl::unexpected(left.error());
 
   if (every > 1) {
-    auto some = filter_blocks(chain, columns, outputs, every, sample_rate);
+    auto some = filter_blocks(chain, columns, outputs, every, sample_rate, passed);
     if (!some) return tl::unexpected(some.error());
     if (*some) return std::move(**some);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -26,6 +27,9 @@ struct FilterOutput {
 
 using Column = Eigen::Map<const Vector>;
 
+/// Called with each range of samples [first, end) that has been read.
+using Passed = std::function<void(Index, Index)>;
+
 /// savitzky_golay and then filter_zero_phase, to rounding, in two passes over the data.
 /// The Savitzky–Golay sums Σ_j C(j, k) x[i + j], k = 0…N, run from sample to sample by Pascal's rule,
 ///   C(j, k) = C(j + 1, k) − C(j, k − 1),
@@ -36,11 +40,12 @@ using Column = Eigen::Map<const Vector>;
 /// blocks of samples are kept as a few moments, and no other row is computed (decimated_chain.h). Where blocks cannot
 /// do, every row is.
 /// @param columns of equal length L, evenly sampled
+/// @param passed  where only every Nth row is asked for, of four columns after the other
 /// @returns ⌈(L − W + 1)/every⌉×outputs; row i belongs to sample half window + i·every.   Offline: allocates.
 /// @fails as savitzky_golay and filter_zero_phase; every < 1.
 [[nodiscard]] Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                                  std::span<const FilterOutput> outputs, Hertz sample_rate,
-                                                 Index every = 1);
+                                                 Index every = 1, const Passed& passed = {});
 inline constexpr double kDecimationError = 1e-7;
 
 }  // namespace mbk::dsp

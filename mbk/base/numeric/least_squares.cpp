@@ -136,7 +136,7 @@ std::vector<Matrix> long_run_covariances(Index kinds, Index k, const std::vector
       for (Index kind = 0; kind < kinds; ++kind) {
         omegas[static_cast<std::size_t>(kind)] += gram_of({windows.block(0, kind * k, rows, k)});
       }
-      if (rows == block) scores.topRows(before) = scores.middleRows(block, before).eval();
+      if (rows == block) scores.topRows(before) = scores.middleRows(block, before);  // a block is no shorter
     }
   }
   for (Matrix& omega : omegas) omega /= static_cast<double>(before);

@@ -12,6 +12,7 @@
 #include "mbk/base/core/ordinal.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/files/recording/inspect.h"
 
 namespace mbk::recording {
@@ -19,7 +20,6 @@ namespace {
 
 constexpr double kRateTolerance = 1e-3;  ///< relative: what clocks of two machines differ by at most
 constexpr std::size_t kMaxListed = 12;
-constexpr Index kLong = 1 << 20;  ///< samples, of which it counts how often they are in memory
 
 /// One row or column of an array.
 struct Line {
@@ -604,7 +604,8 @@ class Assembler {
       if (std::ranges::none_of(signals_, [&](const Signal& s) { return s.line.array == &array; })) forget(array);
     }
     std::vector<Vector> values(signals_.size());
-    if (samples > kLong && std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
+    DiskPages disk;
+    if (std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
       take_one_by_one(values);
     } else {
       take_together(values);
@@ -612,11 +613,12 @@ class Assembler {
     for (std::size_t s = 0; s < signals_.size(); ++s) {
       const Signal& signal = signals_[s];
       Vector& channel = values[s];
+      const bool other_unit = signal.unit != nullptr && signal.unit->multiply != signal.unit->divide;
       if (signal.negate) channel = -channel;
       if (!signal.is_plain()) channel = (signal.gain * channel.array() + signal.offset).matrix();
-      if (signal.unit != nullptr && signal.unit->multiply != signal.unit->divide) {
-        channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
-      }
+      if (other_unit) channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
+      const bool as_it_stood = contents_.table && !signal.negate && signal.is_plain() && !other_unit;
+      if (samples > kLong && !as_it_stood) disk.take(channel.data(), samples);
       if (signal.kind->name == "time") {
         recording_.time = std::move(channel);
         recording_.time_origin = origin_of(signal);
@@ -633,16 +635,18 @@ class Assembler {
   /// The numbers of an array that are needed no more.
   static void forget(Array& array) { array.values.resize(0, 0); }
 
-  /// Each array goes when its channel is there, so that no more than one of them is in memory twice.
+  /// Each array becomes its channel or goes when that is there, so that no more than one of them is in memory twice.
   void take_one_by_one(std::vector<Vector>& values) {
     for (std::size_t s = 0; s < signals_.size(); ++s) {
       const Line& line = signals_[s].line;
-      values[s] = line.samples(0, line.size());
-      const auto later = std::span(signals_).subspan(s + 1);
-      if (std::ranges::any_of(later, [&](const Signal& other) { return other.line.array == line.array; })) continue;
-      for (Array& array : contents_.arrays) {
-        if (&array == line.array) forget(array);
-      }
+      const auto same = [&](const Signal& other) { return other.line.array == line.array; };
+      const bool last = std::ranges::none_of(std::span(signals_).subspan(s + 1), same);
+      const bool whole = line.size() == line.array->values.size();
+      if (!last || !whole) values[s] = line.samples(0, line.size());
+      if (!last) continue;
+      SharedMatrix& own = std::ranges::find(contents_.arrays, line.array, [](Array& one) { return &one; })->values;
+      if (whole) values[s] = own.take();
+      own = SharedMatrix();
     }
   }
 

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "mbk/files/recording/byte_view.h"
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/files/recording/encode.h"
 
 namespace mbk::recording {
@@ -288,7 +289,7 @@ class Table {
 
   Result<void> add(const Line& line, bool last) {
     last_line_ = line.number;
-    if (rows_ == contents.arrays.front().values.rows()) make_rows(rows_ + rows_ / 4 + 1);
+    if (rows_ == numbers_.front().size()) make_rows(rows_ + rows_ / 4 + 1);
     std::size_t count = 0;
     std::string_view wrong;
     std::size_t wrong_column = 0;
@@ -299,7 +300,7 @@ class Table {
       if (count > columns_) return count <= columns_ + 64;
       const auto value = number(cell);
       if (!value && wrong.data() == nullptr) wrong = cell, wrong_column = count;
-      contents.arrays[count - 1].values(rows_, 0) = value.value_or(0.0);
+      numbers_[count - 1][rows_] = value.value_or(0.0);
       return true;
     });
     const bool trailing = trailing_ && count == columns_ + 1 && last_is_empty;
@@ -320,7 +321,18 @@ class Table {
           "line {} has no line end: if the recording was cut off there, its last number may be cut too", line.number));
     }
     ++rows_;
+    if (rows_ >= on_disk_from_) put_on_disk();
     return {};
+  }
+
+  /// The rows so far of a long table, again and again.
+  void put_on_disk() {
+    constexpr Index kAtOnce = 1 << 17;
+    on_disk_from_ = rows_ + kAtOnce;
+    if (numbers_.front().size() <= kLong) return;
+    for (std::size_t c = 0; c < columns_; ++c) {
+      on_disk_[c] += disk_.take(numbers_[c].data() + on_disk_[c], rows_ - on_disk_[c]);
+    }
   }
 
   void finish() {
@@ -331,7 +343,8 @@ class Table {
     if (trailing_) contents.notes.emplace_back("every line ends with a separator, which was not taken as a column");
     for (std::size_t c = 0; c < columns_; ++c) {
       if (!header_.empty()) contents.arrays[c].name = printable(header_[c]);
-      contents.arrays[c].values.conservativeResize(rows_, 1);
+      numbers_[c].conservativeResize(rows_);
+      contents.arrays[c].values = SharedMatrix::of_column(std::move(numbers_[c]));
     }
   }
 
@@ -343,17 +356,23 @@ class Table {
     const double parts = 1.02 * static_cast<double>(text.size()) / static_cast<double>(there.size());
     const auto expected = text.is_complete() ? ends : static_cast<std::size_t>(static_cast<double>(ends) * parts);
     contents.arrays.resize(columns_);
+    numbers_.resize(columns_);
     make_rows(static_cast<Index>(std::min(expected, text.size() / columns_) + 1));
   }
 
   void make_rows(Index rows) {
-    for (Array& array : contents.arrays) array.values.conservativeResize(rows, 1);
+    for (Vector& column : numbers_) column.conservativeResize(rows);
+    on_disk_.assign(columns_, 0);  // the longer ones stand elsewhere
   }
 
   char separator_ = ',';
   std::vector<std::string> header_;
   std::size_t header_line_ = 0;
   std::size_t columns_ = 0;
+  std::vector<Vector> numbers_;  ///< column by column, with room for more rows
+  std::vector<Index> on_disk_;   ///< of each column, the numbers at its begin whose memory is a file's
+  Index on_disk_from_ = 0;       ///< rows at which it is time for more
+  DiskPages disk_;
   bool trailing_ = false;  ///< every line ends with a separator
   Index rows_ = 0;         ///< complete ones so far
   std::size_t last_line_ = 0;

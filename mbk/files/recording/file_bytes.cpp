@@ -69,7 +69,33 @@ Result<void> read_bytes(int descriptor, void* to, std::size_t count) {
   return {};
 }
 
+using Bytes = std::unique_ptr<std::byte[], Buffer::Free>;
+
+/// In large pages where the system has them, but for the end: what is not used takes no memory.
+Bytes mapped_bytes(std::size_t n) {
+  constexpr std::size_t kPage = std::size_t{2} << 20;
+  const std::size_t whole = (n + kPage - 1) / kPage * kPage;  // which a system aligns
+  void* const room = ::mmap(nullptr, whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) throw std::bad_alloc();
+  ::madvise(room, n / kPage * kPage, MADV_HUGEPAGE);  // only advice: it may fail
+  return Bytes(static_cast<std::byte*>(room), Buffer::Free{whole});
+}
+
+Bytes bytes_of_heap(std::size_t n) {
+  return Bytes(static_cast<std::byte*>(::operator new(n)), Buffer::Free{});
+}
+
 }  // namespace
+
+void Buffer::Free::operator()(std::byte* bytes) const {
+  if (mapped > 0) {
+    ::munmap(bytes, mapped);
+  } else {
+    ::operator delete(bytes);
+  }
+}
+
+Buffer::Buffer(std::size_t n) : data(n >= std::size_t{1} << 20 ? mapped_bytes(n) : bytes_of_heap(n)), size(n) {}
 
 Result<Buffer> read_file(const std::filesystem::path& file) {
   const auto open = open_file(file);

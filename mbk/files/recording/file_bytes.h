@@ -13,13 +13,17 @@
 
 namespace mbk::recording {
 
-/// Owned bytes that are not zeroed first.
+/// Owned bytes that are not zeroed first. Many of them come from the system, and go back to it.
 struct Buffer {
-  std::unique_ptr<std::byte[]> data;
+  struct Free {
+    std::size_t mapped = 0;  ///< bytes; 0 where they are of the heap
+    void operator()(std::byte* bytes) const;
+  };
+  std::unique_ptr<std::byte[], Free> data;
   std::size_t size = 0;
 
   Buffer() = default;
-  explicit Buffer(std::size_t n) : data(std::make_unique_for_overwrite<std::byte[]>(n)), size(n) {}
+  explicit Buffer(std::size_t n);
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data.get(), size}; }
 };
 

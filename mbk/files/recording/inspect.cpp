@@ -11,6 +11,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/disk_pages.h"
 
 namespace mbk::recording {
 namespace {
@@ -223,11 +224,13 @@ Inspection inspect(const Recording& recording) {
   Inspection facts;
   facts.samples = recording.samples();
   inspect_time(recording.time, facts);
-  find_missing(recording, facts.missing);
   find_non_finite("time", recording.time, facts.non_finite);
+  let_go(recording.time);
+  find_missing(recording, facts.missing);
   for (const Channel& channel : recording.channels) {
     find_non_finite(channel.name, channel.values, facts.non_finite);
     facts.channels.push_back(inspect_channel(channel, channel.values));
+    let_go(channel.values);
   }
   return facts;
 }
@@ -241,6 +244,7 @@ std::vector<ChannelFacts> clipped_channels(const Recording& recording, double fr
   for (const Channel& channel : recording.channels) {
     if (!can_clip(channel.name) || begin >= end) continue;
     const ChannelFacts facts = inspect_channel(channel, channel.values.segment(begin, end - begin));
+    let_go(channel.values);
     if (facts.clipped) clipped.push_back(facts);
   }
   return clipped;

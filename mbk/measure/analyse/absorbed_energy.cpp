@@ -14,6 +14,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/dsp/savitzky_golay.h"
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/measure/analyse/decimation.h"
 #include "mbk/measure/analyse/energy_blocks.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -42,6 +43,10 @@ struct Exchange {
   [[nodiscard]] Index samples() const { return clock->size(); }
   [[nodiscard]] double time(Index i) const { return (*clock)[i] - (*clock)[0]; }  ///< [s] from the first sample
   [[nodiscard]] double step(Index i) const { return time(i + 1) - time(i); }
+  /// For a walk along the samples.
+  [[nodiscard]] recording::InPassing in_passing(Index begin = 0) const {
+    return recording::InPassing({*clock, position, force}, begin);
+  }
   /// −∫ F_h·dx, whether or not there is a break.
   [[nodiscard]] double work(Index i) const {
     double sum = 0.0;
@@ -60,7 +65,8 @@ class Velocity {
  public:
   static constexpr Index kBlock = 1 << 19;
   /// @param at_once  samples of a block
-  explicit Velocity(const Exchange& exchange, Index at_once = kBlock) : exchange_(exchange), at_once_(at_once) {}
+  explicit Velocity(const Exchange& exchange, Index at_once = kBlock)
+      : exchange_(exchange), at_once_(at_once), passing_(exchange.in_passing()) {}
 
   /// N×n; NaN where the smoothing does not reach.
   [[nodiscard]] auto row(Index i) { return rows_.row(place(i)); }
@@ -78,6 +84,11 @@ class Velocity {
     return 0.5 * exchange_.step(i) * (std::sqrt(squares_[place(i)]) + behind);
   }
 
+  /// Nobody walks on from here.
+  void leave() {
+    passing_.let_go_before(std::min(exchange_.samples(), begin_ + rows_.rows() + exchange_.smoothing.half_window()));
+  }
+
  private:
   /// In the rows that are there, which are others then where it was none of them.
   Index place(Index i) {
@@ -89,6 +100,8 @@ class Velocity {
     const Index samples = exchange_.samples(), half = exchange_.smoothing.half_window();
     begin_ = samples <= at_once_ ? 0 : std::max<Index>(0, i - std::max<Index>(1, at_once_ / 8));
     const Index end = std::min(samples, begin_ + at_once_);
+    if (rows_.rows() == 0) passing_ = exchange_.in_passing(begin_);
+    passing_.reached(begin_);
     rows_.setConstant(end - begin_, exchange_.position.cols(), kNaN);
     auto broken = std::ranges::lower_bound(exchange_.breaks, begin_);
     Index first = broken == exchange_.breaks.begin() ? 0 : *std::prev(broken) + 1;  // of the samples without a break
@@ -110,6 +123,7 @@ class Velocity {
   Index at_once_, begin_ = 0;
   Matrix rows_;
   Vector squares_;  ///< |row|²
+  recording::InPassing passing_;
 };
 
 Index last_sample(const Segment& segment, Index every) {
@@ -153,12 +167,15 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
 
   exchange.unbroken.resize(static_cast<std::size_t>(samples - 1));
   const double longest = 1.5 / trial.recording_rate;
+  recording::InPassing passing = exchange.in_passing();
   for (Index i = 0; i + 1 < samples; ++i) {
+    passing.reached(i);
     const double step = exchange.step(i);
     const bool unbroken = step > 0.0 && step <= longest && std::isfinite(exchange.work(i));
     exchange.unbroken[static_cast<std::size_t>(i)] = unbroken;
     if (!unbroken) exchange.breaks.push_back(i);
   }
+  passing.let_go_before(samples);
   exchange.smoothing = {trial.preparation.smoothing_order, trial.preparation.smoothing_window};
   exchange.rate = Hertz(trial.recording_rate);
   if (const auto weights = dsp::savitzky_golay_weights(exchange.smoothing, 1); !weights) {
@@ -279,7 +296,9 @@ Division divide(const std::shared_ptr<const Exchange>& exchange, Velocity& veloc
     if (kept > kKept) {
       block = outline(std::move(block), [exchange, range] {
         Velocity here(*exchange, 2 * (range.last - range.first + 2));
-        return sums_of(*exchange, here, range).first;
+        auto inside = sums_of(*exchange, here, range).first;
+        here.leave();
+        return inside;
       });
     }
     division.blocks.push_back(std::move(block));
@@ -341,7 +360,9 @@ Afterwards walk_again(const Exchange& exchange, Velocity& velocity, double first
 EnergyCurve curve_of(const Exchange& exchange, const std::optional<Curl>& curl) {
   EnergyCurve curve;
   double absorbed = 0.0, of_curl = 0.0;
+  recording::InPassing passing = exchange.in_passing();
   const auto running = [&](Index begin, Eigen::Ref<Matrix> sums) {
+    passing.reached(begin);
     for (Index row = 0; row < sums.rows(); ++row) {
       if (begin + row > 0) {
         absorbed += exchange.absorbed(begin + row - 1);
@@ -351,8 +372,9 @@ EnergyCurve curve_of(const Exchange& exchange, const std::optional<Curl>& curl) 
       if (curl) sums(row, 1) = of_curl;
     }
   };
-  Series shown = decimated_in_passing(*exchange.clock, curl ? 2 : 1, running, pieces_between_gaps(*exchange.clock),
-                                      Decimation::extremes);
+  const std::vector<Rows> pieces = pieces_between_gaps(*exchange.clock);
+  recording::let_go(*exchange.clock);
+  Series shown = decimated_in_passing(*exchange.clock, curl ? 2 : 1, running, pieces, Decimation::extremes);
   curve.time = shown.time.array() - (*exchange.clock)[0];
   curve.absorbed = shown.values.col(0);
   if (curl) curve.curl = shown.values.col(1);
@@ -379,7 +401,10 @@ Vector centre_of(const impedance::Model& model, const Exchange& exchange) {
   if (model.x0.size() == exchange.position.cols() && model.x0.allFinite()) return model.x0;
   const auto& [first, last] = exchange.window;
   Vector mean(exchange.position.cols());
-  for (Index k = 0; k < mean.size(); ++k) mean[k] = exchange.position.col(k).segment(first, last - first + 1).mean();
+  for (Index k = 0; k < mean.size(); ++k) {
+    mean[k] = exchange.position.col(k).segment(first, last - first + 1).mean();
+    recording::let_go(exchange.position.col(k));
+  }
   return mean;
 }
 

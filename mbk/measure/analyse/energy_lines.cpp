@@ -11,6 +11,7 @@
 #include "mbk/base/dsp/autocorrelation.h"
 #include "mbk/base/dsp/fourier.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
@@ -38,7 +39,9 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
   if (begin < 0 || end > recording.samples() || end - begin < 2) return std::nullopt;
   const auto time = recording.time.segment(begin, end - begin);
   const auto steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
-  if (!(steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5)) return std::nullopt;
+  const bool unbroken = steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5;
+  recording::let_go(time);
+  if (!unbroken) return std::nullopt;
   Window window;
   window.rate = trial.recording_rate;
   for (const auto& [quantity, values] : {std::pair{&kPositionChannels, &window.position},
@@ -48,7 +51,9 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
     if (all.size() == 0) return std::nullopt;
     *values = all.part(begin, end - begin);
     for (Index axis = 0; axis < values->cols(); ++axis) {
-      if (!values->col(axis).allFinite()) return std::nullopt;
+      const bool finite = values->col(axis).allFinite();
+      recording::let_go(values->col(axis));
+      if (!finite) return std::nullopt;
     }
   }
   return window;
@@ -58,6 +63,7 @@ double total_variance(const Columns& signal) {
   double sum = 0.0;
   for (Index axis = 0; axis < signal.cols(); ++axis) {
     sum += (signal.col(axis).array() - signal.col(axis).mean()).square().sum();
+    recording::let_go(signal.col(axis));
   }
   return sum / static_cast<double>(signal.rows());
 }
@@ -66,7 +72,9 @@ double total_variance(const Columns& signal) {
 double unlike_itself(const Columns& signal, Index lag, Index step, double variance) {
   double sum = 0.0;
   Index count = 0;
+  recording::InPassing passing({signal});
   for (Index i = 0; i + lag < signal.rows(); i += step, ++count) {
+    passing.reached(i);
     double distance = 0.0;
     for (Index axis = 0; axis < signal.cols(); ++axis) {
       const double change = signal(i + lag, axis) - signal(i, axis);
@@ -74,6 +82,7 @@ double unlike_itself(const Columns& signal, Index lag, Index step, double varian
     }
     sum += distance;
   }
+  passing.let_go_before(signal.rows());
   return sum / (2.0 * variance * static_cast<double>(count));
 }
 
@@ -123,6 +132,7 @@ std::optional<Periods> periods_of(const Columns& reference, double rate) {
   Matrix some((reference.rows() - 1) / step + 1, reference.cols());
   for (Index axis = 0; axis < some.cols(); ++axis) {
     some.col(axis) = reference.col(axis)(Eigen::seqN(0, some.rows(), step));
+    recording::let_go(reference.col(axis));
   }
   const Vector coarse = unlike_by_lag(std::move(some), longest / step, variance);
   bool went_away = false;
@@ -193,11 +203,14 @@ std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recording
     length = found->length;
     rate = window->rate;
     harmonics = std::move(own);
+    recording::InPassing passing({window->position, window->force}, found->begin);
     for (Index one = 0; one < found->count; ++one) {
       const Index begin = found->begin + one * length;
+      passing.reached(begin);
       absorbed.push_back(absorbed_at(harmonics, window->position.middle_rows(begin, length),
                                      window->force.middle_rows(begin, length)));
     }
+    passing.let_go_before(found->begin + found->count * length);
   }
   const auto periods = static_cast<Index>(absorbed.size());
   if (periods < kMinPeriods) return {};

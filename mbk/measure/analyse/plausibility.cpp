@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/measure/analyse/advice.h"
 #include "mbk/measure/analyse/axis_maps.h"
 #include "mbk/measure/analyse/channel_cure.h"
@@ -95,6 +96,7 @@ std::optional<Warning> check_columns(const Recording& recording, int axes) {
   std::vector<double> squares;  // Σ (x − x̄)²
   for (const Column& column : columns) {
     squares.push_back((column.values->array() - column.values->mean()).square().sum());
+    recording::let_go(*column.values);
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
     for (std::size_t k = i + 1; k < columns.size(); ++k) {

@@ -10,6 +10,7 @@
 
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
@@ -61,8 +62,10 @@ double prominence(const dsp::Spectrum& spectrum, Index line) {
 /// The clearest line of one axis.
 AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<const Vector>& reference, double rate) {
   AssumptionTest result{Assumption::no_tremor};
-  const auto of_force = dsp::welch(force, Hertz(rate), Hertz(kResolution)),
-             of_reference = dsp::welch(reference, Hertz(rate), Hertz(kResolution));
+  const auto of_force = dsp::welch(force, Hertz(rate), Hertz(kResolution));
+  recording::let_go(force);
+  const auto of_reference = dsp::welch(reference, Hertz(rate), Hertz(kResolution));
+  recording::let_go(reference);
   if (!of_force || !of_reference) return result;
   const double width = of_force->frequency[1] - of_force->frequency[0];
   const double segments = static_cast<double>(force.size()) / rate * width;
@@ -92,6 +95,12 @@ AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<c
   return result;
 }
 
+bool is_finite(const Eigen::Ref<const Vector>& signal) {
+  const bool finite = first_non_finite(signal) < 0;
+  recording::let_go(signal);
+  return finite;
+}
+
 }  // namespace
 
 std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> recordings,
@@ -108,11 +117,13 @@ std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> reco
                 end = std::min<Index>(recording.samples(), std::llround(trial.preparation.to_s * rate) + 1);
     if (static_cast<double>(end - begin) < kShortest * rate) continue;
     const auto time = recording.time.segment(begin, end - begin);
-    if ((time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff() * rate > 1.5) continue;
+    const double longest = (time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff();
+    recording::let_go(time);
+    if (longest * rate > 1.5) continue;
     for (Index axis = 0; axis < trial.axes; ++axis) {
       const auto of_force = force.col(axis).segment(begin, end - begin),
                  of_reference = reference.col(axis).segment(begin, end - begin);
-      if (first_non_finite(of_force) >= 0 || first_non_finite(of_reference) >= 0) continue;
+      if (!is_finite(of_force) || !is_finite(of_reference)) continue;
       const AssumptionTest found = line_of(of_force, of_reference, rate);
       if (!clearest || found.p_value < clearest->p_value) clearest = found;
     }

@@ -44,7 +44,9 @@ struct Estimate {
 class Fitter {
  public:
   Fitter(const std::vector<PreparedTrial>& trials, const Options& options)
-      : trials_(trials), options_(options), r_(stack(trials)) {}
+      : trials_(trials), options_(options), r_(stack(trials)) {
+    put_on_disk(r_);
+  }
 
   Result<void> prepare();
   Result<void> find_instruments();
@@ -65,6 +67,8 @@ class Fitter {
   /// Ω of the scores of a method that was found or, where both were, those of both in one pass.
   [[nodiscard]] const Matrix& long_run(Method method);
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
+  /// What the instruments explain of the residual of a method of full rank, axis by axis; of all such in one pass.
+  [[nodiscard]] const Vector& coherent_fraction(Method method);
   void describe(Identification& result) const;
 
   [[nodiscard]] Result<void> choose_handle_mass();
@@ -86,6 +90,7 @@ class Fitter {
   std::array<std::optional<Estimate>, 2> judged_;           ///< from the identification data alone, where these differ
   std::array<Matrix, 2> omegas_;                            ///< long-run covariances of their scores
   Matrix omega_of_both_;                                    ///< of [instrumental variables | least squares]
+  std::array<Vector, 2> coherent_;                          ///< fractions of their residuals
   std::optional<Spread> spread_;                            ///< of the rows behind the parameters
   std::array<Vector, 2> errors_;                            ///< standard errors of their coefficients, stacked
   std::optional<std::vector<AssumptionTest>> assumptions_;  ///< of the data, by whichever method comes first
@@ -283,6 +288,24 @@ const Matrix& Fitter::long_run(Method method) {
   return wanted;
 }
 
+const Vector& Fitter::coherent_fraction(Method method) {
+  Vector& wanted = coherent_[static_cast<std::size_t>(method)];
+  if (wanted.size() > 0) return wanted;
+  std::vector<std::size_t> full;
+  for (std::size_t at = 0; at < estimates_.size(); ++at) {
+    if (estimates_[at] && is_full(*estimates_[at])) full.push_back(at);
+  }
+  const Index n = r_.axes();
+  Matrix residuals(r_.Y.rows(), n * std::ssize(full));
+  for (std::size_t k = 0; k < full.size(); ++k) {
+    residuals.middleCols(static_cast<Index>(k) * n, n) =
+        numeric::residuals_of({r_.Z}, r_.Y, estimates_[full[k]]->coefficients);
+  }
+  const Vector fractions = coherent_residual_fraction(r_, *instruments_, residuals, ranges_);
+  for (std::size_t k = 0; k < full.size(); ++k) coherent_[full[k]] = fractions.segment(static_cast<Index>(k) * n, n);
+  return wanted;
+}
+
 Result<Identification> Fitter::identify(Method method) {
   const Index n = r_.axes();
   const auto at = static_cast<std::size_t>(method);
@@ -313,10 +336,9 @@ Result<Identification> Fitter::identify(Method method) {
     result.instrument = InstrumentCheck{instruments_->from, instruments_->strength, Vector::Constant(n, std::nan(""))};
   }
   if (instruments_ && is_full(*fit)) {
-    const Matrix residual = numeric::residuals_of({r_.Z}, r_.Y, fit->coefficients);
-    const Vector fraction = coherent_residual_fraction(r_, *instruments_, residual, ranges_);
+    const Vector& fraction = coherent_fraction(method);
     if (result.instrument) result.instrument->coherent_residual = fraction;
-    result.response = response_in(residual, fraction);
+    result.response = response_in(numeric::residuals_of({r_.Z}, r_.Y, fit->coefficients), fraction);
   }
   if (is_full(*fit)) result.assumptions = assumptions_tested(method, *fit);
   if (options_.bootstrap > 0 && is_full(*fit)) {

@@ -177,9 +177,9 @@ Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quan
   return response.strength.minCoeff() > position.strength.minCoeff() ? std::move(response) : std::move(position);
 }
 
-Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments, const Matrix& residual,
+Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments, const Matrix& residuals,
                                   const std::vector<RowRange>& ranges) {
-  const Index n = r.axes(), p = instruments.R.cols();
+  const Index n = r.axes(), p = instruments.R.cols(), k = residuals.cols();
   const Index every = std::max<Index>(1, std::llround(kReach / (r.sample_time * static_cast<double>(kLagsOfAnswer))));
   const Index reach = every * kLagsOfAnswer, columns = p + n * kLagsOfAnswer;
   std::vector<RowRange> rows;  // of ranges, without those that have no whole past
@@ -189,21 +189,21 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
     rows.push_back({range.begin + reach, range.end});
     count += rows.back().size();
   }
-  if (count < 2 * columns) return Vector::Constant(n, std::nan(""));
-  Matrix gram = Matrix::Zero(columns + n, columns + n);  // of [R | the reference before | residual]
+  if (count < 2 * columns) return Vector::Constant(k, std::nan(""));
+  Matrix gram = Matrix::Zero(columns + k, columns + k);  // of [R | the reference before | residuals]
   for (const RowRange& range : rows) {
     std::vector<numeric::MatrixPart> parts = {instruments.R.middleRows(range.begin, range.size())};
     for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) {
       parts.emplace_back(r.reference.rightCols(n).middleRows(range.begin - lag * every, range.size()));
     }
-    parts.emplace_back(residual.middleRows(range.begin, range.size()));
+    parts.emplace_back(residuals.middleRows(range.begin, range.size()));
     gram += numeric::gram_of(parts);
   }
-  Matrix Y = rows_of(residual, rows);
+  Matrix Y = rows_of(residuals, rows);
   const Vector mean = Y.colwise().mean();
   Y.rowwise() -= mean.transpose();
   // R has a column of ones, behind the motion.
-  const Matrix to_Y = gram.topRightCorner(columns, n) - gram.col(p - 1).head(columns) * mean.transpose();
+  const Matrix to_Y = gram.topRightCorner(columns, k) - gram.col(p - 1).head(columns) * mean.transpose();
   Vector unit = gram.diagonal().head(columns);
   unit = (unit.array() > 0.0).select(unit.cwiseSqrt().cwiseInverse(), 1.0);
   const auto [values, vectors] =
@@ -212,8 +212,8 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
   const Vector weights = (values.array() > kDependent * values.maxCoeff()).select(values.cwiseInverse(), 0.0);
   const Matrix along = vectors.transpose() * unit.asDiagonal() * to_Y;
   // Independent samples: those of the residual's own correlation.
-  Vector share(n);
-  for (Index j = 0; j < n; ++j) {
+  Vector share(k);
+  for (Index j = 0; j < k; ++j) {
     const double power = Y.col(j).squaredNorm(), memory = memory_of(Y.col(j), power);
     const double chance = static_cast<double>(columns - 1) * memory / static_cast<double>(count);
     const double explained = power > 0.0 ? weights.dot(along.col(j).cwiseAbs2()) / power : 0.0;

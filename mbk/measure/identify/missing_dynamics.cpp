@@ -237,6 +237,7 @@ class Tester {
     Matrix Aw, Rw;
     Vector yw;
     for (int pass = 0; pass < 2; ++pass) {
+      Aw = Rw = Matrix();  // before there is another
       const Vector e = y - A * b;
       const Vector filter = noise_of(e.array() - e.mean());
       Aw = whitened(A, filter);
@@ -244,18 +245,19 @@ class Tester {
       yw = whitened(y, filter);
       b = solved(Aw, Rw, yw);
     }
+    R = Matrix();
     const auto count = static_cast<double>(Aw.rows());
     AxisFit result;
     result.freedom = count - static_cast<double>(p);
     if (!(result.freedom > 0.0)) return std::nullopt;
     const Matrix bread = numeric::inverse(Rw.transpose() * Aw);
     const Vector residual = yw - Aw * b;
-    const Matrix scores = residual.asDiagonal() * Rw;
-    const Matrix V = count / result.freedom * bread * (scores.transpose() * scores) * bread.transpose();
+    const Vector b0 = solved(Aw.leftCols(base), Rw.leftCols(base), yw);
+    Rw.array().colwise() *= residual.array();  // the scores
+    const Matrix V = count / result.freedom * bread * (Rw.transpose() * Rw) * bread.transpose();
     const Vector tested = b.tail(last);
     result.statistic =
         tested.dot(numeric::PivotedCholesky(V.bottomRightCorner(last, last)).solve(tested)) / static_cast<double>(last);
-    const Vector b0 = solved(Aw.leftCols(base), Rw.leftCols(base), yw);
     const double power = numeric::variance(y);
     result.gain = (numeric::variance(y - A.leftCols(base) * b0) - numeric::variance(y - A * b)) / power;
     result.coefficients = b.cwiseQuotient(scale);
@@ -389,7 +391,9 @@ class Tester {
 std::vector<AssumptionTest> test_assumptions(const Regression& r, const Matrix& coefficients, const Matrix& errors,
                                              double band, const std::vector<RowRange>& ranges) {
   if (!(band > 0.0) || !coefficients.allFinite() || !(errors.array() > 0.0).all()) return {};
-  return Tester(r, coefficients, errors, band, ranges).run();
+  const Tester tester(r, coefficients, errors, band, ranges);
+  let_go(r);  // it has rows of its own
+  return tester.run();
 }
 
 }  // namespace mbk::identify

@@ -7,6 +7,7 @@
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/disk_pages.h"
 
 namespace mbk::identify {
 namespace {
@@ -78,6 +79,7 @@ Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
     (segment->purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
     written = row + size;
   }
+  for (const PreparedTrial& trial : trials) recording::let_go(trial);
   r.centre = Vector::Zero(n);
   Index count = 0;
   for (const RowRange& range : r.identification.empty() ? r.validation : r.identification) {
@@ -92,6 +94,19 @@ Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
 }
 
 }  // namespace
+
+void put_on_disk(Regression& r) {
+  constexpr Index kLong = recording::kLong / 2;  // rows
+  if (r.Z.rows() < kLong) return;
+  recording::DiskPages disk;
+  for (Matrix* part : {&r.Z, &r.Y, &r.reference, &r.force_sensitivity}) disk.take(part->data(), part->size());
+}
+
+void let_go(const Regression& r) {
+  for (const Matrix* part : {&r.Z, &r.Y, &r.reference, &r.force_sensitivity}) {
+    recording::let_go(part->data(), part->size());
+  }
+}
 
 std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b) {
   std::vector<RowRange> all = a;

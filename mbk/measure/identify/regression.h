@@ -34,6 +34,10 @@ struct Regression {
 /// The same without the reference and what the force rests on.
 [[nodiscard]] Regression stack_motion_and_force(const std::vector<PreparedTrial>& trials);
 
+/// Puts the columns of a long one on disk, and lets go of them until they are read again (disk_pages.h).
+void put_on_disk(Regression& r);
+void let_go(const Regression& r);
+
 /// Both lists in order; neighbours without a break in between are one range: the residual's correlation does not stop
 /// at the split.
 [[nodiscard]] std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b);

@@ -7,6 +7,7 @@
 
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/disk_pages.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -22,6 +23,7 @@ Result<dsp::Spectrum> spectrum_of(const Columns& signals, const std::vector<Cut>
   for (const Cut& cut : cuts) {
     for (Index axis = 0; axis < signals.cols(); ++axis) {
       auto spectrum = dsp::welch(signals.col(axis).segment(cut.begin, cut.end - cut.begin), sample_rate, resolution);
+      recording::let_go(signals.col(axis));
       if (!spectrum) return tl::unexpected(spectrum.error());
       if (sum.density.size() == 0) {
         sum = std::move(*spectrum);

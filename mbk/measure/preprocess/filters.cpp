@@ -8,6 +8,7 @@
 
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/filter_chain.h"
+#include "mbk/files/recording/disk_pages.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -115,7 +116,10 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   }
   const Index computed = signals.force_sensitivity.cols();
   for (Index k = 0; k < computed; ++k) outputs.push_back({static_cast<Index>(columns.size()) - computed + k, 0});
-  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate, filters.every);
+  const auto passed = [&](Index first, Index end) {
+    for (const dsp::Column& column : columns) recording::let_go(column.segment(first, end - first));
+  };
+  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate, filters.every, passed);
 }
 
 Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mbk/files/recording/disk_pages.h"
 #include "mbk/measure/preprocess/band.h"
 #include "mbk/measure/preprocess/filters.h"
 #include "mbk/measure/preprocess/recorded_handle_mass.h"
@@ -52,6 +53,16 @@ Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const Fi
     row += piece.rows();
   }
   return (all.rowwise() - all.colwise().mean()).colwise().squaredNorm().transpose() / static_cast<double>(rows);
+}
+
+/// Every so many samples, in passing.
+void take_every(const Eigen::Ref<const Vector>& samples, Index first, Index every, Eigen::Ref<Vector> to) {
+  constexpr Index kAtOnce = 1 << 14;
+  for (Index begin = 0; begin < to.size(); begin += kAtOnce) {
+    const Index count = std::min(kAtOnce, to.size() - begin), from = first + begin * every;
+    to.segment(begin, count) = samples(Eigen::seqN(from, count, every));
+    recording::let_go(samples.segment(from, (count - 1) * every + 1));
+  }
 }
 
 }  // namespace
@@ -116,6 +127,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (auto ok = check_clock(clock, inspection, *plan, trial.warnings); !ok) {
     return tl::unexpected(ok.error());
   }
+  recording::let_go(recording.time);
   if (auto ok = check_finite(clock, *signals, *plan); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_alive(*signals, *plan); !ok) return tl::unexpected(ok.error());
   warn_of_small_motion(*signals, *plan, trial.warnings);
@@ -156,8 +168,10 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     const Cut& cut = plan->cuts[k];
     const Matrix& piece = filtered[k];
     const Index rows = piece.rows(), first = cut.begin + lost;
-    const auto kept = Eigen::seqN(first, rows, every);
-    trial.time.segment(row, rows) = recording.time(kept).array() - recording.time[0];
+    take_every(recording.time, first, every, trial.time.segment(row, rows));
+    for (Index axis = 0; axis < trial.reference.cols(); ++axis) {
+      take_every(signals->reference.col(axis), first, every, trial.reference.col(axis).segment(row, rows));
+    }
     trial.position.middleRows(row, rows) = piece.leftCols(n);
     trial.velocity.middleRows(row, rows) = piece.middleCols(n, n);
     trial.acceleration.middleRows(row, rows) = piece.middleCols(2 * n, n);
@@ -166,12 +180,12 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     if (trial.force_sensitivity.size() > 0) {
       trial.force_sensitivity.middleRows(row, rows) = piece.rightCols(trial.force_sensitivity.cols());
     }
-    for (Index axis = 0; axis < trial.reference.cols(); ++axis) {
-      trial.reference.col(axis).segment(row, rows) = signals->reference.col(axis)(kept);
-    }
     append_segments(cut, first, every, row, rows, trial.segments);
     row += rows;
   }
+  filtered.clear();
+  trial.time.array() -= recording.time[0];
+  if (samples > recording::kLong) recording::DiskPages().take(trial);
   if (trial.segments.empty()) return bad_data("no sample is left after filtering", "record longer");
   if (how.protocol == Protocol::underdamped) {
     trial.force_variance_at_rest = variance_at_rest(*signals, *plan, filters, rate, options.padding);

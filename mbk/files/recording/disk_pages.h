@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "mbk/base/core/columns.h"
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/trial/prepared_trial.h"
+
+namespace mbk::recording {
+
+/// A column of so many samples is long: not all of it has to be in memory at a time.
+inline constexpr Index kLong = 1 << 20;
+
+/// A file without a name, in TMPDIR or else /var/tmp, that holds the numbers of long columns. Their memory becomes a
+/// private view of that file: whoever reads them finds them where they stood, and what nobody reads takes no memory.
+/// The file is gone with its last view. Where it cannot be made or the disk is full, numbers stay in memory.
+class DiskPages {
+ public:
+  DiskPages() = default;
+  DiskPages(const DiskPages&) = delete;
+  DiskPages& operator=(const DiskPages&) = delete;
+  DiskPages(DiskPages&&) = delete;
+  DiskPages& operator=(DiskPages&&) = delete;
+  ~DiskPages();
+
+  /// Takes the whole pages among `count` numbers.
+  /// @returns  how many numbers it is done with; the next ones are to be given from there on
+  Index take(double* first, Index count);
+  /// Takes the signals of a trial.
+  void take(PreparedTrial& trial);
+
+ private:
+  [[nodiscard]] bool open();
+
+  int descriptor_ = -1;
+  bool failed_ = false;
+  std::size_t size_ = 0;
+};
+
+/// The numbers are read no more for now: those that stand unchanged in a file leave the memory, and come back when they
+/// are read. With all others nothing happens.
+void let_go(const double* first, Index count);
+inline void let_go(const Eigen::Ref<const Vector>& numbers) {
+  let_go(numbers.data(), numbers.size());
+}
+/// Of the signals of a trial.
+void let_go(const PreparedTrial& trial);
+
+/// Lets go of what lies behind a walk along columns.
+class InPassing {
+ public:
+  explicit InPassing(std::vector<Columns> columns, Index begin = 0) : columns_(std::move(columns)), done_(begin) {}
+  /// The rows before that one were read; a walk may begin anew.
+  void reached(Index row) {
+    if (row < done_) done_ = row;
+    if (row - done_ >= kAtOnce) let_go_before(row);
+  }
+  /// The walk ends before that row.
+  void let_go_before(Index row);
+
+ private:
+  static constexpr Index kAtOnce = 1 << 18;
+  std::vector<Columns> columns_;
+  Index done_;
+};
+
+}  // namespace mbk::recording

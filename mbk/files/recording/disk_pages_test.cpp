@@ -1,0 +1,103 @@
+#include "mbk/files/recording/disk_pages.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "mbk/files/recording/test_files.h"
+#include "mbk/files/recording/test_pages.h"
+
+namespace mbk::recording {
+namespace disk_pages_test {
+
+constexpr Index kCount = 1 << 19;     ///< 4 MB
+constexpr Index kOfThePage = 4096;    ///< numbers on a page are no more, whatever its size
+constexpr Index kPagesAtTheEnds = 2;  ///< which are not whole, and stay
+
+Vector numbers() {
+  return Vector::LinSpaced(kCount, -1.0, 7.0);
+}
+
+class DiskPagesOf : public testing::Test {
+ protected:
+  void SetUp() override {
+    done_ = DiskPages().take(values_.data(), kCount);
+    if (done_ == 0 || !test::pages_in_memory(values_)) GTEST_SKIP() << "no such files here";
+  }
+  [[nodiscard]] Index in_memory() const { return test::pages_in_memory(values_).value(); }
+
+  Vector values_ = numbers();
+  Index done_ = 0;
+};
+
+TEST_F(DiskPagesOf, NumbersLeaveThemWhereTheyStood) {
+  EXPECT_LE(in_memory(), kPagesAtTheEnds);
+  EXPECT_LE(done_, kCount);
+  EXPECT_GT(done_, kCount - kOfThePage);
+  EXPECT_EQ(values_, numbers());
+}
+
+TEST_F(DiskPagesOf, WhatIsLetGoTakesNoMemoryAndComesBack) {
+  EXPECT_EQ(values_.sum(), numbers().sum());
+  EXPECT_GT(in_memory(), 8);
+  let_go(values_);
+  EXPECT_LE(in_memory(), kPagesAtTheEnds);
+  EXPECT_EQ(values_, numbers());
+}
+
+TEST_F(DiskPagesOf, ChangedNumbersKeepTheChange) {
+  values_[kCount / 2] = 42.0;
+  let_go(values_);
+  EXPECT_EQ(values_[kCount / 2], 42.0);
+  values_[kCount / 2] = numbers()[kCount / 2];
+  EXPECT_EQ(values_, numbers());
+}
+
+TEST_F(DiskPagesOf, AColumnThatGrowsKeepsItsNumbers) {
+  values_.conservativeResize(3 * kCount);
+  EXPECT_EQ(values_.head(kCount), numbers());
+  values_.conservativeResize(kCount / 2);
+  EXPECT_EQ(values_, numbers().head(kCount / 2));
+}
+
+TEST_F(DiskPagesOf, AWalkHoldsNoMoreThanItsBlocks) {
+  InPassing passing({values_});
+  const Vector expected = numbers();
+  Index wrong = 0;
+  for (Index row = 0; row < kCount; ++row) {
+    passing.reached(row);
+    wrong += values_[row] != expected[row] ? 1 : 0;
+  }
+  EXPECT_EQ(wrong, 0);
+  const Index all = kCount / 512;  // pages of 4 kB
+  EXPECT_LT(in_memory(), all * 3 / 4);
+  passing.let_go_before(kCount);
+  EXPECT_LE(in_memory(), kPagesAtTheEnds);
+}
+
+TEST(DiskPages, NumbersInMemoryAreNotLetGo) {
+  Vector on_disk = numbers();
+  DiskPages().take(on_disk.data(), kCount);
+  const Vector values = numbers();
+  let_go(values);
+  EXPECT_EQ(values, numbers());
+}
+
+TEST(DiskPages, NumbersStayInMemoryWhereNoFileCanBe) {
+  const char* const before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  ASSERT_EQ(::setenv("TMPDIR", "/there/is/no/such/folder", 1), 0);
+  Vector values = numbers();
+  EXPECT_EQ(DiskPages().take(values.data(), kCount), 0);
+  EXPECT_EQ(values, numbers());
+  ASSERT_EQ(before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", kept.c_str(), 1), 0);
+}
+
+TEST(DiskPages, AFewNumbersAreNoPage) {
+  Vector values = Vector::Ones(10);
+  EXPECT_EQ(DiskPages().take(values.data(), values.size()), 0);
+}
+
+}  // namespace disk_pages_test
+}  // namespace mbk::recording
