@@ -58,29 +58,29 @@ impedance::Model stable(const Matrix& coefficients, double fastest) {
 
 /// [x̂'' x̂' x̂] of M x'' + B x' + K x = u with n axes, u straight between samples. Each range begins at rest at 0, so
 /// that a step which the range begins with moves it.
-template <int n>
+template <int Axes>
 Matrix simulate_axes(const impedance::Model& model, const Matrix& u, double sample_time,
                      const std::vector<RowRange>& ranges) {
-  using Axes = Eigen::Matrix<double, n, 1>;
-  using Square = Eigen::Matrix<double, n, n>;
+  using Values = Eigen::Matrix<double, Axes, 1>;
+  using Square = Eigen::Matrix<double, Axes, Axes>;
   const numeric::PivotedCholesky M(model.M);
   const Square by_position = -M.solve(model.K), by_velocity = -M.solve(model.B);
-  const Square by_force = M.solve(Matrix::Identity(n, n));
-  Matrix generator = Matrix::Zero(4 * n, 4 * n);
-  generator.block(0, n, n, n).setIdentity();
-  generator.block(n, 0, n, n) = by_position;
-  generator.block(n, n, n, n) = by_velocity;
-  generator.block(n, 2 * n, n, n) = by_force;
-  generator.block(2 * n, 3 * n, n, n).setIdentity();
+  const Square by_force = M.solve(Matrix::Identity(Axes, Axes));
+  Matrix generator = Matrix::Zero(4 * Axes, 4 * Axes);
+  generator.block(0, Axes, Axes, Axes).setIdentity();
+  generator.block(Axes, 0, Axes, Axes) = by_position;
+  generator.block(Axes, Axes, Axes, Axes) = by_velocity;
+  generator.block(Axes, 2 * Axes, Axes, Axes) = by_force;
+  generator.block(2 * Axes, 3 * Axes, Axes, Axes).setIdentity();
   const Matrix step = numeric::matrix_exponential(generator * sample_time);
-  const Eigen::Matrix<double, 2 * n, 2 * n> state = step.topLeftCorner(2 * n, 2 * n);
-  const Eigen::Matrix<double, 2 * n, n> slope = step.block(0, 3 * n, 2 * n, n) / sample_time,
-                                        level = step.block(0, 2 * n, 2 * n, n) - slope;
-  Matrix motion = Matrix::Zero(u.rows(), 3 * n);
+  const Eigen::Matrix<double, 2 * Axes, 2 * Axes> state = step.topLeftCorner(2 * Axes, 2 * Axes);
+  const Eigen::Matrix<double, 2 * Axes, Axes> slope = step.block(0, 3 * Axes, 2 * Axes, Axes) / sample_time,
+                                              level = step.block(0, 2 * Axes, 2 * Axes, Axes) - slope;
+  Matrix motion = Matrix::Zero(u.rows(), 3 * Axes);
   for (const RowRange& range : ranges) {
-    Eigen::Matrix<double, 2 * n, 1> z = Eigen::Matrix<double, 2 * n, 1>::Zero();
+    Eigen::Matrix<double, 2 * Axes, 1> z = Eigen::Matrix<double, 2 * Axes, 1>::Zero();
     for (Index i = range.begin; i < range.end; ++i) {
-      const Axes now = u.row(i).transpose(), position = z.template head<n>(), velocity = z.template tail<n>();
+      const Values now = u.row(i).transpose(), position = z.template head<Axes>(), velocity = z.template tail<Axes>();
       motion.row(i) << (by_position * position + by_velocity * velocity + by_force * now).transpose(),
           velocity.transpose(), position.transpose();
       if (i + 1 == range.end) break;
