@@ -29,55 +29,23 @@ Vector slope_of(const Matrix& values, double sample_time) {
 void MotionShare::add(const Matrix& place, double sample_time, const Vector& commanded) {
   using namespace motion_share_detail;
   const Index axes = commanded.size();
-  if (squares_.size() == 0) {
-    squares_ = velocity_.crossed = acceleration_.crossed = Matrix::Zero(axes, axes);
-    velocity_.squares = acceleration_.squares = Vector::Zero(axes);
-  }
+  if (squares_.size() == 0) squares_ = velocity_ = acceleration_ = Matrix::Zero(axes, axes);
   const Index rows = place.rows();
   const Index part = std::min(static_cast<Index>(std::llround(kEndSlope / sample_time)), rows / 2);
   if (part < 1) return;
   const Matrix first = place.topRows(part), last = place.bottomRows(part);
   const double apart = static_cast<double>(rows - part) * sample_time;
-  ++count_;
   squares_ += commanded * commanded.transpose();
-  velocity_.add((last.colwise().mean() - first.colwise().mean()).transpose() / apart, commanded);
+  velocity_ += (last.colwise().mean() - first.colwise().mean()).transpose() / apart * commanded.transpose();
   if (part < 2) return;
-  acceleration_.add((slope_of(last, sample_time) - slope_of(first, sample_time)) / apart, commanded);
+  acceleration_ += (slope_of(last, sample_time) - slope_of(first, sample_time)) / apart * commanded.transpose();
 }
 
 double MotionShare::value() const {
   if (squares_.size() == 0) return 0.0;
   const Matrix inverse = numeric::inverse(squares_);
-  return PlateauStiffness::kDampingOverStiffness * velocity_.norm(inverse) +
-         PlateauStiffness::kInertiaOverStiffness * acceleration_.norm(inverse);
-}
-
-double MotionShare::beyond_chance() const {
-  if (squares_.size() == 0) return 0.0;
-  const Matrix inverse = numeric::inverse(squares_);
-  return PlateauStiffness::kDampingOverStiffness * velocity_.norm_beyond_chance(inverse, count_) +
-         PlateauStiffness::kInertiaOverStiffness * acceleration_.norm_beyond_chance(inverse, count_);
-}
-
-void MotionShare::Regression::add(const Vector& value, const Vector& commanded) {
-  crossed += value * commanded.transpose();
-  squares += value.cwiseAbs2();
-}
-
-double MotionShare::Regression::norm(const Matrix& inverse) const {
-  return numeric::singular_values(crossed * inverse)[0];
-}
-
-double MotionShare::Regression::norm_beyond_chance(const Matrix& inverse, Index count) const {
-  const Index axes = inverse.rows();
-  if (count <= axes) return norm(inverse);
-  const Matrix slope = crossed * inverse;
-  double chance = 0.0;  // Σ s²
-  for (Index i = 0; i < axes; ++i) {
-    const double residual = std::max(0.0, squares[i] - slope.row(i).dot(crossed.row(i)));
-    chance += residual / static_cast<double>(count - axes) * inverse.trace();
-  }
-  return std::sqrt(std::max(0.0, std::pow(norm(inverse), 2) - chance));
+  return PlateauStiffness::kDampingOverStiffness * numeric::singular_values(velocity_ * inverse)[0] +
+         PlateauStiffness::kInertiaOverStiffness * numeric::singular_values(acceleration_ * inverse)[0];
 }
 
 }  // namespace mbk::explore

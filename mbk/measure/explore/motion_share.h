@@ -15,23 +15,8 @@ class MotionShare {
   /// @returns 0 where nothing was added.
   [[nodiscard]] double value() const;
 
-  /// The same less what chance alone gives where every hand moves by an error of its own, as that of a prediction: V
-  /// and A count with √max(0, ‖V‖² − Σ s²), s the standard errors of their entries. Such an error is in the residuals
-  /// of the stiffness too, and so in its interval.
-  [[nodiscard]] double beyond_chance() const;
-
  private:
-  struct Regression {
-    Matrix crossed;  ///< Σ v zᵀ
-    Vector squares;  ///< Σ v² of each axis
-    [[nodiscard]] double norm(const Matrix& inverse) const;
-    /// @param inverse  (Σ z zᵀ)⁻¹   @param count  of hands
-    [[nodiscard]] double norm_beyond_chance(const Matrix& inverse, Index count) const;
-    void add(const Vector& value, const Vector& commanded);
-  };
-  Index count_ = 0;
-  Matrix squares_;
-  Regression velocity_, acceleration_;
+  Matrix squares_, velocity_, acceleration_;
 };
 
 }  // namespace mbk::explore

@@ -48,7 +48,7 @@ Result<ServoDisplacementStiffness> servo_displacement_stiffness(std::span<const 
   found.by.fit = std::move(*fit);
   found.by.components = prediction->components();
   found.by.prediction_error = prediction->left_out_error()[(from + to) / 2];
-  found.by.motion_share = motion.beyond_chance();
+  found.by.motion_share = motion.value();
   found.verdict = judge_stiffness(found.by.fit, found.by.motion_share);
   return found;
 }
