@@ -87,7 +87,7 @@ Bytes bytes_of_heap(std::size_t n) {
 
 }  // namespace
 
-void Buffer::Free::operator()(std::byte* bytes) const {
+void FreeBytes::operator()(std::byte* bytes) const {
   if (mapped > 0) {
     ::munmap(bytes, mapped);
   } else {

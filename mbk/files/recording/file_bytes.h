@@ -13,12 +13,15 @@
 
 namespace mbk::recording {
 
+/// Gives bytes back to where they came from.
+struct FreeBytes {
+  std::size_t mapped = 0;  ///< bytes; 0 where they are of the heap
+  void operator()(std::byte* bytes) const;
+};
+
 /// Owned bytes that are not zeroed first. Many of them come from the system, and go back to it.
 struct Buffer {
-  struct Free {
-    std::size_t mapped = 0;  ///< bytes; 0 where they are of the heap
-    void operator()(std::byte* bytes) const;
-  };
+  using Free = FreeBytes;
   std::unique_ptr<std::byte[], Free> data;
   std::size_t size = 0;
 
