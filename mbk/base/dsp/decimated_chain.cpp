@@ -58,7 +58,7 @@ class FourSum {
 
 }  // namespace
 
-/// Upper half plane only; nothing where they cannot be told apart.
+/// Upper half plane only; nothing where they lie too close together.
 std::optional<std::vector<DecimatedChain::Mode>> DecimatedChain::modes_of(const SectionCascade& lowpass,
                                                                           double& kappa) {
   std::vector<Complex> poles;
