@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "mbk/files/recording/sha256.h"
+#include "mbk/files/contents/sha256.h"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "mbk/base/numeric/block_bootstrap.h"
+#include "mbk/files/contents/sha256.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/recording/sha256.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/measure/analyse/ellipses.h"
 #include "mbk/measure/identify/consistent_model.h"

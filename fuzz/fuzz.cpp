@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
-#include "mbk/files/recording/file_bytes.h"
 #include "mbk/files/recording/inspect.h"
 
 namespace mbk::fuzz {

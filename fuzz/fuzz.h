@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/files/recording/contents.h"
+#include "mbk/files/contents/contents.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::fuzz {

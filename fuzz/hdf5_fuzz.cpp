@@ -1,9 +1,9 @@
 // Any bytes whatever are read as HDF5 or refused: within the memory that was allowed, and in one line.
 
 #include "fuzz/fuzz.h"
+#include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/hdf5/read_hdf5.h"
 #include "mbk/files/recording/encode.h"
-#include "mbk/files/recording/file_bytes.h"
 
 namespace mbk::fuzz {
 

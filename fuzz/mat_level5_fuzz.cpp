@@ -1,6 +1,6 @@
 #include "fuzz/fuzz.h"
+#include "mbk/files/contents/test_bytes.h"
 #include "mbk/files/recording/mat_level5.h"
-#include "mbk/files/recording/test_bytes.h"
 
 namespace mbk::fuzz {
 namespace {

@@ -22,6 +22,7 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   options.axes = arguments.axes;
   options.untimed = arguments.untimed;
   options.variable = arguments.variable;
+  options.clock = arguments.clock;
   options.requested = arguments.requested;
   return options;
 }
@@ -43,7 +44,7 @@ Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const S
 }  // namespace
 
 void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
-  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5 or .csv")->required();
+  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d")->required();
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
@@ -54,6 +55,18 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
       ->check(not_empty());
   command.add_option("--variable", arguments.variable, "which variable of a MAT file, where several could be meant")
       ->type_name("NAME")
+      ->check(not_empty());
+  command
+      .add_option("--trial", arguments.trial,
+                  "which trial of a file or folder that holds several, by its number or name; otherwise all of them")
+      ->type_name("N|NAME")
+      ->check(not_empty());
+  command
+      .add_option(
+          "--clock", arguments.clock,
+          "the stream or topic whose time stamps the recording has, where its channels come from several: those "
+          "of the others are interpolated linearly")
+      ->type_name("STREAM")
       ->check(not_empty());
   command.add_option("--rate", arguments.rate_hz, "sample rate, where the file holds no time")
       ->type_name("HZ")
@@ -72,11 +85,43 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
   auto sensor = sensor_use(with_sensor);
   if (!sensor) return tl::unexpected(sensor.error());
   RecordingReader reader;
-  reader.files_ = arguments.files;
+  if (arguments.parts && !arguments.trial.empty()) {
+    return bad_usage("--parts joins files of one record each, --trial takes one of several in a file",
+                     "leave one of them out");
+  }
+  for (const std::filesystem::path& file : arguments.files) {
+    auto records = arguments.parts ? Result<std::vector<Record>>({{file, ""}}) : records_of(file, arguments.trial);
+    if (!records) return tl::unexpected(records.error());
+    reader.records_.insert(reader.records_.end(), records->begin(), records->end());
+  }
   reader.parts_ = arguments.parts;
   reader.options_ = std::move(*options);
   reader.sensor_ = std::move(*sensor);
   return reader;
+}
+
+Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const std::filesystem::path& file,
+                                                                         const std::string& trial) {
+  const auto trials = recording::list_trials(file);
+  std::vector<Record> records;
+  if (!trials || trials->empty()) {  // what is wrong with a file is said where it is read
+    if (trials && !trial.empty()) {
+      return tl::unexpected(
+          bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out")
+              .value()
+              .in(file.string()));
+    }
+    return std::vector<Record>{{file, ""}};
+  }
+  for (const recording::TrialName& one : *trials) {
+    if (trial.empty() || one.name == trial) records.push_back({file, one.name});
+  }
+  if (!records.empty()) return records;
+  return tl::unexpected(bad_usage(fmt::format("there is no trial '{}'", trial),
+                                  fmt::format("there are {} trials, {} to {}; 'mbk info' lists them", trials->size(),
+                                              trials->front().name, trials->back().name))
+                            .value()
+                            .in(file.string()));
 }
 
 Result<Recording> RecordingReader::read(int k) const {
@@ -84,12 +129,20 @@ Result<Recording> RecordingReader::read(int k) const {
     return bad_data("is the journal of a session that was cut off, or still runs",
                     fmt::format("'mbk recover {}' makes a recording of it", file(k).string()), file(k).string());
   }
-  auto one = parts_ ? recording::read_parts(files_, options_) : recording::read(file(k), options_);
+  recording::ReadOptions options = options_;
+  options.trial = records_[static_cast<std::size_t>(k)].trial;
+  auto one = parts_ ? recording::read_parts(files(), options) : recording::read(file(k), options);
   if (one && sensor_) {
     one = calibration::force_from_voltage(std::move(*one), *sensor_);
     if (!one) one = tl::unexpected(one.error().in(file(k).string()));
   }
   return one;
+}
+
+std::vector<std::filesystem::path> RecordingReader::files() const {
+  std::vector<std::filesystem::path> files;
+  for (const Record& record : records_) files.push_back(record.file);
+  return files;
 }
 
 Result<Recording> RecordingReader::read_perturbation(int k) const {

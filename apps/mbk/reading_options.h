@@ -18,7 +18,7 @@ namespace mbk::app {
 struct ReadingArguments {
   std::vector<std::filesystem::path> files;
   bool parts = false;
-  std::string channels, variable;
+  std::string channels, variable, clock, trial;
   std::vector<std::string> requested;  ///< channels that are taken by name, beside those of the map; empty: all
   std::optional<double> rate_hz;
   int axes = 0;
@@ -35,10 +35,10 @@ class RecordingReader {
   [[nodiscard]] static Result<RecordingReader> of(const ReadingArguments& arguments,
                                                   const SensorArguments& with_sensor = {});
 
-  /// Recordings: one for each FILE, with --parts one of all.
-  [[nodiscard]] int count() const { return parts_ ? 1 : static_cast<int>(files_.size()); }
+  /// Recordings: one for each FILE, or for each of its trials where it holds several; with --parts one of all.
+  [[nodiscard]] int count() const { return parts_ ? 1 : static_cast<int>(records_.size()); }
   /// FILE, or the first part.
-  [[nodiscard]] const std::filesystem::path& file(int k) const { return files_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const std::filesystem::path& file(int k) const { return records_[static_cast<std::size_t>(k)].file; }
 
   /// Where --sensor is given, the force is that of its voltages.
   /// @param k  0 … count() − 1    @fails  as recording::read; the error names the file.
@@ -47,7 +47,17 @@ class RecordingReader {
   [[nodiscard]] Result<Recording> read_perturbation(int k) const;
 
  private:
-  std::vector<std::filesystem::path> files_;
+  struct Record {
+    std::filesystem::path file;
+    std::string trial;  ///< "": the only one of the file
+  };
+  /// FILE as the records that it holds.
+  [[nodiscard]] static Result<std::vector<Record>> records_of(const std::filesystem::path& file,
+                                                              const std::string& trial);
+
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
+
+  std::vector<Record> records_;
   bool parts_ = false;
   recording::ReadOptions options_;
   std::optional<calibration::SensorUse> sensor_;

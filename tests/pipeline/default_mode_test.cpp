@@ -3,8 +3,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/channel_map.h"
-#include "mbk/files/recording/disk_pages.h"
 #include "mbk/files/recording/read.h"
 #include "tests/pipeline/pipeline_helpers.h"
 

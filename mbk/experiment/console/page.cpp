@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "mbk/files/recording/sha256.h"
+#include "mbk/files/contents/sha256.h"
 
 #ifdef MBK_WEB
 extern "C" const char kConsolePageBegin[], kConsolePageEnd[];  // page.S

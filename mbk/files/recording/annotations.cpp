@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/contents/byte_view.h"
 #include "mbk/files/recording/channel_table.h"
 
 namespace mbk::recording {

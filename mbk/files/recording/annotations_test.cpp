@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mbk/files/recording/utf16.h"
+#include "mbk/files/contents/utf16.h"
 
 namespace mbk::recording {
 namespace {

@@ -10,10 +10,11 @@
 #include <utility>
 
 #include "mbk/base/core/ordinal.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
-#include "mbk/files/recording/disk_pages.h"
 #include "mbk/files/recording/inspect.h"
+#include "mbk/files/recording/one_clock.h"
 
 namespace mbk::recording {
 namespace {
@@ -177,9 +178,13 @@ class Assembler {
     if (!options_.channels.empty()) {
       if (auto ok = follow_map(); !ok) return tl::unexpected(ok.error());
     }
+    if (auto ok = choose_clock(); !ok) return tl::unexpected(ok.error());
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
     follow_metadata();
     extract();
+    if (clock_ != nullptr) {
+      if (auto ok = settle_clock(); !ok) return tl::unexpected(ok.error());
+    }
     if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
     return std::move(recording_);
   }
@@ -285,7 +290,9 @@ class Assembler {
     std::vector<std::vector<const ChannelKind*>> meanings;
     std::vector<std::string> aside;
     for (const Array& array : contents_.arrays) {
-      ColumnName name = parse_column_name(contents_.table ? std::string_view(array.name) : leaf(array.name));
+      ColumnName name = parse_column_name(!array.means.empty() ? std::string_view(array.means)
+                                          : contents_.table    ? std::string_view(array.name)
+                                                               : leaf(array.name));
       std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_requested(*kind); });
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
@@ -558,7 +565,7 @@ class Assembler {
                         fmt::format("say which with --channels {}=NAME,…", signal.kind->name));
       }
       if (auto ok = check_rates(first, signal); !ok) return ok;
-      if (signal.line.size() != first.line.size()) {
+      if (clock_of(signal) == clock_of(first) && signal.line.size() != first.line.size()) {
         return bad_data(fmt::format("{} ('{}') has {} samples, {} ('{}') has {}", first.kind->name, first.source,
                                     first.line.size(), signal.kind->name, signal.source, signal.line.size()),
                         "channels of one recording must have equal lengths; name them with --channels");
@@ -569,6 +576,7 @@ class Assembler {
   }
 
   static Result<void> check_rates(const Signal& a, const Signal& b) {
+    if (clock_of(a) >= 0 || clock_of(b) >= 0) return {};
     if (a.line.rate_hz() == 0.0 || b.line.rate_hz() == 0.0 || same_rate(a.line.rate_hz(), b.line.rate_hz())) return {};
     const bool a_is_faster = a.line.rate_hz() > b.line.rate_hz();
     const Signal& fast = a_is_faster ? a : b;
@@ -580,6 +588,65 @@ class Assembler {
                         ? fmt::format("name channels of one rate, or take every {} sample of the faster: {}={}@{}",
                                       ordinal(ratio), fast.kind->name, fast.source, slow_hz)
                         : "name channels of one rate; they are not resampled");
+  }
+
+  // ---- on which clock ----
+
+  static int clock_of(const Signal& signal) { return signal.line.array->clock; }
+
+  [[nodiscard]] std::string clock_list(std::span<const Clock* const> clocks) const {
+    std::vector<std::string> names;
+    for (const Clock* clock : clocks) names.push_back(fmt::format("'{}' ({:.4g} Hz)", clock->name, rate_of(*clock)));
+    return quoted(std::move(names));
+  }
+
+  /// The clock that the recording has, where the file has several.
+  Result<void> choose_clock() {
+    std::vector<const Clock*> used, all;
+    for (const Clock& clock : contents_.clocks) {
+      all.push_back(&clock);
+      const auto index = static_cast<int>(&clock - contents_.clocks.data());
+      if (std::ranges::any_of(signals_, [&](const Signal& s) { return clock_of(s) == index; })) used.push_back(&clock);
+    }
+    if (!options_.clock.empty()) {
+      const auto named = std::ranges::find(all, options_.clock, [](const Clock* clock) { return clock->name; });
+      if (named == all.end()) {
+        return bad_usage(all.empty() ? "the file has one clock, or none, so that none can be chosen"
+                                     : fmt::format("there is no clock '{}'", options_.clock),
+                         all.empty() ? "leave --clock out" : fmt::format("there are {}", clock_list(all)));
+      }
+      clock_ = *named;
+    } else if (used.size() == 1) {
+      clock_ = used.front();
+    } else if (used.size() > 1) {
+      return bad_data(fmt::format("the channels come from streams with clocks of their own: {}", clock_list(used)),
+                      fmt::format("say whose time stamps the recording has, as in --clock '{}'; the others are "
+                                  "interpolated",
+                                  fastest(used).name));
+    }
+    return {};
+  }
+
+  static const Clock& fastest(std::span<const Clock* const> clocks) {
+    return **std::ranges::max_element(clocks, {}, [](const Clock* clock) { return rate_of(*clock); });
+  }
+
+  /// Time stamps, and every channel at them.
+  Result<void> settle_clock() {
+    std::vector<ClockedSignal> signals;
+    std::size_t channel = 0;
+    for (const Signal& signal : signals_) {
+      if (signal.kind->name == "time") continue;
+      const Clock& own = clock_of(signal) >= 0 ? contents_.clocks[static_cast<std::size_t>(clock_of(signal))] : *clock_;
+      signals.push_back({signal.kind->name, &own, &recording_.channels[channel++].values});
+    }
+    auto common = put_on_clock(*clock_, signals);
+    if (!common) return tl::unexpected(common.error());
+    recording_.time = std::move(common->time);
+    recording_.time_origin = {"time", clock_->name, "s"};
+    for (std::string& note : common->notes) recording_.notes.push_back(std::move(note));
+    std::erase_if(recording_.events, [](const Event& event) { return !std::isfinite(event.time); });
+    return {};
   }
 
   /// Units that the metadata say, where nothing nearer says another.
@@ -604,7 +671,7 @@ class Assembler {
       if (std::ranges::none_of(signals_, [&](const Signal& s) { return s.line.array == &array; })) forget(array);
     }
     std::vector<Vector> values(signals_.size());
-    DiskPages disk;
+    DiskPages disk;  // arrays with clocks are columns
     if (std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
       take_one_by_one(values);
     } else {
@@ -738,6 +805,7 @@ class Assembler {
   Contents contents_;
   const ReadOptions& options_;
   std::vector<Signal> signals_;
+  const Clock* clock_ = nullptr;  ///< of the recording, where the file has clocks
   Recording recording_;
 };
 

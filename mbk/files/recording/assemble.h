@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mbk/files/recording/contents.h"
+#include "mbk/files/contents/contents.h"
 #include "mbk/files/recording/read.h"
 
 namespace mbk::recording {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "mbk/base/core/result.h"
-#include "mbk/files/recording/contents.h"
+#include "mbk/files/contents/contents.h"
 
 namespace mbk::recording {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/contents/byte_view.h"
 
 namespace mbk::recording {
 

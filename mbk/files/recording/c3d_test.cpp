@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/test_c3d.h"
-#include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
 namespace c3d_test {

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string_view>
 
-#include "mbk/files/recording/byte_view.h"
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/encode.h"
 
 namespace mbk::recording {

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "mbk/base/core/result.h"
-#include "mbk/files/recording/contents.h"
-#include "mbk/files/recording/file_bytes.h"
+#include "mbk/files/contents/contents.h"
+#include "mbk/files/contents/file_bytes.h"
 
 namespace mbk::recording {
 

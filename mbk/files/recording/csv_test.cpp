@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "mbk/files/recording/disk_pages.h"
-#include "mbk/files/recording/file_bytes.h"
+#include "mbk/files/contents/disk_pages.h"
+#include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/sha256.h"
+#include "mbk/files/contents/test_files.h"
+#include "mbk/files/contents/test_pages.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/recording/sha256.h"
-#include "mbk/files/recording/test_files.h"
-#include "mbk/files/recording/test_pages.h"
 
 namespace mbk::recording {
 namespace csv_test {

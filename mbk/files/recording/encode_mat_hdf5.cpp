@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string_view>
 
+#include "mbk/files/contents/utf16.h"
 #include "mbk/files/hdf5/write_hdf5.h"
 #include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/mat_variables.h"
-#include "mbk/files/recording/utf16.h"
 
 namespace mbk::recording {
 namespace {

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <cstring>
 
+#include "mbk/files/contents/utf16.h"
 #include "mbk/files/hdf5/deflate.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/mat_variables.h"
-#include "mbk/files/recording/utf16.h"
 
 namespace mbk::recording {
 namespace {

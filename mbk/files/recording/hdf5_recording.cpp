@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <optional>
 
+#include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/memory.h"
 #include "mbk/files/hdf5/read_hdf5.h"
-#include "mbk/files/recording/byte_view.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
-#include "mbk/files/recording/file_bytes.h"
 #include "mbk/files/recording/hdf5_tree.h"
 #include "mbk/files/recording/mat_hdf5.h"
-#include "mbk/files/recording/memory.h"
 
 namespace mbk::recording {
 namespace {

@@ -3,8 +3,8 @@
 #include <span>
 
 #include "mbk/base/core/result.h"
+#include "mbk/files/contents/contents.h"
 #include "mbk/files/hdf5/tree.h"
-#include "mbk/files/recording/contents.h"
 
 namespace mbk::recording {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "mbk/files/contents/contents.h"
 #include "mbk/files/hdf5/tree.h"
-#include "mbk/files/recording/contents.h"
 
 namespace mbk::recording {
 

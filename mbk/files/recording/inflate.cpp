@@ -9,7 +9,7 @@
 #include <memory>
 #include <new>
 
-#include "mbk/files/recording/memory.h"
+#include "mbk/files/contents/memory.h"
 
 namespace mbk::recording {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "mbk/files/recording/file_bytes.h"
+#include "mbk/files/contents/file_bytes.h"
 
 namespace mbk::recording {
 

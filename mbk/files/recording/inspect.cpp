@@ -11,7 +11,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 
 namespace mbk::recording {
 namespace {

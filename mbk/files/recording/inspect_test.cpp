@@ -9,8 +9,8 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/random.h"
+#include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <optional>
 
-#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/hdf5_tree.h"
-#include "mbk/files/recording/utf16.h"
 
 namespace mbk::recording {
 namespace {

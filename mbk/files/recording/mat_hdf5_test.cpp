@@ -6,9 +6,9 @@
 
 #include <random>
 
+#include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/hdf5_recording.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
 namespace mat_hdf5_test {

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <optional>
 
-#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/contents/byte_view.h"
 
 namespace mbk::recording {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "mbk/files/recording/test_files.h"
+#include "mbk/files/contents/test_files.h"
 
 namespace mbk::recording {
 namespace mat_level4_test {

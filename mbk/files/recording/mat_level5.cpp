@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/inflate.h"
-#include "mbk/files/recording/utf16.h"
 
 namespace mbk::recording {
 namespace {

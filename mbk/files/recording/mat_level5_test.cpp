@@ -11,7 +11,7 @@
 #include <span>
 #include <utility>
 
-#include "mbk/files/recording/test_files.h"
+#include "mbk/files/contents/test_files.h"
 
 namespace mbk::recording {
 namespace mat_level5_test {

@@ -12,17 +12,18 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/memory.h"
+#include "mbk/files/contents/sha256.h"
 #include "mbk/files/hdf5/read_hdf5.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
 #include "mbk/files/recording/c3d.h"
 #include "mbk/files/recording/csv.h"
-#include "mbk/files/recording/file_bytes.h"
 #include "mbk/files/recording/hdf5_recording.h"
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
-#include "mbk/files/recording/memory.h"
-#include "mbk/files/recording/sha256.h"
+#include "mbk/files/recording/one_clock.h"
 
 namespace mbk::recording {
 namespace {
@@ -104,11 +105,21 @@ Result<Recording> assemble_file(Decoded decoded, const ReadOptions& options) {
   return recording;
 }
 
+/// [Hz], as the file says it or as its time stamps have it.
+double rate_of_array(const Contents& contents, const Array& array) {
+  return array.clock >= 0 ? rate_of(contents.clocks[static_cast<std::size_t>(array.clock)]) : array.rate_hz;
+}
+
 FileContents listed(Decoded decoded) {
   FileContents listing{std::move(decoded.source), decoded.contents.table, {}, std::move(decoded.contents.notes)};
   for (const Array& array : decoded.contents.arrays) {
-    StoredArray stored{array.name,   array.values.rows(), array.values.cols(), std::nan(""),
-                       std::nan(""), array.unit,          array.rate_hz};
+    StoredArray stored{array.name,
+                       array.values.rows(),
+                       array.values.cols(),
+                       std::nan(""),
+                       std::nan(""),
+                       array.unit,
+                       rate_of_array(decoded.contents, array)};
     for (const double value : array.values.reshaped()) {
       if (!std::isfinite(value)) continue;
       stored.minimum = std::fmin(stored.minimum, value);
@@ -143,6 +154,10 @@ auto with_decoded(const std::filesystem::path& file, const Use& use) -> decltype
 
 Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options) {
   return with_decoded(file, [&](Decoded decoded) { return assemble_file(std::move(decoded), options); });
+}
+
+Result<std::vector<TrialName>> list_trials(const std::filesystem::path& /*file*/) {
+  return std::vector<TrialName>();
 }
 
 Result<FileContents> list_contents(const std::filesystem::path& file) {

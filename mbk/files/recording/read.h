@@ -7,6 +7,7 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
+#include "mbk/files/contents/contents.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/model/trial/file_contents.h"
 #include "mbk/model/trial/recording.h"
@@ -21,6 +22,9 @@ struct ReadOptions {
   int axes = 0;          ///< what x and xr mean: 1 position, reference; 2 hand_x, reference_x; 0 by the channels found
   bool untimed = false;  ///< rows without a time and a rate are taken as they are; otherwise that is an error
   std::string variable;  ///< the MAT variable that is meant, where several could be
+  std::string clock;     ///< the stream or topic whose time stamps the recording has, where channels come from several;
+                         ///< "": they must come from one
+  std::string trial;     ///< which record of a file or folder that holds several (`list_trials`); "": its only one
 };
 
 /// Reads MAT (v4, v5, v6, v7, v7.3), HDF5 and CSV; the format is decided by the content, never by the name of the file.
@@ -38,6 +42,11 @@ struct ReadOptions {
 ///         usage: a rate that contradicts the time by more than 0.1 %; several matrices could be
 ///         meant; axes is not 0, 1 or 2.
 [[nodiscard]] Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options);
+
+/// The records of a file or folder that can hold several: a KINARM exam, a BIDS data set. Nothing where it is of a
+/// format that holds one.
+/// @fails  data: the file cannot be read or is damaged.
+[[nodiscard]] Result<std::vector<TrialName>> list_trials(const std::filesystem::path& file);
 
 /// What the file holds under its own names, whether or not any of it is recognised as a channel.
 /// @fails  data: the file cannot be read, is damaged or of another format.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
-#include "mbk/files/recording/test_bytes.h"
+#include "mbk/files/contents/test_bytes.h"
 
 namespace mbk::recording::test {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <set>
 
-#include "mbk/files/recording/byte_view.h"
+#include "mbk/files/contents/byte_view.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/write_file.h"

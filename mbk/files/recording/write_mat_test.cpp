@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/recording/test_files.h"
 #include "mbk/files/recording/write.h"
 
 namespace mbk::recording {

@@ -12,9 +12,9 @@
 #include <limits>
 #include <random>
 
+#include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/recording/test_files.h"
 
 namespace mbk::recording {
 namespace write_test {

@@ -14,7 +14,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/dsp/savitzky_golay.h"
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/analyse/decimation.h"
 #include "mbk/measure/analyse/energy_blocks.h"
 #include "mbk/model/impedance/ellipse.h"

@@ -11,7 +11,7 @@
 #include "mbk/base/dsp/autocorrelation.h"
 #include "mbk/base/dsp/fourier.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {

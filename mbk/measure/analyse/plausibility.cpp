@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/analyse/advice.h"
 #include "mbk/measure/analyse/axis_maps.h"
 #include "mbk/measure/analyse/channel_cure.h"

@@ -7,7 +7,7 @@
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 
 namespace mbk::identify {
 namespace {

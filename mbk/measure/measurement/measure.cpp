@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/analyse/absorbed_energy.h"
 #include "mbk/measure/analyse/analyse_joint_domain.h"

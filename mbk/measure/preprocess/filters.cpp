@@ -8,7 +8,7 @@
 
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/filter_chain.h"
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 
 namespace mbk::preprocess {
 namespace {

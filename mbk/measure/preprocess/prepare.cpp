@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/preprocess/band.h"
 #include "mbk/measure/preprocess/filters.h"
 #include "mbk/measure/preprocess/recorded_handle_mass.h"

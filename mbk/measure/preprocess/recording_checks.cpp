@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 
 namespace mbk::preprocess {
 namespace {

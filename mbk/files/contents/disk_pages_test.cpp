@@ -1,12 +1,12 @@
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <string>
 
-#include "mbk/files/recording/test_files.h"
-#include "mbk/files/recording/test_pages.h"
+#include "mbk/files/contents/test_files.h"
+#include "mbk/files/contents/test_pages.h"
 
 namespace mbk::recording {
 namespace disk_pages_test {

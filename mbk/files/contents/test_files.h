@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "mbk/files/recording/test_bytes.h"
+#include "mbk/files/contents/test_bytes.h"
 
 namespace mbk::recording::test {
 

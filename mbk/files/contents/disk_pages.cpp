@@ -1,4 +1,4 @@
-#include "mbk/files/recording/disk_pages.h"
+#include "mbk/files/contents/disk_pages.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>

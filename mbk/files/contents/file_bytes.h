@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "mbk/base/core/result.h"
-#include "mbk/files/recording/sha256.h"
+#include "mbk/files/contents/sha256.h"
 
 namespace mbk::recording {
 

@@ -1,4 +1,4 @@
-#include "mbk/files/recording/file_bytes.h"
+#include "mbk/files/contents/file_bytes.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "mbk/files/recording/memory.h"
+#include "mbk/files/contents/memory.h"
 
 namespace mbk::recording {
 namespace {

@@ -1,4 +1,4 @@
-#include "mbk/files/recording/sha256.h"
+#include "mbk/files/contents/sha256.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "mbk/files/recording/memory.h"
+#include "mbk/files/contents/memory.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

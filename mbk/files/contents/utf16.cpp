@@ -1,4 +1,4 @@
-#include "mbk/files/recording/utf16.h"
+#include "mbk/files/contents/utf16.h"
 
 #include <bit>
 

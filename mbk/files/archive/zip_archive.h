@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/contents/file_bytes.h"
+
+namespace mbk::recording {
+
+/// A member of a zip archive.
+struct ZipMember {
+  std::string name;        ///< with '/' between folders, as it is stored, in UTF-8
+  std::uint64_t size = 0;  ///< [bytes] that it says it has when it is unpacked
+};
+
+/// A zip archive that stands in memory. Nothing is unpacked but what is asked for.
+class ZipArchive {
+ public:
+  [[nodiscard]] static bool looks_like_zip(std::span<const std::byte> file);
+
+  /// @param file  must outlive the archive
+  /// @fails  data: no archive, cut short, encrypted, or its members say that they are larger than a file of this length
+  ///         can unpack to (`largest_claim`) or than memory.
+  [[nodiscard]] static Result<ZipArchive> open(std::span<const std::byte> file);
+
+  [[nodiscard]] const std::vector<ZipMember>& members() const { return members_; }
+  [[nodiscard]] bool has(std::string_view name) const;
+
+  /// The bytes of a member, whose checksum is checked.
+  /// @fails  data: there is no such member; it is damaged, or not as large as the archive says.
+  [[nodiscard]] Result<Buffer> read(std::string_view name) const;
+
+ private:
+  struct Close {
+    void operator()(void* archive) const;
+  };
+  std::unique_ptr<void, Close> archive_;
+  std::vector<ZipMember> members_;
+};
+
+}  // namespace mbk::recording

@@ -1,0 +1,106 @@
+#include "mbk/files/recording/one_clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mbk/base/numeric/statistics.h"
+
+namespace mbk::recording {
+namespace {
+
+double median_interval(const Vector& time) {
+  if (time.size() < 2) return 0.0;
+  const Vector intervals = time.tail(time.size() - 1) - time.head(time.size() - 1);
+  return numeric::median({intervals.data(), intervals.data() + intervals.size()});
+}
+
+Result<void> check_rises(const Clock& clock) {
+  for (Index i = 1; i < clock.time.size(); ++i) {
+    if (clock.time[i] > clock.time[i - 1]) continue;
+    return bad_data(fmt::format("the time of '{}' does not rise: sample {} at {:.6f} s follows one at {:.6f} s",
+                                clock.name, i + 1, clock.time[i], clock.time[i - 1]),
+                    "channels of several streams need clocks that rise; take channels of one stream only");
+  }
+  return {};
+}
+
+/// @param longest  [s] over which is interpolated    @param unbridged  counts samples in longer gaps
+Vector interpolated(const Vector& from, const Vector& values, const Eigen::Ref<const Vector>& at, double longest,
+                    Index& unbridged) {
+  Vector result(at.size());
+  Index after = 0;
+  for (Index i = 0; i < at.size(); ++i) {
+    while (after < from.size() && from[after] < at[i]) ++after;
+    if (after < from.size() && from[after] == at[i]) {
+      result[i] = values[after];
+      continue;
+    }
+    const double interval = from[after] - from[after - 1];
+    if (interval > longest) {
+      result[i] = std::numeric_limits<double>::quiet_NaN();
+      ++unbridged;
+      continue;
+    }
+    const double part = (at[i] - from[after - 1]) / interval;
+    result[i] = values[after - 1] + part * (values[after] - values[after - 1]);
+  }
+  return result;
+}
+
+}  // namespace
+
+double rate_of(const Clock& clock) {
+  const double interval = median_interval(clock.time);
+  return interval > 0.0 ? 1.0 / interval : 0.0;
+}
+
+Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSignal> signals) {
+  if (chosen.time.size() == 0) return bad_data(fmt::format("'{}' has no samples", chosen.name), "name another clock");
+  if (auto ok = check_rises(chosen); !ok) return tl::unexpected(ok.error());
+  double begin = chosen.time[0], end = chosen.time[chosen.time.size() - 1];
+  for (const ClockedSignal& signal : signals) {
+    if (signal.clock == &chosen) continue;
+    const Vector& time = signal.clock->time;
+    if (time.size() == 0) return bad_data(fmt::format("'{}' has no samples", signal.clock->name));
+    if (auto ok = check_rises(*signal.clock); !ok) return tl::unexpected(ok.error());
+    begin = std::max(begin, time[0]);
+    end = std::min(end, time[time.size() - 1]);
+  }
+  const double* const stamps = chosen.time.data();
+  const Index first = std::lower_bound(stamps, stamps + chosen.time.size(), begin) - stamps;
+  const Index count = std::upper_bound(stamps, stamps + chosen.time.size(), end) - stamps - first;
+  if (count <= 0) {
+    return bad_data("the streams that are asked for were not recorded at the same time",
+                    "take channels of streams that overlap ('mbk info' lists them)");
+  }
+
+  CommonClock common{chosen.time.segment(first, count), {}};
+  const double rate_hz = rate_of(chosen);
+  for (const ClockedSignal& signal : signals) {
+    if (signal.clock == &chosen) {
+      *signal.values = Vector(signal.values->segment(first, count));
+      continue;
+    }
+    Index unbridged = 0;
+    const double own_hz = rate_of(*signal.clock);
+    const double longest = own_hz > 0.0 ? kLongestBridge / own_hz : std::numeric_limits<double>::infinity();
+    *signal.values = interpolated(signal.clock->time, *signal.values, common.time, longest, unbridged);
+    std::string note = fmt::format(
+        "{} of '{}' ({:.4g} Hz) was put on the clock of '{}' ({:.4g} Hz) by linear "
+        "interpolation",
+        signal.channel, signal.clock->name, own_hz, chosen.name, rate_hz);
+    if (own_hz > 1.2 * rate_hz) note += fmt::format("; what it holds above {:.4g} Hz folds down", rate_hz / 2);
+    if (unbridged > 0) note += fmt::format("; {} samples in its gaps are NaN", unbridged);
+    common.notes.push_back(std::move(note));
+  }
+  if (const Index left_out = chosen.time.size() - count; left_out > 0) {
+    common.notes.push_back(
+        fmt::format("{} samples of '{}' were left out, as not every stream covers them", left_out, chosen.name));
+  }
+  return common;
+}
+
+}  // namespace mbk::recording
