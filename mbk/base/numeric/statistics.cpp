@@ -168,4 +168,16 @@ std::pair<double, double> binomial_interval(int successes, int trials, double co
   return {lower, upper};
 }
 
+double binomial_at_least(int successes, int trials, double share) {
+  if (successes <= 0) return 1.0;
+  if (successes > trials || share <= 0.0) return 0.0;
+  return share >= 1.0 ? 1.0 : boost::math::ibeta(double(successes), double(trials - successes) + 1.0, share);
+}
+
+double binomial_at_most(int successes, int trials, double share) {
+  if (successes >= trials) return 1.0;
+  if (successes < 0 || share >= 1.0) return 0.0;
+  return share <= 0.0 ? 1.0 : boost::math::ibetac(double(successes) + 1.0, double(trials - successes), share);
+}
+
 }  // namespace mbk::numeric

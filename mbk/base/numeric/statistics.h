@@ -69,4 +69,10 @@ using EachBlock = std::function<void(const std::function<void(std::span<const do
 /// @param successes 0…trials    @param confidence e.g. 0.99
 [[nodiscard]] std::pair<double, double> binomial_interval(int successes, int trials, double confidence);
 
+/// Probability of at least so many successes.   @param share  of success in one trial, 0…1
+[[nodiscard]] double binomial_at_least(int successes, int trials, double share);
+
+/// Probability of at most so many successes.   @param share  of success in one trial, 0…1
+[[nodiscard]] double binomial_at_most(int successes, int trials, double share);
+
 }  // namespace mbk::numeric

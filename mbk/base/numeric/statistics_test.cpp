@@ -126,6 +126,31 @@ TEST(Statistics, BinomialIntervalIsClopperAndPearsons) {
   EXPECT_EQ(binomial_interval(10, 10, 0.95).second, 1.0);
 }
 
+TEST(Statistics, BinomialTailsAreSumsOfTheirTerms) {
+  constexpr int kTrials = 12;
+  for (const double share : {0.0, 0.03, 0.5, 0.8, 1.0}) {
+    double below = 0.0;
+    for (int k = 0; k <= kTrials; ++k) {
+      EXPECT_NEAR(binomial_at_least(k, kTrials, share), 1.0 - below, 1e-14);
+      below += std::exp(std::lgamma(kTrials + 1.0) - std::lgamma(k + 1.0) - std::lgamma(kTrials - k + 1.0)) *
+               std::pow(share, k) * std::pow(1.0 - share, kTrials - k);
+      EXPECT_NEAR(binomial_at_most(k, kTrials, share), below, 1e-14);
+    }
+  }
+  EXPECT_EQ(binomial_at_least(kTrials + 1, kTrials, 0.5), 0.0);
+  EXPECT_EQ(binomial_at_most(-1, kTrials, 0.5), 0.0);
+}
+
+TEST(Statistics, BinomialTailsSayOnWhichSideOfAShareTheIntervalEnds) {
+  for (int k = 0; k <= 40; ++k) {
+    const auto [lower, upper] = binomial_interval(k, 40, 0.95);
+    for (double share = 0.01; share < 1.0; share += 0.0137) {
+      EXPECT_EQ(binomial_at_least(k, 40, share) <= 0.025, lower >= share) << k << " " << share;
+      EXPECT_EQ(binomial_at_most(k, 40, share) <= 0.025, upper <= share) << k << " " << share;
+    }
+  }
+}
+
 TEST(Statistics, NormalProbabilityAndItsQuantileAreEachOthersInverse) {
   EXPECT_NEAR(normal_probability(kNormal95), 0.975, 1e-15);
   EXPECT_NEAR(normal_quantile(0.975), kNormal95, 1e-12);

@@ -15,14 +15,16 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kConfidence = 0.95;
 
-/// Successes whose whole interval is accepted: those from `first` to `last`; none where first > last. The lower end of
-/// the interval rises with the successes, as does the upper one.
+/// Successes whose whole interval (numeric::binomial_interval) is accepted: those from `first` to `last`; none where
+/// first > last. The lower end of the interval rises with the successes, as does the upper one, and whether an end lies
+/// beyond a share is told by the probability there, without the end itself.
 std::pair<int, int> accepted_counts(Range expected, int trials) {
+  constexpr double kTail = 0.5 * (1.0 - kConfidence);
   const auto first_where = [&](const auto& holds) {
     int low = 0, high = trials + 1;
     while (low < high) {
       const int middle = std::midpoint(low, high);
-      if (holds(numeric::binomial_interval(middle, trials, kConfidence))) {
+      if (holds(middle)) {
         high = middle;
       } else {
         low = middle + 1;
@@ -30,8 +32,9 @@ std::pair<int, int> accepted_counts(Range expected, int trials) {
     }
     return low;
   };
-  return {first_where([&](const Range& share) { return 100.0 * share.first >= expected.first; }),
-          first_where([&](const Range& share) { return 100.0 * share.second > expected.second; }) - 1};
+  const double least = expected.first / 100.0, most = expected.second / 100.0;
+  return {first_where([&](int count) { return least <= 0.0 || numeric::binomial_at_least(count, trials, least) <= kTail; }),
+          first_where([&](int count) { return most < 1.0 && numeric::binomial_at_most(count, trials, most) > kTail; }) - 1};
 }
 
 int trials_in(int runs, const JudgedShare& judged) {
