@@ -3,6 +3,7 @@
 # compile them one by one.
 option(MBK_UNITY "Compile several sources of a module at a time" ON)
 set(MBK_UNITY_BATCH 5)  # so that none takes more than 15 s
+set(MBK_UNITY_BATCH_OF_TESTS 8)  # the same: they are compiled with less optimisation
 
 # mbk_unity(TARGET [SOURCE...]): the sources of TARGET are compiled several at a time, but for these.
 function(mbk_unity target)
@@ -94,6 +95,7 @@ function(mbk_test name)
   # What is tested is as users have it; the tests themselves compile faster so.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   mbk_unity(${name} ${ARG_ALONE})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH_OF_TESTS})
   if(NOT ARG_OWN_FLAGS)
     mbk_precompile(${name} tests)
   endif()

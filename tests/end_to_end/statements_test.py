@@ -22,8 +22,10 @@ def ready_scenarios():
 
 class Statements(Case):
     def recording(self, name):
-        """Of its first trial."""
-        self.fine("simulate", name, "--out", self.folder / f"{name}.mat", "--quiet")
+        """Of its first trial, which alone is simulated."""
+        trials = re.findall(r'^\[\[trial\]\]\nname = "(\w+)"', run("simulate", "--show", name).out, re.MULTILINE)
+        only = ["--trial", trials[0]] if trials else []
+        self.fine("simulate", name, *only, "--out", self.folder / f"{name}.mat", "--quiet")
         return sorted(self.folder.glob(f"{name}*.mat"))[0]
 
     def check_trial(self, trial):
