@@ -1,6 +1,6 @@
 #include "fuzz/fuzz.h"
-#include "mbk/files/recording/c3d.h"
-#include "mbk/files/recording/test_c3d.h"
+#include "mbk/files/c3d/c3d.h"
+#include "mbk/files/c3d/test_c3d.h"
 
 namespace mbk::fuzz {
 

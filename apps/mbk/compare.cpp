@@ -42,7 +42,7 @@ Result<Identification> measured(MeasureArguments arguments, const std::filesyste
 
 std::string source_line(const Identification& id, const char* which) {
   std::string text;
-  for (const SourceFile& source : id.sources) text += fmt::format("{:<7} {}\n", which, source.path);
+  for (const SourceFile& source : id.sources) text += fmt::format("{:<7} {}\n", which, source.label());
   text += fmt::format("        by {}\n", method_name(id.method));
   if (!id.usable) text += fmt::format("  ! the {} result is not usable: 'mbk measure' says why\n", which);
   return text;

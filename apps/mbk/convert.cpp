@@ -52,9 +52,17 @@ int run(ConvertArguments arguments) {
   if (auto ok = check_files(reading.files, output, reading.parts); !ok) return report_error(ok.error());
   const auto format = recording::format_of(*output.file, arguments.format);
   if (!format) return report_error(format.error());
-  const auto recordings = read_recordings(reading, arguments.sensor);
-  if (!recordings) return report_error(recordings.error());
-  const Recording& recording = recordings->front();
+  const auto reader = RecordingReader::of(reading, arguments.sensor);
+  if (!reader) return report_error(reader.error());
+  if (reader->count() > 1) {
+    return report_error(bad_usage(fmt::format("{} holds {} trials, and one file is to be written",
+                                              reading.files.front().string(), reader->count()),
+                                  "name one with --trial ('mbk info' lists them)")
+                            .value());
+  }
+  const auto read = reader->read(0);
+  if (!read) return report_error(read.error());
+  const Recording& recording = *read;
   const Readers readers = arguments.readers.value_or(Readers::owner);
   if (auto ok = recording::write(recording, *output.file, *format, output.overwrite, readers); !ok) {
     return report_error(ok.error());

@@ -31,7 +31,7 @@ int run(const EllipseArguments& arguments) {
     if (!findings) return report_error(findings.error().in(arguments.file.string()));
     all.push_back(*findings);
     if (!shown.empty()) shown += "\n";
-    for (const SourceFile& source : identification.sources) shown += source.path + "\n";
+    for (const SourceFile& source : identification.sources) shown += source.label() + "\n";
     shown += fmt::format("  by {}\n", method_name(identification.method));
     if (identification.usable) {
       shown += report::ellipses_text(*findings);

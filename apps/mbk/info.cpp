@@ -20,55 +20,82 @@ struct InfoArguments {
 };
 
 /// A file that is sound but speaks of no channel still shows what it holds; everything else is an error.
-int list_unrecognised(const InfoArguments& arguments, const Error& error) {
-  if (error.kind != ErrorKind::data || arguments.reading.files.size() != 1 || !arguments.reading.channels.empty()) {
-    return report_error(error);
-  }
-  const auto contents = recording::list_contents(arguments.reading.files.front());
+/// @param trial  of the file; "": its only one
+int list_unrecognised(const InfoArguments& arguments, const std::string& trial, const Error& error,
+                      const std::string& before = "") {
+  if (arguments.reading.files.size() != 1 || !arguments.reading.channels.empty()) return report_error(error);
+  const bool of_trials = recording::open_trials(arguments.reading.files.front()).value_or(nullptr) != nullptr;
+  const bool no_arm = error.kind == ErrorKind::usage && of_trials && arguments.reading.arm.empty();
+  if (error.kind != ErrorKind::data && !no_arm) return report_error(error);
+  recording::ReadOptions options;
+  options.trial = trial;
+  options.arm = arguments.reading.arm;
+  const auto contents = recording::list_contents(arguments.reading.files.front(), options);
   if (!contents) return report_error(error);
   const std::string text =
-      arguments.output.json ? result::to_json(*contents, error) : report::contents_text(*contents, error);
+      arguments.output.json ? result::to_json(*contents, error) : before + report::contents_text(*contents, error);
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
 /// What a journal holds so far, as the recording that it would become.
-Result<std::vector<Result<Recording>>> read_journal(const std::filesystem::path& file) {
+Result<Recording> read_journal(const std::filesystem::path& file) {
   const auto journal = journal::read(file);
   if (!journal) return tl::unexpected(journal.error());
   auto recording = journal::to_recording(*journal);
   if (!recording) return tl::unexpected(recording.error().in(file.string()));
   recording->sources.push_back({file.string(), "journal of a session", ""});
   recording->notes.emplace_back("'mbk recover' makes a recording of it");
-  std::vector<Result<Recording>> one;
-  one.push_back(std::move(*recording));
-  return one;
+  return recording;
 }
 
-Result<std::vector<Result<Recording>>> read_each(const InfoArguments& arguments) {
-  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
-  std::vector<Result<Recording>> each;
-  for (int k = 0; k < reader->count(); ++k) each.push_back(reader->read(k));
-  return each;
+/// What a file of several trials holds: all of them by name, and one in full.
+int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
+                const std::vector<recording::TrialName>& trials) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const recording::TrialName& trial : trials) names.emplace_back(trial.name, trial.description);
+  const std::string list =
+      report::trials_text(arguments.reading.files.front().string(), names) + "\nThe first of them:\n";
+  const auto first = reader.read(0);
+  if (!first) return list_unrecognised(arguments, trials.front().name, first.error(), list);
+  const std::string text = list + report::info_text(*first, recording::inspect(*first));
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  return kFine;
 }
 
 int run(const InfoArguments& arguments) {
-  if (auto ok = arguments.output.to.check(arguments.reading.files); !ok) return report_error(ok.error());
-  const bool journal = arguments.reading.files.size() == 1 && journal::is_journal(arguments.reading.files.front());
-  auto each = journal ? read_journal(arguments.reading.files.front()) : read_each(arguments);
-  if (!each) return report_error(each.error());
-  if (each->size() == 1 && !each->front() && !journal) return list_unrecognised(arguments, each->front().error());
+  const ReadingArguments& reading = arguments.reading;
+  if (auto ok = arguments.output.to.check(reading.files); !ok) return report_error(ok.error());
   int code = kFine;
-  std::vector<Recording> recordings;
+  std::vector<Recording> recordings;  // of several, without their samples
   std::vector<Inspection> inspections;
-  for (Result<Recording>& one : *each) {
-    if (!one) {
-      code = std::max(code, report_error(one.error()));
-      continue;
+  const auto add = [&](Recording recording) {
+    inspections.push_back(recording::inspect(recording));
+    for (Channel& channel : recording.channels) channel.values.resize(0);
+    recording.time.resize(0);
+    recordings.push_back(std::move(recording));
+  };
+  if (reading.files.size() == 1 && journal::is_journal(reading.files.front())) {
+    auto recording = read_journal(reading.files.front());
+    if (!recording) return report_error(recording.error());
+    add(std::move(*recording));
+  } else {
+    const auto reader = RecordingReader::of(reading, arguments.sensor);
+    if (!reader) return report_error(reader.error());
+    if (reader->count() > 1 && reading.files.size() == 1 && !arguments.output.json) {
+      const auto trials = recording::list_trials(reading.files.front());
+      if (trials && !trials->empty()) return show_trials(arguments, *reader, *trials);
     }
-    inspections.push_back(recording::inspect(*one));
-    recordings.push_back(std::move(*one));
+    for (int k = 0; k < reader->count(); ++k) {
+      auto one = reader->read(k);
+      if (one) {
+        add(std::move(*one));
+      } else if (reader->count() == 1) {
+        return list_unrecognised(arguments, reading.trial, one.error());
+      } else {
+        code = std::max(code, report_error(one.error()));
+      }
+    }
   }
   if (recordings.empty()) return code;
   std::string text;
@@ -93,6 +120,8 @@ Action add_info(CLI::App& app) {
       "  mbk info log.mat\n"
       "      where no channel is recognised, the variables or columns of the file are listed\n"
       "  mbk info --parts log_1.mat log_2.mat\n"
+      "  mbk info exam.kinarm\n"
+      "      every trial by its number, and the first in full; --trial 3 shows another\n"
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
       "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
   add_reading_options(*command, arguments->reading);

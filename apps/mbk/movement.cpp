@@ -38,7 +38,8 @@ int run_movement(const MovementArguments& arguments) {
   for (const Recording& recording : *recordings) {
     auto found = measurement::movement_quality(recording, options);
     if (!found) {
-      return report_error(recording.sources.empty() ? found.error() : found.error().in(recording.sources.front().path));
+      return report_error(recording.sources.empty() ? found.error()
+                                                    : found.error().in(recording.sources.front().label()));
     }
     all.push_back(std::move(*found));
   }

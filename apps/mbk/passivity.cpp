@@ -157,7 +157,7 @@ PassivityAnswers from_results(const PassivityArguments& arguments, const Asked& 
 
 std::string text_of(const Answer& answer) {
   std::string text;
-  for (const SourceFile& source : answer.sources) text += source.path + "\n";
+  for (const SourceFile& source : answer.sources) text += source.label() + "\n";
   text += report::passivity_text(answer.passivity, answer.motion);
   if (answer.consistent) text += "\n" + report::consistent_text(*answer.consistent, answer.motion);
   for (const Energy& energy : answer.energies) text += "\n" + report::chart_text(report::energy_chart(energy));

@@ -23,6 +23,7 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   options.untimed = arguments.untimed;
   options.variable = arguments.variable;
   options.clock = arguments.clock;
+  options.arm = arguments.arm;
   options.requested = arguments.requested;
   return options;
 }
@@ -44,7 +45,10 @@ Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const S
 }  // namespace
 
 void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
-  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d")->required();
+  command
+      .add_option("FILE", arguments.files,
+                  "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d, .kinarm, .zip of a KINARM exam")
+      ->required();
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
@@ -61,6 +65,12 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
                   "which trial of a file or folder that holds several, by its number or name; otherwise all of them")
       ->type_name("N|NAME")
       ->check(not_empty());
+  command
+      .add_option("--arm", arguments.arm, "whose hand is the hand, where a KINARM exam recorded both: right or left")
+      ->type_name("right|left")
+      ->check([](const std::string& arm) {
+        return arm == "right" || arm == "left" ? "" : fmt::format("{} is neither right nor left", quoted(arm));
+      });
   command
       .add_option(
           "--clock", arguments.clock,
@@ -102,10 +112,12 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
 
 Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const std::filesystem::path& file,
                                                                          const std::string& trial) {
-  const auto trials = recording::list_trials(file);
+  const auto open = recording::open_trials(file);
+  const auto trials = open && *open ? Result<std::vector<recording::TrialName>>(recording::trials_of(**open))
+                                    : recording::list_trials(file);
   std::vector<Record> records;
-  if (!trials || trials->empty()) {  // what is wrong with a file is said where it is read
-    if (trials && !trial.empty()) {
+  if (!open || !trials || trials->empty()) {  // what is wrong with a file is said where it is read
+    if (open && trials && !trial.empty()) {
       return tl::unexpected(
           bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out")
               .value()
@@ -114,7 +126,7 @@ Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const s
     return std::vector<Record>{{file, ""}};
   }
   for (const recording::TrialName& one : *trials) {
-    if (trial.empty() || one.name == trial) records.push_back({file, one.name});
+    if (trial.empty() || one.name == trial) records.push_back({file, one.name, *open});
   }
   if (!records.empty()) return records;
   return tl::unexpected(bad_usage(fmt::format("there is no trial '{}'", trial),
@@ -131,6 +143,7 @@ Result<Recording> RecordingReader::read(int k) const {
   }
   recording::ReadOptions options = options_;
   options.trial = records_[static_cast<std::size_t>(k)].trial;
+  options.open = records_[static_cast<std::size_t>(k)].open;
   auto one = parts_ ? recording::read_parts(files(), options) : recording::read(file(k), options);
   if (one && sensor_) {
     one = calibration::force_from_voltage(std::move(*one), *sensor_);
@@ -151,7 +164,7 @@ Result<Recording> RecordingReader::read_perturbation(int k) const {
   const auto withdrawn = one->metadata.find("withdrawn");
   if (withdrawn != one->metadata.end() && withdrawn->second == "yes") {
     return bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
-                    one->sources.empty() ? "" : one->sources.front().path);
+                    one->sources.empty() ? "" : one->sources.front().label());
   }
   return preprocess::perturbation_only(std::move(*one));
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ namespace mbk::app {
 struct ReadingArguments {
   std::vector<std::filesystem::path> files;
   bool parts = false;
-  std::string channels, variable, clock, trial;
+  std::string channels, variable, clock, trial, arm;
   std::vector<std::string> requested;  ///< channels that are taken by name, beside those of the map; empty: all
   std::optional<double> rate_hz;
   int axes = 0;
@@ -49,7 +50,8 @@ class RecordingReader {
  private:
   struct Record {
     std::filesystem::path file;
-    std::string trial;  ///< "": the only one of the file
+    std::string trial;                                       ///< "": the only one of the file
+    std::shared_ptr<const recording::OpenTrials> open = {};  ///< the file, where it holds several
   };
   /// FILE as the records that it holds.
   [[nodiscard]] static Result<std::vector<Record>> records_of(const std::filesystem::path& file,

@@ -126,7 +126,7 @@ Result<MeasuredDelay> find_delay(const SensorDelayArguments& arguments) {
   if (!signals) return tl::unexpected(signals.error());
   signals->axes = arguments.reading.axes;
   auto found = measurement::find_sensor_delay(recordings->front(), arguments.mass, *signals);
-  if (!found) return tl::unexpected<Error>(found.error().in(recordings->front().sources.front().path));
+  if (!found) return tl::unexpected<Error>(found.error().in(recordings->front().sources.front().label()));
   return found;
 }
 

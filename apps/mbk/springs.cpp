@@ -151,7 +151,7 @@ int run_find(const FindArguments& arguments) {
 }
 
 Result<SpringConstant> constant_of(const Recording& recording, double hac_lag_s) {
-  const std::string file = recording.sources.empty() ? std::string() : recording.sources.front().path;
+  const std::string file = recording.sources.empty() ? std::string() : recording.sources.front().label();
   const Channel* const position = recording.find("position");
   const Channel* const reaction = recording.find("reaction");
   if (position == nullptr || reaction == nullptr) {

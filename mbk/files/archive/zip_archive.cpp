@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "mbk/base/core/printable.h"
@@ -66,34 +67,44 @@ Result<ZipArchive> ZipArchive::open(std::span<const std::byte> file) {
     }
     archive.members_.push_back({about.name, about.size});
   }
+  for (std::size_t k = 0; k < archive.members_.size(); ++k) archive.places_.try_emplace(archive.members_[k].name, k);
   return archive;
 }
 
 bool ZipArchive::has(std::string_view name) const {
-  return std::ranges::find(members_, name, &ZipMember::name) != members_.end();
+  return places_.contains(name);
 }
 
 Result<Buffer> ZipArchive::read(std::string_view name) const {
-  const auto member = std::ranges::find(members_, name, &ZipMember::name);
-  if (member == members_.end()) {
-    return damaged(fmt::format("it holds no '{}'", printable(std::string(name))));
-  }
-  if (auto ok = check_memory(member->size); !ok) return tl::unexpected(ok.error());
+  return read(name, std::numeric_limits<std::uint64_t>::max(), true);
+}
+
+Result<Buffer> ZipArchive::read_begin(std::string_view name, std::uint64_t count) const {
+  return read(name, count, false);
+}
+
+Result<Buffer> ZipArchive::read(std::string_view name, std::uint64_t count, bool whole) const {
+  const auto place = places_.find(name);
+  if (place == places_.end()) return damaged(fmt::format("it holds no '{}'", printable(std::string(name))));
+  const ZipMember* const member = &members_[place->second];
+  const std::uint64_t size = std::min(member->size, count);
+  if (auto ok = check_memory(size); !ok) return tl::unexpected(ok.error());
   zip_t* const archive = as_zip(archive_.get());
-  const auto index = static_cast<zip_uint64_t>(member - members_.begin());
+  const auto index = static_cast<zip_uint64_t>(place->second);
   const auto close = [](zip_file_t* file) { zip_fclose(file); };
   const std::unique_ptr<zip_file_t, decltype(close)> stream(zip_fopen_index(archive, index, 0), close);
   if (!stream) return damaged(fmt::format("'{}': {}", printable(std::string(name)), zip_strerror(archive)));
-  Buffer bytes(member->size);
+  Buffer bytes(size);
   std::size_t got = 0;
   while (got < bytes.size) {
     const zip_int64_t n = zip_fread(stream.get(), bytes.data.get() + got, bytes.size - got);
     if (n <= 0) {
-      return damaged(
-          fmt::format("'{}': {}", printable(std::string(name)), n < 0 ? zip_file_strerror(stream.get()) : "it ends early"));
+      return damaged(fmt::format("'{}': {}", printable(std::string(name)),
+                                 n < 0 ? zip_file_strerror(stream.get()) : "it ends early"));
     }
     got += static_cast<std::size_t>(n);
   }
+  if (!whole) return bytes;
   std::byte beyond;
   if (const zip_int64_t more = zip_fread(stream.get(), &beyond, 1); more != 0) {
     return damaged(fmt::format("'{}': {}", printable(std::string(name)),

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -35,13 +36,20 @@ class ZipArchive {
   /// The bytes of a member, whose checksum is checked.
   /// @fails  data: there is no such member; it is damaged, or not as large as the archive says.
   [[nodiscard]] Result<Buffer> read(std::string_view name) const;
+  /// Its first bytes, `count` where it has as many. The checksum, which is that of all of them, is not checked.
+  /// @fails  as read
+  [[nodiscard]] Result<Buffer> read_begin(std::string_view name, std::uint64_t count) const;
 
  private:
+  /// @param count  of bytes, or all of them where it has fewer    @param whole  the end must be there, and right
+  [[nodiscard]] Result<Buffer> read(std::string_view name, std::uint64_t count, bool whole) const;
+
   struct Close {
     void operator()(void* archive) const;
   };
   std::unique_ptr<void, Close> archive_;
   std::vector<ZipMember> members_;
+  std::map<std::string_view, std::size_t> places_;  ///< of members by their names; the first of a name counts
 };
 
 }  // namespace mbk::recording

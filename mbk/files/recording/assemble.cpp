@@ -140,10 +140,14 @@ std::string with_dots(std::string_view name) {
   return dotted;
 }
 
-/// The array of that name or, where there is none, the only one whose name differs in dots and slashes alone.
+/// The array of that name; where there is none, the only one that is a channel of that name; or the only one whose name
+/// differs in dots and slashes alone.
 const Array* find(const Contents& contents, std::string_view name) {
   const auto exact = std::ranges::find(contents.arrays, name, &Array::name);
   if (exact != contents.arrays.end()) return &*exact;
+  if (std::ranges::count(contents.arrays, name, &Array::means) == 1 && !name.empty()) {
+    return &*std::ranges::find(contents.arrays, name, &Array::means);
+  }
   if (contents.table) return nullptr;
   const auto dotted = [](const Array& array) { return with_dots(array.name); };
   const std::string wanted = with_dots(name);

@@ -5,7 +5,7 @@
 #include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/recording/test_c3d.h"
+#include "mbk/files/c3d/test_c3d.h"
 #include "mbk/files/recording/write.h"
 
 namespace mbk::recording {

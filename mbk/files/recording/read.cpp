@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <span>
@@ -12,13 +14,15 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/files/archive/zip_archive.h"
+#include "mbk/files/c3d/c3d.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/contents/memory.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/files/hdf5/read_hdf5.h"
+#include "mbk/files/kinarm/kinarm_exam.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
-#include "mbk/files/recording/c3d.h"
 #include "mbk/files/recording/csv.h"
 #include "mbk/files/recording/hdf5_recording.h"
 #include "mbk/files/recording/mat_level4.h"
@@ -26,9 +30,28 @@
 #include "mbk/files/recording/one_clock.h"
 
 namespace mbk::recording {
+
+class OpenTrials {
+ public:
+  OpenTrials(KinarmExam exam, std::shared_ptr<const Buffer> file) : exam_(std::move(exam)), file_(std::move(file)) {}
+
+  [[nodiscard]] const KinarmExam& exam() const { return exam_; }
+  /// Of the file; computed when it is asked for first.
+  [[nodiscard]] std::string sum() const {
+    std::call_once(once_, [&] { sum_ = sha256(file_->bytes()); });
+    return sum_;
+  }
+
+ private:
+  KinarmExam exam_;
+  std::shared_ptr<const Buffer> file_;
+  mutable std::once_flag once_;
+  mutable std::string sum_;
+};
+
 namespace {
 
-constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV and C3D are read";
+constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV, C3D and KINARM exams are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -53,6 +76,9 @@ Result<Contents> decode(std::shared_ptr<Buffer> file) {
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
   if (is_text(text)) return decode_csv(bytes);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
+  if (ZipArchive::looks_like_zip(bytes)) {
+    return bad_data("it is a zip archive of no known kind", "unpack it, and name a recording in it");
+  }
   return bad_data("the content is of no known format", std::string(kFormats));
 }
 
@@ -82,7 +108,53 @@ Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& fi
   return Decoded{std::move(*contents), std::move(source)};
 }
 
-Result<Decoded> decode_file(const std::filesystem::path& file) {
+/// Whether the file begins as a zip archive does. What is wrong with it is said where it is read.
+bool begins_as_zip(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return false;
+  std::vector<char> begin(64);
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return ZipArchive::looks_like_zip(std::as_bytes(std::span(begin).first(static_cast<std::size_t>(stream.gcount()))));
+}
+
+/// The exam that the file is; nullptr where it is none.
+Result<std::shared_ptr<const OpenTrials>> open_zip(const std::filesystem::path& file) {
+  if (!begins_as_zip(file)) return std::shared_ptr<const OpenTrials>();
+  auto bytes = read_file(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const auto shared = std::make_shared<const Buffer>(std::move(*bytes));
+  const auto archive = ZipArchive::open(shared->bytes());
+  if (!archive) return tl::unexpected(archive.error());
+  if (!KinarmExam::is_exam(*archive)) return std::shared_ptr<const OpenTrials>();
+  auto exam = KinarmExam::open(shared);
+  if (!exam) return tl::unexpected(exam.error());
+  return std::make_shared<const OpenTrials>(std::move(*exam), shared);
+}
+
+/// One trial of an exam.
+Result<Decoded> decode_trial(const OpenTrials& open, const std::filesystem::path& file, const ReadOptions& options,
+                             bool needs_arm) {
+  ExamChoice choice{options.trial, std::nullopt, needs_arm};
+  if (!options.arm.empty()) choice.arm = options.arm == "left" ? Arm::left : Arm::right;
+  auto contents = open.exam().decode(choice);
+  if (!contents) return tl::unexpected(contents.error());
+  SourceFile source{file.string(), contents->format, open.sum()};
+  if (open.exam().trials().size() > 1) source.trial = options.trial;
+  return Decoded{std::move(*contents), std::move(source)};
+}
+
+/// @param needs_arm  an arm must be named where there are two
+Result<Decoded> decode_file(const std::filesystem::path& file, const ReadOptions& options, bool needs_arm) {
+  if (!options.arm.empty() && options.arm != "right" && options.arm != "left") {
+    return bad_usage(fmt::format("there is no arm '{}'", options.arm), "name the right or the left one");
+  }
+  auto open = options.open ? Result<std::shared_ptr<const OpenTrials>>(options.open) : open_zip(file);
+  if (!open) return tl::unexpected(open.error());
+  if (*open) return decode_trial(**open, file, options, needs_arm);
+  if (!options.arm.empty()) {
+    return bad_usage(fmt::format("--arm {}: the file tells no arms apart", options.arm), "leave --arm out");
+  }
   auto table = decode_long_table(file);
   if (!table) return tl::unexpected(table.error());
   if (*table) {
@@ -135,13 +207,11 @@ FileContents listed(Decoded decoded) {
   return listing;
 }
 
-/// Decodes the file and hands it on; every failure names the file.
+/// What `use` makes of the file; every failure names the file.
 template <class Use>
-auto with_decoded(const std::filesystem::path& file, const Use& use) -> decltype(use(Decoded{})) {
+auto with_file(const std::filesystem::path& file, const Use& use) -> decltype(use()) {
   try {
-    auto decoded = decode_file(file);
-    if (!decoded) return tl::unexpected(decoded.error().in(file.string()));
-    auto result = use(std::move(*decoded));
+    auto result = use();
     if (!result) return tl::unexpected(result.error().in(file.string()));
     return result;
   } catch (const std::bad_alloc&) {
@@ -153,15 +223,36 @@ auto with_decoded(const std::filesystem::path& file, const Use& use) -> decltype
 }  // namespace
 
 Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options) {
-  return with_decoded(file, [&](Decoded decoded) { return assemble_file(std::move(decoded), options); });
+  const std::string place =
+      options.trial.empty() ? file.string() : fmt::format("{}, trial {}", file.string(), options.trial);
+  return with_file(place, [&]() -> Result<Recording> {
+    const bool by_name = options.channels.empty() || !options.requested.empty();
+    auto decoded = decode_file(file, options, by_name);
+    if (!decoded) return tl::unexpected(decoded.error());
+    return assemble_file(std::move(*decoded), options);
+  });
 }
 
-Result<std::vector<TrialName>> list_trials(const std::filesystem::path& /*file*/) {
-  return std::vector<TrialName>();
+Result<std::vector<TrialName>> list_trials(const std::filesystem::path& file) {
+  const auto open = open_trials(file);
+  if (!open) return tl::unexpected(open.error());
+  return *open ? trials_of(**open) : std::vector<TrialName>();
 }
 
-Result<FileContents> list_contents(const std::filesystem::path& file) {
-  return with_decoded(file, [](Decoded decoded) { return Result<FileContents>(listed(std::move(decoded))); });
+Result<std::shared_ptr<const OpenTrials>> open_trials(const std::filesystem::path& file) {
+  return with_file(file, [&] { return open_zip(file); });
+}
+
+const std::vector<TrialName>& trials_of(const OpenTrials& open) {
+  return open.exam().trials();
+}
+
+Result<FileContents> list_contents(const std::filesystem::path& file, const ReadOptions& options) {
+  return with_file(file, [&]() -> Result<FileContents> {
+    auto decoded = decode_file(file, options, false);
+    if (!decoded) return tl::unexpected(decoded.error());
+    return listed(std::move(*decoded));
+  });
 }
 
 }  // namespace mbk::recording

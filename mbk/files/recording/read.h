@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@
 
 namespace mbk::recording {
 
+/// A file of several trials that was opened once, so that reading one of them opens nothing anew. May be used by
+/// several threads.
+class OpenTrials;
+
 struct ReadOptions {
   std::vector<ChannelSource> channels;  ///< empty: the file is recognised automatically
   std::vector<std::string> requested;   ///< channels that are taken by name, beside those of the map; empty: without a
@@ -25,9 +30,12 @@ struct ReadOptions {
   std::string clock;     ///< the stream or topic whose time stamps the recording has, where channels come from several;
                          ///< "": they must come from one
   std::string trial;     ///< which record of a file or folder that holds several (`list_trials`); "": its only one
+  std::string arm;       ///< "right" or "left": whose hand is the hand in a file of two arms; "": the only one
+  std::shared_ptr<const OpenTrials> open;  ///< the file, as `open_trials` gave it; nullptr: it is opened anew
 };
 
-/// Reads MAT (v4, v5, v6, v7, v7.3), HDF5 and CSV; the format is decided by the content, never by the name of the file.
+/// Reads MAT (v4, v5, v6, v7, v7.3), HDF5, CSV, C3D and KINARM exams; the format is decided by the content, never by
+/// the name of the file.
 ///
 /// Without a channel map these are recognised: a 19-row `logs` matrix (or the only matrix of 19 rows), and columns or
 /// variables that carry the names of the channel table ("hand_x", "Fx", "hand_x_mm", "time [ms]"). With a map, a number
@@ -48,9 +56,15 @@ struct ReadOptions {
 /// @fails  data: the file cannot be read or is damaged.
 [[nodiscard]] Result<std::vector<TrialName>> list_trials(const std::filesystem::path& file);
 
+/// The file, for `ReadOptions::open`; nullptr where it is of a format that holds one record, or is a folder.
+/// @fails  as list_trials
+[[nodiscard]] Result<std::shared_ptr<const OpenTrials>> open_trials(const std::filesystem::path& file);
+[[nodiscard]] const std::vector<TrialName>& trials_of(const OpenTrials& open);
+
 /// What the file holds under its own names, whether or not any of it is recognised as a channel.
+/// @param options  of which `trial`, `arm` and `open` count
 /// @fails  data: the file cannot be read, is damaged or of another format.
-[[nodiscard]] Result<FileContents> list_contents(const std::filesystem::path& file);
+[[nodiscard]] Result<FileContents> list_contents(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
+#include "mbk/files/c3d/test_c3d.h"
 #include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/inspect.h"
-#include "mbk/files/recording/test_c3d.h"
 
 namespace mbk::recording {
 namespace {
@@ -557,6 +557,20 @@ TEST(ListContents, ShowsWhatIsThereUnderItsOwnNames) {
   EXPECT_EQ(contents->arrays[0].minimum, -3.0);
   EXPECT_EQ(contents->arrays[1].minimum, 5.0);  // NaN is left out
   EXPECT_FALSE(list_contents(folder / "none.csv"));
+}
+
+TEST(ReadRealFiles, AKneeAsAnalogChannels) {
+  MBK_DATA_OR_SKIP(folder);
+  const auto file = folder / "c3d" / "Sample35_isokinetic_EMG_angle_torque.c3d";
+  ReadOptions options;
+  options.axes = 1;
+  options.channels = {{"x", "Angle"}, {"F", "Torque"}};
+  const auto recording = recording::read(file, options);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->samples(), 29 * 1250);
+  EXPECT_EQ(recording->time[1250], 1.0);
+  EXPECT_EQ(recording->find("position")->unit, "rad");
+  EXPECT_EQ(recording->find("reaction")->unit, "N.m");
 }
 
 }  // namespace

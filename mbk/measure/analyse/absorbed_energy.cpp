@@ -455,7 +455,7 @@ Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     if (trials[k].axes != trials[0].axes || trials[k].motion != trials[0].motion) {
       return bad_data("its axes or units are not those of the first file, so energies cannot be pooled",
-                      "take it by itself", trials[k].sources.empty() ? "" : trials[k].sources.front().path);
+                      "take it by itself", trials[k].sources.empty() ? "" : trials[k].sources.front().label());
     }
     auto made = exchange_of(*recordings[k], trials[k]);
     if (!made) return tl::unexpected(made.error());

@@ -13,7 +13,7 @@ namespace mbk::analyse {
 namespace {
 
 std::string file_of(const Identification& id) {
-  return id.sources.empty() ? "" : id.sources.front().path;
+  return id.sources.empty() ? "" : id.sources.front().label();
 }
 
 /// A property that trials of one mean share; empty where a trial does not say it.
@@ -57,9 +57,10 @@ Result<void> check_alike(const Identification& first, const Identification& othe
 Result<Summary> summarise(const std::vector<Identification>& identifications) {
   Summary summary;
   std::vector<const Identification*> kept;
-  std::vector<std::pair<std::string, std::string>> seen;  // hash and file
+  std::vector<std::pair<std::string, std::string>> seen;  // hash with trial, and file
   for (const Identification& one : identifications) {
-    const std::string hash = one.sources.size() == 1 ? one.sources.front().sha256 : "";
+    const bool single = one.sources.size() == 1 && !one.sources.front().sha256.empty();
+    const std::string hash = single ? one.sources.front().sha256 + " " + one.sources.front().trial : "";
     const auto twin = std::ranges::find(seen, hash, &std::pair<std::string, std::string>::first);
     if (!hash.empty() && twin != seen.end()) {
       summary.omitted.push_back({file_of(one), fmt::format("the same file as {}", twin->second)});

@@ -337,11 +337,12 @@ class Calibrator {
     Index rows = 0;
     for (const SensorRun& run : runs_) {
       if (run.axes != runs_.front().axes) {
-        return bad_data("its axes are not those of the first file", "calibrate each sensor by itself", run.source.path);
+        return bad_data("its axes are not those of the first file", "calibrate each sensor by itself",
+                        run.source.label());
       }
       if (run.interval.has_value() != runs_.front().interval.has_value()) {
         return bad_data("tables of loads and recordings over time do not go together", "calibrate them apart",
-                        run.source.path);
+                        run.source.label());
       }
       rows += run.force.rows();
     }
@@ -349,7 +350,7 @@ class Calibrator {
     if (rows < parameters + 1) {
       return bad_data(fmt::format("{} rows are too few for {} parameters and the errors of them", rows, parameters),
                       "hang on more loads, of both signs on each axis, and each more than once",
-                      runs_.front().source.path);
+                      runs_.front().source.label());
     }
     for (Index i = 0; i < n(); ++i) {
       double spread = 0.0;
@@ -359,7 +360,7 @@ class Calibrator {
       if (spread > 0.0) continue;
       return fail(ErrorKind::not_usable, fmt::format("the load on {} never changes within a run", name(i)),
                   fmt::format("load that axis too, or leave voltage_{} out of --channels", name(i)),
-                  runs_.front().source.path);
+                  runs_.front().source.label());
     }
     return {};
   }
@@ -380,7 +381,7 @@ class Calibrator {
       if (whole->rank < p || !(whole->condition < 1e6)) {
         return fail(ErrorKind::not_usable,
                     "the loads lie on one line, so that crosstalk is not distinguishable from the slopes",
-                    "load each axis separately, or fit each axis alone with --axes 1", runs_.front().source.path);
+                    "load each axis separately, or fit each axis alone with --axes 1", runs_.front().source.label());
       }
       if (whole->condition > kNearlyOneLine) {
         warn(SensorWarningCode::loads_nearly_collinear,
@@ -425,7 +426,7 @@ class Calibrator {
       return fail(ErrorKind::not_usable,
                   fmt::format("voltage_{0} does not follow force_{0}: {1:.3g} ± {2:.2g} V/N", name(i), C_(i, i),
                               numeric::kNormal95 * error),
-                  "check which column is which with --channels", runs_.front().source.path);
+                  "check which column is which with --channels", runs_.front().source.label());
     }
     return {};
   }
@@ -687,20 +688,20 @@ Result<SensorRun> sensor_run(const Recording& recording, SensorFrame frame) {
     const bool any_voltage = has("voltage", "x") || has("voltage", "y");
     return bad_data(any_voltage ? "there is no force beside the voltage" : "there is no voltage_x or voltage_y",
                     "name loads and voltages, as in --channels Fx=1,Fy=2,Vx=3,Vy=4; a hung mass in kg is Fx=mass*9.81",
-                    run.source.path);
+                    run.source.label());
   }
   const auto force = columns(recording, forces);
-  if (!force) return tl::unexpected(force.error().in(run.source.path));
+  if (!force) return tl::unexpected(force.error().in(run.source.label()));
   run.force = *force;
   for (const std::string& axis : unloaded) {
     run.axes.push_back(axis);
     voltages.push_back("voltage_" + axis);
     run.force.conservativeResize(Eigen::NoChange, run.force.cols() + 1);
     run.force.col(run.force.cols() - 1).setZero();
-    run.notes.push_back(fmt::format("{}: there is no force_{}, which is taken as 0 N", run.source.path, axis));
+    run.notes.push_back(fmt::format("{}: there is no force_{}, which is taken as 0 N", run.source.label(), axis));
   }
   const auto voltage = columns(recording, voltages);
-  if (!voltage) return tl::unexpected(voltage.error().in(run.source.path));
+  if (!voltage) return tl::unexpected(voltage.error().in(run.source.label()));
   run.voltage = *voltage;
   if (run.axes.size() == 2 && run.axes.front() == "y") {  // x first
     std::ranges::reverse(run.axes);
@@ -709,13 +710,13 @@ Result<SensorRun> sensor_run(const Recording& recording, SensorFrame frame) {
   }
   const bool joint = recording.find("joint_2") != nullptr;
   if (frame == SensorFrame::link || (frame == SensorFrame::automatic && joint)) {
-    if (auto ok = turn_into_link(recording, run); !ok) return tl::unexpected(ok.error().in(run.source.path));
+    if (auto ok = turn_into_link(recording, run); !ok) return tl::unexpected(ok.error().in(run.source.label()));
   }
   if (recording.untimed) return run;
   for (Index i = 1; i < recording.samples(); ++i) {
     if (recording.time[i] > recording.time[i - 1]) continue;
     return bad_data(fmt::format("time does not increase at sample {}", i + 1), "mend the clock, or give --rate",
-                    run.source.path);
+                    run.source.label());
   }
   if (recording.samples() > 1) {
     run.interval =

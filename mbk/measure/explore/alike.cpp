@@ -13,12 +13,12 @@ Result<void> check_alike(std::span<const ExplorationTrial> trials) {
   for (const ExplorationTrial& trial : trials) {
     if (trial.input.cols() != first.input.cols() || trial.output.cols() != first.output.cols()) {
       return bad_data("recordings with different axes have no common frequency response", "explore them one by one",
-                      trial.source.path);
+                      trial.source.label());
     }
     if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
       return bad_data(fmt::format("{:.6g} Hz beside {:.6g} Hz: recordings at different rates are not averaged",
                                   1.0 / trial.sample_time, 1.0 / first.sample_time),
-                      "bring them to one rate by --resample", trial.source.path);
+                      "bring them to one rate by --resample", trial.source.label());
     }
   }
   return {};

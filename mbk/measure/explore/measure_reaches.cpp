@@ -51,12 +51,12 @@ Result<Reaches> reaches_of(std::span<const ExplorationTrial> trials, const std::
   Reaches found;
   for (const ExplorationTrial& trial : trials) {
     if (std::abs(trial.sample_time - trials.front().sample_time) > kSameRate * trial.sample_time) {
-      return bad_data("it has another sample rate than the first one", "", trial.source.path);
+      return bad_data("it has another sample rate than the first one", "", trial.source.label());
     }
     const bool with_reference = trial.reference.size() > 0;
     if (with_reference && trial.reference_quantity == ReferenceQuantity::force) {
       return bad_data("the reference is a force", "the reference of a reach is the displacement that was commanded",
-                      trial.source.path);
+                      trial.source.label());
     }
     ExplorationTrial still;
     const ExplorationTrial* source = &trial;

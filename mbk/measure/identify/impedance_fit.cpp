@@ -109,7 +109,7 @@ Result<void> check_options(const std::vector<PreparedTrial>& trials, const Optio
   for (const PreparedTrial& trial : trials) {
     if (trial.axes != first.axes || trial.motion != first.motion) {
       return bad_data("its axes or units are not those of the first file, so they cannot be pooled",
-                      "measure it by itself", trial.sources.empty() ? "" : trial.sources.front().path);
+                      "measure it by itself", trial.sources.empty() ? "" : trial.sources.front().label());
     }
     if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
       return bad_data(
@@ -131,7 +131,7 @@ Result<void> Fitter::choose_handle_mass() {
   const std::optional<double>& first = trials_.front().recorded_handle_mass;
   for (const PreparedTrial& trial : trials_) {
     const std::optional<double>& mass = trial.recorded_handle_mass;
-    const std::string file = trial.sources.empty() ? "" : trial.sources.front().path;
+    const std::string file = trial.sources.empty() ? "" : trial.sources.front().label();
     if (mass && !(*mass >= 0.0 && std::isfinite(*mass))) {
       return bad_data("its 'handle_mass_kg' is not a mass", "give it with --handle-mass KG", file);
     }

@@ -587,7 +587,7 @@ Result<RobotFit> RobotFitter::fit() {
     found.warnings.insert(found.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   }
   for (const PreparedDynamics& trial : held_out_) {
-    for (const SourceFile& source : trial.sources) found.held_out_files.push_back(source.path);
+    for (const SourceFile& source : trial.sources) found.held_out_files.push_back(source.label());
   }
   judge(found);
   if (options_.consistent) {

@@ -167,7 +167,7 @@ Result<void> add_responses_in_time(std::span<const ExplorationTrial> trials, con
 Result<ExplorationTrial> named_trial(const Recording& recording, const ExploreOptions& options) {
   auto trial = explored_trial(recording, options);
   if (trial || recording.sources.empty()) return trial;
-  return tl::unexpected(trial.error().in(recording.sources.front().path));
+  return tl::unexpected(trial.error().in(recording.sources.front().label()));
 }
 
 Result<std::vector<ExplorationTrial>> named_trials(std::span<const Recording> recordings,

@@ -25,7 +25,7 @@ Result<std::vector<PreparedDynamics>> prepare_all(std::span<const Recording> rec
   std::vector<PreparedDynamics> trials;
   const auto prepare = [&](const Recording& recording) -> Result<PreparedDynamics> {
     auto trial = preprocess::prepare_dynamics(recording, recording::inspect(recording), model, options);
-    if (!trial && !recording.sources.empty()) return tl::unexpected(trial.error().in(recording.sources[0].path));
+    if (!trial && !recording.sources.empty()) return tl::unexpected(trial.error().in(recording.sources[0].label()));
     return trial;
   };
   for (const Recording& recording : recordings) {

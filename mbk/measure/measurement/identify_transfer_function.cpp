@@ -270,7 +270,7 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
   Preparer prepared(options);
   const auto add = [&](const Recording& recording, bool whole) -> Result<void> {
     auto added = prepared.add(recording, whole, held_out.empty());
-    if (!added && !recording.sources.empty()) return tl::unexpected(added.error().in(recording.sources[0].path));
+    if (!added && !recording.sources.empty()) return tl::unexpected(added.error().in(recording.sources[0].label()));
     return added;
   };
   for (const Recording& recording : recordings) {

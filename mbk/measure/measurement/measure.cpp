@@ -63,7 +63,7 @@ void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& t
 
 /// An error, with the file in which it is.
 tl::unexpected<Error> in_file(const Recording& recording, const Error& error) {
-  return tl::unexpected<Error>(recording.sources.empty() ? error : error.in(recording.sources[0].path));
+  return tl::unexpected<Error>(recording.sources.empty() ? error : error.in(recording.sources[0].label()));
 }
 
 /// A recording as it is analysed: on an even clock and with a computed force, where that was asked.
@@ -135,12 +135,12 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
 
 Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, const Options& options) {
   std::vector<Source> sources;
-  std::map<std::string, std::string> files;  // by hash
+  std::map<std::string, std::string> files;  // by hash and trial
   for (const Recording& recording : recordings) {
     for (const SourceFile& file : recording.sources) {
-      const auto [twin, fresh] = files.emplace(file.sha256, file.path);
+      const auto [twin, fresh] = files.emplace(file.sha256 + " " + file.trial, file.label());
       if (!fresh && !file.sha256.empty()) {
-        return bad_data(fmt::format("is the same file as {}", twin->second), "pool each trial once", file.path);
+        return bad_data(fmt::format("is the same file as {}", twin->second), "pool each trial once", file.label());
       }
     }
     auto source = make_ready(recording, options);

@@ -38,6 +38,10 @@ struct SourceFile {
   std::string path;
   std::string format;  ///< "MAT v7", "CSV", …
   std::string sha256;  ///< 64 hexadecimal digits, of the file's bytes
+  std::string trial = {};  ///< which of its records; "" where it holds one
+
+  /// For people: "exam.kinarm, trial 3".
+  [[nodiscard]] std::string label() const { return trial.empty() ? path : path + ", trial " + trial; }
 };
 
 /// What was measured, sample by sample, exactly as it was recorded: never resampled, padded, sorted or cleaned.

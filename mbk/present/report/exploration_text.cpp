@@ -13,7 +13,7 @@ std::string exploration_text(const Exploration& found) {
   std::string text;
   std::vector<std::vector<std::string>> rows;
   for (const ExploredRecording& one : found.recordings) {
-    rows.push_back({one.source.path.empty() ? "recording" : one.source.path,
+    rows.push_back({one.source.label().empty() ? "recording" : one.source.label(),
                     fmt::format("{:.6g} s at {:.6g} Hz; analysed: {}", one.duration_s, one.rate_hz, one.window_rule)});
   }
   text += table(rows);

@@ -52,7 +52,7 @@ std::string movement_text(const MovementQuality& found) {
                                  : fmt::format(fmt::runtime(measure.format), numeric::median(values)));
     }
   }
-  std::string text = table({{found.source.path.empty() ? "recording" : found.source.path,
+  std::string text = table({{found.source.label().empty() ? "recording" : found.source.label(),
                              fmt::format("{} reach{} from {:.2f} to {:.2f} s at {:.6g} Hz; at rest below {:.3g} {}/s",
                                          found.reaches.size(), found.reaches.size() == 1 ? "" : "es", found.from_s,
                                          found.to_s, found.rate_hz, found.rest_speed, unit)}});

@@ -47,8 +47,8 @@ std::string percent(double vaf) {
 std::string how_found(const RobotIdentification& found) {
   std::string text;
   for (std::size_t k = 0; k < found.sources.size() && k < found.durations.size(); ++k) {
-    text += fmt::format("{}   {:.1f} s at {:.6g} Hz   {}\n", found.sources[k].path, found.durations[k], found.rates[k],
-                        found.sources[k].format);
+    text += fmt::format("{}   {:.1f} s at {:.6g} Hz   {}\n", found.sources[k].label(), found.durations[k],
+                        found.rates[k], found.sources[k].format);
   }
   const Preparation& how = found.preparations.front();
   std::vector<std::vector<std::string>> rows = {{"method", method_text(found.method)}};
@@ -191,7 +191,7 @@ std::string force_text(const ForceSummary& force) {
   const bool observed = force.source == ForceSource::observer;
   const bool sure = force.standard_error.size() > 0;
   std::string text;
-  for (const SourceFile& source : force.sources) text += fmt::format("{}   {}\n", source.path, source.format);
+  for (const SourceFile& source : force.sources) text += fmt::format("{}   {}\n", source.label(), source.format);
   for (const std::string& note : force.notes) text += paragraph("  ", note);
   std::vector<std::vector<std::string>> rows = {{"", "RMS", "peak"}};
   if (sure) rows.front().emplace_back("± of the robot's dynamics");

@@ -131,7 +131,7 @@ std::string published(const SensorCalibration& c) {
 
 std::string sensor_text(const SensorCalibration& c) {
   std::string text;
-  for (const SourceFile& source : c.sources) text += fmt::format("{}   {}\n", source.path, source.format);
+  for (const SourceFile& source : c.sources) text += fmt::format("{}   {}\n", source.label(), source.format);
   text += paragraph("  data         ",
                     c.continuous ? fmt::format("{} samples over time; standard errors hold for residuals that are "
                                                "correlated over {:g} s",
@@ -153,7 +153,7 @@ std::string sensor_text(const SensorCalibration& c) {
 
 std::string sensor_delay_text(const MeasuredDelay& found) {
   std::string text;
-  for (const SourceFile& source : found.sources) text += fmt::format("{}   {}\n", source.path, source.format);
+  for (const SourceFile& source : found.sources) text += fmt::format("{}   {}\n", source.label(), source.format);
   const double half = kMilli * numeric::kNormal95 * found.delay_error;
   text += fmt::format("  data    {:.3g} s; the mass explains {:.2f} % of the force\n", found.duration, found.vaf);
   text += fmt::format("  mass    {:.4g} ± {:.2g} kg, stated {:g} kg\n", found.mass,

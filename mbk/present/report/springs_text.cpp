@@ -58,7 +58,7 @@ std::string plus_minus(double value, double standard_error, double scale = 1.0) 
 
 std::string constant_text(const SpringConstant& constant) {
   std::string text;
-  for (const SourceFile& source : constant.sources) text += source.path + "\n";
+  for (const SourceFile& source : constant.sources) text += source.label() + "\n";
   const auto row = [](const char* name, const SpringLine& line) {
     return std::vector<std::string>{name,
                                     plus_minus(line.stiffness, line.stiffness_error),

@@ -42,7 +42,7 @@ std::string per_axis(const Vector& values, std::string_view unit, int decimals) 
 std::string inputs_line(const Identification& id) {
   std::string text;
   for (std::size_t i = 0; i < id.sources.size(); ++i) {
-    text += fmt::format("{}   {:.1f} s at {:.6g} Hz   {}\n", id.sources[i].path, id.durations[i], id.rates[i],
+    text += fmt::format("{}   {:.1f} s at {:.6g} Hz   {}\n", id.sources[i].label(), id.durations[i], id.rates[i],
                         id.sources[i].format);
   }
   return text;
@@ -163,8 +163,19 @@ std::string expected_text(const Interval& expected) {
 }
 
 std::string source_line(const SourceFile& source) {
-  return fmt::format("{}   {}{}\n", source.path, source.format,
+  return fmt::format("{}   {}{}\n", source.label(), source.format,
                      source.sha256.empty() ? "" : fmt::format("   sha256 {}…", source.sha256.substr(0, 16)));
+}
+
+/// "3: GO 0.512 s, HIT 1.204 s, STOP 2 s"
+std::string events_text(const std::vector<Event>& events) {
+  constexpr std::size_t kShown = 12;
+  std::vector<std::string> shown;
+  for (const Event& event : std::span(events).first(std::min(kShown, events.size()))) {
+    shown.push_back(fmt::format("{} {:.6g} s", event.name, event.time));
+  }
+  return fmt::format("{}: {}{}", events.size(), fmt::join(shown, ", "),
+                     events.size() > kShown ? fmt::format(" and {} more", events.size() - kShown) : "");
 }
 
 }  // namespace
@@ -400,6 +411,7 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
         {facts.name, facts.unit, fmt::format("{:.6g}", facts.min), fmt::format("{:.6g}", facts.max), remark});
   }
   text += table(rows);
+  if (!recording.events.empty()) text += "\n" + paragraph("  events  ", events_text(recording.events));
 
   std::vector<std::string> problems;
   const auto times = [](Index count) { return count == 1 ? std::string("once") : fmt::format("{} times", count); };
@@ -450,6 +462,12 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     text += "\n" + table(rows);
   }
   return text;
+}
+
+std::string trials_text(const std::string& file, const std::vector<std::pair<std::string, std::string>>& trials) {
+  std::vector<std::vector<std::string>> rows = {{"trial", ""}};
+  for (const auto& [name, description] : trials) rows.push_back({name, description});
+  return fmt::format("{}   {} trials; --trial takes one of them\n", file, trials.size()) + table(rows);
 }
 
 std::string contents_text(const FileContents& contents, const Error& unrecognised) {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/model/robot/workspace.h"
@@ -54,6 +56,10 @@ inline constexpr std::size_t kLineColumns = 100;
 
 /// What is in a recording, and what is wrong with it.
 [[nodiscard]] std::string info_text(const Recording& recording, const Inspection& inspection);
+
+/// The trials of a file that holds several.   @param trials  name and description of each
+[[nodiscard]] std::string trials_text(const std::string& file,
+                                      const std::vector<std::pair<std::string, std::string>>& trials);
 
 /// What a file holds where nothing in it is recognised as a recording, why, and what to do.
 [[nodiscard]] std::string contents_text(const FileContents& contents, const Error& unrecognised);

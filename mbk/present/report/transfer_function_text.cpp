@@ -151,7 +151,7 @@ std::string starts_text(const TransferFunctionIdentification& found) {
 
 std::string transfer_function_text(const TransferFunctionIdentification& found) {
   std::string text;
-  for (const SourceFile& source : found.sources) text += fmt::format("{}   {}\n", source.path, source.format);
+  for (const SourceFile& source : found.sources) text += fmt::format("{}   {}\n", source.label(), source.format);
   Rows rows = {{"from, to", name_of(found.input, found.input_unit) + " → " + name_of(found.output, found.output_unit)},
                {"method", method_text(found.method)}};
   rows.push_back(

@@ -20,6 +20,7 @@ Json document(const Exploration& found) {
                               {"from_s", number(one.from_s)},
                               {"to_s", number(one.to_s)},
                               {"window_rule", one.window_rule}});
+    if (!one.source.trial.empty()) json["inputs"].back()["trial"] = one.source.trial;
   }
   json["axes"] = found.axes;
   if (found.motion != Motion::unknown && !found.other_signals) json["units"] = units_json(found.motion);

@@ -270,6 +270,10 @@ Json info_json(const Recording& recording, const Inspection& inspection) {
                                 {"constant", facts.constant},
                                 {"clipped", facts.clipped}});
   }
+  json["events"] = Json::array();
+  for (const Event& event : recording.events) {
+    json["events"].push_back({{"time_s", number(event.time)}, {"name", event.name}, {"value", number(event.value)}});
+  }
   json["metadata"] = Json::object();
   for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
   json["notes"] = recording.notes;
@@ -399,7 +403,8 @@ Identification identification_from(const Json& json) {
   Identification id = estimate_from(json, axes_of(json));
   if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array()) {
     for (const Json& input : *inputs) {
-      id.sources.push_back({input.value("file", ""), input.value("format", ""), input.value("sha256", "")});
+      id.sources.push_back(
+          {input.value("file", ""), input.value("format", ""), input.value("sha256", ""), input.value("trial", "")});
       id.durations.push_back(input.contains("duration_s") ? number_from(input["duration_s"]) : kNaN);
       id.rates.push_back(input.contains("rate_hz") ? number_from(input["rate_hz"]) : kNaN);
     }

@@ -86,6 +86,7 @@ inline Json inputs_json(const std::vector<SourceFile>& sources) {
   Json inputs = Json::array();
   for (const SourceFile& source : sources) {
     inputs.push_back({{"file", source.path}, {"sha256", source.sha256}, {"format", source.format}});
+    if (!source.trial.empty()) inputs.back()["trial"] = source.trial;
   }
   return inputs;
 }

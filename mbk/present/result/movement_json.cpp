@@ -14,6 +14,7 @@ std::string to_json(std::span<const MovementQuality> all) {
         {"file", one.source.path},  {"sha256", one.source.sha256},        {"format", one.source.format},
         {"axes", one.axes},         {"rate_hz", number(one.rate_hz)},     {"from_s", number(one.from_s)},
         {"to_s", number(one.to_s)}, {"cutoff_hz", number(one.cutoff_hz)}, {"rest_speed", number(one.rest_speed)}};
+    if (!one.source.trial.empty()) recording["trial"] = one.source.trial;
     recording["reaches"] = Json::array();
     const auto maybe = [](const std::optional<double>& value, double scale = 1.0) {
       return value ? number(scale * *value) : Json(nullptr);

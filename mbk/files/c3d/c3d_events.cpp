@@ -1,4 +1,4 @@
-#include "mbk/files/recording/c3d_events.h"
+#include "mbk/files/c3d/c3d_events.h"
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
   std::vector<Event> events;
   std::size_t no_time = 0;
   const double from = rate_hz > 0.0 && first_frame > 1.0 ? (first_frame - 1.0) / rate_hz : 0.0;
-  bool shifted = false;
+  bool shifted = false, row_ignored = false;
   for (const std::string_view group : {"EVENT", "EVENTS"}) {
     const C3dParameter* stored = parameters.find(group, "TIMES");
     if (stored == nullptr) continue;
@@ -47,7 +47,9 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
     const std::size_t used =
         static_cast<std::size_t>(std::clamp(parameters.number(group, "USED").value_or(65535.0), 0.0, 65535.0));
     for (std::size_t k = 0; k < std::min(used, times.size() / each); ++k) {
-      const double time = each == 2 ? 60.0 * times[2 * k] + times[2 * k + 1] : times[k];
+      const double minutes = each == 2 && group == "EVENT" ? times[2 * k] : 0.0;
+      const double time = 60.0 * minutes + times[each * k + each - 1];
+      row_ignored = row_ignored || (each == 2 && group == "EVENTS" && times[2 * k] != 0.0);
       if (!std::isfinite(time)) {
         ++no_time;
         continue;
@@ -74,6 +76,7 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
     notes.push_back(fmt::format("the header speaks of {} events and has room for {}", in_header, kMaxInHeader));
   }
   if (no_time > 0) notes.push_back(fmt::format("{} events have no time and were ignored", no_time));
+  if (row_ignored) notes.emplace_back("the first of the two rows of EVENTS:TIMES is no time and was ignored");
   if (shifted) {
     notes.push_back(fmt::format("the first frame is number {}; the times of events count from there", first_frame));
   }

@@ -1,4 +1,4 @@
-#include "mbk/files/recording/c3d.h"
+#include "mbk/files/c3d/c3d.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "mbk/files/c3d/test_c3d.h"
 #include "mbk/files/contents/test_files.h"
-#include "mbk/files/recording/read.h"
-#include "mbk/files/recording/test_c3d.h"
 
 namespace mbk::recording {
 namespace c3d_test {
@@ -376,20 +375,6 @@ TEST(DecodeC3dRealFiles, TheSameTrialInThreeFormatsReadsEqual) {
     // Integers hold points to half of POINT:SCALE, 1/12 mm, and analog numbers exactly.
     EXPECT_LE(difference(integer.arrays[k], real.arrays[k]), k < 78 ? 0.5 / 12 + 1e-4 : 0.0) << real.arrays[k].name;
   }
-}
-
-TEST(DecodeC3dRealFiles, AKneeAsAnalogChannels) {
-  MBK_DATA_OR_SKIP(folder);
-  const auto file = folder / "c3d" / "Sample35_isokinetic_EMG_angle_torque.c3d";
-  ReadOptions options;
-  options.axes = 1;
-  options.channels = {{"x", "Angle"}, {"F", "Torque"}};
-  const auto recording = recording::read(file, options);
-  ASSERT_TRUE(recording) << recording.error().line();
-  EXPECT_EQ(recording->samples(), 29 * 1250);
-  EXPECT_EQ(recording->time[1250], 1.0);
-  EXPECT_EQ(recording->find("position")->unit, "rad");
-  EXPECT_EQ(recording->find("reaction")->unit, "N.m");
 }
 
 }  // namespace c3d_test

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "mbk/base/core/result.h"
+#include "mbk/files/c3d/c3d_parameters.h"
 #include "mbk/files/contents/contents.h"
 
 namespace mbk::recording {
@@ -28,5 +30,18 @@ namespace mbk::recording {
 /// points, channels or samples in a frame, or on whether numbers are integers or reals; there are no frames, or neither
 /// points nor channels; the file ends before the last frame.
 [[nodiscard]] Result<Contents> decode_c3d(std::span<const std::byte> file);
+
+/// The parameters of a C3D file alone. They refer to its bytes; those before the data are enough.
+/// @fails  data: an unknown processor; a damaged parameter section, or one that goes on behind the bytes that are
+/// there.
+[[nodiscard]] Result<C3dParameters> decode_c3d_parameters(std::span<const std::byte> file);
+
+/// How much a C3D file says that it holds; the bytes before its data are enough.
+struct C3dLength {
+  std::uint64_t frames = 0;
+  double rate_hz = 0.0;  ///< of the frames; 0 where it is not said
+};
+/// @fails  data: as decode_c3d, but that the data need not be there.
+[[nodiscard]] Result<C3dLength> decode_c3d_length(std::span<const std::byte> file);
 
 }  // namespace mbk::recording

@@ -1,4 +1,4 @@
-#include "mbk/files/recording/c3d_parameters.h"
+#include "mbk/files/c3d/c3d_parameters.h"
 
 #include <fmt/format.h>
 
@@ -166,6 +166,12 @@ std::vector<std::string> C3dParameters::texts(std::string_view group, std::strin
     }
   });
   return texts;
+}
+
+std::vector<std::string_view> C3dParameters::groups() const {
+  std::vector<std::string_view> names;
+  for (const auto& [name, parameters] : groups_) names.push_back(name);
+  return names;
 }
 
 std::vector<std::string_view> C3dParameters::names(std::string_view group) const {

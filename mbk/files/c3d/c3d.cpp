@@ -1,4 +1,4 @@
-#include "mbk/files/recording/c3d.h"
+#include "mbk/files/c3d/c3d.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "mbk/files/recording/c3d_events.h"
-#include "mbk/files/recording/c3d_parameters.h"
+#include "mbk/files/c3d/c3d_events.h"
+#include "mbk/files/c3d/c3d_parameters.h"
 
 namespace mbk::recording {
 namespace {
@@ -72,6 +72,13 @@ class Decoder {
     take_analog();
     contents_.events = c3d_events(file_, parameters_, layout_.point_rate, first_frame_, contents_.notes);
     return std::move(contents_);
+  }
+
+  Result<C3dLength> length() {
+    if (auto ok = find_numbers(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = find_analog(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = find_frames(); !ok) return tl::unexpected(ok.error());
+    return C3dLength{layout_.frames, layout_.point_rate};
   }
 
  private:
@@ -328,7 +335,14 @@ bool looks_like_c3d(std::span<const std::byte> file) {
   return file.size() >= 2 && file[1] == kSignature && file[0] >= kFirstBlock && file[0] <= kLastBlock;
 }
 
-Result<Contents> decode_c3d(std::span<const std::byte> bytes) {
+namespace {
+
+struct Parameters {
+  C3dBytes file;
+  C3dParameters parameters;
+};
+
+Result<Parameters> parameters_of(std::span<const std::byte> bytes) {
   const std::size_t begin = (std::to_integer<std::size_t>(bytes[0]) - 1) * kC3dBlock;
   if (bytes.size() < kC3dBlock || bytes.size() < begin + kParameterHeader) {
     return bad_data(fmt::format("a C3D file of {} bytes ends before its parameters, which begin at block {}",
@@ -347,7 +361,27 @@ Result<Contents> decode_c3d(std::span<const std::byte> bytes) {
   const std::size_t end = data > begin ? data : counted;
   auto parameters = C3dParameters::read(file, begin + kParameterHeader, end);
   if (!parameters) return tl::unexpected(parameters.error());
-  return Decoder(file, std::move(*parameters)).run();
+  return Parameters{file, std::move(*parameters)};
+}
+
+}  // namespace
+
+Result<C3dParameters> decode_c3d_parameters(std::span<const std::byte> bytes) {
+  auto found = parameters_of(bytes);
+  if (!found) return tl::unexpected(found.error());
+  return std::move(found->parameters);
+}
+
+Result<C3dLength> decode_c3d_length(std::span<const std::byte> bytes) {
+  auto found = parameters_of(bytes);
+  if (!found) return tl::unexpected(found.error());
+  return Decoder(found->file, std::move(found->parameters)).length();
+}
+
+Result<Contents> decode_c3d(std::span<const std::byte> bytes) {
+  auto found = parameters_of(bytes);
+  if (!found) return tl::unexpected(found.error());
+  return Decoder(found->file, std::move(found->parameters)).run();
 }
 
 }  // namespace mbk::recording

@@ -60,6 +60,8 @@ class C3dParameters {
   /// The texts of NAME, NAME2, NAME3, … in printable UTF-8 without spaces around them.
   [[nodiscard]] std::vector<std::string> texts(std::string_view group, std::string_view name) const;
 
+  /// The names of the groups, sorted.
+  [[nodiscard]] std::vector<std::string_view> groups() const;
   /// The names of a group's parameters, sorted.
   [[nodiscard]] std::vector<std::string_view> names(std::string_view group) const;
 
