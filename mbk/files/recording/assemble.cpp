@@ -553,6 +553,9 @@ class Assembler {
   // ---- what they hold ----
 
   Result<void> check() const {
+    for (const Signal& signal : signals_) {
+      if (signal.line.array->obstacle) return tl::unexpected(signal.line.array->obstacle->in(signal.kind->name));
+    }
     if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
       return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");
     }

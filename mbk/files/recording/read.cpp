@@ -51,7 +51,7 @@ Result<Contents> decode(std::shared_ptr<Buffer> file) {
   }
   if (has_mat_header(text) || text.starts_with("MATLAB 5.0")) return decode_mat_level5(std::move(file));
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
-  if (is_text(text)) return decode_csv(bytes);
+  if (is_text(text) || looks_like_utf16(bytes)) return decode_csv(bytes);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
   return bad_data("the content is of no known format", std::string(kFormats));
 }
