@@ -49,7 +49,8 @@ struct Contents {
   std::string format;  ///< "CSV", "C3D", "MAT v7", "HDF5", "XDF", …
   bool table = false;  ///< CSV, C3D: the arrays are columns, and a number in the channel map counts them
   std::vector<Array> arrays;
-  std::vector<Clock> clocks;  ///< empty where one time, or one rate, is that of all arrays
+  std::string angle_unit = {};  ///< in which columns of angles are, where the file says it once for all: "deg"
+  std::vector<Clock> clocks;    ///< empty where one time, or one rate, is that of all arrays
   std::vector<Text> texts;
   std::map<std::string, std::string> metadata;  ///< what `take_annotations` found
   std::vector<Event> events;                    ///< the same
