@@ -137,10 +137,11 @@ class Tables(BadInput):
         lines[100] = ",".join([*cells[:3], "12a4", *cells[4:]])
         self.bad_data(self.table(lines), says=["line 102, column 4", "'12a4'"])
 
-    def test_decimal_commas(self):
-        lines = [line.replace(",", ";").replace(".", ",") for line in self.lines(200)]
-        self.bad_data(self.table(lines, ";".join(COLUMNS)), says=["line 2, column 1", "decimal comma"])
-        self.bad_data(self.file("log.csv", "\n".join(lines)), says=["line 1, column 1", "decimal comma"])
+    def test_commas_that_may_stand_for_two_things(self):
+        lines = [line.replace(".", ",") for line in self.lines(200)]
+        self.bad_data(self.table(lines), says=["7 columns", "line 2 has 14", "semicolons"])
+        thousands = ["1,234;2,345"] * 100
+        self.bad_data(self.table(thousands, "time;x"), says=["decimal comma or one between thousands"])
 
     def test_a_header_with_fewer_names_than_columns(self):
         self.bad_data(self.table(self.lines(), "time,x,y,Fx,Fy"), says=["5 columns", "line 2 has 7"])

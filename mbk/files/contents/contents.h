@@ -1,9 +1,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/result.h"
 #include "mbk/files/contents/shared_matrix.h"
 #include "mbk/model/trial/recording.h"
 
@@ -25,6 +27,8 @@ struct Array {
   int clock = -1;          ///< whose samples these are: an index into Contents::clocks; -1 in a file without clocks
   std::string means = {};  ///< channel that the type of what was stored says it is ("force_x" of a wrench); "" where
                            ///< the name alone may say it
+  std::optional<Error> obstacle = {};  ///< why its numbers cannot be used, for whoever asks for it: a column of words;
+                                       ///< `values` then are empty
 };
 
 /// Text of a file, in UTF-8 without control characters: the rows of a char array, or the entries of a cell array of
@@ -45,7 +49,8 @@ struct Contents {
   std::string format;  ///< "CSV", "C3D", "MAT v7", "HDF5", "XDF", …
   bool table = false;  ///< CSV, C3D: the arrays are columns, and a number in the channel map counts them
   std::vector<Array> arrays;
-  std::vector<Clock> clocks;  ///< empty where one time, or one rate, is that of all arrays
+  std::string angle_unit = {};  ///< in which columns of angles are, where the file says it once for all: "deg"
+  std::vector<Clock> clocks;    ///< empty where one time, or one rate, is that of all arrays
   std::vector<Text> texts;
   std::map<std::string, std::string> metadata;  ///< what `take_annotations` found
   std::vector<Event> events;                    ///< the same

@@ -325,14 +325,27 @@ class Assembler {
   }
 
   /// The unit that the file says beside the name of an array, or else the one that its name says.
-  static Result<const Unit*> unit_said(const ChannelKind& kind, const Array& array, const Unit* in_name) {
-    if (array.unit.empty()) return in_name;
+  Result<const Unit*> unit_said(const ChannelKind& kind, const Array& array, const Unit* in_name) {
+    if (array.unit.empty()) return in_name != nullptr ? Result<const Unit*>(in_name) : unit_of_angle(kind, array);
     const Unit* const unit = find_unit(array.unit);
     if (kind.measures.empty() || (unit != nullptr && kind.accepts(*unit))) return unit;
     return bad_data(fmt::format("the file says that '{}' is in '{}', which channel {} cannot be in", array.name,
                                 array.unit, kind.name),
                     fmt::format("say the unit with --channels {}={}:UNIT; possible are {}", kind.name, array.name,
                                 unit_names(kind.measures)));
+  }
+
+  /// The unit of angles that the file says for all of its columns, where the channel is an angle.
+  Result<const Unit*> unit_of_angle(const ChannelKind& kind, const Array& array) {
+    const Unit* const unit = find_unit(contents_.angle_unit);
+    if (unit == nullptr || kind.measures.empty() || !kind.accepts(*unit)) return nullptr;
+    if (!kind.first_unless_said && kind.measures.size() > 1) {
+      return bad_data(
+          fmt::format("the file says that its angles are in {}, and not whether '{}' is one", unit->name, array.name),
+          fmt::format("say its unit, as in --channels {}={}:{}", kind.alias, array.name, unit->name));
+    }
+    recording_.notes.push_back(fmt::format("{} is taken in {}, as the file says of its angles", kind.name, unit->name));
+    return unit;
   }
 
   Result<void> follow_map() {
@@ -373,6 +386,10 @@ class Assembler {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
+      } else if (signal.is_plain()) {
+        const auto unit = unit_of_angle(*kind, *line->array);
+        if (!unit) return tl::unexpected(unit.error());
+        signal.unit = *unit;
       }
       if (!signal.is_plain()) note_arithmetic(signal);
       signals_.push_back(std::move(signal));
@@ -557,6 +574,9 @@ class Assembler {
   // ---- what they hold ----
 
   Result<void> check() const {
+    for (const Signal& signal : signals_) {
+      if (signal.line.array->obstacle) return tl::unexpected(signal.line.array->obstacle->in(signal.kind->name));
+    }
     if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
       return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");
     }

@@ -2,193 +2,47 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 
-#include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/cells.h"
 #include "mbk/files/contents/disk_pages.h"
+#include "mbk/files/contents/utf16.h"
+#include "mbk/files/recording/channel_table.h"
+#include "mbk/files/recording/csv_text.h"
 #include "mbk/files/recording/encode.h"
 
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kMaxColumns = 10'000;
-
-struct Line {
-  std::size_t number = 0;  ///< from 1
-  std::string_view text;   ///< without its line end
-  bool terminated = true;
-};
-
-/// The text, all of it or as far as it was read.
-class CsvText {
- public:
-  explicit CsvText(std::string_view all) : so_far_(all), size_(all.size()) {}
-  explicit CsvText(FileInPassing& file) : file_(&file), so_far_(file.text()), size_(file.size()) {}
-
-  [[nodiscard]] std::string_view so_far() const { return so_far_; }
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] bool is_complete() const { return so_far_.size() == size_; }
-  /// Whether there is more than before.
-  bool read_on() {
-    if (is_complete() || !status_) return false;
-    status_ = file_->read_on();
-    so_far_ = file_->text();
-    return status_.has_value();
-  }
-  void forget(std::size_t before) {
-    if (file_ != nullptr) file_->forget(before);
-  }
-  [[nodiscard]] const Result<void>& status() const { return status_; }
-
- private:
-  FileInPassing* file_ = nullptr;
-  std::string_view so_far_;
-  std::size_t size_;
-  Result<void> status_;
-};
-
-/// Walks through the lines. Those before the last two need not stay in memory.
-class Lines {
- public:
-  explicit Lines(CsvText& text) : text_(text) {
-    if (text.so_far().starts_with("\xEF\xBB\xBF")) begin_ = 3;
-  }
-
-  /// The next that is neither empty nor a comment.
-  std::optional<Line> next() {
-    while (auto line = next_of_all()) {
-      const auto first = line->text.find_first_not_of(" \t");
-      if (first != line->text.npos && line->text[first] != '#' && line->text[first] != '%') return line;
-    }
-    return std::nullopt;
-  }
-
-  std::optional<Line> next_of_all() {
-    std::size_t end = text_.so_far().find('\n', begin_);
-    for (std::size_t seen = text_.so_far().size(); end == std::string_view::npos && text_.read_on();
-         seen = text_.so_far().size()) {
-      end = text_.so_far().find('\n', seen);
-    }
-    const std::string_view text = text_.so_far();
-    end = std::min(end, text.size());
-    if (begin_ == text.size() || !text_.status()) return std::nullopt;
-    Line line{++number_, text.substr(begin_, end - begin_), end < text.size()};
-    begin_ = std::min(end + 1, text.size());
-    if (line.text.ends_with('\r')) line.text.remove_suffix(1);
-    return line;
-  }
-
- private:
-  CsvText& text_;
-  std::size_t begin_ = 0, number_ = 0;
-};
-
-std::string_view trimmed(std::string_view cell) {
-  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t')) cell.remove_suffix(1);
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
-  return cell;
-}
-
-/// Digits with at most a sign and a point, so few that one division gives their value to rounding (Clinger 1990): what
-/// most loggers write. Nothing where a cell holds anything else.
-std::optional<double> plain_number(std::string_view cell) {
-  constexpr std::uint64_t kExact = std::uint64_t{1} << 53;
-  constexpr std::size_t kLongest = 17;  // a point and 16 digits
-  constexpr std::array kPowers = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7, 1e8,
-                                  1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16};
-  const bool negative = cell.starts_with('-');
-  if (negative) cell.remove_prefix(1);
-  if (cell.size() > kLongest) return std::nullopt;
-  std::uint64_t digits = 0;
-  std::size_t point = cell.size();
-  for (std::size_t k = 0; k < cell.size(); ++k) {
-    const auto digit = static_cast<unsigned>(cell[k] - '0');
-    if (digit <= 9) {
-      digits = 10 * digits + digit;
-    } else if (cell[k] == '.' && point == cell.size()) {
-      point = k;
-    } else {
-      return std::nullopt;
-    }
-  }
-  const std::size_t decimals = point == cell.size() ? 0 : cell.size() - point - 1;
-  const bool any = decimals > 0 || point > 0;
-  if (!any || digits > kExact || decimals >= kPowers.size()) return std::nullopt;
-  const double value = static_cast<double>(digits) / kPowers[decimals];
-  return negative ? -value : value;
-}
-
-/// The number in a cell; NaN where it is empty; nothing where it is not a number.
-std::optional<double> number(std::string_view cell) {
-  if (const auto plain = plain_number(cell)) return plain;
-  cell = trimmed(cell);
-  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (cell.front() == '+') {
-    cell.remove_prefix(1);
-    if (cell.empty() || cell.front() == '-' || cell.front() == '+') return std::nullopt;
-  }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (end != cell.data() + cell.size()) return std::nullopt;
-  if (error == std::errc()) return value;
-  if (error != std::errc::result_out_of_range) return std::nullopt;
-  value = std::strtod(std::string(cell).c_str(), nullptr);  // too small is 0 or subnormal; too large is not a number
-  if (std::isinf(value)) return std::nullopt;
-  return value;
-}
-
-/// Calls use(cell) for each cell until it returns false.
-template <class Use>
-void for_each_cell(std::string_view line, char separator, Use use) {
-  for (;;) {
-    const std::size_t end = std::min(line.find(separator), line.size());
-    if (!use(line.substr(0, end)) || end == line.size()) return;
-    line.remove_prefix(end + 1);
-  }
-}
-
-std::vector<std::string_view> cells_of(std::string_view line, char separator) {
-  std::vector<std::string_view> cells;
-  for_each_cell(line, separator, [&](std::string_view cell) {
-    cells.push_back(trimmed(cell));
-    return true;
-  });
-  return cells;
-}
-
-char separator_of(CsvText& text) {
-  Lines lines(text);
-  char found = ',';
-  for (int i = 0; i < 3; ++i) {
-    const auto line = lines.next();
-    if (!line) break;
-    if (line->text.find(';') != line->text.npos) return ';';
-    if (line->text.find('\t') != line->text.npos) found = '\t';
-  }
-  return found;
-}
+constexpr std::size_t kMaxColumns = 10'000, kMostCells = kMaxColumns + 2;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string place(std::size_t line) {
   return fmt::format("line {}", line);
 }
 
-tl::unexpected<Error> not_a_number(const Line& line, std::size_t column, std::string_view cell, char separator) {
-  cell = trimmed(cell);
-  const std::string where = fmt::format("line {}, column {}", line.number, column);
-  if (separator != ',' && cell.find(',') != cell.npos) {
-    return bad_data(fmt::format("'{}' has a decimal comma", printable(std::string(cell.substr(0, 40)))),
-                    "write the file with decimal points", where);
+/// A cell that is not a number, for messages.
+Error not_a_number(std::size_t line, std::size_t column, std::string_view cell, bool decimal_commas) {
+  cell = without_quotes(cell);
+  const auto count = [cell](char c) { return std::ranges::count(cell, c); };
+  std::string remedy = "the table must hold numbers, separated by commas, semicolons, tabs or blanks";
+  if (cell == "NA" || cell == "N/A" || cell == "n/a" || cell == "-") {
+    remedy = "leave the cell empty, or write nan, where a value is missing";
+  } else if (count(':') == 1 || count('/') == 2 || (count('.') == 2 && count(':') > 0)) {
+    remedy = "write times as 10:15:30.123 or 2024-03-01T10:15:30.123, or as seconds";
+  } else if (decimal_commas && cell.find('.') != cell.npos) {
+    remedy = "the file has decimal commas: export it with decimal points throughout";
   }
-  return bad_data(fmt::format("'{}' is not a number", printable(std::string(cell.substr(0, 40)))),
-                  "the table must hold numbers, separated by commas, semicolons or tabs", where);
+  return bad_data(fmt::format("'{}' is not a number", printable(std::string(cell.substr(0, 40)))), std::move(remedy),
+                  fmt::format("line {}, column {}", line, column))
+      .value();
 }
 
 /// "0.05 3 onset": time, value and name of an event.
@@ -196,8 +50,8 @@ std::optional<Event> event(std::string_view text) {
   const auto first = text.find(' ');
   const auto second = first == text.npos ? text.npos : text.find(' ', first + 1);
   if (first == text.npos) return std::nullopt;
-  const auto time = number(text.substr(0, first));
-  const auto value = number(text.substr(first + 1, second - first - 1));
+  const auto time = cell_number(text.substr(0, first));
+  const auto value = cell_number(text.substr(first + 1, second - first - 1));
   if (!time || !value) return std::nullopt;
   return Event{*time, std::string(second == text.npos ? "" : text.substr(second + 1)), *value};
 }
@@ -206,7 +60,7 @@ std::optional<Event> event(std::string_view text) {
 void take_comments(CsvText& text, Contents& contents) {
   constexpr std::string_view kMark = "# ", kEvent = "event ";
   if (!text.so_far().starts_with(fmt::format("{}{}", kMark, kLayout))) return;
-  Lines lines(text);
+  CsvLines lines(text);
   lines.next_of_all();
   while (const auto whole = lines.next_of_all()) {
     if (!whole->text.starts_with(kMark)) return;
@@ -220,6 +74,17 @@ void take_comments(CsvText& text, Contents& contents) {
   }
 }
 
+/// What a column holds beside numbers.
+struct Column {
+  std::optional<Error> obstacle;  ///< its first cell that is no number
+  Index instants = 0;             ///< cells that are times of day or dates
+  bool dates = false;
+  std::int64_t first_day = 0;
+  double latest = 0.0;  ///< [s] the last time of day
+  int midnights = 0;
+  bool mixed = false;  ///< times with and without a date
+};
+
 class Table {
  public:
   Contents contents;
@@ -228,16 +93,14 @@ class Table {
     contents.format = "CSV";
     contents.table = true;
     take_comments(text, contents);
-    separator_ = separator_of(text);
-    Lines lines(text);
-    std::optional<Line> line = lines.next();
-    if (line && is_header(line->text)) {
-      for (const std::string_view cell : cells_of(line->text, separator_)) header_.emplace_back(cell);
-      header_line_ = line->number;
-      line = lines.next();
-    }
+    auto head = find_table(text);
+    if (!head) return tl::unexpected(head.error());
+    head_ = std::move(*head);
+    CsvLines lines(text);
+    std::optional<CsvLine> line = lines.next();
+    if (head_.first_row == 0) return no_numbers(text, lines, line);
+    while (line && line->number < head_.first_row) line = lines.next();
     if (!text.status()) return text.status();
-    if (!line) return bad_data("the file holds no line of numbers", "nothing was recorded, or it is not a table");
     if (auto ok = find_columns(*line); !ok) return ok;
     make_room(text);
 
@@ -251,71 +114,64 @@ class Table {
       return bad_data(fmt::format("the only line of numbers, line {}, is incomplete", last_line_),
                       "nothing complete was recorded");
     }
-    finish();
-    return {};
+    return finish();
   }
 
  private:
-  [[nodiscard]] bool is_header(std::string_view line) const {
-    bool header = false;
-    for_each_cell(line, separator_, [&](std::string_view cell) {
-      const bool decimal_comma = separator_ != ',' && cell.find_first_not_of("+-0123456789.,eE \t") == cell.npos;
-      header = header || (!number(cell) && !decimal_comma);
-      return true;
-    });
-    return header;
+  /// Why this text is no table: its second line, or the only one, holds none.
+  static Result<void> no_numbers(const CsvText& text, CsvLines& lines, std::optional<CsvLine> line) {
+    const auto second = line ? lines.next() : std::nullopt;
+    if (!text.status()) return text.status();
+    if (!second) return bad_data("the file holds no line of numbers", "nothing was recorded, or it is not a table");
+    return tl::unexpected(not_a_number(second->number, 1, second->text, false));
   }
 
-  Result<void> find_columns(const Line& first) {
-    const auto cells = cells_of(first.text, separator_);
+  Result<void> find_columns(const CsvLine& first) {
+    std::vector<std::string>& names = head_.names;
+    const auto cells = quoted_cells(first.text, head_.separator, kMostCells);
     columns_ = cells.size();
     const bool ends_empty =
-        columns_ > 1 && cells.back().empty() && (first.terminated || header_.size() + 1 == columns_);
-    trailing_ = ends_empty && (header_.empty() || header_.size() + 1 == columns_ || header_.back().empty());
+        columns_ > 1 && without_quotes(cells.back()).empty() && (first.terminated || names.size() + 1 == columns_);
+    trailing_ = ends_empty && (names.empty() || names.size() + 1 == columns_ || names.back().empty());
     if (trailing_) --columns_;
-    if (header_.size() == columns_ + 1 && header_.back().empty()) header_.pop_back();
+    if (names.size() == columns_ + 1 && names.back().empty()) names.pop_back();
     if (columns_ > kMaxColumns) {
-      return bad_data(fmt::format("{} columns are more than {}", columns_, kMaxColumns), "every sample is one line",
+      return bad_data(fmt::format("it has more than {} columns", kMaxColumns), "every sample is one line",
                       place(first.number));
     }
-    if (header_.empty() || header_.size() == columns_) return {};
-    if (!first.terminated && columns_ < header_.size()) {
-      columns_ = header_.size();  // the one line there is was not written completely
+    kinds_.resize(columns_);
+    if (names.empty() || names.size() == columns_) return {};
+    if (!first.terminated && columns_ < names.size()) {
+      columns_ = names.size();  // the one line there is was not written completely
+      kinds_.resize(columns_);
       return {};
     }
-    return bad_data(fmt::format("the header names {} columns, line {} has {}", header_.size(), first.number, columns_),
-                    "give every column one name", place(header_line_));
+    const bool both = head_.separator == ',' && columns_ == 2 * names.size();
+    return bad_data(fmt::format("the header names {} columns, line {} has {}", names.size(), first.number, columns_),
+                    both ? "where commas stand for decimal points too, export it with semicolons between the columns"
+                         : "give every column one name",
+                    place(head_.header_line));
   }
 
-  Result<void> add(const Line& line, bool last) {
+  Result<void> add(const CsvLine& line, bool last) {
     last_line_ = line.number;
     if (rows_ == numbers_.front().size()) make_rows(rows_ + rows_ / 4 + 1);
-    std::size_t count = 0;
-    std::string_view wrong;
-    std::size_t wrong_column = 0;
-    bool last_is_empty = false;
-    for_each_cell(line.text, separator_, [&](std::string_view cell) {
-      ++count;
-      last_is_empty = trimmed(cell).empty();
-      if (count > columns_) return count <= columns_ + 64;
-      const auto value = number(cell);
-      if (!value && wrong.data() == nullptr) wrong = cell, wrong_column = count;
-      numbers_[count - 1][rows_] = value.value_or(0.0);
-      return true;
-    });
-    const bool trailing = trailing_ && count == columns_ + 1 && last_is_empty;
-    const bool complete = count == columns_ || trailing;
-    if (last && (count < columns_ || (!line.terminated && count == columns_ && last_is_empty) ||
-                 (!line.terminated && wrong.data() != nullptr && wrong_column == count))) {
+    Row row = decimal_commas_ ? Row{0, true, false} : take_plain(line.text);
+    if (row.odd || (row.count != columns_ && line.text.find('"') != line.text.npos)) row = part_odd(line.text);
+    const bool trailing = trailing_ && row.count == columns_ + 1 && row.last_is_empty;
+    const bool complete = row.count == columns_ || trailing;
+    const bool last_is_cut =
+        row.odd && row.count == columns_ && odd_.back().kind == Odd::words && !kinds_.back().obstacle;
+    if (last &&
+        (row.count < columns_ || (!line.terminated && row.count == columns_ && (row.last_is_empty || last_is_cut)))) {
       contents.notes.push_back(
           fmt::format("line {} is incomplete (the recording was cut off there) and was ignored", line.number));
       return {};
     }
-    if (!complete || (trailing_ && !trailing && !last)) {
-      return bad_data(fmt::format("{} cells where the lines before have {}", count, columns_ + (trailing_ ? 1 : 0)),
-                      "every line must have a cell for every column", place(line.number));
+    if (!complete || (trailing_ && !trailing && !last)) return wrong_count(line, row.count);
+    if (row.odd) {
+      if (auto ok = take_odd(line); !ok) return ok;
     }
-    if (wrong.data() != nullptr) return not_a_number(line, wrong_column, wrong, separator_);
     if (!line.terminated && !trailing) {
       contents.notes.push_back(fmt::format(
           "line {} has no line end: if the recording was cut off there, its last number may be cut too", line.number));
@@ -323,6 +179,128 @@ class Table {
     ++rows_;
     if (rows_ >= on_disk_from_) put_on_disk();
     return {};
+  }
+
+  [[nodiscard]] Result<void> wrong_count(const CsvLine& line, std::size_t count) const {
+    const bool commas = head_.separator == ',' && line.text.find('.') == line.text.npos;
+    return bad_data(fmt::format("{} cells where the lines before have {}", count, columns_ + (trailing_ ? 1 : 0)),
+                    commas ? "every line must have a cell for every column; where commas stand for decimal points too, "
+                             "export it with semicolons between the columns"
+                           : "every line must have a cell for every column",
+                    place(line.number));
+  }
+
+  /// A line, as far as it is known.
+  struct Row {
+    std::size_t count = 0;  ///< cells
+    bool odd = false;       ///< a cell is no number with a decimal point
+    bool last_is_empty = false;
+  };
+
+  /// Takes a line as most are.
+  Row take_plain(std::string_view line) {
+    Row row;
+    for_each_cell(line, head_.separator, [&](std::string_view cell) {
+      ++row.count;
+      const auto value = cell_number(cell);
+      row.last_is_empty = value && std::isnan(*value) && without_quotes(cell).empty();
+      if (row.count > columns_) return row.count <= columns_ + 64;
+      row.odd = row.odd || !value;
+      numbers_[row.count - 1][rows_] = value.value_or(kNone);
+      return true;
+    });
+    return row;
+  }
+
+  /// A cell of a line that is not as most are.
+  struct Odd {
+    enum Kind { number, comma, time, words };
+    std::string_view cell;
+    Kind kind = words;
+    double value = kNone;
+    bool sure = false;  ///< a comma is that of decimals
+    std::optional<Instant> instant = {};
+  };
+
+  Row part_odd(std::string_view line) {
+    odd_.clear();
+    Row row{0, true, false};
+    const auto take = [&](std::string_view cell) {
+      ++row.count;
+      row.last_is_empty = without_quotes(cell).empty();
+      if (row.count <= columns_) odd_.push_back(odd(cell));
+      return row.count <= columns_ + 64;
+    };
+    if (line.find('"') == line.npos) {
+      for_each_cell(line, head_.separator, take);
+    } else {
+      for (const std::string_view cell : quoted_cells(line, head_.separator, columns_ + 64)) take(cell);
+    }
+    return row;
+  }
+
+  [[nodiscard]] Odd odd(std::string_view cell) const {
+    if (!decimal_commas_) {
+      if (const auto value = cell_number(cell)) return {cell, Odd::number, *value};
+    }
+    if (decimal_commas_ || head_.separator != ',' || cell.find('"') != cell.npos) {
+      if (const auto value = comma_number(cell)) {
+        return {cell, value->has_comma ? Odd::comma : Odd::number, value->value, value->sure};
+      }
+    }
+    if (const auto time = instant(cell)) return {cell, Odd::time, kNone, false, time};
+    return {cell};
+  }
+
+  Result<void> take_odd(const CsvLine& line) {
+    for (std::size_t c = 0; c < odd_.size(); ++c) {
+      Odd& one = odd_[c];
+      if (one.kind == Odd::comma) {
+        if (auto ok = take_comma(line, c); !ok) return ok;
+      } else if (one.kind == Odd::time) {
+        one.value = seconds(kinds_[c], *one.instant);
+      } else if (one.kind == Odd::words && !kinds_[c].obstacle) {
+        kinds_[c].obstacle = not_a_number(line.number, c + 1, one.cell, decimal_commas_);
+      }
+      numbers_[c][rows_] = one.value;
+    }
+    return {};
+  }
+
+  /// A decimal comma: from then on every number has one, and none before had a point.
+  Result<void> take_comma(const CsvLine& line, std::size_t column) {
+    comma_is_sure_ = comma_is_sure_ || odd_[column].sure;
+    if (decimal_commas_) return {};
+    comma_cell_ = std::string(without_quotes(odd_[column].cell));
+    const auto has_point = [](const Odd& one) {
+      return one.kind == Odd::number && one.cell.find('.') != one.cell.npos;
+    };
+    bool points = std::ranges::any_of(odd_, has_point);
+    for (std::size_t c = 0; c < columns_ && !points; ++c) {
+      if (kinds_[c].instants > 0) continue;
+      points = std::any_of(numbers_[c].data(), numbers_[c].data() + rows_,
+                           [](double value) { return std::isfinite(value) && value != std::trunc(value); });
+    }
+    if (points) {
+      return bad_data(fmt::format("'{}' has a comma where other numbers have decimal points", printable(comma_cell_)),
+                      "a comma may stand for decimals or between thousands: export it with decimal points, and "
+                      "nothing between thousands",
+                      fmt::format("line {}, column {}", line.number, column + 1));
+    }
+    decimal_commas_ = true;
+    return {};
+  }
+
+  /// [s] since the midnight before the first.
+  static double seconds(Column& column, const Instant& instant) {
+    constexpr double kDay = 86'400.0;
+    const bool first = column.instants++ == 0;
+    if (first) column.dates = instant.day.has_value(), column.first_day = instant.day.value_or(0);
+    column.mixed = column.mixed || column.dates != instant.day.has_value();
+    if (instant.day) return kDay * static_cast<double>(*instant.day - column.first_day) + instant.seconds;
+    if (!first && instant.seconds < column.latest - kDay / 2.0) ++column.midnights;
+    column.latest = instant.seconds;
+    return kDay * column.midnights + instant.seconds;
   }
 
   /// The rows so far of a long table, again and again.
@@ -335,17 +313,89 @@ class Table {
     }
   }
 
-  void finish() {
-    if (separator_ != ',') {
-      contents.notes.insert(contents.notes.begin(),
-                            fmt::format("columns are separated by {}", separator_ == ';' ? "semicolons" : "tabs"));
+  Result<void> finish() {
+    if (decimal_commas_ && !comma_is_sure_) {
+      return bad_data(fmt::format("'{}' and all others like it may have a decimal comma or one between thousands",
+                                  printable(comma_cell_)),
+                      "export it with decimal points, and nothing between thousands");
     }
-    if (trailing_) contents.notes.emplace_back("every line ends with a separator, which was not taken as a column");
+    if (decimal_commas_) head_.notes.emplace_back("numbers have decimal commas");
+    if (trailing_) head_.notes.emplace_back("every line ends with a separator, which was not taken as a column");
+    contents.notes.insert(contents.notes.begin(), head_.notes.begin(), head_.notes.end());
+    const Error* first = nullptr;
+    bool any = false;
+    std::vector<std::string> aside;
     for (std::size_t c = 0; c < columns_; ++c) {
-      if (!header_.empty()) contents.arrays[c].name = printable(header_[c]);
+      Array& array = contents.arrays[c];
+      if (!head_.names.empty()) array.name = printable(head_.names[c]);
       numbers_[c].conservativeResize(rows_);
-      contents.arrays[c].values = SharedMatrix::of_column(std::move(numbers_[c]));
+      if (auto ok = settle_unit(c); !ok) return ok;
+      if (kinds_[c].obstacle) {
+        array.obstacle = std::move(kinds_[c].obstacle);
+        if (first == nullptr) first = &*array.obstacle;
+        aside.push_back(array.name.empty() ? std::to_string(c + 1) : fmt::format("{} '{}'", c + 1, array.name));
+        numbers_[c] = Vector();
+      } else {
+        any = true;
+        array.values = SharedMatrix::of_column(std::move(numbers_[c]));
+      }
     }
+    if (!any) return tl::unexpected(*first);
+    if (!aside.empty()) note_aside(std::move(aside));
+    return {};
+  }
+
+  /// The unit of a column, as a line under its name says it; that of times.
+  Result<void> settle_unit(std::size_t c) {
+    Column& column = kinds_[c];
+    Array& array = contents.arrays[c];
+    const std::string called = array.name.empty() ? fmt::format("column {}", c + 1) : fmt::format("'{}'", array.name);
+    if (column.instants == 0) {
+      if (head_.units.empty()) return {};
+      const Unit* const in_name = parse_column_name(array.name).unit;
+      const Unit* const said = find_unit(head_.units[c]);
+      if (in_name != nullptr && said != nullptr && in_name != said) {
+        return bad_data(
+            fmt::format("{} is in {} by its name, and in {} by the line of units", called, in_name->name, said->name),
+            "correct the one that is wrong");
+      }
+      array.unit = head_.units[c];
+      return {};
+    }
+    const auto empty = numbers_[c].array().isNaN().count();
+    if (column.mixed || column.instants + empty != rows_) {
+      if (!column.obstacle) {
+        column.obstacle =
+            bad_data(fmt::format("{} holds times and other numbers, or times with and without a date", called),
+                     "write all of them alike")
+                .value();
+      }
+      return {};
+    }
+    if (column.obstacle) return {};
+    array.unit = "s";
+    if (column.dates) {
+      const std::chrono::year_month_day day{std::chrono::sys_days(std::chrono::days(column.first_day))};
+      contents.notes.push_back(fmt::format(
+          "{} holds dates and times, which were taken as seconds since {:04}-{:02}-{:02} 00:00", called,
+          static_cast<int>(day.year()), static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day())));
+    } else {
+      std::string note = fmt::format("{} holds times of day, which were taken as seconds since midnight", called);
+      if (column.midnights > 0) {
+        note += column.midnights == 1 ? "; midnight passes once"
+                                      : fmt::format("; midnight passes {} times", column.midnights);
+      }
+      contents.notes.push_back(std::move(note));
+    }
+    return {};
+  }
+
+  void note_aside(std::vector<std::string> aside) {
+    constexpr std::size_t kListed = 12;
+    const std::size_t more = aside.size() > kListed ? aside.size() - kListed : 0;
+    aside.resize(aside.size() - more);
+    contents.notes.push_back(fmt::format("columns that do not hold numbers throughout were left aside: {}{}",
+                                         fmt::join(aside, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
   }
 
   /// Columns long enough for every line that can come: one for each line end, and no line is shorter than its cells. Of
@@ -365,18 +415,20 @@ class Table {
     on_disk_.assign(columns_, 0);  // the longer ones stand elsewhere
   }
 
-  char separator_ = ',';
-  std::vector<std::string> header_;
-  std::size_t header_line_ = 0;
+  CsvHead head_;
   std::size_t columns_ = 0;
+  std::vector<Column> kinds_;
   std::vector<Vector> numbers_;  ///< column by column, with room for more rows
+  std::vector<Odd> odd_;         ///< the line that is worked on, where it is not as most are
   std::vector<Index> on_disk_;   ///< of each column, the numbers at its begin whose memory is a file's
   Index on_disk_from_ = 0;       ///< rows at which it is time for more
   DiskPages disk_;
   bool trailing_ = false;  ///< every line ends with a separator
-  Index rows_ = 0;         ///< complete ones so far
+  bool decimal_commas_ = false, comma_is_sure_ = false;
+  std::string comma_cell_;  ///< the first that has one
+  Index rows_ = 0;          ///< complete ones so far
   std::size_t last_line_ = 0;
-  std::optional<Line> next_;
+  std::optional<CsvLine> next_;
 };
 
 Result<Contents> decode_text(CsvText text) {
@@ -385,10 +437,37 @@ Result<Contents> decode_text(CsvText text) {
   return std::move(table.contents);
 }
 
+/// UTF-16 behind its byte order mark as UTF-8.
+std::string from_utf16(std::span<const std::byte> file) {
+  const auto at = [&](std::size_t k) { return std::to_integer<unsigned>(file[k]); };
+  const std::size_t low = at(0) == 0xFF ? 0 : 1;
+  std::u16string text;
+  text.reserve(file.size() / 2);
+  for (std::size_t k = 2; k + 1 < file.size(); k += 2) {
+    text += static_cast<char16_t>(at(k + low) | (at(k + 1 - low) << 8U));
+  }
+  return utf8_from_utf16(text);
+}
+
 }  // namespace
 
+bool looks_like_utf16(std::span<const std::byte> file) {
+  if (file.size() < 4) return false;
+  const auto first = std::to_integer<unsigned>(file[0]), second = std::to_integer<unsigned>(file[1]);
+  return (first == 0xFF && second == 0xFE) || (first == 0xFE && second == 0xFF);
+}
+
 Result<Contents> decode_csv(std::span<const std::byte> file) {
-  return decode_text(CsvText({reinterpret_cast<const char*>(file.data()), file.size()}));
+  if (!looks_like_utf16(file)) {
+    return decode_text(CsvText({reinterpret_cast<const char*>(file.data()), file.size()}));
+  }
+  const std::string text = from_utf16(file);
+  if (std::ranges::any_of(text, [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r'; })) {
+    return bad_data("the content is of no known format: it is no text", "export the table as text");
+  }
+  auto contents = decode_text(CsvText(text));
+  if (contents) contents->notes.insert(contents->notes.begin(), "its text is UTF-16");
+  return contents;
 }
 
 Result<Contents> decode_csv(FileInPassing& file) {

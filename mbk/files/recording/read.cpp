@@ -28,6 +28,9 @@
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
 #include "mbk/files/recording/one_clock.h"
+#include "mbk/files/tables/npy.h"
+#include "mbk/files/tables/octave_text.h"
+#include "mbk/files/tables/opensim.h"
 
 namespace mbk::recording {
 
@@ -51,7 +54,8 @@ class OpenTrials {
 
 namespace {
 
-constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV, C3D and KINARM exams are read";
+constexpr std::string_view kFormats =
+    "MAT (v4 to v7.3), HDF5, CSV, C3D, NumPy and OpenSim files and KINARM exams are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -64,6 +68,25 @@ bool has_mat_header(std::string_view text) {
   return text.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
 }
 
+/// A text that is a table, but none that can be read in passing.
+bool is_other_table(std::string_view text) {
+  return looks_like_octave_text(text) || looks_like_trc(text) || looks_like_opensim(text);
+}
+
+Result<Contents> decode_text(std::span<const std::byte> bytes, std::string_view text) {
+  if (looks_like_octave_text(text)) return decode_octave_text(bytes);
+  if (looks_like_trc(text)) return decode_trc(bytes);
+  if (looks_like_opensim(text)) return decode_opensim(bytes);
+  return decode_csv(bytes);
+}
+
+Result<Contents> decode_zip(std::span<const std::byte> bytes) {
+  const auto archive = ZipArchive::open(bytes);
+  if (!archive) return tl::unexpected(archive.error());
+  if (looks_like_npz(*archive)) return decode_npz(*archive);
+  return bad_data("the zip archive holds no recording", "unpack it, and name the files in it");
+}
+
 Result<Contents> decode(std::shared_ptr<Buffer> file) {
   const std::span<const std::byte> bytes = file->bytes();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -74,11 +97,10 @@ Result<Contents> decode(std::shared_ptr<Buffer> file) {
   }
   if (has_mat_header(text) || text.starts_with("MATLAB 5.0")) return decode_mat_level5(std::move(file));
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
-  if (is_text(text)) return decode_csv(bytes);
+  if (is_text(text) || looks_like_utf16(bytes)) return decode_text(bytes, text);
+  if (looks_like_npy(bytes)) return decode_npy(bytes);
+  if (ZipArchive::looks_like_zip(bytes)) return decode_zip(bytes);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
-  if (ZipArchive::looks_like_zip(bytes)) {
-    return bad_data("it is a zip archive of no known kind", "unpack it, and name a recording in it");
-  }
   return bad_data("the content is of no known format", std::string(kFormats));
 }
 
@@ -97,7 +119,8 @@ Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& fi
   if (auto ok = passing->read_on(); !ok) return tl::unexpected(ok.error());
   const std::string_view begin = passing->text();
   const auto bytes = std::as_bytes(std::span(begin));
-  if (!is_text(begin) || begin.starts_with("MATLAB ") || has_mat_header(begin) || looks_like_mat_level4(bytes)) {
+  if (!is_text(begin) || begin.starts_with("MATLAB ") || has_mat_header(begin) || looks_like_mat_level4(bytes) ||
+      is_other_table(begin)) {
     return std::nullopt;
   }
   // A number of the usual ten digits takes less memory than its text.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <utility>
 
 namespace mbk::recording {
 namespace {
@@ -15,6 +16,7 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"s", time, 1, 1},
     {"ms", time, 1, 1e3},
     {"us", time, 1, 1e6},
+    {"ns", time, 1, 1e9},
     {"m", length, 1, 1},
     {"cm", length, 1, 1e2},
     {"mm", length, 1, 1e3},
@@ -49,11 +51,26 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"uV", voltage, 1, 1e6},
 });
 
+/// "us" of "µs", "N.m" of "N·m", "m/s2" of "m/s²": signs for which there are letters.
+std::string in_ascii(std::string_view name) {
+  constexpr auto kSigns = std::to_array<std::pair<std::string_view, char>>(
+      {{"\u00B5", 'u'}, {"\u03BC", 'u'}, {"\u00B7", '.'}, {"\u22C5", '.'}, {"\u00B2", '2'}, {"\xB5", 'u'}});
+  std::string plain;
+  while (!name.empty()) {
+    const auto sign = std::ranges::find_if(kSigns, [name](const auto& one) { return name.starts_with(one.first); });
+    plain += sign == kSigns.end() ? name.front() : sign->second;
+    name.remove_prefix(sign == kSigns.end() ? 1 : sign->first.size());
+  }
+  return plain;
+}
+
 }  // namespace
 
 const Unit* find_unit(std::string_view name) {
   const auto unit = std::ranges::find(kUnits, name, &Unit::name);
-  return unit == kUnits.end() ? nullptr : &*unit;
+  if (unit != kUnits.end()) return &*unit;
+  const std::string plain = in_ascii(name);
+  return plain == name ? nullptr : find_unit(plain);
 }
 
 std::string_view si_unit(Dimension dimension) {

@@ -1,0 +1,339 @@
+#include "mbk/files/tables/octave_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mbk/base/core/printable.h"
+#include "mbk/files/contents/cells.h"
+#include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/memory.h"
+#include "mbk/files/contents/text_lines.h"
+
+namespace mbk::recording {
+namespace {
+
+/// What "# key: value" says, where the line says that.
+std::optional<std::string_view> said(const TextLine& line, std::string_view key) {
+  std::string_view text = line.text;
+  if (!text.starts_with("# ") && !text.starts_with("% ")) return std::nullopt;
+  text.remove_prefix(2);
+  if (!text.starts_with(key) || text.size() <= key.size() || text[key.size()] != ':') return std::nullopt;
+  text.remove_prefix(key.size() + 1);
+  return text.starts_with(' ') ? text.substr(1) : text;
+}
+
+std::optional<double> octave_number(std::string_view word) {
+  if (word == "NA") return std::numeric_limits<double>::quiet_NaN();
+  return general_number(word);
+}
+
+class OctaveDecoder {
+ public:
+  explicit OctaveDecoder(std::string_view text) : lines_(text), room_for_ranges_(largest_claim(text.size()) / 4) {}
+
+  Result<Contents> run() {
+    contents_.format = "Octave text";
+    for (line_ = lines_.next(); line_;) {
+      const auto name = said(*line_, "name");
+      if (!name) {
+        line_ = lines_.next();
+        continue;
+      }
+      if (auto ok = variable(printable(std::string(*name)), 0); !ok) return tl::unexpected(ok.error());
+    }
+    return std::move(contents_);
+  }
+
+ private:
+  static constexpr int kDeepest = 16;
+
+  /// The value behind "# name: …", which is the line that is worked on. Afterwards that is the first behind it.
+  Result<void> variable(const std::string& name, int depth) {
+    line_ = lines_.next();
+    const auto type = line_ ? said(*line_, "type") : std::nullopt;
+    if (!type) return cut(name);
+    std::string kind(*type);
+    if (kind.starts_with("global ")) kind.erase(0, 7);
+    const auto is = [&](std::string_view one) { return kind == one; };
+    const bool integer = kind.starts_with("int") || kind.starts_with("uint");
+    if (is("scalar") || is("float scalar") || is("bool") || (integer && kind.ends_with("scalar"))) return scalar(name);
+    if (is("matrix") || is("float matrix") || is("bool matrix") || (integer && kind.ends_with("matrix"))) {
+      return matrix(name);
+    }
+    if (is("range") || is("double_range")) return range(name);
+    if (is("string") || is("sq_string")) return texts(name);
+    if (is("scalar struct") && depth < kDeepest) return structure(name, depth);
+    if (depth == 0 || !discarding_) {
+      contents_.notes.push_back(fmt::format("variable '{}' is of the kind '{}', which is not read; ignored", name,
+                                            printable(kind.substr(0, 40))));
+    }
+    if ((is("cell") || is("struct")) && depth < kDeepest) return discard(name, depth, is("cell"));
+    return skip();
+  }
+
+  /// What holds variables of its own.
+  Result<void> discard(const std::string& name, int depth, bool cells) {
+    Contents kept = std::move(contents_);
+    const bool outer = std::exchange(discarding_, true);
+    contents_ = {};
+    auto done = cells ? elements(name, depth) : structure(name, depth);
+    contents_ = std::move(kept);
+    discarding_ = outer;
+    return done;
+  }
+
+  Result<void> elements(const std::string& name, int depth) {
+    std::uint64_t number = 1;
+    for (const std::string_view key : {"rows", "columns"}) {
+      line_ = lines_.next();
+      if (line_ && said(*line_, "ndims")) {  // more than two dimensions stand in a line of their own
+        const auto sizes = lines_.next();
+        for (const std::string_view word : words(sizes ? sizes->text : std::string_view())) {
+          const auto length = whole(name, word);
+          if (!length) return tl::unexpected(length.error());
+          number = std::min(number * std::min<std::uint64_t>(*length, lines_.left() + 1), lines_.left() + 1);
+        }
+        break;
+      }
+      const auto value = line_ ? said(*line_, key) : std::nullopt;
+      if (!value) return cut(name);
+      const auto length = whole(name, *value);
+      if (!length) return tl::unexpected(length.error());
+      number = std::min(number * std::min<std::uint64_t>(*length, lines_.left() + 1), lines_.left() + 1);
+    }
+    line_ = lines_.next();
+    for (std::uint64_t k = 0; k < number; ++k) {
+      while (line_ && !said(*line_, "name")) line_ = lines_.next();
+      if (!line_) return cut(name);
+      if (auto ok = variable(name, depth + 1); !ok) return ok;
+    }
+    return {};
+  }
+
+  /// To the next variable.
+  Result<void> skip() {
+    for (line_ = lines_.next(); line_ && !said(*line_, "name");) line_ = lines_.next();
+    return {};
+  }
+
+  static tl::unexpected<Error> cut(const std::string& name) {
+    return bad_data("it is cut short", "save it again", fmt::format("variable '{}'", name));
+  }
+
+  tl::unexpected<Error> wrong(const std::string& name, std::string_view word) const {
+    return bad_data(fmt::format("'{}' is not a number", printable(std::string(word.substr(0, 40)))), "save it again",
+                    fmt::format("line {}, variable '{}'", line_ ? line_->number : 0, name));
+  }
+
+  /// "# key: N" in the next line.
+  Result<std::uint64_t> count(const std::string& name, std::string_view key) {
+    line_ = lines_.next();
+    const auto value = line_ ? said(*line_, key) : std::nullopt;
+    if (!value) return cut(name);
+    return whole(name, *value);
+  }
+
+  Result<std::uint64_t> whole(const std::string& name, std::string_view text) const {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size()) return wrong(name, text);
+    return number;
+  }
+
+  Array& add(const std::string& name, std::uint64_t rows, std::uint64_t columns) {
+    Array& array = contents_.arrays.emplace_back();
+    array.name = name;
+    array.values.resize(static_cast<Index>(rows), static_cast<Index>(columns));
+    return array;
+  }
+
+  Result<void> scalar(const std::string& name) {
+    line_ = lines_.next_filled();
+    if (!line_) return cut(name);
+    const auto found = words(line_->text);
+    const auto value = octave_number(found.front());
+    if (found.size() != 1 || !value) return wrong(name, line_->text);
+    add(name, 1, 1).values(0, 0) = *value;
+    line_ = lines_.next();
+    return {};
+  }
+
+  /// No number takes less than a digit and what parts it from the next.
+  Result<void> check_size(const std::string& name, std::uint64_t rows, std::uint64_t columns) const {
+    const std::uint64_t room = lines_.left() / 2 + 1;
+    if (columns > 0 && rows > room / columns) {
+      return bad_data(
+          fmt::format("{}×{} numbers need more than the {} bytes that are left", rows, columns, lines_.left()),
+          "save it again", fmt::format("variable '{}'", name));
+    }
+    if (rows > (std::uint64_t{1} << 40) || columns > (std::uint64_t{1} << 40)) return cut(name);
+    return check_memory(8 * rows * columns);
+  }
+
+  Result<void> matrix(const std::string& name) {
+    line_ = lines_.next();
+    if (!line_) return cut(name);
+    if (said(*line_, "ndims")) return array(name);
+    const auto rows_said = said(*line_, "rows");
+    if (!rows_said) return cut(name);
+    const auto rows = whole(name, *rows_said);
+    if (!rows) return tl::unexpected(rows.error());
+    const auto columns = count(name, "columns");
+    if (!columns) return tl::unexpected(columns.error());
+    if (auto ok = check_size(name, *rows, *columns); !ok) return ok;
+    Matrix values(static_cast<Index>(*rows), static_cast<Index>(*columns));
+    for (Index r = 0; r < (*columns > 0 ? values.rows() : 0); ++r) {
+      line_ = lines_.next_filled();
+      if (!line_) return cut(name);
+      const auto found = words(line_->text);
+      if (found.size() != *columns) {
+        return bad_data(fmt::format("{} numbers where {} are expected", found.size(), *columns), "save it again",
+                        fmt::format("line {}, variable '{}'", line_->number, name));
+      }
+      for (Index c = 0; c < values.cols(); ++c) {
+        const auto value = octave_number(found[static_cast<std::size_t>(c)]);
+        if (!value) return wrong(name, found[static_cast<std::size_t>(c)]);
+        values(r, c) = *value;
+      }
+    }
+    Array& added = contents_.arrays.emplace_back();
+    added.name = name;
+    added.values = SharedMatrix(std::move(values));
+    line_ = lines_.next();
+    return {};
+  }
+
+  /// "# ndims: 2", the dimensions, and then one number a line, column by column.
+  Result<void> array(const std::string& name) {
+    const auto dimensions = whole(name, *said(*line_, "ndims"));
+    if (!dimensions) return tl::unexpected(dimensions.error());
+    line_ = lines_.next_filled();
+    if (!line_) return cut(name);
+    const auto sizes = words(line_->text);
+    std::vector<std::uint64_t> lengths;
+    for (const std::string_view word : sizes) {
+      const auto length = whole(name, word);
+      if (!length) return tl::unexpected(length.error());
+      lengths.push_back(*length);
+    }
+    if (lengths.size() != *dimensions || lengths.size() < 2) return cut(name);
+    if (lengths.size() > 2) {
+      contents_.notes.push_back(fmt::format("variable '{}' has {} dimensions; ignored", name, lengths.size()));
+      return skip();
+    }
+    if (auto ok = check_size(name, lengths[0], lengths[1]); !ok) return ok;
+    Matrix values(static_cast<Index>(lengths[0]), static_cast<Index>(lengths[1]));
+    for (double& value : values.reshaped()) {
+      line_ = lines_.next_filled();
+      if (!line_) return cut(name);
+      const auto found = words(line_->text);
+      const auto number = octave_number(found.front());
+      if (found.size() != 1 || !number) return wrong(name, line_->text);
+      value = *number;
+    }
+    Array& added = contents_.arrays.emplace_back();
+    added.name = name;
+    added.values = SharedMatrix(std::move(values));
+    line_ = lines_.next();
+    return {};
+  }
+
+  /// "# base, limit, increment" and the three numbers.
+  Result<void> range(const std::string& name) {
+    line_ = lines_.next();
+    if (line_ && line_->text.starts_with("# base")) line_ = lines_.next();
+    if (!line_) return cut(name);
+    const auto found = words(line_->text);
+    std::vector<double> numbers;
+    for (const std::string_view word : found) {
+      const auto value = octave_number(word);
+      if (!value) return wrong(name, word);
+      numbers.push_back(*value);
+    }
+    if (numbers.size() < 3) return cut(name);
+    const double steps = (numbers[1] - numbers[0]) / numbers[2];
+    if (!(steps >= 0.0 && 8.0 * steps < static_cast<double>(room_for_ranges_))) {
+      return bad_data(fmt::format("the range from {} to {} by {} is not read", numbers[0], numbers[1], numbers[2]),
+                      "save it as a matrix", fmt::format("variable '{}'", name));
+    }
+    const auto length = static_cast<Index>(steps * (1.0 + 1e-15) + 1e-9) + 1;
+    room_for_ranges_ -= std::min(room_for_ranges_, 8 * static_cast<std::uint64_t>(length));
+    Array& array = add(name, 1, static_cast<std::uint64_t>(length));
+    for (Index k = 0; k < length; ++k) array.values(0, k) = numbers[0] + static_cast<double>(k) * numbers[2];
+    line_ = lines_.next();
+    return {};
+  }
+
+  Result<void> texts(const std::string& name) {
+    const auto elements = count(name, "elements");
+    if (!elements) return tl::unexpected(elements.error());
+    Text text{name, {}};
+    for (std::uint64_t k = 0; k < *elements; ++k) {
+      const auto length = count(name, "length");
+      if (!length) return tl::unexpected(length.error());
+      line_ = lines_.next();
+      if (!line_) return cut(name);
+      text.lines.push_back(printable(std::string(line_->text)));
+    }
+    contents_.texts.push_back(std::move(text));
+    line_ = lines_.next();
+    return {};
+  }
+
+  Result<void> structure(const std::string& name, int depth) {
+    line_ = lines_.next();
+    if (line_ && said(*line_, "ndims")) {
+      lines_.next();  // 1 1
+      line_ = lines_.next();
+    }
+    const auto fields_said = line_ ? said(*line_, "length") : std::nullopt;
+    if (!fields_said) return cut(name);
+    const auto fields = whole(name, *fields_said);
+    if (!fields) return tl::unexpected(fields.error());
+    for (std::uint64_t k = 0; k < *fields; ++k) {
+      while (line_ && !said(*line_, "name")) line_ = lines_.next();
+      if (!line_) return cut(name);
+      const std::string field = fmt::format("{}.{}", name, printable(std::string(*said(*line_, "name"))));
+      if (auto ok = variable(field, depth + 1); !ok) return ok;
+    }
+    return {};
+  }
+
+  TextLines lines_;
+  std::optional<TextLine> line_;
+  Contents contents_;
+  bool discarding_ = false;        ///< what is read is kept nowhere
+  std::uint64_t room_for_ranges_;  ///< [bytes]: a range stands in a few bytes, whatever its length
+};
+
+}  // namespace
+
+bool looks_like_octave_text(std::string_view text) {
+  constexpr int kFirst = 4;
+  TextLines lines(text.substr(0, std::min<std::size_t>(text.size(), 4096)));
+  bool name = false;
+  for (int k = 0; k < kFirst; ++k) {
+    const auto line = lines.next();
+    if (!line) return false;
+    if (k == 0 && (line->text.starts_with("# Created by Octave") || line->text.starts_with("% Created by Octave"))) {
+      return true;
+    }
+    if (name) return said(*line, "type").has_value();
+    name = said(*line, "name").has_value();
+  }
+  return false;
+}
+
+Result<Contents> decode_octave_text(std::span<const std::byte> file) {
+  return OctaveDecoder({reinterpret_cast<const char*>(file.data()), file.size()}).run();
+}
+
+}  // namespace mbk::recording
