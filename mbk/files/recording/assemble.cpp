@@ -84,6 +84,11 @@ bool is_vector(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) == 1 && (array.values.size() > 1 || array.signal);
 }
 
+/// The signals run along the longer side: whether they are the rows.
+bool is_wide(const Array& array) {
+  return array.values.cols() >= array.values.rows();
+}
+
 bool is_matrix(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) > 1;
 }
@@ -205,17 +210,36 @@ class Assembler {
     const bool time = !signals_.empty();
     return bad_data(
         fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
-        !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
+        !contents_.table ? "say which is which, as in --channels " + example_map()
         : contents_.arrays.front().rate_hz > 0.0
             ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
             : "say which is which, as in --channels time=1,x=2,Fx=3");
   }
 
+  /// What a map of the variables could look like, with names that there are: "\"time=NAME,x=pos[1],Fx=force[1]\"".
+  [[nodiscard]] std::string example_map() const {
+    std::vector<std::string> matrices, vectors;
+    for (const Array& array : contents_.arrays) {
+      if (is_matrix(array)) matrices.push_back(array.name);
+      if (is_vector(array)) vectors.push_back(array.name);
+    }
+    if (matrices.empty()) return "time=NAME,x=NAME,Fx=NAME";
+    const bool two = matrices.size() > 1;
+    return fmt::format("\"time={},x={}[{}],Fx={}[{}]\" (row or column of a matrix)",
+                       vectors.empty() ? matrices.front() + "[1]" : "NAME", matrices.front(), vectors.empty() ? 2 : 1,
+                       matrices[two ? 1 : 0],
+                       two               ? 1
+                       : vectors.empty() ? 3
+                                         : 2);
+  }
+
   static tl::unexpected<Error> tall(const Array& array) {
-    return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(array), kLogsRows),
-                    "if its columns are the signals, name them: --channels time=1,x=2,y=3,Fx=10,Fy=11; it is not "
-                    "transposed by itself",
-                    fmt::format("variable '{}'", array.name));
+    return bad_data(
+        fmt::format("matrix is {}, a logs matrix has {} rows", shape(array), kLogsRows),
+        fmt::format("if its columns are the signals, name them: --channels "
+                    "\"time={0}[1],x={0}[2],y={0}[3],Fx={0}[10],Fy={0}[11]\"; it is not transposed by itself",
+                    array.name),
+        fmt::format("variable '{}'", array.name));
   }
 
   /// The logs matrix, or nullptr where there is none.
@@ -232,9 +256,10 @@ class Assembler {
       }
       if (named->values.rows() == kLogsRows) return named;
       if (named->values.cols() == kLogsRows) return tall(*named);
-      return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
-                      "name its rows or columns, as in --channels x=2,y=3,Fx=10",
-                      fmt::format("variable '{}'", named->name));
+      return bad_data(
+          fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
+          fmt::format("name its rows or columns, as in --channels \"x={0}[2],y={0}[3],Fx={0}[10]\"", named->name),
+          fmt::format("variable '{}'", named->name));
     }
     std::vector<std::string> names;
     const Array* found = nullptr;
@@ -244,8 +269,10 @@ class Assembler {
       found = &array;
     }
     if (names.size() > 1) {
-      return bad_usage(fmt::format("several matrices have {} rows: {}", kLogsRows, quoted(names)),
-                       "say which with --variable NAME");
+      return bad_usage(
+          fmt::format("several matrices have {} rows: {}", kLogsRows, quoted(names)),
+          fmt::format("say which with --variable NAME, or name the rows, as in --channels \"x={0}[2],Fx={0}[10]\"",
+                      names.front()));
     }
     return found;
   }
@@ -365,7 +392,8 @@ class Assembler {
         if (!unit) return tl::unexpected(unit.error());
         signal.unit = *unit;
       } else if (const ColumnName name = parse_column_name(line->array->name);
-                 is_named(*line) && name.unit != nullptr && kind->accepts(*name.unit)) {
+                 (is_named(*line) || counted_source(entry.source)) && name.unit != nullptr &&
+                 kind->accepts(*name.unit)) {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
@@ -428,16 +456,22 @@ class Assembler {
       recording_.notes.push_back("time is row 1, as in a logs matrix");
       return {};
     }
+    const auto is_called_time = [&](const Array& array, std::string_view name) {
+      return std::ranges::any_of(parse_column_name(name).kinds, is_time) && !is_matrix(array) &&
+             vector_of(array).size() == first.size();
+    };
+    std::vector<const Array*> called, last_part_called;
     for (const Array& array : contents_.arrays) {
-      const ColumnName name = parse_column_name(array.name);
-      const Line line = vector_of(array);
-      if (std::ranges::none_of(name.kinds, is_time) || is_matrix(array) || line.size() != first.size()) continue;
-      const auto unit = unit_said(*time, array, name.unit);
-      if (!unit) return tl::unexpected(unit.error());
-      signals_.push_back({time, line, *unit, false, array.name, array.name});
-      recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
-      return {};
+      if (is_called_time(array, array.name)) called.push_back(&array);
+      if (!contents_.table && is_called_time(array, leaf(array.name))) last_part_called.push_back(&array);
     }
+    if (called.empty() && last_part_called.size() == 1) called = std::move(last_part_called);
+    if (called.empty()) return {};
+    const Array& array = *called.front();
+    const auto unit = unit_said(*time, array, parse_column_name(leaf(array.name)).unit);
+    if (!unit) return tl::unexpected(unit.error());
+    signals_.push_back({time, vector_of(array), *unit, false, array.name, array.name});
+    recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
     return {};
   }
 
@@ -453,10 +487,11 @@ class Assembler {
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
                                   entry.source, shape(*array)),
-                      is_matrix(*array)
-                          ? fmt::format("pass --variable {} and a number, as in {}=2", entry.source, entry.channel)
-                          : "name a signal");
+                      is_matrix(*array) ? fmt::format("say which of its {}, as in --channels \"{}={}[1]\"",
+                                                      is_wide(*array) ? "rows" : "columns", entry.channel, array->name)
+                                        : "name a signal");
     }
+    if (const auto line = counted_line(entry)) return *line;
     Index number = 0;
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
@@ -473,10 +508,14 @@ class Assembler {
       }
       return vector_of(contents_.arrays[static_cast<std::size_t>(number - 1)]);
     }
-    const auto matrix = numbered_matrix();
+    const auto matrix = numbered_matrix(entry);
     if (!matrix) return tl::unexpected(matrix.error());
-    const Array& array = **matrix;
-    const bool wide = array.values.cols() >= array.values.rows();
+    return line_of(entry, **matrix, number);
+  }
+
+  /// Row or column `number` of a matrix, counted from 1 across its longer side.
+  static Result<Line> line_of(const ChannelSource& entry, const Array& array, Index number) {
+    const bool wide = is_wide(array);
     const Index lines = wide ? array.values.rows() : array.values.cols();
     if (number < 1 || number > lines) {
       return bad_data(fmt::format("channel {}: there is no {} {}; the matrix is {}", entry.channel,
@@ -484,6 +523,19 @@ class Assembler {
                       "they are counted from 1", fmt::format("variable '{}'", array.name));
     }
     return Line{&array, number - 1, wide};
+  }
+
+  /// NAME[K], row or column K of the variable NAME; nothing where the source is written otherwise.
+  std::optional<Result<Line>> counted_line(const ChannelSource& entry) {
+    const std::optional<CountedSource> counted = counted_source(entry.source);
+    if (contents_.table || !counted) return std::nullopt;
+    const Array* const array = find(contents_, counted->name);
+    if (array == nullptr) {
+      return bad_data(
+          fmt::format("channel {}: there is no '{}'; {}", entry.channel, counted->name, inventory(contents_)));
+    }
+    if (is_vector(*array) && counted->number == 1) return vector_of(*array);
+    return line_of(entry, *array, counted->number);
   }
 
   static tl::unexpected<Error> unknown_unit(const ChannelSource& entry, std::string_view unit) {
@@ -521,7 +573,7 @@ class Assembler {
   }
 
   /// The MAT variable whose rows or columns the numbers of the map count.
-  Result<const Array*> numbered_matrix() const {
+  Result<const Array*> numbered_matrix(const ChannelSource& entry) const {
     if (!options_.variable.empty()) {
       if (const Array* named = find(contents_, options_.variable)) return named;
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
@@ -537,8 +589,11 @@ class Assembler {
       }
     }
     if (matrices.size() == 1) return matrices.front();
+    if (matrices.empty()) return bad_data(fmt::format("channel {}: {}", entry.channel, inventory(contents_)));
     return bad_usage(fmt::format("numbers could count the lines of several variables; {}", inventory(contents_)),
-                     "say which with --variable NAME");
+                     fmt::format("name them with their variable, as in --channels \"{}={}[{}]\", or say which with "
+                                 "--variable NAME",
+                                 entry.channel, matrices.front()->name, entry.source));
   }
 
   [[nodiscard]] bool within_variable(const Array& array) const {
