@@ -3,7 +3,7 @@
 
 import unittest
 
-from command import BAD_DATA, FINE, WRONG_USAGE, Case, main, make_log, run, table_of
+from command import BAD_DATA, FINE, WRONG_USAGE, Case, data_folder, main, make_log, run, table_of
 
 try:
     import h5py
@@ -45,6 +45,33 @@ class SeveralMatrices(Case):
         name = "out.signals({}).values[{}]"
         entries = ((1, "x", "y"), (2, "Fx", "Fy"), (3, "xr", "yr"))
         self.assert_measured(path, ",".join(f"{a}={name.format(k, 1)},{b}={name.format(k, 2)}" for k, a, b in entries))
+
+    def test_structures_and_cells_of_matlab_7_3(self):
+        path = self.folder / "out.mat"
+        with h5py.File(path, "w", userblock_size=512) as file:
+            def hidden(values):
+                stored = file.create_dataset(f"#refs#/{len(file['#refs#']) if '#refs#' in file else 0}", data=values.T)
+                stored.attrs["MATLAB_class"] = numpy.bytes_("double")
+                return stored.ref
+
+            def of_references(name, references, kind=None):
+                stored = file.create_dataset(name, data=numpy.array(references, dtype=h5py.ref_dtype).reshape(-1, 1))
+                if kind:
+                    stored.attrs["MATLAB_class"] = numpy.bytes_(kind)
+
+            of_references("out/signals/values", [hidden(self.position), hidden(self.force)])
+            of_references("trials", [hidden(self.reference), hidden(self.time.reshape(-1, 1))], "cell")
+            file["out"].attrs["MATLAB_class"] = file["out/signals"].attrs["MATLAB_class"] = numpy.bytes_("struct")
+        with open(path, "r+b") as file:
+            file.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM")
+        self.assert_measured(path, "time=trials{2},x=out.signals(1).values[1],y=out.signals(1).values[2],"
+                                   "Fx=out.signals(2).values[1],Fy=out.signals(2).values[2],"
+                                   "xr=trials{1}[1],yr=trials{1}[2]")
+
+    def test_a_file_of_matlab_7_4(self):
+        listed = self.fine("info", data_folder("mat", "testhdf5_7.4_GLNX86.mat"))
+        self.assertRegex(listed.out, r"testdouble +1×9 +0 +6\.28319")
+        self.assertNotIn("ignored", listed.out)
 
     def test_datasets_of_hdf5(self):
         path = self.folder / "log.h5"

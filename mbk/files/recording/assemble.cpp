@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <utility>
 
@@ -245,7 +246,9 @@ class Assembler {
   /// The logs matrix, or nullptr where there is none.
   Result<const Array*> find_logs() const {
     if (contents_.table) return nullptr;
-    const Array* named = find(contents_, options_.variable.empty() ? "logs" : options_.variable);
+    const std::string wanted = options_.variable.empty() ? "logs" : options_.variable;
+    if (auto ok = refuse_damaged_source("--variable", wanted); !ok) return tl::unexpected(ok.error());
+    const Array* named = find(contents_, wanted);
     if (!options_.variable.empty() && named == nullptr && !names_structure()) {
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
     }
@@ -328,6 +331,7 @@ class Assembler {
       meanings.push_back(name.kinds);
       candidates.push_back({&array, std::move(name)});
     }
+    if (auto ok = refuse_damaged(); !ok) return ok;
     const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
     for (const Candidate& candidate : candidates) {
       const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
@@ -340,11 +344,43 @@ class Assembler {
             {kind, vector_of(*candidate.array), *unit, false, candidate.array->name, candidate.array->name});
       }
     }
+    drop_second_names();
     std::erase(aside, "");
     if (!aside.empty()) {
       recording_.notes.push_back(fmt::format("ignored, as their names are not those of channels: {}", quoted(aside)));
     }
     return {};
+  }
+
+  /// A channel that is there and damaged is not left out as if there were none.
+  Result<void> refuse_damaged() const {
+    for (const auto& [name, why] : contents_.damaged) {
+      const std::vector<const ChannelKind*> kinds = parse_column_name(leaf(name)).kinds;
+      const bool matters = std::ranges::any_of(
+          kinds, [&](const ChannelKind* kind) { return !kind->only_if_asked && is_requested(*kind); });
+      if (!matters) continue;
+      return bad_data(fmt::format("'{}' is damaged: {}", name, why),
+                      "copy the file again from where it was recorded, or name with --channels what you need of it");
+    }
+    return {};
+  }
+
+  /// A channel that a file has under two names, by a link or a copy, is taken once.
+  void drop_second_names() {
+    const auto same = [](const Signal& a, const Signal& b) {
+      const SharedMatrix &one = a.line.array->values, &other = b.line.array->values;
+      return a.kind == b.kind && a.unit == b.unit && a.line.array->clock == b.line.array->clock &&
+             a.line.rate_hz() == b.line.rate_hz() && one.size() == other.size() && one.size() > 0 &&
+             std::memcmp(one.data(), other.data(), static_cast<std::size_t>(one.size()) * sizeof(double)) == 0;
+    };
+    for (std::size_t i = 1; i < signals_.size(); ++i) {
+      const auto first = std::find_if(signals_.begin(), signals_.begin() + static_cast<std::ptrdiff_t>(i),
+                                      [&](const Signal& earlier) { return same(earlier, signals_[i]); });
+      if (first == signals_.begin() + static_cast<std::ptrdiff_t>(i)) continue;
+      recording_.notes.push_back(fmt::format("'{}' holds the same numbers as '{}', which is read as {}",
+                                             signals_[i].source, first->source, first->kind->name));
+      signals_.erase(signals_.begin() + static_cast<std::ptrdiff_t>(i--));
+    }
   }
 
   /// The unit that the file says beside the name of an array, or else the one that its name says.
@@ -492,6 +528,8 @@ class Assembler {
                                         : "name a signal");
     }
     if (const auto line = counted_line(entry)) return *line;
+    if (auto ok = refuse_damaged_source("channel " + entry.channel, entry.source); !ok)
+      return tl::unexpected(ok.error());
     Index number = 0;
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
@@ -531,11 +569,23 @@ class Assembler {
     if (contents_.table || !counted) return std::nullopt;
     const Array* const array = find(contents_, counted->name);
     if (array == nullptr) {
+      if (auto ok = refuse_damaged_source("channel " + entry.channel, counted->name); !ok)
+        return tl::unexpected(ok.error());
       return bad_data(
           fmt::format("channel {}: there is no '{}'; {}", entry.channel, counted->name, inventory(contents_)));
     }
     if (is_vector(*array) && counted->number == 1) return vector_of(*array);
     return line_of(entry, *array, counted->number);
+  }
+
+  /// @param asked  what asks for it: "channel x"
+  Result<void> refuse_damaged_source(const std::string& asked, std::string_view source) const {
+    for (const auto& [name, why] : contents_.damaged) {
+      if (with_dots(name) != with_dots(source)) continue;
+      return bad_data(fmt::format("{}: '{}' is damaged: {}", asked, name, why),
+                      "copy the file again from where it was recorded");
+    }
+    return {};
   }
 
   static tl::unexpected<Error> unknown_unit(const ChannelSource& entry, std::string_view unit) {
@@ -576,6 +626,7 @@ class Assembler {
   Result<const Array*> numbered_matrix(const ChannelSource& entry) const {
     if (!options_.variable.empty()) {
       if (const Array* named = find(contents_, options_.variable)) return named;
+      if (auto ok = refuse_damaged_source("--variable", options_.variable); !ok) return tl::unexpected(ok.error());
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
     }
     if (const Array* logs = find(contents_, "logs")) return logs;
