@@ -323,7 +323,10 @@ class Assembler {
       ColumnName name = parse_column_name(!array.means.empty() ? std::string_view(array.means)
                                           : contents_.table    ? std::string_view(array.name)
                                                                : leaf(array.name));
-      std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_requested(*kind); });
+      std::erase_if(name.kinds, [&](const ChannelKind* kind) {
+        const bool stamped = kind->name == "time" && array.clock >= 0;  // its time is that of its stream
+        return stamped || (kind->only_if_asked && !is_requested(*kind));
+      });
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -414,6 +417,11 @@ class Assembler {
       const auto found = resolve(entry);
       if (!found) return tl::unexpected(found.error());
       const Line* const line = &found->line;
+      if (kind->name == "time" && line->array->clock >= 0) {
+        return bad_usage(
+            fmt::format("time cannot be '{}': the samples of each stream have the stamps of the file", entry.source),
+            "leave time out of --channels; --clock says whose stamps the recording has");
+      }
       Signal signal{kind,         *line,        nullptr,
                     entry.negate, entry.source, (entry.negate ? "-" : "") + entry.source,
                     found->gain,  found->offset};
@@ -772,13 +780,12 @@ class Assembler {
   }
 
   void extract() {
-    const Index samples = signals_.front().line.size();
     for (Array& array : contents_.arrays) {
       if (std::ranges::none_of(signals_, [&](const Signal& s) { return s.line.array == &array; })) forget(array);
     }
     std::vector<Vector> values(signals_.size());
     DiskPages disk;  // arrays with clocks are columns
-    if (std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
+    if (clock_ != nullptr || std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
       take_one_by_one(values);
     } else {
       take_together(values);
@@ -791,7 +798,7 @@ class Assembler {
       if (!signal.is_plain()) channel = (signal.gain * channel.array() + signal.offset).matrix();
       if (other_unit) channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
       const bool as_it_stood = contents_.table && !signal.negate && signal.is_plain() && !other_unit;
-      if (samples > kLong && !as_it_stood) disk.take(channel.data(), samples);
+      if (channel.size() > kLong && !as_it_stood) disk.take(channel.data(), channel.size());
       if (signal.kind->name == "time") {
         recording_.time = std::move(channel);
         recording_.time_origin = origin_of(signal);

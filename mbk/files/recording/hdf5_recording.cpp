@@ -8,8 +8,10 @@
 
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/lines.h"
 #include "mbk/files/contents/memory.h"
 #include "mbk/files/hdf5/read_hdf5.h"
+#include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/hdf5_tree.h"
@@ -22,9 +24,15 @@ namespace {
 constexpr std::size_t kLongestNumbers = 64;  ///< of an attribute that becomes metadata
 
 /// What a value says, in one line; nothing where it is neither text nor a few numbers.
-std::optional<std::string> line_of(const hdf5::Value& value) {
+/// @param count  lines that it has in the file
+std::optional<std::string> line_of(const hdf5::Value& value, std::size_t& count) {
   if (const auto* const texts = std::get_if<hdf5::Texts>(&value.data)) {
-    return printable(fmt::format("{}", fmt::join(*texts, "; ")));
+    std::vector<std::string> lines;
+    for (const std::string& text : *texts) {
+      for (std::string& line : printable_lines(text)) lines.push_back(std::move(line));
+    }
+    count = lines.size();
+    return fmt::format("{}", fmt::join(lines, "; "));
   }
   const auto* const numbers = std::get_if<hdf5::Numbers>(&value.data);
   if (numbers == nullptr || static_cast<std::size_t>(numbers->values.size()) > kLongestNumbers) return {};
@@ -39,9 +47,12 @@ class Decoder {
     contents.format = "HDF5";
     own_layout_ = text_attribute(root.attributes, "format") == kLayout;
     for (const auto& [name, value] : root.attributes) {
-      auto line = line_of(value);
+      std::size_t lines = 1;
+      auto line = line_of(value, lines);
       const bool of_the_writer = name == "format" || (name == "software" && line && line->starts_with("mbk "));
-      if (line && !(own_layout_ && of_the_writer)) contents.metadata[printable(name)] = std::move(*line);
+      if (!line || (own_layout_ && of_the_writer)) continue;
+      contents.metadata[printable(name)] = std::move(*line);
+      if (lines > 1) contents.notes.push_back(several_lines_note(printable(name), lines));
     }
     for (const auto& [name, dataset] : root.datasets) in_root_.push_back(name);
     group(root, "");
@@ -68,7 +79,7 @@ class Decoder {
     }
     if (std::holds_alternative<hdf5::References>(value.data)) return aside(path, "of references");
     if (auto* const texts = std::get_if<hdf5::Texts>(&value.data)) {
-      for (std::string& text : *texts) text = printable(std::move(text));
+      for (std::string& text : *texts) text = in_one_line(text);
       contents.texts.push_back({name_of(path), std::move(*texts)});
       return;
     }

@@ -74,6 +74,16 @@ TEST(ContentsOfHdf5, ReadsTheLayoutThatMbkWrites) {
   EXPECT_THAT(recording->notes, IsEmpty());
 }
 
+TEST(ContentsOfHdf5, PutsLinesOfMetadataIntoOneAndSaysSo) {
+  Group root = own();
+  root.attributes["remark"] = {{}, Texts{"first\r\nsecond\x01\n"}};
+  const auto recording = recorded(root);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->metadata.at("remark"), "first; second?");
+  EXPECT_THAT(recording->notes,
+              ElementsAre("metadata 'remark' has 2 lines, which are one here, with '; ' between them"));
+}
+
 TEST(ContentsOfHdf5, TakesTheUnitOfTheMapBeforeThatOfTheFile) {
   EXPECT_EQ(recorded(own(), "x=hand_x:m,Fx=force_x")->find("hand_x")->values[4], 4.0);
   EXPECT_DOUBLE_EQ(recorded(own(), "x=hand_x,Fx=force_x")->find("hand_x")->values[4], 0.004);

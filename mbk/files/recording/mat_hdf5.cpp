@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/lines.h"
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/hdf5_tree.h"
 #include "mbk/files/recording/without_ones.h"
@@ -28,7 +29,7 @@ bool is_numeric_class(std::string_view name) {
          name.starts_with("uint");
 }
 
-/// One line of text, stored as the numbers of its UTF-16 code units; nothing where it is stored otherwise.
+/// One row of text, stored as the numbers of its UTF-16 code units; nothing where it is stored otherwise.
 std::optional<std::string> line_of_text(const hdf5::Dataset& dataset) {
   if (dataset.attributes.contains("MATLAB_empty")) return std::string();
   const auto* const units = std::get_if<hdf5::Numbers>(&dataset.value.data);
@@ -37,7 +38,7 @@ std::optional<std::string> line_of_text(const hdf5::Dataset& dataset) {
   if (!(units->values.array() >= 0.0 && units->values.array() <= 65535.0).all()) return std::nullopt;
   std::u16string line;
   for (const double unit : units->values) line += static_cast<char16_t>(unit);
-  return printable(utf8_from_utf16(line));
+  return utf8_from_utf16(line);
 }
 
 /// Paths of what the cells or fields hold, where a value has such.
@@ -142,7 +143,7 @@ class Decoder {
   void text(const hdf5::Dataset& dataset, const std::string& name) {
     auto line = line_of_text(dataset);
     if (!line) return aside(name, "text in a way that is not read");
-    contents.texts.push_back({name, {std::move(*line)}});
+    contents.texts.push_back({name, printable_lines(*line)});
   }
 
   /// A cell array whose cells all are one line of text is read as these lines, any other one as 'name{1}', 'name{2}', …
@@ -175,7 +176,7 @@ class Decoder {
         return true;
       }
       text_left_ -= line->size();
-      lines.push_back(std::move(*line));
+      lines.push_back(in_one_line(*line));
     }
     contents.texts.push_back({name, std::move(lines)});
     return true;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/lines.h"
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/inflate.h"
 #include "mbk/files/recording/without_ones.h"
@@ -254,7 +255,11 @@ class Decoder {
 
   Result<void> text(const Header& header, std::optional<std::vector<std::string>> lines, std::string_view otherwise) {
     if (!lines) return aside(header, otherwise);
-    contents.texts.push_back({header.name, std::move(*lines)});
+    Text& text = contents.texts.emplace_back();
+    text.name = header.name;
+    for (const std::string& row : *lines) {
+      for (std::string& line : printable_lines(row)) text.lines.push_back(std::move(line));
+    }
     return {};
   }
 
@@ -294,7 +299,7 @@ class Decoder {
           line8 += units->data.at<char>(i);
         }
       }
-      std::string line = printable(wide ? utf8_from_utf16(line16) : std::move(line8));
+      std::string line = wide ? utf8_from_utf16(line16) : std::move(line8);
       if (rows > 1) line.resize(line.find_last_not_of(' ') + 1);
       lines.push_back(std::move(line));
     }
@@ -340,7 +345,7 @@ class Decoder {
       auto line = lines_of_text(*inner_header, inner);
       if (!line) return tl::unexpected(line.error());
       if (!*line || (*line)->size() != 1) return Lines();
-      lines.push_back(std::move((*line)->front()));
+      lines.push_back(in_one_line((*line)->front()));
     }
     return Lines(std::move(lines));
   }

@@ -226,6 +226,12 @@ TEST(DecodeMatLevel5, ReadsTextInEachEncoding) {
   EXPECT_THAT(big->texts.at(0).lines, ElementsAre("ab"));
 }
 
+TEST(DecodeMatLevel5, KeepsTheLinesOfATextApart) {
+  EXPECT_THAT(lines_of(matrix5("t", {1, 4}, element5(4, utf16(u"a\nb\n")), 4)), ElementsAre("a", "b"));
+  const std::string cell = matrix5("", {1, 3}, element5(4, utf16(u"a\nb")), 4);
+  EXPECT_THAT(lines_of(matrix5("t", {1, 1}, cell, 1)), ElementsAre("a; b"));
+}
+
 TEST(DecodeMatLevel5, ReadsCharMatricesByRowAndCellsOfText) {
   EXPECT_THAT(lines_of(matrix5("t", {2, 3}, element5(4, utf16(u"adb c ")), 4)), ElementsAre("abc", "d"));
   const std::string cells = matrix5("", {1, 2}, element5(4, utf16(u"on")), 4) + matrix5("", {0, 0}, element5(4, ""), 4);
