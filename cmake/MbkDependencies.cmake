@@ -11,6 +11,7 @@ find_path(MBK_TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 add_library(mbk_tomlplusplus INTERFACE)
 target_include_directories(mbk_tomlplusplus SYSTEM INTERFACE ${MBK_TOMLPLUSPLUS_INCLUDE_DIR})
 pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
+pkg_check_modules(LIBLZF REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)

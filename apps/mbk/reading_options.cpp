@@ -52,9 +52,9 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
-                  "(or rows of a wide matrix, or names in the file); x=2:mm converts, Fx=-10 flips. Channels: time, "
-                  "x, y, Fx, Fy, xr, yr, q1 to q8, tau1 to tau8, qr1 to qr8, ax, ay, Vx, Vy; one axis: time, x, F, xr, "
-                  "a; for mbk tf: input, output")
+                  "(or rows of a wide matrix, or names in the file); x=pos[1],Fx=force[1] takes them from several "
+                  "matrices; x=2:mm converts, Fx=-10 flips. Channels: time, x, y, Fx, Fy, xr, yr, q1 to q8, tau1 to "
+                  "tau8, qr1 to qr8, ax, ay, Vx, Vy; one axis: time, x, F, xr, a; for mbk tf: input, output")
       ->type_name("MAP")
       ->check(not_empty());
   command.add_option("--variable", arguments.variable, "which variable of a MAT file, where several could be meant")

@@ -79,6 +79,26 @@ class Convert(Case):
             first = self.convert(make_log().path, *target).read_bytes()
             self.assertEqual(self.convert(make_log().path, *target, "--overwrite").read_bytes(), first)
 
+    def test_the_bytes_do_not_depend_on_what_was_converted(self):
+        columns = dict(zip(("time", "Fy", "y", "x", "Fx"), [[0, 0.5, 1], [5, 6, 7], [3, 4, 5], [1, 2, 3], [4, 5, 6]]))
+        one_axis = dict(zip(("F", "time", "x_rad"), [[5, 6, 7], [0, 0.5, 1], [3, 4, 5]]))
+        for k, table in enumerate((columns, one_axis)):
+            source = write_csv(self.folder / f"source{k}.csv", table.values(), table)
+            for end in (".csv", ".mat", ".h5"):
+                direct = self.convert(source, f"direct{k}{end}").read_bytes()
+                for between in (".csv", ".mat", ".h5"):
+                    name = f"by{between[1:]}{k}"
+                    path = self.convert(self.convert(source, f"{name}_1{between}", "--overwrite"), f"{name}_2{end}")
+                    self.assertEqual(path.read_bytes(), direct, (between, end))
+
+    @unittest.skipIf(h5py is None, "h5py is not there")
+    def test_lines_of_metadata_become_one_and_that_is_said(self):
+        with h5py.File(self.folder / "log.h5", "w") as file:
+            file["time"], file["hand_x"], file.attrs["remark"] = [0.0, 0.1], [1.0, 2.0], "one\ntwo"
+        ran = self.mbk("convert", self.folder / "log.h5", self.folder / "log.csv")
+        self.assertIn("metadata 'remark' has 2 lines, which are one here", ran.err)
+        self.assertIn("# remark: one; two\n", (self.folder / "log.csv").read_text())
+
     def test_units_and_signs_are_put_right_on_the_way(self):
         columns = [[0, 1, 2], [10, 20, 30], [1.5, 2.5, -3.5]]
         source = write_csv(self.folder / "raw.csv", columns, ("clock", "pos", "torque"))

@@ -6,8 +6,13 @@ import unittest
 
 try:
     import h5py
+    import numpy
 except ImportError:
-    h5py = None
+    h5py = numpy = None
+try:
+    import tables
+except ImportError:
+    tables = None
 
 from command import BAD_DATA, FINE, NOT_USABLE, Case, main, make_log, run, table_of
 
@@ -68,6 +73,87 @@ class Hdf5(Case):
                     ran = run("measure", "--json", path, "--variable", variable, "--channels", numbers)
                     self.assertIn(ran.code, (FINE, NOT_USABLE), ran)
                     self.assert_same_model(ran.json, expected)
+
+    def test_the_columns_of_a_table_by_their_names(self):
+        log = make_log()
+        columns = table_of(log)
+        expected = run("measure", "--json", log.path).json
+        kinds = [("time", "f8"), ("hand", "f8", (2,)), ("mode", "S4"), ("force_x", "f8"), ("force_y", ">f8"),
+                 ("reference", "f8", (2,))]
+        rows = numpy.zeros(len(columns[0]), dtype=kinds)
+        rows["time"], rows["force_x"], rows["force_y"], rows["mode"] = columns[0], columns[3], columns[4], b"on"
+        rows["hand"], rows["reference"] = numpy.array(columns[1:3]).T, numpy.array(columns[5:7]).T
+        channels = "x=log/hand[1],y=log/hand[2],Fx=log/force_x,Fy=log.force_y,xr=log/reference[1],yr=log/reference[2]"
+        for writer in WRITERS:
+            for packing in ({}, {"compression": "gzip", "shuffle": True}, {"compression": "lzf"}):
+                with self.subTest(writer=writer, **packing):
+                    path = self.write("table.h5", lambda file, packing=packing: file.create_dataset(
+                        "log", data=rows, chunks=True, **packing), writer)
+                    self.assert_same_model(run("measure", "--json", path, "--channels", channels).json, expected)
+
+    @unittest.skipIf(tables is None, "PyTables is not installed")
+    def test_a_table_of_pytables_with_its_own_names(self):
+        log = make_log()
+        expected = run("measure", "--json", log.path).json
+        rows = numpy.rec.fromarrays(table_of(log), names=NAMES)
+        path = self.folder / "robot.h5"
+        with tables.open_file(path, "w") as file:
+            file.create_table("/session", "log", obj=rows, createparents=True,
+                              filters=tables.Filters(complevel=5, complib="zlib"))
+            file.create_array("/session", "note", b"no recording of anyone")
+        ran = run("measure", "--json", path)
+        self.assertEqual(ran.code, FINE, ran)
+        self.assert_same_model(ran.json, expected)
+
+    def test_numbers_that_lzf_packed(self):
+        columns = dict(zip(NAMES, table_of(make_log())))
+
+        def fill(file):
+            for name, values in columns.items():
+                file.create_dataset(name, data=values, chunks=True, compression="lzf", shuffle=True, fletcher32=True)
+
+        for writer in WRITERS:
+            self.assert_same_model(run("measure", "--json", self.write("lzf.h5", fill, writer)).json,
+                                   run("measure", "--json", make_log().path).json)
+
+    def test_links_are_followed_and_what_leads_elsewhere_is_named(self):
+        def fill(file):
+            file["raw/chan3"] = [1.0, 2.0, 3.0]
+            file["time"] = h5py.SoftLink("/raw/clock")
+            file["raw/clock"] = [0.0, 0.1, 0.2]
+            file["hand_x"] = h5py.SoftLink("raw/chan3")
+            file["force_x"] = file["raw/chan3"]
+            file["raw/all"] = file["/"]
+            file["raw/other"] = h5py.ExternalLink("other.h5", "/x")
+
+        for writer in WRITERS:
+            ran = self.fine("info", "--json", self.write("links.h5", fill, writer))
+            channels = {channel["name"]: channel for channel in ran.json["channels"]}
+            self.assertEqual(sorted(channels), ["force_x", "hand_x"])
+            self.assertEqual(channels["hand_x"]["maximum"], 3.0)
+            notes = "\n".join(ran.json["notes"])
+            self.assertIn("'raw/other' is a link to '/x' in another file, 'other.h5'; ignored", notes)
+            self.assertIn("'raw/all' is a link to a group that it stands in; ignored", notes)
+
+    def test_a_damaged_neighbour_costs_only_itself(self):
+        def fill(file):
+            file["time"] = [0.0, 0.1, 0.2]
+            file["hand_x"] = [1.0, 2.0, 3.0]
+            file.create_dataset("video/frames", data=[7.5] * 64, chunks=(64,), fletcher32=True)
+            file.create_dataset("half", shape=(40,), chunks=(10,), dtype="f8")[:10] = 1.0
+
+        path = self.write("whole.h5", fill)
+        whole = path.read_bytes()
+        at = whole.index(numpy.full(8, 7.5).tobytes())
+        path.write_bytes(whole[:at] + b"\1" + whole[at + 1:])
+        ran = self.fine("info", path)
+        said = " ".join(ran.out.split())
+        self.assertIn("'video/frames' is damaged and was left out: a chunk has a wrong checksum; the rest of the file "
+                      "was read", said)
+        self.assertIn("'half' is damaged and was left out: a part of it was never written", said)
+        self.bad_data(path, "--channels", "x=video/frames", command="info", says="'video/frames' is damaged")
+        path = self.write("half.h5", lambda file: (fill(file), file.move("half", "reference_x")))
+        self.bad_data(path, says=["'reference_x' is damaged", "never written", "--channels"])
 
     def test_what_is_not_recognised_is_listed(self):
         def fill(file):

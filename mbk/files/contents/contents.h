@@ -55,6 +55,7 @@ struct Contents {
   std::map<std::string, std::string> metadata;  ///< what `take_annotations` found
   std::vector<Event> events;                    ///< the same
   std::vector<std::string> notes;               ///< one sentence each: what was ignored and why
+  std::map<std::string, std::string> damaged;   ///< names of arrays that could not be read, and why, as a sentence
 };
 
 }  // namespace mbk::recording

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 #include <libdeflate.h>
+#include <liblzf/lzf.h>
 
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <new>
 
 #include "mbk/files/hdf5/checksum.h"
@@ -13,7 +15,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr unsigned kDeflate = 1, kShuffle = 2, kFletcher32 = 3, kSzip = 4, kFirstNamed = 256;
+constexpr unsigned kDeflate = 1, kShuffle = 2, kFletcher32 = 3, kSzip = 4, kFirstNamed = 256, kLzf = 32000;
 
 /// Adds one filter; false where there are several of the kind.
 bool add(Filters& filters, Filters::Kind kind, std::uint32_t element_size = 0) {
@@ -24,6 +26,7 @@ bool add(Filters& filters, Filters::Kind kind, std::uint32_t element_size = 0) {
   return true;
 }
 
+constexpr std::size_t kUnsignedMost = std::numeric_limits<unsigned>::max();
 constexpr std::size_t kDouble = 8, kTogether = 16;
 
 typedef unsigned char Bytes16 __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
@@ -88,6 +91,8 @@ Result<Filters> read_filters(Cursor in) {
       once = add(filters, Filters::Kind::shuffle, first_value);
     } else if (id == kFletcher32) {
       once = add(filters, Filters::Kind::fletcher32);
+    } else if (id == kLzf) {
+      once = add(filters, Filters::Kind::lzf);
     } else {
       filters.unread = id == kSzip ? "packed by szip" : fmt::format("packed by filter {}", id);
     }
@@ -112,6 +117,7 @@ Result<Bytes> Unpacker::unpack(Bytes stored, std::uint32_t skipped) {
 
 Result<Bytes> Unpacker::undo(const Filters::Step& step, Bytes bytes) {
   if (step.kind == Filters::Kind::deflate) return inflate(bytes);
+  if (step.kind == Filters::Kind::lzf) return expand(bytes);
   if (step.kind == Filters::Kind::shuffle) return unshuffle(bytes, step.element_size);
   if (bytes.size() < kChecksumSize) return damaged("a chunk is shorter than its checksum");
   const Bytes body = bytes.first(bytes.size() - kChecksumSize);
@@ -135,6 +141,17 @@ Result<Bytes> Unpacker::inflate(Bytes bytes) {
     default:
       return damaged("the compressed data of a chunk is damaged, or ends early");
   }
+}
+
+/// LZF, as h5py packs.
+Result<Bytes> Unpacker::expand(Bytes bytes) {
+  expanded_.resize(chunk_bytes_ + kChecksumSize);
+  const unsigned size = bytes.size() > kUnsignedMost || expanded_.size() > kUnsignedMost
+                            ? 0
+                            : lzf_decompress(bytes.data(), static_cast<unsigned>(bytes.size()), expanded_.data(),
+                                             static_cast<unsigned>(expanded_.size()));
+  if (size == 0) return damaged("the compressed data of a chunk is damaged, ends early, or holds more than the chunk");
+  return Bytes(expanded_).first(size);
 }
 
 Bytes Unpacker::unshuffle(Bytes bytes, std::size_t element_size) {

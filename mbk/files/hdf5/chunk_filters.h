@@ -12,13 +12,13 @@ namespace mbk::hdf5 {
 
 /// How the chunks of a dataset are packed.
 struct Filters {
-  enum class Kind { deflate, shuffle, fletcher32 };
+  enum class Kind { deflate, shuffle, fletcher32, lzf };
   struct Step {
     Kind kind;
     std::uint32_t element_size;  ///< of shuffle
   };
   std::vector<Step> steps;  ///< in the order of writing
-  std::string unread;       ///< of what is not read: "packed by filter 32000"
+  std::string unread;       ///< of what is not read: "packed by filter 32001"
 };
 
 /// A filter pipeline message (specification, IV.A.2.l).
@@ -38,12 +38,14 @@ class Unpacker {
  private:
   Result<Bytes> undo(const Filters::Step& step, Bytes bytes);
   Result<Bytes> inflate(Bytes bytes);
+  Result<Bytes> expand(Bytes bytes);
   Bytes unshuffle(Bytes bytes, std::size_t element_size);
 
   const Filters& filters_;
   std::size_t chunk_bytes_;
   std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor_;
   std::vector<std::byte> inflated_;
+  std::vector<std::byte> expanded_;
   std::vector<std::byte> ordered_;
 };
 

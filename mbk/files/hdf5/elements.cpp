@@ -72,6 +72,11 @@ void copy_stored(Bytes bytes, const Datatype& type, double* out) {
   }
 }
 
+/// Whether a member of a compound type is read.
+bool is_column(const Datatype& type) {
+  return type.kind != Kind::unread && type.kind != Kind::reference;
+}
+
 /// A text of fixed length without what fills it up.
 std::string trimmed(Bytes element, bool blanks) {
   const auto end = std::ranges::find(element, std::byte{0});
@@ -82,7 +87,19 @@ std::string trimmed(Bytes element, bool blanks) {
 
 }  // namespace
 
+Elements::Elements(File& file, GlobalHeap& heap, const Datatype& type) : file_(file), heap_(heap), type_(type) {
+  for (const Member& member : type.members) columns_.emplace_back(file, heap, member.type);
+}
+
 Result<void> Elements::allocate(std::uint64_t count) {
+  if (type_.kind == Kind::compound) {
+    for (Elements& column : columns_) {
+      if (!is_column(column.type_)) continue;
+      if (auto ok = column.allocate(count); !ok) return ok;
+    }
+    return {};
+  }
+  if (!multiply(count, type_.values, count)) return damaged("it claims more than the file can hold");
   const bool are_texts = type_.kind == Kind::text || type_.kind == Kind::long_text;
   if (auto ok = file_.budget.keep(count, are_texts ? sizeof(std::string) : sizeof(double)); !ok) return ok;
   if (are_texts) {
@@ -97,20 +114,39 @@ Result<void> Elements::allocate(std::uint64_t count) {
 }
 
 Result<void> Elements::put(std::uint64_t first, Bytes bytes) {
-  const auto at = static_cast<std::size_t>(first);
+  if (type_.kind == Kind::compound) return put_columns(first, bytes);
+  const auto at = static_cast<std::size_t>(first) * type_.values;
   if (type_.kind == Kind::text || type_.kind == Kind::long_text) return put_texts(at, bytes);
   if (type_.kind == Kind::reference) {
     Cursor in = file_.cursor(bytes);
-    for (std::size_t i = 0; i < bytes.size() / type_.size; ++i) addresses_[at + i] = in.address();
+    for (std::size_t i = 0; i < bytes.size() / type_.size * type_.values; ++i) addresses_[at + i] = in.address();
     return {};
   }
   copy_stored(bytes, type_, numbers_.data() + at);
   return {};
 }
 
+/// Gathers the bytes of each column from the rows.
+Result<void> Elements::put_columns(std::uint64_t first, Bytes bytes) {
+  const std::size_t rows = bytes.size() / type_.size;
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const Member& member = type_.members[k];
+    if (!is_column(member.type)) continue;
+    const std::size_t size = member.type.size;
+    gathered_.resize(rows * size);
+    const std::byte* from = bytes.data() + member.offset;
+    for (std::size_t row = 0; row < rows; ++row, from += type_.size) {
+      std::memcpy(gathered_.data() + row * size, from, size);
+    }
+    if (auto ok = columns_[k].put(first, gathered_); !ok) return ok;
+  }
+  return {};
+}
+
 Result<void> Elements::put_texts(std::size_t first, Bytes bytes) {
-  for (std::size_t i = 0; i < bytes.size() / type_.size; ++i) {
-    const Bytes element = bytes.subspan(i * type_.size, type_.size);
+  const std::size_t each = type_.size / type_.values;
+  for (std::size_t i = 0; i < bytes.size() / each; ++i) {
+    const Bytes element = bytes.subspan(i * each, each);
     std::string& text = texts_[first + i];
     if (type_.kind == Kind::text) {
       text = trimmed(element, type_.padded_with_blanks);
@@ -137,6 +173,7 @@ Result<std::string> Elements::long_text(Bytes element) {
 }
 
 Value Elements::value(std::vector<std::uint64_t> shape) {
+  shape.insert(shape.end(), type_.array.begin(), type_.array.end());
   Value value{std::move(shape), {}};
   if (type_.kind == Kind::text || type_.kind == Kind::long_text) {
     value.data = std::move(texts_);
@@ -146,6 +183,23 @@ Value Elements::value(std::vector<std::uint64_t> shape) {
     value.data = Numbers{std::move(numbers_), type_.stored};
   }
   return value;
+}
+
+Group Elements::table(const std::vector<std::uint64_t>& shape) {
+  Group table;
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const Member& member = type_.members[k];
+    table.columns.push_back(member.name);
+    if (member.type.kind == Kind::compound) {
+      table.groups[member.name] = columns_[k].table(shape);
+    } else if (is_column(member.type)) {
+      table.datasets[member.name].value = columns_[k].value(shape);
+    } else {
+      table.datasets[member.name].value = {
+          shape, Unread{member.type.kind == Kind::reference ? "of references" : member.type.what}};
+    }
+  }
+  return table;
 }
 
 }  // namespace mbk::hdf5

@@ -29,6 +29,7 @@ Result<void> Budget::keep(std::uint64_t count, std::uint64_t each) {
   std::uint64_t bytes = 0;
   if (!multiply(count, each, bytes) || bytes > memory_) return damaged("it claims more than the file can hold");
   if (bytes > available_) {
+    spent_ = true;
     const auto gigabytes = [](std::uint64_t n) { return static_cast<double>(n) / static_cast<double>(1u << 30u); };
     return bad_data(fmt::format("{:.2f} GiB of memory are needed for it, and {:.2f} GiB are available",
                                 gigabytes(bytes), gigabytes(available_)),
@@ -45,13 +46,17 @@ Result<void> Budget::borrow(std::uint64_t bytes) const {
 }
 
 Result<void> Budget::work(std::uint64_t bytes) {
-  if (bytes > work_) return damaged("its structures point at each other without end");
+  spent_ = spent_ || bytes > work_;
+  if (spent_) return damaged("its structures point at each other without end");
   work_ -= bytes;
   return {};
 }
 
 Result<void> Budget::object(std::uint64_t path_size) {
-  if (objects_-- <= 0) return bad_data(fmt::format("more than {} objects", max_objects_), "split the file");
+  if (objects_-- <= 0) {
+    spent_ = true;
+    return bad_data(fmt::format("more than {} objects", max_objects_), "split the file");
+  }
   return keep(1, kObjectMemory + 2 * path_size);
 }
 

@@ -20,6 +20,8 @@ class Budget {
   /// One object more.
   /// @param path_size  [bytes]
   [[nodiscard]] Result<void> object(std::uint64_t path_size);
+  /// Whether it is used up, so that nothing more of the file can be read, whatever its state.
+  [[nodiscard]] bool is_spent() const { return spent_; }
 
  private:
   std::uint64_t limit_;
@@ -27,6 +29,7 @@ class Budget {
   std::uint64_t work_;
   int objects_;
   int max_objects_;
+  bool spent_ = false;
 };
 
 /// The bytes of a file between its base address and its end, and what reading them has cost.

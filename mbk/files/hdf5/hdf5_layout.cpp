@@ -22,6 +22,34 @@ Result<Layout> broken() {
   return damaged("its layout is broken");
 }
 
+/// Versions 1 and 2, as HDF5 wrote before 1.6 and MATLAB up to 7.4 (IV.A.2.i).
+Result<Layout> before_1_6(Cursor& in) {
+  constexpr int kCompact = 0, kContiguous = 1, kChunked = 2;
+  Layout layout;
+  const std::size_t dimensions = in.byte();
+  const int kind = in.byte();
+  in.skip(5);
+  if (kind != kCompact && kind != kContiguous && kind != kChunked) return broken();
+  const std::uint64_t address = kind == kCompact ? kUndefined : in.address();
+  if (kind == kChunked) {
+    layout.kind = Layout::Kind::chunked;
+    layout.chunks.address = address;
+    if (!read_chunk_shape(in, dimensions, 4, layout.chunks)) return broken();
+    return layout;
+  }
+  in.skip(4 * dimensions);  // the dataspace says them again
+  if (kind == kContiguous) {
+    layout.kind = Layout::Kind::contiguous;
+    layout.address = address;
+    layout.size = kUndefined;
+  } else {
+    layout.kind = Layout::Kind::compact;
+    layout.compact = in.take(in.dword());
+  }
+  if (!in.ok()) return broken();
+  return layout;
+}
+
 Result<Layout> chunked_since_1_10(Cursor& in, Layout layout) {
   constexpr unsigned kPlainEdges = 1, kSingleIsPacked = 2;
   ChunkIndex& chunks = layout.chunks;
@@ -56,7 +84,7 @@ Result<Layout> chunked_since_1_10(Cursor& in, Layout layout) {
       break;
     default:
       layout.kind = Layout::Kind::unread;
-      layout.what = "chunked in a way that is not read (write it with libver='earliest')";
+      layout.what = "chunked in a way that is not read";
       return layout;
   }
   chunks.address = in.address();
@@ -69,10 +97,11 @@ Result<Layout> chunked_since_1_10(Cursor& in, Layout layout) {
 Result<Layout> read_layout(Cursor in) {
   constexpr int kCompact = 0, kContiguous = 1, kChunked = 2, kVirtual = 3;
   const int version = in.byte();
+  if (version == 1 || version == 2) return before_1_6(in);
   const int kind = in.byte();
   Layout layout;
   if (version != 3 && version != 4) {
-    layout.what = fmt::format("in a layout of version {} (write it with libver='earliest')", version);
+    layout.what = fmt::format("in a layout of version {}, which is newer than this program", version);
     return layout;
   }
   if (kind == kCompact) {

@@ -26,12 +26,12 @@ struct Layout {
   Kind kind = Kind::unread;
   Bytes compact;
   std::uint64_t address = kUndefined;  ///< contiguous
-  std::uint64_t size = 0;              ///< [bytes], contiguous
+  std::uint64_t size = 0;              ///< [bytes], contiguous; kUndefined: what the elements take
   ChunkIndex chunks;
   std::string what;  ///< of what is not read
 };
 
-/// A data layout message (specification, IV.A.2.i), versions 3 and 4; others are `unread`.
+/// A data layout message (specification, IV.A.2.i), versions 1 to 4; others are `unread`.
 /// @fails  it is broken.
 [[nodiscard]] Result<Layout> read_layout(Cursor in);
 

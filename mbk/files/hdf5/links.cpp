@@ -9,7 +9,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr std::uint64_t kLinkMemory = 64;  ///< [bytes], without the name
+constexpr std::uint64_t kLinkMemory = 160;  ///< [bytes], without its texts
 
 class Reader {
  public:
@@ -54,27 +54,40 @@ class Reader {
       const std::uint64_t name_at = in.number(file_.sizes.address);
       const std::uint64_t target = in.address();
       const bool soft = in.dword() == kSoftLink;
-      Cursor name = file_.cursor(names);
-      name.skip(name_at);
-      std::string text = name.text();
-      if (!name.ok()) return damaged("a name lies outside of its local heap");
-      if (auto ok = add(std::move(text), soft ? kUndefined : target); !ok) return ok;
+      in.skip(4);
+      const std::uint64_t path_at = in.dword();
+      Link link{text_at(names, name_at), soft ? Link::Kind::soft : Link::Kind::hard, target};
+      if (soft) link.path = text_at(names, path_at);
+      if (outside_) return damaged("a name lies outside of its local heap");
+      if (auto ok = add(std::move(link)); !ok) return ok;
     }
     return {};
   }
 
   /// A link message (IV.A.2.g).
   Result<void> link(Cursor in) {
-    constexpr int kHard = 0;
+    constexpr int kHard = 0, kSoft = 1, kExternal = 64;
     const int version = in.byte();
     const unsigned flags = in.byte();
     const int kind = (flags & 0x08u) != 0 ? in.byte() : kHard;
     if ((flags & 0x04u) != 0) in.skip(8);  // when it was made
     if ((flags & 0x10u) != 0) in.skip(1);  // character set of the name
     const Bytes name = in.take(in.number(std::size_t{1} << (flags & 3u)));
-    const std::uint64_t target = kind == kHard ? in.address() : kUndefined;
+    Link link{text_of(name), Link::Kind::other};
+    if (kind == kHard) {
+      link.kind = Link::Kind::hard;
+      link.address = in.address();
+    } else if (kind == kSoft) {
+      link.kind = Link::Kind::soft;
+      link.path = text_of(in.take(in.word()));
+    } else if (kind == kExternal) {
+      link.kind = Link::Kind::external;
+      in.skip(3);  // length of what follows, and its version
+      link.file = in.text();
+      link.path = in.text();
+    }
     if (version != 1 || !in.ok()) return damaged("a link is broken");
-    return add(text_of(name), target);
+    return add(std::move(link));
   }
 
   /// A link info message (IV.A.2.c): the links stand in a fractal heap, if there is one.
@@ -99,13 +112,24 @@ class Reader {
   }
 
  private:
-  Result<void> add(std::string name, std::uint64_t address) {
-    if (auto ok = file_.budget.keep(1, kLinkMemory + name.size()); !ok) return ok;
-    links.push_back({std::move(name), address});
+  /// A text of the local heap.
+  std::string text_at(Bytes names, std::uint64_t at) {
+    Cursor in = file_.cursor(names);
+    in.skip(at);
+    std::string text = in.text();
+    outside_ = outside_ || !in.ok();
+    return text;
+  }
+
+  Result<void> add(Link link) {
+    const std::uint64_t texts = link.name.size() + link.path.size() + link.file.size();
+    if (auto ok = file_.budget.keep(1, kLinkMemory + texts); !ok) return ok;
+    links.push_back(std::move(link));
     return {};
   }
 
   File& file_;
+  bool outside_ = false;  ///< a text was outside of its heap
 };
 
 }  // namespace

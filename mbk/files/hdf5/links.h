@@ -9,8 +9,17 @@ namespace mbk::hdf5 {
 
 /// An entry of a group.
 struct Link {
+  enum class Kind {
+    hard,      ///< to an object
+    soft,      ///< to a path in this file
+    external,  ///< to a path in another file
+    other,     ///< of a kind that some program made up
+  };
   std::string name;
-  std::uint64_t address = kUndefined;  ///< of an object header; undefined where it leads elsewhere
+  Kind kind = Kind::hard;
+  std::uint64_t address = kUndefined;  ///< of an object header, where it is hard
+  std::string path = {};               ///< where it is soft or external
+  std::string file = {};               ///< where it is external
 };
 
 [[nodiscard]] bool is_group(const ObjectHeader& header);

@@ -131,8 +131,39 @@ TEST(ReadDamagedHdf5, KeepsToTheMemoryThatIsAllowed) {
   ReadLimits limits = test::limits_for(bytes.size());
   EXPECT_TRUE(read(std::as_bytes(std::span(bytes)), limits));
   limits.bytes = 800'000 - 1;
-  EXPECT_THAT(read(std::as_bytes(std::span(bytes)), limits).error().message,
-              HasSubstr("claims more than the file can hold"));
+  const auto root = read(std::as_bytes(std::span(bytes)), limits);
+  ASSERT_TRUE(root);
+  EXPECT_THAT(test::damage_of(*root)->message, HasSubstr("claims more than the file can hold"));
+}
+
+TEST(ReadDamagedHdf5, LosesNothingButWhatIsDamaged) {
+  for (const Writer writer : test::kWriters) {
+    const std::string whole = written(writer, [](hid_t file) {
+      put_numbers(file, "a", Vector::Constant(8, 1.5), {{8}, {}, {8}}, H5T_IEEE_F64LE,
+                  [](hid_t properties) { H5Pset_fletcher32(properties); });
+      put_numbers(file, "b", counted(9), {{9}});
+      const Id space(test::make_space({{20}}), H5Sclose);
+      const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+      const hsize_t chunk = 5, start = 0, count = 5;
+      H5Pset_chunk(properties, 1, &chunk);
+      const Id set(H5Dcreate2(file, "half", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+      const Id memory(test::make_space({{5}}), H5Sclose);
+      const Id part(H5Scopy(space), H5Sclose);
+      H5Sselect_hyperslab(part, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+      H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, part, H5P_DEFAULT, counted(5).data());
+    });
+    std::string bytes = whole;
+    const double value = 1.5;
+    bytes[bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof value))] = 1;
+    const auto root = read(std::as_bytes(std::span(bytes)), test::limits_for(bytes.size()));
+    ASSERT_TRUE(root) << root.error().line();
+    EXPECT_EQ(test::numbers(root->datasets.at("b").value), counted(9));
+    const auto why = [&](const char* name) { return std::get<Unread>(root->datasets.at(name).value.data); };
+    EXPECT_EQ(why("a").what, "a chunk has a wrong checksum");
+    EXPECT_TRUE(why("a").damaged);
+    EXPECT_EQ(why("half").what, "a part of it was never written");
+    EXPECT_TRUE(why("half").damaged);
+  }
 }
 
 TEST(ReadDamagedHdf5, EndsInTimeWhereLinksMultiply) {

@@ -22,11 +22,14 @@ struct ReadLimits {
 [[nodiscard]] bool looks_like_hdf5(std::span<const std::byte> file);
 
 /// Reads a whole HDF5 file (HDF5 File Format Specification 1.0 to 3.0): superblocks 0 to 3, groups old and new,
-/// attributes, datasets that are compact, contiguous or in chunks, packed by deflate, shuffle and fletcher32.
-/// Numbers, texts and references to objects are read; every other value, and a link to elsewhere, is `Unread`.
+/// attributes, links (hard, and soft ones within the file), datasets that are compact, contiguous or in chunks, packed
+/// by deflate, LZF, shuffle and fletcher32. Numbers, texts, references to objects and tables (datasets of a compound
+/// type, as groups of their columns) are read; every other value, a link to another file and a link from a group to one
+/// that contains it is `Unread`. So is a dataset that is damaged or of which a part was never written, with
+/// Unread::damaged, and nothing else of the file is lost by it; a group that is damaged says so in Group::damage.
 /// Every size is checked against the bytes before it is believed. Safe to call from several threads.
-/// @fails  data: the file is shorter than it says, damaged, or left open by its writer; a part of a dataset was never
-///         written; groups contain each other; the limits are passed. `where` is the path of the object.
+/// @fails  data: the file is shorter than it says, or left open by its writer; its root is damaged; the limits are
+///         passed. `where` is the path of the object.
 [[nodiscard]] Result<Group> read(std::span<const std::byte> file, const ReadLimits& limits);
 
 }  // namespace mbk::hdf5

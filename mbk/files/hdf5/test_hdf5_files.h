@@ -10,6 +10,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,8 +68,28 @@ inline ReadLimits limits_for(std::size_t size) {
   return {.bytes = 1100 * size + (1 << 20)};
 }
 
+/// What reading says of the first thing that is damaged in a tree; nothing where all of it is sound.
+inline std::optional<Error> damage_of(const Group& group, const std::string& path = "") {
+  const auto error = [](const std::string& what, const std::string& where) {
+    return Error{ErrorKind::data, what, "copy it again", where};
+  };
+  if (!group.damage.empty()) return error(group.damage, path.empty() ? "/" : path);
+  for (const auto& [name, dataset] : group.datasets) {
+    const auto* const unread = std::get_if<Unread>(&dataset.value.data);
+    if (unread != nullptr && unread->damaged) return error(unread->what, path + "/" + name);
+  }
+  for (const auto& [name, inner] : group.groups) {
+    if (auto damage = damage_of(inner, path + "/" + name)) return damage;
+  }
+  return std::nullopt;
+}
+
+/// Reads a file in which nothing may be damaged.
 inline Result<Group> read_bytes(std::string_view bytes) {
-  return read(std::as_bytes(std::span(bytes)), limits_for(bytes.size()));
+  auto root = read(std::as_bytes(std::span(bytes)), limits_for(bytes.size()));
+  if (!root) return root;
+  if (auto damage = damage_of(*root)) return tl::unexpected(*damage);
+  return root;
 }
 
 inline Group good(std::string_view bytes) {

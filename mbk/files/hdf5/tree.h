@@ -26,9 +26,10 @@ struct References {
   std::vector<std::string> paths;
 };
 
-/// Something that this library does not read, in words: "of a compound type", "packed by filter 32000".
+/// Something that this library does not read, in words: "of an opaque type", "packed by filter 32001".
 struct Unread {
   std::string what;
+  bool damaged = false;  ///< its bytes contradict themselves, or are missing: `what` says how, as a sentence
 };
 
 /// What a dataset or an attribute holds.
@@ -44,11 +45,13 @@ struct Dataset {
   Attributes attributes;
 };
 
-/// A folder of a file, with everything in it.
+/// A folder of a file, with everything in it; or a table, a dataset of a compound type, whose columns stand in it.
 struct Group {
   Attributes attributes;
   std::map<std::string, Dataset> datasets;
   std::map<std::string, Group> groups;
+  std::vector<std::string> columns = {};  ///< of a table: their names in the order of the file; empty for a folder
+  std::string damage = {};                ///< why something of it may be missing, as a sentence; "" where it is sound
 };
 
 }  // namespace mbk::hdf5

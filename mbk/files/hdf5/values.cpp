@@ -20,7 +20,12 @@ void leave(Value& place, const Dataspace& space, std::string what) {
   place = {space.shape, Unread{std::move(what)}};
 }
 
-void store(Reading& reading, Value& place, const Dataspace& space, Elements& elements) {
+void store(Reading& reading, Value& place, std::optional<Group>& table, const Dataspace& space, const Datatype& type,
+           Elements& elements) {
+  if (type.kind == Datatype::Kind::compound) {
+    table = elements.table(space.shape);
+    return;
+  }
   place = elements.value(space.shape);
   if (auto* const references = std::get_if<References>(&place.data)) {
     reading.references.push_back({references, elements.addresses()});
@@ -28,7 +33,8 @@ void store(Reading& reading, Value& place, const Dataspace& space, Elements& ele
 }
 
 /// Elements that stand one after the other.
-Result<void> read_plain(Reading& reading, const Dataspace& space, const Datatype& type, Bytes bytes, Value& place) {
+Result<void> read_plain(Reading& reading, const Dataspace& space, const Datatype& type, Bytes bytes, Value& place,
+                        std::optional<Group>& table) {
   std::uint64_t size = 0;
   if (!multiply(space.count, type.size, size) || size > bytes.size()) {
     return damaged(
@@ -37,7 +43,7 @@ Result<void> read_plain(Reading& reading, const Dataspace& space, const Datatype
   Elements elements(reading.file, reading.heap, type);
   if (auto ok = elements.allocate(space.count); !ok) return ok;
   if (auto ok = elements.put(0, bytes.first(static_cast<std::size_t>(size))); !ok) return ok;
-  store(reading, place, space, elements);
+  store(reading, place, table, space, type, elements);
   return {};
 }
 
@@ -72,11 +78,14 @@ Result<void> read_attribute(Reading& reading, Bytes message, Attributes& all) {
   if (auto ok = file.budget.keep(1, kAttributeMemory + name.size()); !ok) return here(ok.error());
   const auto [place, added] = all.try_emplace(name);
   if (!added) return here(damaged("it is there twice").value());
-  if (type->kind == Datatype::Kind::unread) {
-    leave(place->second, *space, type->what);
+  if (type->kind == Datatype::Kind::unread || type->kind == Datatype::Kind::compound) {
+    leave(place->second, *space, type->what.empty() ? "of a compound type" : type->what);
     return {};
   }
-  if (auto ok = read_plain(reading, *space, *type, in.take(in.left()), place->second); !ok) return here(ok.error());
+  std::optional<Group> none;
+  if (auto ok = read_plain(reading, *space, *type, in.take(in.left()), place->second, none); !ok) {
+    return here(ok.error());
+  }
   return {};
 }
 
@@ -176,7 +185,7 @@ Result<void> read_attributes(Reading& reading, const ObjectHeader& header, Attri
   return {};
 }
 
-Result<void> read_value(Reading& reading, const ObjectHeader& header, Value& place) {
+Result<void> read_value(Reading& reading, const ObjectHeader& header, Value& place, std::optional<Group>& table) {
   const auto dataset = describe(reading.file, header);
   if (!dataset) return tl::unexpected(dataset.error());
   const Layout& layout = dataset->layout;
@@ -184,18 +193,20 @@ Result<void> read_value(Reading& reading, const ObjectHeader& header, Value& pla
     leave(place, dataset->space, std::move(why));
     return {};
   }
-  if (dataset->space.count == 0) return read_plain(reading, dataset->space, dataset->type, {}, place);
+  if (dataset->space.count == 0) return read_plain(reading, dataset->space, dataset->type, {}, place, table);
   if (layout.kind == Layout::Kind::compact) {
-    return read_plain(reading, dataset->space, dataset->type, layout.compact, place);
+    return read_plain(reading, dataset->space, dataset->type, layout.compact, place, table);
   }
   if (layout.kind == Layout::Kind::contiguous) {
-    const auto block = reading.file.block(layout.address, layout.size, "its data");
+    std::uint64_t size = layout.size;
+    if (size == kUndefined && !multiply(dataset->space.count, dataset->type.size, size)) size = kUndefined;
+    const auto block = reading.file.block(layout.address, size, "its data");
     if (!block) return tl::unexpected(block.error());
-    return read_plain(reading, dataset->space, dataset->type, *block, place);
+    return read_plain(reading, dataset->space, dataset->type, *block, place, table);
   }
   Elements elements(reading.file, reading.heap, dataset->type);
   if (auto ok = read_chunks(reading.file, layout.chunks, dataset->filters, dataset->space, elements); !ok) return ok;
-  store(reading, place, dataset->space, elements);
+  store(reading, place, table, dataset->space, dataset->type, elements);
   return {};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mbk/files/hdf5/global_heap.h"
@@ -27,9 +28,11 @@ struct Reading {
 [[nodiscard]] Result<void> read_attributes(Reading& reading, const ObjectHeader& header, Attributes& place);
 
 /// The elements of a dataset.
-/// @param place  where they stay
+/// @param place  where they stay, or with `Unread` why they are not read
+/// @param table  where the columns of a compound type stay instead
 /// @fails  they are damaged, or a part of them was never written.
-[[nodiscard]] Result<void> read_value(Reading& reading, const ObjectHeader& header, Value& place);
+[[nodiscard]] Result<void> read_value(Reading& reading, const ObjectHeader& header, Value& place,
+                                      std::optional<Group>& table);
 
 [[nodiscard]] bool is_dataset(const ObjectHeader& header);
 

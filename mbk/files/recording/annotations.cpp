@@ -46,6 +46,10 @@ bool is_letter(char c) {
 
 }  // namespace
 
+std::string several_lines_note(std::string_view key, std::size_t lines) {
+  return fmt::format("metadata '{}' has {} lines, which are one here, with '; ' between them", key, lines);
+}
+
 std::string unit_key(std::string_view channel) {
   return fmt::format("unit_{}", channel);
 }
@@ -59,7 +63,9 @@ void take_annotations(Contents& contents) {
   take_events(contents);
   for (Text& text : contents.texts) {
     if (text.name.starts_with(kMetadataPrefix)) {
-      contents.metadata[text.name.substr(kMetadataPrefix.size())] = fmt::format("{}", fmt::join(text.lines, "; "));
+      const std::string key = text.name.substr(kMetadataPrefix.size());
+      contents.metadata[key] = fmt::format("{}", fmt::join(text.lines, "; "));
+      if (text.lines.size() > 1) contents.notes.push_back(several_lines_note(key, text.lines.size()));
     } else {
       contents.notes.push_back(fmt::format("variable '{}' is text; ignored", text.name));
     }

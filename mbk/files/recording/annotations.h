@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -17,8 +18,12 @@ namespace mbk::recording {
 [[nodiscard]] std::string unit_key(std::string_view channel);
 
 /// Moves the texts `metadata.KEY` into `metadata`, and `events.time`, `.name`, `.value` into `events` where they are N
-/// numbers, N texts, N numbers; an `events` of another shape stays as it is. Every other text becomes a note.
+/// numbers, N texts, N numbers; an `events` of another shape stays as it is. Every other text becomes a note, and so do
+/// several lines of one entry.
 void take_annotations(Contents& contents);
+
+/// What is said of metadata that had several lines in the file: everything here is one line.
+[[nodiscard]] std::string several_lines_note(std::string_view key, std::size_t lines);
 
 /// A letter, then letters, digits and _; 63 at most.
 [[nodiscard]] bool is_matlab_name(std::string_view name);

@@ -24,7 +24,9 @@ TEST(TakeAnnotations, TakesMetadataAndNotesOtherTexts) {
   contents.texts = {{"metadata.name", {"Anna"}}, {"who", {"me"}}, {"metadata.rows", {"a", "b"}}, {"metadata", {"x"}}};
   take_annotations(contents);
   EXPECT_THAT(contents.metadata, ElementsAre(Pair("name", "Anna"), Pair("rows", "a; b")));
-  EXPECT_THAT(contents.notes, ElementsAre("variable 'who' is text; ignored", "variable 'metadata' is text; ignored"));
+  EXPECT_THAT(contents.notes, ElementsAre("variable 'who' is text; ignored",
+                                          "metadata 'rows' has 2 lines, which are one here, with '; ' between them",
+                                          "variable 'metadata' is text; ignored"));
 }
 
 TEST(TakeAnnotations, TakesEventsThatFitTogether) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <utility>
 
@@ -82,6 +83,11 @@ Index whole_ratio(double fast_hz, double slow_hz) {
 
 bool is_vector(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) == 1 && (array.values.size() > 1 || array.signal);
+}
+
+/// The signals run along the longer side: whether they are the rows.
+bool is_wide(const Array& array) {
+  return array.values.cols() >= array.values.rows();
 }
 
 bool is_matrix(const Array& array) {
@@ -209,23 +215,44 @@ class Assembler {
     const bool time = !signals_.empty();
     return bad_data(
         fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
-        !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
+        !contents_.table ? "say which is which, as in --channels " + example_map()
         : contents_.arrays.front().rate_hz > 0.0
             ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
             : "say which is which, as in --channels time=1,x=2,Fx=3");
   }
 
+  /// What a map of the variables could look like, with names that there are: "\"time=NAME,x=pos[1],Fx=force[1]\"".
+  [[nodiscard]] std::string example_map() const {
+    std::vector<std::string> matrices, vectors;
+    for (const Array& array : contents_.arrays) {
+      if (is_matrix(array)) matrices.push_back(array.name);
+      if (is_vector(array)) vectors.push_back(array.name);
+    }
+    if (matrices.empty()) return "time=NAME,x=NAME,Fx=NAME";
+    const bool two = matrices.size() > 1;
+    return fmt::format("\"time={},x={}[{}],Fx={}[{}]\" (row or column of a matrix)",
+                       vectors.empty() ? matrices.front() + "[1]" : "NAME", matrices.front(), vectors.empty() ? 2 : 1,
+                       matrices[two ? 1 : 0],
+                       two               ? 1
+                       : vectors.empty() ? 3
+                                         : 2);
+  }
+
   static tl::unexpected<Error> tall(const Array& array) {
-    return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(array), kLogsRows),
-                    "if its columns are the signals, name them: --channels time=1,x=2,y=3,Fx=10,Fy=11; it is not "
-                    "transposed by itself",
-                    fmt::format("variable '{}'", array.name));
+    return bad_data(
+        fmt::format("matrix is {}, a logs matrix has {} rows", shape(array), kLogsRows),
+        fmt::format("if its columns are the signals, name them: --channels "
+                    "\"time={0}[1],x={0}[2],y={0}[3],Fx={0}[10],Fy={0}[11]\"; it is not transposed by itself",
+                    array.name),
+        fmt::format("variable '{}'", array.name));
   }
 
   /// The logs matrix, or nullptr where there is none.
   Result<const Array*> find_logs() const {
     if (contents_.table) return nullptr;
-    const Array* named = find(contents_, options_.variable.empty() ? "logs" : options_.variable);
+    const std::string wanted = options_.variable.empty() ? "logs" : options_.variable;
+    if (auto ok = refuse_damaged_source("--variable", wanted); !ok) return tl::unexpected(ok.error());
+    const Array* named = find(contents_, wanted);
     if (!options_.variable.empty() && named == nullptr && !names_structure()) {
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
     }
@@ -236,9 +263,10 @@ class Assembler {
       }
       if (named->values.rows() == kLogsRows) return named;
       if (named->values.cols() == kLogsRows) return tall(*named);
-      return bad_data(fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
-                      "name its rows or columns, as in --channels x=2,y=3,Fx=10",
-                      fmt::format("variable '{}'", named->name));
+      return bad_data(
+          fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
+          fmt::format("name its rows or columns, as in --channels \"x={0}[2],y={0}[3],Fx={0}[10]\"", named->name),
+          fmt::format("variable '{}'", named->name));
     }
     std::vector<std::string> names;
     const Array* found = nullptr;
@@ -248,8 +276,10 @@ class Assembler {
       found = &array;
     }
     if (names.size() > 1) {
-      return bad_usage(fmt::format("several matrices have {} rows: {}", kLogsRows, quoted(names)),
-                       "say which with --variable NAME");
+      return bad_usage(
+          fmt::format("several matrices have {} rows: {}", kLogsRows, quoted(names)),
+          fmt::format("say which with --variable NAME, or name the rows, as in --channels \"x={0}[2],Fx={0}[10]\"",
+                      names.front()));
     }
     return found;
   }
@@ -297,7 +327,10 @@ class Assembler {
       ColumnName name = parse_column_name(!array.means.empty() ? std::string_view(array.means)
                                           : contents_.table    ? std::string_view(array.name)
                                                                : leaf(array.name));
-      std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_requested(*kind); });
+      std::erase_if(name.kinds, [&](const ChannelKind* kind) {
+        const bool stamped = kind->name == "time" && array.clock >= 0;  // its time is that of its stream
+        return stamped || (kind->only_if_asked && !is_requested(*kind));
+      });
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -305,6 +338,7 @@ class Assembler {
       meanings.push_back(name.kinds);
       candidates.push_back({&array, std::move(name)});
     }
+    if (auto ok = refuse_damaged(); !ok) return ok;
     const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
     for (const Candidate& candidate : candidates) {
       const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
@@ -317,11 +351,43 @@ class Assembler {
             {kind, vector_of(*candidate.array), *unit, false, candidate.array->name, candidate.array->name});
       }
     }
+    drop_second_names();
     std::erase(aside, "");
     if (!aside.empty()) {
       recording_.notes.push_back(fmt::format("ignored, as their names are not those of channels: {}", quoted(aside)));
     }
     return {};
+  }
+
+  /// A channel that is there and damaged is not left out as if there were none.
+  Result<void> refuse_damaged() const {
+    for (const auto& [name, why] : contents_.damaged) {
+      const std::vector<const ChannelKind*> kinds = parse_column_name(leaf(name)).kinds;
+      const bool matters = std::ranges::any_of(
+          kinds, [&](const ChannelKind* kind) { return !kind->only_if_asked && is_requested(*kind); });
+      if (!matters) continue;
+      return bad_data(fmt::format("'{}' is damaged: {}", name, why),
+                      "copy the file again from where it was recorded, or name with --channels what you need of it");
+    }
+    return {};
+  }
+
+  /// A channel that a file has under two names, by a link or a copy, is taken once.
+  void drop_second_names() {
+    const auto same = [](const Signal& a, const Signal& b) {
+      const SharedMatrix &one = a.line.array->values, &other = b.line.array->values;
+      return a.kind == b.kind && a.unit == b.unit && a.line.array->clock == b.line.array->clock &&
+             a.line.rate_hz() == b.line.rate_hz() && one.size() == other.size() && one.size() > 0 &&
+             std::memcmp(one.data(), other.data(), static_cast<std::size_t>(one.size()) * sizeof(double)) == 0;
+    };
+    for (std::size_t i = 1; i < signals_.size(); ++i) {
+      const auto first = std::find_if(signals_.begin(), signals_.begin() + static_cast<std::ptrdiff_t>(i),
+                                      [&](const Signal& earlier) { return same(earlier, signals_[i]); });
+      if (first == signals_.begin() + static_cast<std::ptrdiff_t>(i)) continue;
+      recording_.notes.push_back(fmt::format("'{}' holds the same numbers as '{}', which is read as {}",
+                                             signals_[i].source, first->source, first->kind->name));
+      signals_.erase(signals_.begin() + static_cast<std::ptrdiff_t>(i--));
+    }
   }
 
   /// The unit that the file says beside the name of an array, or else the one that its name says.
@@ -368,6 +434,11 @@ class Assembler {
       const auto found = resolve(entry);
       if (!found) return tl::unexpected(found.error());
       const Line* const line = &found->line;
+      if (kind->name == "time" && line->array->clock >= 0) {
+        return bad_usage(
+            fmt::format("time cannot be '{}': the samples of each stream have the stamps of the file", entry.source),
+            "leave time out of --channels; --clock says whose stamps the recording has");
+      }
       Signal signal{kind,         *line,        nullptr,
                     entry.negate, entry.source, (entry.negate ? "-" : "") + entry.source,
                     found->gain,  found->offset};
@@ -382,7 +453,8 @@ class Assembler {
         if (!unit) return tl::unexpected(unit.error());
         signal.unit = *unit;
       } else if (const ColumnName name = parse_column_name(line->array->name);
-                 is_named(*line) && name.unit != nullptr && kind->accepts(*name.unit)) {
+                 (is_named(*line) || counted_source(entry.source)) && name.unit != nullptr &&
+                 kind->accepts(*name.unit)) {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
@@ -449,16 +521,22 @@ class Assembler {
       recording_.notes.push_back("time is row 1, as in a logs matrix");
       return {};
     }
+    const auto is_called_time = [&](const Array& array, std::string_view name) {
+      return std::ranges::any_of(parse_column_name(name).kinds, is_time) && !is_matrix(array) &&
+             vector_of(array).size() == first.size();
+    };
+    std::vector<const Array*> called, last_part_called;
     for (const Array& array : contents_.arrays) {
-      const ColumnName name = parse_column_name(array.name);
-      const Line line = vector_of(array);
-      if (std::ranges::none_of(name.kinds, is_time) || is_matrix(array) || line.size() != first.size()) continue;
-      const auto unit = unit_said(*time, array, name.unit);
-      if (!unit) return tl::unexpected(unit.error());
-      signals_.push_back({time, line, *unit, false, array.name, array.name});
-      recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
-      return {};
+      if (is_called_time(array, array.name)) called.push_back(&array);
+      if (!contents_.table && is_called_time(array, leaf(array.name))) last_part_called.push_back(&array);
     }
+    if (called.empty() && last_part_called.size() == 1) called = std::move(last_part_called);
+    if (called.empty()) return {};
+    const Array& array = *called.front();
+    const auto unit = unit_said(*time, array, parse_column_name(leaf(array.name)).unit);
+    if (!unit) return tl::unexpected(unit.error());
+    signals_.push_back({time, vector_of(array), *unit, false, array.name, array.name});
+    recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
     return {};
   }
 
@@ -474,10 +552,13 @@ class Assembler {
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
                                   entry.source, shape(*array)),
-                      is_matrix(*array)
-                          ? fmt::format("pass --variable {} and a number, as in {}=2", entry.source, entry.channel)
-                          : "name a signal");
+                      is_matrix(*array) ? fmt::format("say which of its {}, as in --channels \"{}={}[1]\"",
+                                                      is_wide(*array) ? "rows" : "columns", entry.channel, array->name)
+                                        : "name a signal");
     }
+    if (const auto line = counted_line(entry)) return *line;
+    if (auto ok = refuse_damaged_source("channel " + entry.channel, entry.source); !ok)
+      return tl::unexpected(ok.error());
     Index number = 0;
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
@@ -494,10 +575,14 @@ class Assembler {
       }
       return vector_of(contents_.arrays[static_cast<std::size_t>(number - 1)]);
     }
-    const auto matrix = numbered_matrix();
+    const auto matrix = numbered_matrix(entry);
     if (!matrix) return tl::unexpected(matrix.error());
-    const Array& array = **matrix;
-    const bool wide = array.values.cols() >= array.values.rows();
+    return line_of(entry, **matrix, number);
+  }
+
+  /// Row or column `number` of a matrix, counted from 1 across its longer side.
+  static Result<Line> line_of(const ChannelSource& entry, const Array& array, Index number) {
+    const bool wide = is_wide(array);
     const Index lines = wide ? array.values.rows() : array.values.cols();
     if (number < 1 || number > lines) {
       return bad_data(fmt::format("channel {}: there is no {} {}; the matrix is {}", entry.channel,
@@ -505,6 +590,31 @@ class Assembler {
                       "they are counted from 1", fmt::format("variable '{}'", array.name));
     }
     return Line{&array, number - 1, wide};
+  }
+
+  /// NAME[K], row or column K of the variable NAME; nothing where the source is written otherwise.
+  std::optional<Result<Line>> counted_line(const ChannelSource& entry) {
+    const std::optional<CountedSource> counted = counted_source(entry.source);
+    if (contents_.table || !counted) return std::nullopt;
+    const Array* const array = find(contents_, counted->name);
+    if (array == nullptr) {
+      if (auto ok = refuse_damaged_source("channel " + entry.channel, counted->name); !ok)
+        return tl::unexpected(ok.error());
+      return bad_data(
+          fmt::format("channel {}: there is no '{}'; {}", entry.channel, counted->name, inventory(contents_)));
+    }
+    if (is_vector(*array) && counted->number == 1) return vector_of(*array);
+    return line_of(entry, *array, counted->number);
+  }
+
+  /// @param asked  what asks for it: "channel x"
+  Result<void> refuse_damaged_source(const std::string& asked, std::string_view source) const {
+    for (const auto& [name, why] : contents_.damaged) {
+      if (with_dots(name) != with_dots(source)) continue;
+      return bad_data(fmt::format("{}: '{}' is damaged: {}", asked, name, why),
+                      "copy the file again from where it was recorded");
+    }
+    return {};
   }
 
   static tl::unexpected<Error> unknown_unit(const ChannelSource& entry, std::string_view unit) {
@@ -542,9 +652,10 @@ class Assembler {
   }
 
   /// The MAT variable whose rows or columns the numbers of the map count.
-  Result<const Array*> numbered_matrix() const {
+  Result<const Array*> numbered_matrix(const ChannelSource& entry) const {
     if (!options_.variable.empty()) {
       if (const Array* named = find(contents_, options_.variable)) return named;
+      if (auto ok = refuse_damaged_source("--variable", options_.variable); !ok) return tl::unexpected(ok.error());
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
     }
     if (const Array* logs = find(contents_, "logs")) return logs;
@@ -558,8 +669,11 @@ class Assembler {
       }
     }
     if (matrices.size() == 1) return matrices.front();
+    if (matrices.empty()) return bad_data(fmt::format("channel {}: {}", entry.channel, inventory(contents_)));
     return bad_usage(fmt::format("numbers could count the lines of several variables; {}", inventory(contents_)),
-                     "say which with --variable NAME");
+                     fmt::format("name them with their variable, as in --channels \"{}={}[{}]\", or say which with "
+                                 "--variable NAME",
+                                 entry.channel, matrices.front()->name, entry.source));
   }
 
   [[nodiscard]] bool within_variable(const Array& array) const {
@@ -690,13 +804,12 @@ class Assembler {
   }
 
   void extract() {
-    const Index samples = signals_.front().line.size();
     for (Array& array : contents_.arrays) {
       if (std::ranges::none_of(signals_, [&](const Signal& s) { return s.line.array == &array; })) forget(array);
     }
     std::vector<Vector> values(signals_.size());
     DiskPages disk;  // arrays with clocks are columns
-    if (std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
+    if (clock_ != nullptr || std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
       take_one_by_one(values);
     } else {
       take_together(values);
@@ -709,7 +822,7 @@ class Assembler {
       if (!signal.is_plain()) channel = (signal.gain * channel.array() + signal.offset).matrix();
       if (other_unit) channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
       const bool as_it_stood = contents_.table && !signal.negate && signal.is_plain() && !other_unit;
-      if (samples > kLong && !as_it_stood) disk.take(channel.data(), samples);
+      if (channel.size() > kLong && !as_it_stood) disk.take(channel.data(), channel.size());
       if (signal.kind->name == "time") {
         recording_.time = std::move(channel);
         recording_.time_origin = origin_of(signal);

@@ -103,6 +103,17 @@ std::vector<SourceReading> readings(std::string_view source) {
   return ways;
 }
 
+std::optional<CountedSource> counted_source(std::string_view source) {
+  source = trimmed(source);
+  const auto open = source.rfind('[');
+  if (!source.ends_with(']') || open == source.npos) return std::nullopt;
+  CountedSource counted{trimmed(source.substr(0, open))};
+  const std::string_view number = trimmed(source.substr(open + 1, source.size() - open - 2));
+  const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), counted.number);
+  if (counted.name.empty() || error != std::errc() || stop != number.data() + number.size()) return std::nullopt;
+  return counted;
+}
+
 Result<std::vector<ChannelSource>> parse_channel_map(std::string_view text) {
   std::vector<ChannelSource> map;
   for (std::size_t begin = 0; begin <= text.size();) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 
 namespace mbk::recording {
@@ -11,8 +13,9 @@ namespace mbk::recording {
 /// One entry of --channels: the channel that a source of the file is.
 struct ChannelSource {
   std::string channel;  ///< full name; "x" and "xr" stay as they are until the number of axes is known
-  std::string source;   ///< 1-based column (or row of a wide matrix), or a name in the file; `NAME@HZ` is decimated;
-                        ///< may end in *GAIN, +OFFSET and -OFFSET: see `readings`
+  std::string source;   ///< 1-based column (or row of a wide matrix), or a name in the file; `NAME[K]` is column (or
+                        ///< row) K of the matrix NAME; `NAME@HZ` is decimated; may end in *GAIN, +OFFSET and -OFFSET:
+                        ///< see `readings`
   std::string unit;     ///< unit in the file, "" where not said: then SI, or what the column's own name says
   bool negate = false;  ///< the sign of the source is flipped, before an offset is added
 };
@@ -29,8 +32,19 @@ struct SourceReading {
 /// or a*2 plus 1, or twice a plus 1. Gains and offsets are finite decimal numbers.
 [[nodiscard]] std::vector<SourceReading> readings(std::string_view source);
 
+/// A row or column of a matrix by the matrix's name and its own number.
+struct CountedSource {
+  std::string_view name;
+  Index number = 0;  ///< from 1
+};
+
+/// Reads "pos[2]"; nothing where the source is written otherwise. A file may have a name that looks so: that goes
+/// first.
+[[nodiscard]] std::optional<CountedSource> counted_source(std::string_view source);
+
 /// Reads "x=2:mm,y=3,Fx=-10,time=clock:ms,tau1=current*35.15-0.2:N.m". Entries are
-/// CHANNEL=[-]SOURCE[*GAIN][+OFFSET|-OFFSET][:UNIT]; names and aliases of the channel table.
+/// CHANNEL=[-]SOURCE[*GAIN][+OFFSET|-OFFSET][:UNIT], where SOURCE is NUMBER, NAME, NAME[NUMBER] or one of these with
+/// @HZ behind it; names and aliases of the channel table.
 /// @fails  usage: empty; no "="; no source; a channel twice; an unknown channel (the nearest known one is named).
 ///         data: a unit that this channel cannot have (the possible ones are named). What stands behind the last colon
 /// and is no unit stays with the source, whose name may hold colons.

@@ -27,6 +27,19 @@ TEST(ParseChannelMap, ReadsSourcesUnitsAndSigns) {
   EXPECT_EQ((*map)[3].source, "clock");
 }
 
+TEST(ParseChannelMap, ReadsAColumnOfANamedMatrix) {
+  const auto map = parse_channel_map("x=out.signals(1).values[2]:mm");
+  ASSERT_TRUE(map);
+  EXPECT_EQ((*map)[0].source, "out.signals(1).values[2]");
+  EXPECT_EQ((*map)[0].unit, "mm");
+  EXPECT_EQ(counted_source((*map)[0].source)->name, "out.signals(1).values");
+  EXPECT_EQ(counted_source("a[1][ 12 ]")->name, "a[1]");
+  EXPECT_EQ(counted_source("a[1][ 12 ]")->number, 12);
+  for (const char* text : {"", "a", "[1]", "a[]", "a[x]", "a[1", "a[1]b", "a[1.5]", "a[99999999999999999999]"}) {
+    EXPECT_FALSE(counted_source(text)) << text;
+  }
+}
+
 TEST(ParseChannelMap, KnowsEveryNameOfTheDocumentation) {
   for (const char* name :
        {"time", "t",         "hand_x",      "hand_y",      "x",    "y",         "force_x",           "force_y",

@@ -98,6 +98,17 @@ std::span<const ChannelKind> channel_kinds() {
   return kKinds;
 }
 
+std::vector<const Channel*> in_order(const std::vector<Channel>& channels) {
+  const auto place = [](const Channel* channel) {
+    const auto kind = std::ranges::find(kKinds, channel->name, &ChannelKind::name);
+    return std::pair(kind - kKinds.begin(), std::string_view(channel->name));
+  };
+  std::vector<const Channel*> ordered;
+  for (const Channel& channel : channels) ordered.push_back(&channel);
+  std::ranges::stable_sort(ordered, {}, place);
+  return ordered;
+}
+
 std::vector<const ChannelKind*> kinds_called(std::string_view name) {
   std::vector<const ChannelKind*> kinds;
   for (const ChannelKind& kind : kKinds) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/files/recording/si_units.h"
+#include "mbk/model/trial/recording.h"
 
 namespace mbk::recording {
 
@@ -32,6 +33,10 @@ inline constexpr int kMaxJoints = 8;
 
 /// Every kind, time first, in the order of the documentation.
 [[nodiscard]] std::span<const ChannelKind> channel_kinds();
+
+/// The channels in the order of the documentation, those of other names behind them by their names: the order in which
+/// files are written, whatever was read.
+[[nodiscard]] std::vector<const Channel*> in_order(const std::vector<Channel>& channels);
 
 /// The kinds that a name or alias can mean: none, one, or two ("x", "xr"). Case does not count, except in names of one
 /// letter and in Vx and Vy: vx is a velocity.

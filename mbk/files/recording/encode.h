@@ -8,7 +8,8 @@
 namespace mbk::recording {
 
 // A recording as the bytes of a file. `write` has made sure that there are samples, that all channels have as many, and
-// that texts are single lines of UTF-8. Equal recordings give equal bytes: there is no date in them.
+// that texts are single lines of UTF-8. Equal recordings give equal bytes, whatever the order of their channels: there
+// is no date in them, and channels stand in the order of the channel table.
 
 /// A MAT file of level 5 whose variables (mat_variables.h) are compressed. (MathWorks, "MAT-File Format", R2023b.)
 /// @fails  as mat_variables does; more than 2³¹ bytes of matrix.

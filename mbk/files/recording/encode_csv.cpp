@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mbk/base/core/version.h"
+#include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
 
 namespace mbk::recording {
@@ -38,11 +39,11 @@ Result<void> append_comments(std::string& text, const Recording& recording) {
   return {};
 }
 
-Result<void> append_header(std::string& text, const Recording& recording) {
+Result<void> append_header(std::string& text, const std::vector<const Channel*>& channels) {
   text += "time_s";
-  for (const Channel& channel : recording.channels) {
-    std::string name = channel.name;
-    if (!channel.unit.empty()) name += "_" + channel.unit;
+  for (const Channel* const channel : channels) {
+    std::string name = channel->name;
+    if (!channel->unit.empty()) name += "_" + channel->unit;
     if (name.find_first_of(",;\t\" #%\n\r") != name.npos) {
       return bad_data(fmt::format("'{}' cannot be the name of a column", name), "use letters, digits and _");
     }
@@ -57,12 +58,13 @@ Result<void> append_header(std::string& text, const Recording& recording) {
 Result<std::string> encode_csv(const Recording& recording) {
   std::string text;
   if (auto ok = append_comments(text, recording); !ok) return tl::unexpected(ok.error());
-  if (auto ok = append_header(text, recording); !ok) return tl::unexpected(ok.error());
+  const std::vector<const Channel*> channels = in_order(recording.channels);
+  if (auto ok = append_header(text, channels); !ok) return tl::unexpected(ok.error());
   for (Index k = 0; k < recording.samples(); ++k) {
     append(text, recording.time[k]);
-    for (const Channel& channel : recording.channels) {
+    for (const Channel* const channel : channels) {
       text += ',';
-      append(text, channel.values[k]);
+      append(text, channel->values[k]);
     }
     text += '\n';
   }

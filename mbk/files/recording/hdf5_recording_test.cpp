@@ -9,6 +9,7 @@
 #include "mbk/files/hdf5/test_hdf5_files.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
+#include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/hdf5_tree.h"
 #include "mbk/files/recording/mat_hdf5.h"
 
@@ -71,6 +72,16 @@ TEST(ContentsOfHdf5, ReadsTheLayoutThatMbkWrites) {
   EXPECT_EQ(recording->events[1].name, "offset");
   EXPECT_EQ(recording->events[1].value, -1);
   EXPECT_THAT(recording->notes, IsEmpty());
+}
+
+TEST(ContentsOfHdf5, PutsLinesOfMetadataIntoOneAndSaysSo) {
+  Group root = own();
+  root.attributes["remark"] = {{}, Texts{"first\r\nsecond\x01\n"}};
+  const auto recording = recorded(root);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->metadata.at("remark"), "first; second?");
+  EXPECT_THAT(recording->notes,
+              ElementsAre("metadata 'remark' has 2 lines, which are one here, with '; ' between them"));
 }
 
 TEST(ContentsOfHdf5, TakesTheUnitOfTheMapBeforeThatOfTheFile) {
@@ -153,6 +164,97 @@ TEST(ContentsOfHdf5, SaysWhatIsThereWhereNothingIsRecognised) {
   EXPECT_THAT(recorded(texts).error().line(), HasSubstr("it has no numeric variable; variable 'label' is text"));
 }
 
+TEST(ContentsOfHdf5, ReadsTheColumnsOfATableInTheirUnits) {
+  const auto table = [](std::vector<std::string> units) {
+    Group root;
+    Group& log = root.groups["log"];
+    log.columns = {"time", "x", "q"};
+    log.datasets = {{"time", numbers(Vector::LinSpaced(4, 0, 3))},
+                    {"x", numbers(Vector::LinSpaced(4, 0, 3000))},
+                    {"q", numbers(Vector::LinSpaced(8, 0, 7), {4, 2})}};
+    if (!units.empty()) log.attributes["units"] = {{units.size()}, Texts(std::move(units))};
+    return root;
+  };
+  const auto recording = recorded(table({"s", "mm", "deg"}), "x=log/x,q1=log/q[2]");
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_DOUBLE_EQ(recording->find("hand_x")->values[3], 3.0);
+  EXPECT_DOUBLE_EQ(recording->find("joint_1")->values[0], M_PI / 180);
+  EXPECT_EQ(recording->time[3], 3.0);
+  EXPECT_EQ(recorded(table({}), "x=log/x")->find("hand_x")->values[3], 3000.0);
+  EXPECT_THAT(recorded(table({"mm"}), "x=log/x").error().line(), HasSubstr("'log/time' is in 'mm'"));
+}
+
+TEST(ContentsOfHdf5, LeavesOutWhatIsDamagedUnlessItIsAskedFor) {
+  Group root = other();
+  root.groups["trial"].datasets["gaze"].value.data = hdf5::Unread{"a chunk has a wrong checksum", true};
+  const auto recording = recorded(root, "t=trial/clock,Fx=trial/force");
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_THAT(recording->notes, Contains("'trial/gaze' is damaged and was left out: a chunk has a wrong checksum; the "
+                                         "rest of the file was read"));
+  EXPECT_THAT(recorded(root, "t=trial/clock,Fx=trial.gaze").error().message,
+              HasSubstr("channel force_x: 'trial/gaze' is damaged: a chunk has a wrong checksum"));
+  EXPECT_THAT(recorded(root, "t=trial/clock,Fx=trial.gaze[2]").error().message, HasSubstr("is damaged"));
+  EXPECT_THAT(recorded(root, "x=1", "trial/gaze").error().message, HasSubstr("is damaged"));
+}
+
+TEST(ContentsOfHdf5, DoesNotTakeADamagedChannelForOneThatIsNotThere) {
+  Group root;
+  root.datasets["time"] = numbers(Vector::LinSpaced(5, 0, 1));
+  root.datasets["force_x"] = numbers(Vector::Zero(5));
+  root.datasets["hand_x"] = numbers(Vector::Zero(5));
+  ASSERT_TRUE(recorded(root));
+  root.groups["raw"].datasets["reference_x"].value.data = hdf5::Unread{"a part of it was never written", true};
+  EXPECT_THAT(recorded(root).error().message,
+              HasSubstr("'raw/reference_x' is damaged: a part of it was never written"));
+  EXPECT_TRUE(recorded(root, "x=hand_x,Fx=force_x"));
+}
+
+TEST(ContentsOfHdf5, TakesAChannelThatHasTwoNamesOnce) {
+  Group root;
+  root.datasets["time"] = numbers(Vector::LinSpaced(5, 0, 1));
+  root.datasets["hand_x"] = numbers(Vector::LinSpaced(5, 0, 2));
+  root.groups["raw"].datasets["hand_x"] = numbers(Vector::LinSpaced(5, 0, 2));
+  const auto recording = recorded(root);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_THAT(recording->notes, Contains("'raw/hand_x' holds the same numbers as 'hand_x', which is read as hand_x"));
+  root.groups["raw"].datasets["hand_x"] = numbers(Vector::LinSpaced(5, 0, 3));
+  EXPECT_THAT(recorded(root).error().message, HasSubstr("both are hand_x"));
+}
+
+TEST(ContentsOfHdf5, LeavesSidesOfOneOut) {
+  Group root;
+  root.datasets["p"] = numbers(Vector::LinSpaced(8, 0, 7), {4, 1, 2});
+  const Contents contents = contents_of_hdf5(std::move(root));
+  EXPECT_EQ(contents.arrays.at(0).values, (Matrix(4, 2) << 0, 1, 2, 3, 4, 5, 6, 7).finished());
+  EXPECT_THAT(contents.notes, ElementsAre("'p' (4×1×2) was read as 4×2"));
+}
+
+TEST(DecodeHdf5, RefusesARecordingOfMbkOfWhichAnythingIsDamaged) {
+  std::string bytes = encode_hdf5([] {
+                        Recording recording;
+                        recording.time = Vector::LinSpaced(5, 0, 1);
+                        recording.channels.push_back({"hand_x", "m", "base", Vector::Constant(5, 1.5), {}});
+                        return recording;
+                      }())
+                          .value();
+  ASSERT_TRUE(decode_hdf5(std::as_bytes(std::span(bytes))));
+  const std::size_t name = bytes.find("hand_x");
+  ASSERT_NE(name, bytes.npos);
+  // The layout of a dataset of 40 bytes: made longer than the file.
+  const std::string size("\x28\0\0\0\0\0\0\0", 8);
+  std::size_t at = bytes.find(size);
+  int refused = 0;
+  for (; at != bytes.npos; at = bytes.find(size, at + 1)) {
+    std::string changed = bytes;
+    changed[at + 4] = 1;
+    const auto contents = decode_hdf5(std::as_bytes(std::span(changed)));
+    if (contents) continue;
+    ++refused;
+    EXPECT_THAT(contents.error().remedy, HasSubstr("copy it again"));
+  }
+  EXPECT_GT(refused, 0);
+}
+
 TEST(DecodeHdf5, NamesTheObjectThatIsDamaged) {
   std::string bytes = hdf5::test::written(
       hdf5::test::Writer::earliest,
@@ -163,11 +265,11 @@ TEST(DecodeHdf5, NamesTheObjectThatIsDamaged) {
       512);
   const double value = 1.5;
   bytes[bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof value))] = 1;
-  EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes))).error().line(),
-              HasSubstr("/x: a chunk has a wrong checksum"));
+  EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes)))->notes,
+              ElementsAre(HasSubstr("'x' is damaged and was left out: a chunk has a wrong checksum")));
   bytes.replace(0, 10, "MATLAB 7.3");
-  EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes))).error().line(),
-              HasSubstr("variable 'x': a chunk has a wrong checksum"));
+  EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes)))->notes,
+              ElementsAre(HasSubstr("variable 'x' is damaged and was left out: a chunk has a wrong checksum")));
 }
 
 TEST(TakeColumns, BearASideThatNoNumberCanHoldBesideOneOfZero) {

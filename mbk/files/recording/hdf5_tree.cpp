@@ -1,5 +1,7 @@
 #include "mbk/files/recording/hdf5_tree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -38,22 +40,31 @@ std::string text_attribute(const hdf5::Attributes& attributes, std::string_view 
   return texts != nullptr && texts->size() == 1 ? printable(texts->front()) : std::string();
 }
 
-const hdf5::Dataset* find_dataset(const hdf5::Group& root, std::string_view path) {
-  const hdf5::Group* group = &root;
+hdf5::Group* find_group(hdf5::Group& root, std::string_view path) {
+  hdf5::Group* group = &root;
   while (path.starts_with('/')) {
     path.remove_prefix(1);
-    const std::size_t end = path.find('/');
-    const std::string name(path.substr(0, end));
-    if (end == path.npos) {
-      const auto dataset = group->datasets.find(name);
-      return dataset == group->datasets.end() ? nullptr : &dataset->second;
-    }
-    const auto inner = group->groups.find(name);
+    const std::size_t end = std::min(path.find('/'), path.size());
+    if (end == 0) continue;
+    const auto inner = group->groups.find(std::string(path.substr(0, end)));
     if (inner == group->groups.end()) return nullptr;
     group = &inner->second;
     path.remove_prefix(end);
   }
-  return nullptr;
+  return path.empty() ? group : nullptr;
+}
+
+hdf5::Dataset* find_dataset(hdf5::Group& root, std::string_view path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == path.npos) return nullptr;
+  hdf5::Group* const group = find_group(root, path.substr(0, slash));
+  if (group == nullptr) return nullptr;
+  const auto dataset = group->datasets.find(std::string(path.substr(slash + 1)));
+  return dataset == group->datasets.end() ? nullptr : &dataset->second;
+}
+
+std::string lost_note(std::string_view what, std::string_view why) {
+  return fmt::format("{} is damaged and was left out: {}; the rest of the file was read", what, why);
 }
 
 }  // namespace mbk::recording

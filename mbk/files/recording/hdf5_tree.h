@@ -35,7 +35,16 @@ void for_each_member(Group& group, const Use& use) {
 /// The text of an attribute that holds one, in UTF-8 without control characters; "" where there is none.
 [[nodiscard]] std::string text_attribute(const hdf5::Attributes& attributes, std::string_view name);
 
-/// The dataset at a path as references give it ("/#refs#/a"), or nullptr.
-[[nodiscard]] const hdf5::Dataset* find_dataset(const hdf5::Group& root, std::string_view path);
+/// The group at a path as references give it ("/#refs#/a"), or nullptr.
+[[nodiscard]] hdf5::Group* find_group(hdf5::Group& root, std::string_view path);
+
+/// The dataset at such a path, or nullptr.
+[[nodiscard]] hdf5::Dataset* find_dataset(hdf5::Group& root, std::string_view path);
+
+inline constexpr std::string_view kCopyAgain =
+    "the file is damaged or cut short: copy it again from where it was recorded";
+
+/// What is said of a part of a file that was left because it is damaged.
+[[nodiscard]] std::string lost_note(std::string_view what, std::string_view why);
 
 }  // namespace mbk::recording

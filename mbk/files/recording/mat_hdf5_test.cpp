@@ -92,20 +92,72 @@ TEST(DecodeMatHdf5, ReadsEventsWhoseNamesAreCells) {
   EXPECT_EQ(recording->events[1].value, -1.0);
 }
 
-TEST(DecodeMatHdf5, LeavesCellsOfNumbersAside) {
+TEST(DecodeMatHdf5, ReadsStructureArraysAndCellsOfNumbers) {
   const test::Folder folder;
   write_hdf5(folder / "log.mat", test::logs(30), MAT_COMPRESSION_NONE);
   mat_t* mat = Mat_Open((folder / "log.mat").c_str(), MAT_ACC_RDWR);
   ASSERT_NE(mat, nullptr);
+  std::size_t two[2] = {1, 2};
+  matvar_t* cell = Mat_VarCreate("c", MAT_C_CELL, MAT_T_CELL, 2, two, nullptr, 0);
+  Mat_VarSetCell(cell, 0, numbers(nullptr, {1, 2, 3}, 3, 1));
+  const char* fields[] = {"values", "label"};
   std::size_t one[2] = {1, 1};
-  matvar_t* cell = Mat_VarCreate("c", MAT_C_CELL, MAT_T_CELL, 2, one, nullptr, 0);
-  Mat_VarSetCell(cell, 0, numbers(nullptr, {1}, 1, 1));
+  matvar_t* inner = Mat_VarCreateStruct(nullptr, 2, one, fields, 1);
+  Mat_VarSetStructFieldByName(inner, "values", 0, numbers(nullptr, {4, 5, 6, 7, 8, 9}, 3, 2));
+  Mat_VarSetCell(cell, 1, inner);
   EXPECT_EQ(Mat_VarWrite(mat, cell, MAT_COMPRESSION_NONE), 0);
   Mat_VarFree(cell);
+  matvar_t* signals = Mat_VarCreateStruct("signals", 2, two, fields, 2);
+  char16_t label[] = u"posi";
+  std::size_t length[2] = {1, 4};
+  for (int k = 0; k < 2; ++k) {
+    Mat_VarSetStructFieldByName(signals, "values", static_cast<std::size_t>(k),
+                                numbers(nullptr, {k + 0.5, 2, 3, 4}, 2, 2));
+    Mat_VarSetStructFieldByName(signals, "label", static_cast<std::size_t>(k),
+                                Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UINT16, 2, length, label, 0));
+  }
+  EXPECT_EQ(Mat_VarWrite(mat, signals, MAT_COMPRESSION_NONE), 0);
+  Mat_VarFree(signals);
   Mat_Close(mat);
-  const auto recording = read(folder / "log.mat", {});
-  ASSERT_TRUE(recording) << recording.error().line();
-  EXPECT_THAT(recording->notes, testing::Contains("variable 'c' is a cell array; ignored"));
+  const std::string bytes = test::bytes_of(folder / "log.mat");
+  const auto contents = decode_hdf5(std::as_bytes(std::span(bytes)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  std::vector<std::string> names;
+  for (const Array& array : contents->arrays) names.push_back(array.name);
+  EXPECT_THAT(names, testing::ElementsAre("c{1}", "c{2}.values", "logs", "signals(1).values", "signals(2).values"));
+  EXPECT_EQ(contents->arrays[1].values, (Matrix(3, 2) << 4, 7, 5, 8, 6, 9).finished());
+  EXPECT_EQ(contents->arrays[4].values, (Matrix(2, 2) << 1.5, 3, 2, 4).finished());
+  EXPECT_EQ(contents->texts.size(), 2u);
+}
+
+hdf5::Dataset matlab(hdf5::Value value, const char* type) {
+  hdf5::Dataset dataset{std::move(value), {}};
+  if (*type != '\0') dataset.attributes["MATLAB_class"] = {{}, hdf5::Texts{type}};
+  return dataset;
+}
+
+TEST(DecodeMatHdf5, EndsWhereReferencesLeadBackOrToOneObjectTwice) {
+  hdf5::Group root;
+  hdf5::Group& hidden = root.groups["#refs#"];
+  hidden.datasets["a"] = matlab({{1, 3}, hdf5::Numbers{Vector::LinSpaced(3, 1, 3)}}, "double");
+  hidden.datasets["loop"] = matlab({{1, 2}, hdf5::References{{"/#refs#/loop", "/#refs#/loop"}}}, "cell");
+  root.datasets["c"] = matlab({{1, 4}, hdf5::References{{"/#refs#/a", "/#refs#/a", "", "/#refs#/nowhere"}}}, "cell");
+  root.datasets["d"] = matlab({{1, 1}, hdf5::References{{"/#refs#/loop"}}}, "cell");
+  const Contents contents = contents_of_mat_hdf5(std::move(root));
+  ASSERT_EQ(contents.arrays.size(), 1u);
+  EXPECT_EQ(contents.arrays[0].name, "c{1}");
+  EXPECT_EQ(contents.arrays[0].values, (Matrix(3, 1) << 1, 2, 3).finished());
+  EXPECT_THAT(contents.notes, testing::Contains("variable 'c{2}' is the same as 'c{1}'; ignored"));
+  EXPECT_LT(contents.notes.size(), 100'002u);
+}
+
+TEST(DecodeMatHdf5, SaysWhichElementIsDamaged) {
+  hdf5::Group root;
+  root.groups["#refs#"].datasets["a"] = matlab({{}, hdf5::Unread{"a chunk has a wrong checksum", true}}, "double");
+  root.groups["s"].datasets["x"] = matlab({{1, 1}, hdf5::References{{"/#refs#/a"}}}, "");
+  const Contents contents = contents_of_mat_hdf5(std::move(root));
+  EXPECT_TRUE(contents.damaged.contains("s(1).x"));
+  EXPECT_THAT(contents.notes, testing::ElementsAre(HasSubstr("variable 's(1).x' is damaged and was left out")));
 }
 
 TEST(DecodeMatHdf5, RefusesAFileCutAnywhere) {

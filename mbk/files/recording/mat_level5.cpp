@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -10,15 +11,17 @@
 #include <utility>
 
 #include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/lines.h"
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/inflate.h"
+#include "mbk/files/recording/without_ones.h"
 
 namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kHeaderSize = 128;
 constexpr int kDeepest = 16;                ///< structures within structures
-constexpr std::size_t kMaxElements = 64;    ///< of a structure array that is still read
+constexpr std::size_t kMaxElements = 1024;  ///< of a structure or cell array that is still read
 constexpr std::size_t kMaxLines = 100'000;  ///< of text in one variable
 
 // Types of data elements.
@@ -190,7 +193,8 @@ class Decoder {
     if (header.array_class != kOpaqueClass) {
       const auto dimensions = elements.next("its dimensions");
       if (!dimensions) return tl::unexpected(dimensions.error());
-      if (dimensions->type != kInt32 || dimensions->data.size() < 8 || dimensions->data.size() % 4 != 0) {
+      const bool whole = dimensions->type == kInt32 || dimensions->type == kUint32;  // some programs write the other
+      if (!whole || dimensions->data.size() < 8 || dimensions->data.size() % 4 != 0) {
         return damaged("its dimensions are broken");
       }
       for (std::size_t i = 0; i < dimensions->data.size(); i += 4) {
@@ -222,7 +226,7 @@ class Decoder {
         return object(header, printable(type->data.padded_text()));
       }
       case kCellClass:
-        return cells(header, elements);
+        return cells(header, elements, depth);
       case kCharClass: {
         auto lines = lines_of_text(header, elements);
         if (!lines) return tl::unexpected(lines.error());
@@ -251,7 +255,11 @@ class Decoder {
 
   Result<void> text(const Header& header, std::optional<std::vector<std::string>> lines, std::string_view otherwise) {
     if (!lines) return aside(header, otherwise);
-    contents.texts.push_back({header.name, std::move(*lines)});
+    Text& text = contents.texts.emplace_back();
+    text.name = header.name;
+    for (const std::string& row : *lines) {
+      for (std::string& line : printable_lines(row)) text.lines.push_back(std::move(line));
+    }
     return {};
   }
 
@@ -266,6 +274,12 @@ class Decoder {
     const auto count = header.count();
     if (!wide && units->type != kInt8 && units->type != kUint8 && units->type != kUtf8) return Lines();
     if (header.dimensions.size() != 2 || header.dimensions[0] > kMaxLines) return Lines();
+    if (stored == 0 && count && *count > 0) {  // some programs leave blanks out
+      if (*count > kMaxLines) return Lines();
+      const bool single = header.dimensions[0] == 1;
+      return Lines(std::vector<std::string>(static_cast<std::size_t>(header.dimensions[0]),
+                                            std::string(single ? static_cast<std::size_t>(*count) : 0, ' ')));
+    }
     // In UTF-8 a character may have several bytes, and only a single row says where it ends.
     const bool fits = units->data.size() % each == 0 && count == stored;
     if (!fits && !(units->type == kUtf8 && header.dimensions[0] == 1 && count < stored)) {
@@ -285,33 +299,55 @@ class Decoder {
           line8 += units->data.at<char>(i);
         }
       }
-      std::string line = printable(wide ? utf8_from_utf16(line16) : std::move(line8));
+      std::string line = wide ? utf8_from_utf16(line16) : std::move(line8);
       if (rows > 1) line.resize(line.find_last_not_of(' ') + 1);
       lines.push_back(std::move(line));
     }
     return Lines(std::move(lines));
   }
 
-  /// A cell array is read where each cell is one line of text.
-  Result<void> cells(const Header& header, Elements& elements) {
-    constexpr std::string_view kAside = "a cell array";
+  /// A cell array whose cells all are one line of text is read as these lines, any other one as 'name{1}', 'name{2}', …
+  Result<void> cells(const Header& header, const Elements& elements, int depth) {
     const auto count = header.count();
-    if (!count || *count > kMaxLines) return aside(header, kAside);
-    std::vector<std::string> lines;
+    if (!count || *count > kMaxLines) return aside(header, "a large cell array");
+    auto lines = lines_of_cells(header, elements, *count);
+    if (!lines) return tl::unexpected(lines.error());
+    if (*lines) return text(header, (*lines)->empty() ? std::nullopt : std::move(*lines), "an empty cell array");
+    if (*count > kMaxElements) return aside(header, "a large cell array");
+    const std::size_t texts = contents.texts.size();
+    Elements rest = elements;
     for (std::uint64_t k = 0; k < *count; ++k) {
+      const auto cell = rest.next("a cell");
+      if (!cell) return tl::unexpected(cell.error());
+      if (cell->type != kMatrix) return damaged(fmt::format("cell {} is not an array", k + 1));
+      if (auto done = matrix(cell->data, fmt::format("{}{{{}}}", header.name, k + 1), depth + 1); !done) return done;
+    }
+    if (contents.texts.size() > texts) {
+      contents.notes.push_back(fmt::format("texts in the cell array '{}' were ignored", header.name));
+      contents.texts.resize(texts);
+    }
+    return {};
+  }
+
+  /// The lines of cells that all are one line of text; nothing where they are not.
+  static Result<std::optional<std::vector<std::string>>> lines_of_cells(const Header& header, Elements elements,
+                                                                        std::uint64_t count) {
+    using Lines = std::optional<std::vector<std::string>>;
+    std::vector<std::string> lines;
+    for (std::uint64_t k = 0; k < count; ++k) {
       const auto cell = elements.next("a cell");
       if (!cell) return tl::unexpected(cell.error());
-      if (cell->type != kMatrix || cell->data.size() == 0) return aside(header, kAside);
+      if (cell->type != kMatrix || cell->data.size() == 0) return Lines();
       Elements inner{cell->data};
       const auto inner_header = read_header(inner, header.name);
       if (!inner_header) return tl::unexpected(inner_header.error());
-      if (inner_header->array_class != kCharClass) return aside(header, kAside);
+      if (inner_header->array_class != kCharClass) return Lines();
       auto line = lines_of_text(*inner_header, inner);
       if (!line) return tl::unexpected(line.error());
-      if (!*line || (*line)->size() != 1) return aside(header, kAside);
-      lines.push_back(std::move((*line)->front()));
+      if (!*line || (*line)->size() != 1) return Lines();
+      lines.push_back(in_one_line((*line)->front()));
     }
-    return text(header, lines.empty() ? std::nullopt : std::optional(std::move(lines)), kAside);
+    return Lines(std::move(lines));
   }
 
   Result<void> numbers(const Header& header, Elements& elements) {
@@ -325,10 +361,16 @@ class Decoder {
                                  fmt::join(header.dimensions, "×"), real->data.size(), each));
     }
     if (header.complex) return aside(header, "complex");
-    if (header.dimensions.size() != 2) return aside(header, "an array of more than two dimensions");
+    const auto squeezed = without_ones(header.dimensions);
+    if (header.dimensions.size() != 2 && !squeezed) return aside(header, "an array of more than two dimensions");
+    const std::vector<std::uint64_t>& size = squeezed ? *squeezed : header.dimensions;
+    if (squeezed) {
+      contents.notes.push_back(fmt::format("variable '{}' ({}) was read as {}×{}", header.name,
+                                           fmt::join(header.dimensions, "×"), size[0], size[1]));
+    }
     Array& array = contents.arrays.emplace_back();
     array.name = header.name;
-    const auto rows = static_cast<Index>(header.dimensions[0]), columns = static_cast<Index>(header.dimensions[1]);
+    const auto rows = static_cast<Index>(size[0]), columns = static_cast<Index>(size[1]);
     if (double* const at = where_they_stand(*real); at != nullptr) {
       array.values = SharedMatrix(at, rows, columns, bytes_);
       return {};
@@ -355,9 +397,18 @@ class Decoder {
     if (width <= 0 || names->data.size() % static_cast<std::size_t>(width) != 0) {
       return damaged("its field names are broken");
     }
-    std::vector<std::string> fields;
+    std::vector<std::string> fields, originals;
     for (std::size_t i = 0; i < names->data.size(); i += static_cast<std::size_t>(width)) {
-      fields.push_back(printable(names->data.part(i, static_cast<std::size_t>(width)).padded_text()));
+      std::string field = printable(names->data.part(i, static_cast<std::size_t>(width)).padded_text());
+      const auto same = std::ranges::count(originals, field);
+      originals.push_back(field);
+      if (same > 0) {
+        fields.push_back(fmt::format("{}#{}", field, same + 1));
+        contents.notes.push_back(fmt::format("structure '{}' has several fields '{}'; one is called '{}' here",
+                                             header.name, field, fields.back()));
+      } else {
+        fields.push_back(std::move(field));
+      }
     }
     const auto count = header.count();
     if (!count || *count > kMaxElements) return aside(header, "a large structure array");

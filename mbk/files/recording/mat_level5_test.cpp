@@ -136,17 +136,68 @@ TEST(DecodeMatLevel5, LeavesAsideWhatIsNotARealMatrixAndSaysSo) {
       element5(14, element5(6, raw(std::uint32_t{17}) + raw(std::uint32_t{0})) + element5(1, "nlid") +
                        element5(1, "MCOS") + element5(1, "nldat") + double5("", kValues));
   const auto contents = decode(header5() + opaque + matrix5("text", {1, 1}, element5(18, raw(U'a')), 4) +
-                               matrix5("cells", {1, 1}, double5("", kValues), 1) + matrix5("sparse", {9, 9}, "", 5) +
+                               matrix5("sparse", {9, 9}, "", 5) +
                                matrix5("z", {1, 1}, element5(9, raw(1.0)) + element5(9, raw(1.0)), 0x0806) +
-                               matrix5("cube", {1, 1, 1}, element5(9, raw(1.0))));
+                               matrix5("cube", {2, 1, 2, 2}, element5(9, std::string(64, '\0'))));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_TRUE(contents->arrays.empty());
   EXPECT_THAT(contents->notes,
               ElementsAre("variable 'nlid' is an object of MATLAB class 'nldat', which only MATLAB can read; ignored",
                           "variable 'text' is text in a way that is not read; ignored",
-                          "variable 'cells' is a cell array; ignored", "variable 'sparse' is a sparse matrix; ignored",
-                          "variable 'z' is complex; ignored",
+                          "variable 'sparse' is a sparse matrix; ignored", "variable 'z' is complex; ignored",
                           "variable 'cube' is an array of more than two dimensions; ignored"));
+}
+
+TEST(DecodeMatLevel5, ReadsCellsThatHoldNumbersAndStructures) {
+  const std::string text = matrix5("", {1, 2}, element5(1, "on"), 4);
+  const std::string cells = double5("", kValues) + text + struct5("", {{"f", double5("", 2 * kValues)}}) +
+                            matrix5("", {1, 1}, double5("", 3 * kValues), 1);
+  const auto contents = decode(header5() + matrix5("c", {2, 2}, cells, 1));
+  ASSERT_TRUE(contents) << contents.error().line();
+  ASSERT_EQ(contents->arrays.size(), 3u);
+  EXPECT_EQ(contents->arrays[0].name, "c{1}");
+  EXPECT_EQ(contents->arrays[1].name, "c{3}.f");
+  EXPECT_EQ(contents->arrays[2].name, "c{4}{1}");
+  EXPECT_EQ(contents->arrays[2].values, 3 * kValues);
+  EXPECT_TRUE(contents->texts.empty());
+  EXPECT_THAT(contents->notes, ElementsAre("texts in the cell array 'c' were ignored"));
+  const auto many = decode(header5() + matrix5("c", {1025, 1}, double5("", kValues), 1));
+  EXPECT_THAT(error_of(header5() + matrix5("c", {2, 1}, double5("", kValues), 1)), HasSubstr("a cell is missing"));
+  EXPECT_FALSE(many && many->notes.empty());
+}
+
+TEST(DecodeMatLevel5, TellsFieldsOfOneNameApart) {
+  const auto contents =
+      decode(header5() +
+             struct5("s", {{"a", double5("", kValues)}, {"b", double5("", kValues)}, {"a", double5("", 2 * kValues)}}));
+  ASSERT_TRUE(contents) << contents.error().line();
+  ASSERT_EQ(contents->arrays.size(), 3u);
+  EXPECT_EQ(contents->arrays[0].name, "s.a");
+  EXPECT_EQ(contents->arrays[2].name, "s.a#2");
+  EXPECT_EQ(contents->arrays[2].values, 2 * kValues);
+  EXPECT_THAT(contents->notes, ElementsAre("structure 's' has several fields 'a'; one is called 'a#2' here"));
+}
+
+TEST(DecodeMatLevel5, TakesUnsignedDimensions) {
+  std::string variable = double5("z", kValues);
+  const std::string wanted = raw(std::uint32_t{5}) + raw(std::uint32_t{8});  // int32, 8 bytes
+  const std::size_t at = variable.find(wanted);
+  ASSERT_NE(at, variable.npos);
+  variable.replace(at, 4, raw(std::uint32_t{6}));
+  const auto contents = decode(header5() + variable);
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays.at(0).values, kValues);
+  variable.replace(at, 4, raw(std::uint32_t{7}));
+  EXPECT_THAT(error_of(header5() + variable), HasSubstr("its dimensions are broken"));
+}
+
+TEST(DecodeMatLevel5, LeavesSidesOfOneOut) {
+  std::string bytes;
+  for (double v = 1; v <= 6; ++v) bytes += raw(v);
+  const auto contents = decode(header5() + matrix5("p", {3, 1, 2}, element5(9, bytes)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays.at(0).values, (Matrix(3, 2) << 1, 4, 2, 5, 3, 6).finished());
+  EXPECT_THAT(contents->notes, ElementsAre("variable 'p' (3×1×2) was read as 3×2"));
 }
 
 std::string utf16(std::u16string_view text) {
@@ -175,10 +226,24 @@ TEST(DecodeMatLevel5, ReadsTextInEachEncoding) {
   EXPECT_THAT(big->texts.at(0).lines, ElementsAre("ab"));
 }
 
+TEST(DecodeMatLevel5, KeepsTheLinesOfATextApart) {
+  EXPECT_THAT(lines_of(matrix5("t", {1, 4}, element5(4, utf16(u"a\nb\n")), 4)), ElementsAre("a", "b"));
+  const std::string cell = matrix5("", {1, 3}, element5(4, utf16(u"a\nb")), 4);
+  EXPECT_THAT(lines_of(matrix5("t", {1, 1}, cell, 1)), ElementsAre("a; b"));
+}
+
 TEST(DecodeMatLevel5, ReadsCharMatricesByRowAndCellsOfText) {
   EXPECT_THAT(lines_of(matrix5("t", {2, 3}, element5(4, utf16(u"adb c ")), 4)), ElementsAre("abc", "d"));
   const std::string cells = matrix5("", {1, 2}, element5(4, utf16(u"on")), 4) + matrix5("", {0, 0}, element5(4, ""), 4);
   EXPECT_THAT(lines_of(matrix5("t", {2, 1}, cells, 1)), ElementsAre("on", ""));
+}
+
+TEST(DecodeMatLevel5, TakesTextWithoutBytesAsBlanks) {
+  EXPECT_THAT(lines_of(matrix5("t", {1, 3}, element5(4, ""), 4)), ElementsAre("   "));
+  EXPECT_THAT(lines_of(matrix5("t", {2, 3}, element5(1, ""), 4)), ElementsAre("", ""));
+  const auto many = decode(header5() + matrix5("t", {1, 2147483647}, element5(1, ""), 4));
+  ASSERT_TRUE(many);
+  EXPECT_THAT(many->notes, ElementsAre(HasSubstr("text in a way that is not read")));
 }
 
 TEST(DecodeMatLevel5, RefusesTextThatDoesNotMatchItsDimensions) {

@@ -53,11 +53,11 @@ Result<std::vector<MatVariable>> mat_variables(const Recording& recording) {
     variables.push_back({"logs", logs_of(recording)});
   } else {
     variables.push_back({"time", Matrix(recording.time)});
-    for (const Channel& channel : recording.channels) {
-      if (!is_matlab_name(channel.name)) {
-        return bad_data(fmt::format("channel '{}' cannot be the name of a MATLAB variable", channel.name));
+    for (const Channel* const channel : in_order(recording.channels)) {
+      if (!is_matlab_name(channel->name)) {
+        return bad_data(fmt::format("channel '{}' cannot be the name of a MATLAB variable", channel->name));
       }
-      variables.push_back({channel.name, Matrix(channel.values)});
+      variables.push_back({channel->name, Matrix(channel->values)});
     }
   }
   if (!metadata->empty()) {

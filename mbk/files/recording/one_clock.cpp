@@ -18,6 +18,10 @@ double median_interval(const Vector& time) {
 }
 
 Result<void> check_rises(const Clock& clock) {
+  if (!clock.time.allFinite()) {
+    return bad_data(fmt::format("the time of '{}' has stamps that are no numbers", clock.name),
+                    "take channels of one stream only");
+  }
   for (Index i = 1; i < clock.time.size(); ++i) {
     if (clock.time[i] > clock.time[i - 1]) continue;
     return bad_data(fmt::format("the time of '{}' does not rise: sample {} at {:.6f} s follows one at {:.6f} s",
@@ -59,12 +63,23 @@ double rate_of(const Clock& clock) {
 
 Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSignal> signals) {
   if (chosen.time.size() == 0) return bad_data(fmt::format("'{}' has no samples", chosen.name), "name another clock");
+  for (const ClockedSignal& signal : signals) {
+    if (signal.values->size() == signal.clock->time.size()) continue;
+    return bad_data(fmt::format("{} has {} samples, the clock of '{}' has {}", signal.channel, signal.values->size(),
+                                signal.clock->name, signal.clock->time.size()),
+                    "name a channel of a stream");
+  }
+  if (std::ranges::all_of(signals, [&](const ClockedSignal& signal) { return signal.clock == &chosen; })) {
+    return CommonClock{chosen.time, {}};
+  }
   if (auto ok = check_rises(chosen); !ok) return tl::unexpected(ok.error());
   double begin = chosen.time[0], end = chosen.time[chosen.time.size() - 1];
   for (const ClockedSignal& signal : signals) {
     if (signal.clock == &chosen) continue;
     const Vector& time = signal.clock->time;
-    if (time.size() == 0) return bad_data(fmt::format("'{}' has no samples", signal.clock->name));
+    if (time.size() == 0) {
+      return bad_data(fmt::format("'{}' has no samples", signal.clock->name), "name a channel of another stream");
+    }
     if (auto ok = check_rises(*signal.clock); !ok) return tl::unexpected(ok.error());
     begin = std::max(begin, time[0]);
     end = std::min(end, time[time.size() - 1]);

@@ -26,8 +26,11 @@ struct CommonClock {
 /// Puts signals of several streams on the stamps of one of them. Signals of that stream keep their samples to the bit;
 /// those of the others are interpolated linearly between their two nearest samples in time. Stamps outside what every
 /// stream covers are left out, and where a stream has no samples for longer than kLongestBridge of its median
-/// intervals, its values are NaN: nothing is made up over a gap.
-/// @fails  data: the stamps of a stream run backward or repeat; the streams do not overlap.
+/// intervals, its values are NaN: nothing is made up over a gap. Where all signals are of the chosen stream, its stamps
+/// are not touched, whatever they are.
+/// @fails  data: there are several streams, and the stamps of one run backward, repeat or are no numbers; the streams
+/// do
+///         not overlap; a signal has another number of samples than its clock has stamps.
 [[nodiscard]] Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSignal> signals);
 
 inline constexpr double kLongestBridge = 2.5;

@@ -87,6 +87,52 @@ TEST_F(Read, NamesWhatArithmeticDoesNotFind) {
   EXPECT_EQ(none.message, "channel x: the gain 0 leaves nothing of 'a'");
 }
 
+// ---- columns of several matrices ----
+
+TEST_F(Read, CombinesColumnsOfSeveralMatrices) {
+  const Matrix pos = Matrix::Random(30, 3), force = Matrix::Random(3, 30);
+  const Vector t = Vector::LinSpaced(30, 0.0, 0.29);
+  const std::string bytes = header5() + double5("pos", pos) + double5("force", force) + double5("t", t);
+  const Recording recording = good(bytes, with_channels("time=t,x=pos[1],y=pos[ 3 ],Fx=-force[2]*2+1:mN"));
+  EXPECT_EQ(recording.time, t);
+  EXPECT_EQ(recording.find("hand_x")->values, pos.col(0));
+  EXPECT_EQ(recording.find("hand_y")->values, pos.col(2));  // the longer side of `pos` runs down, of `force` across
+  const Vector expected = ((1.0 - 2.0 * force.row(1).array()) / 1e3).matrix().transpose();
+  EXPECT_LT((recording.find("force_x")->values - expected).cwiseAbs().maxCoeff(), 1e-18);
+  EXPECT_EQ(recording.find("force_x")->origin.source, "-force[2]*2+1");
+}
+
+TEST_F(Read, TakesTheUnitOfAMatrixFromItsNameAndTheOnlyColumnOfAVector) {
+  const std::string bytes = header5() + double5("pos_mm", Matrix::Constant(5, 2, 250.0)) +
+                            double5("load", Matrix::Constant(5, 1, 3.0)) + double5("time", Vector::LinSpaced(5, 0, 1));
+  const Recording recording = good(bytes, with_channels("x=pos_mm[2],Fx=load[1]"));
+  EXPECT_EQ(recording.find("hand_x")->values, Vector::Constant(5, 0.25));
+  EXPECT_EQ(recording.find("force_x")->values, Vector::Constant(5, 3.0));
+  EXPECT_THAT(recording.notes, Contains("hand_x is taken in mm, as its name 'pos_mm' says"));
+  EXPECT_THAT(recording.notes, Contains("time is 'time', by its name"));
+}
+
+TEST_F(Read, TakesANameWithBracketsBeforeAColumn) {
+  EXPECT_EQ(good("time,pos[1]\n0,5\n1,5\n", with_channels("x=pos[1]")).channels.front().values[0], 5.0);
+  EXPECT_THAT(bad("time,pos\n0,5\n1,5\n", with_channels("x=pos[1]")).message,
+              HasSubstr("there is no 'pos[1]'; it has 2"));
+}
+
+TEST_F(Read, SaysWhatThereIsWhereAColumnOfAMatrixIsNot) {
+  const std::string bytes = header5() + double5("pos", Matrix::Zero(30, 3)) + double5("force", Matrix::Zero(29, 3));
+  EXPECT_EQ(bad(bytes, with_channels("x=pos[4]")).line(),
+            (folder_ / "file").string() +
+                ", variable 'pos': channel x: there is no column 4; the matrix is 30×3; they are counted from 1");
+  EXPECT_THAT(bad(bytes, with_channels("x=pos[0]")).message, HasSubstr("there is no column 0"));
+  EXPECT_THAT(bad(bytes, with_channels("x=posi[1]")).message,
+              HasSubstr("there is no 'posi'; it has the variables pos (30×3), force (29×3)"));
+  EXPECT_THAT(bad(bytes, with_channels("x=pos[1],Fx=force[1]")).message,
+              HasSubstr("hand_x ('pos[1]') has 30 samples, force_x ('force[1]') has 29"));
+  EXPECT_THAT(bad(bytes, with_channels("x=pos")).remedy, HasSubstr("\"x=pos[1]\""));
+  EXPECT_THAT(bad(bytes, with_channels("x=2")).remedy, HasSubstr("\"x=pos[2]\""));
+  EXPECT_THAT(bad(bytes).remedy, HasSubstr("\"time=pos[1],x=pos[2],Fx=force[1]\""));
+}
+
 // ---- robots of other kinds, voltages ----
 
 TEST_F(Read, KnowsJointsThatTurnAndJointsThatSlide) {

@@ -35,8 +35,9 @@ enum class Format {
 /// What such a file has no place for, in words; nothing where everything comes back.
 [[nodiscard]] std::vector<std::string> lost_in(const Recording& recording, Format format);
 
-/// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes. What
-/// was measured on a person is for the file's owner alone, unless `readers` says otherwise.
+/// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes,
+/// whatever the order of their channels. What was measured on a person is for the file's owner alone, unless `readers`
+/// says otherwise.
 /// @fails  usage: the file is there and `overwrite` is false. data: the recording cannot be written in this format (the
 ///         message says what stands in the way); the folder cannot be written.
 [[nodiscard]] Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format,
