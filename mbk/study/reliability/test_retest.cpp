@@ -12,7 +12,6 @@
 namespace mbk::reliability {
 namespace {
 
-
 Result<void> all_finite(const Matrix& scores) {
   for (Index j = 0; j < scores.cols(); ++j) {
     const Index i = first_non_finite(scores.col(j));
