@@ -25,6 +25,8 @@ inline constexpr Range kNominalOrMore = {92.0, 100.0};  ///< the same where too 
 inline constexpr Range kNearlyAlways = {95.0, 100.0}, kHardlyEver = {0.0, 5.0};
 /// Of what must always be so, such as what has to follow every fault, and of what must never be.
 inline constexpr Range kAlways = {99.0, 100.0}, kNever = {0.0, 1.0};
+/// Of tests at a level of 5 % that find a difference where there is none.
+inline constexpr Range kFalsePositives = {3.5, 6.5};
 
 /// Share of the trials of which something is so [%], with its exact (Clopper–Pearson) 95 % interval. Of no trials it is
 /// undefined, between 0 and 100 %.

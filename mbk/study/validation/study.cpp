@@ -30,6 +30,7 @@ constexpr std::array kOfFrequencyResponse = {JudgedShare{kHardlyEver, 1.0}, Judg
 constexpr std::array kOfDisplacements = {JudgedShare{kNominal, 95.0}, JudgedShare{kNearlyAlways, 100.0}};
 constexpr std::array kOfTeleoperation = {JudgedShare{kHardlyEver, 0.0, 0.3}};  // of 4 random designs
 constexpr std::array kOfParticipant = {JudgedShare{kNearlyAlways, 100.0}};
+constexpr std::array kOfReliability = {JudgedShare{kNominal, 95.0}, JudgedShare{kFalsePositives, 5.0}};
 constexpr std::array kOfFaultsAtAll = {JudgedShare{kNearNominal, 100.0}, JudgedShare{kHardlyEver, 0.0, 10.0}};
 
 }  // namespace
@@ -65,6 +66,8 @@ std::span<const Study> studies() {
             reflex_study},
       Study{"change", "M, B and K over time, of arms that change and that do not", kOfChange, 2, change_study},
       Study{"after-onset", "what the first 120 ms after a pulse tell of a rigid arm", kOfChange, 2, after_onset_study},
+      Study{"reliability", "ICC, SEM, MDC and differences of groups, of studies drawn from known variances",
+            kOfReliability, 2, reliability_study},
       Study{"teleoperation", "absolute stability of random teleoperators, as decided and as simulated",
             kOfTeleoperation, 1, teleoperation_study},
       Study{"participant", "when the simulated participant is active or passive", kOfParticipant, 2, participant_study},

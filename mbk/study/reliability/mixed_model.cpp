@@ -1,0 +1,750 @@
+#include "mbk/study/reliability/mixed_model.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "mbk/base/core/nan.h"
+#include "mbk/study/reliability/distributions.h"
+#include "mbk/study/reliability/jet.h"
+
+namespace mbk::reliability {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kParticipant = 0, kSession = 1, kResidual = 2;
+
+/// Lower triangle of a symmetric matrix, row by row.
+template <class Scalar>
+struct Triangle {
+  explicit Triangle(std::size_t rows) : order(rows), entries(rows * (rows + 1) / 2, Scalar(0.0)) {}
+  Scalar& operator()(std::size_t i, std::size_t k) { return entries[i * (i + 1) / 2 + k]; }
+  const Scalar& operator()(std::size_t i, std::size_t k) const { return entries[i * (i + 1) / 2 + k]; }
+
+  std::size_t order;
+  std::vector<Scalar> entries;
+};
+
+/// Rows of one session. Their order within [X y] is kept, so each is a row of `table`.
+struct SessionRows {
+  Index begin, end;
+};
+
+/// Data that are ready to be fitted: rows sorted by participant and session, columns [X y] in which X is orthonormal
+/// (X = Q R, R kept) and y is the residual of ordinary least squares over its standard deviation.
+struct Prepared {
+  Matrix table;  // N×(p + 1)
+  Vector known;  // N, over scale²; empty where not known
+  std::vector<SessionRows> sessions;
+  std::vector<std::size_t> first_session;  // of each participant, and one past the last
+  Matrix R;                                // p×p
+  Vector least_squares;                    // p: β in the columns of Q that y was freed of, in units of scale
+  double scale = 1.0;
+  int missing = 0;
+  bool has_participant = false, has_session = false;
+  // where nothing is known: for each session its mean row, and all squares about these
+  Matrix means;
+  Matrix about_means;
+
+  [[nodiscard]] std::size_t columns() const { return static_cast<std::size_t>(table.cols()) - 1; }
+  [[nodiscard]] Index rows() const { return table.rows(); }
+  [[nodiscard]] std::size_t participants() const { return first_session.size() - 1; }
+};
+
+/// What the variances make of the data: ln det V, XᵀV⁻¹X and the rest as the triangle of [X y]ᵀV⁻¹[X y].
+template <class Scalar>
+struct Weighted {
+  Scalar log_det_V;
+  Triangle<Scalar> products;
+};
+
+double value_of(double x) {
+  return x;
+}
+double value_of(const Jet& x) {
+  return x.value;
+}
+double logarithm(double x) {
+  return std::log(x);
+}
+Jet logarithm(const Jet& x) {
+  return log(x);
+}
+
+/// A group of means, each with its weight 1/variance, whose common part has a variance of its own: their squares about
+/// their weighted mean are added to `products`, and that mean and the weight of it with the variance are handed on.
+template <class Scalar>
+class CommonPart {
+ public:
+  explicit CommonPart(std::size_t width) : mean(width, Scalar(0.0)) {}
+
+  void clear() {
+    weight = Scalar(0.0);
+    std::ranges::fill(mean, Scalar(0.0));
+  }
+  /// By West's (1979) update, which subtracts nothing that is large.
+  template <class Row>
+  void add(const Scalar& of_row, const Row& row, Triangle<Scalar>& products) {
+    const Scalar total = weight + of_row;
+    const Scalar share = of_row / total, spread = weight * share;
+    std::vector<Scalar>& step = step_;
+    step.resize(mean.size());
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      step[i] = row(i) - mean[i];
+      mean[i] += share * step[i];
+    }
+    weight = total;
+    if (value_of(spread) == 0.0) return;
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const Scalar scaled = spread * step[i];
+      for (std::size_t k = 0; k <= i; ++k) products(i, k) += scaled * step[k];
+    }
+  }
+  /// The weight of the mean once the common part varies too, and what that adds to ln det V.
+  Scalar shrink(const Scalar& variance, Scalar& log_det_V) {
+    const Scalar inflation = Scalar(1.0) + variance * weight;
+    log_det_V += logarithm(inflation);
+    return weight / inflation;
+  }
+
+  Scalar weight = Scalar(0.0);
+  std::vector<Scalar> mean;
+
+ private:
+  std::vector<Scalar> step_;
+};
+
+/// [X y]ᵀV⁻¹[X y] and ln det V of V = D + σ_s² Z_s Z_sᵀ + σ_p² Z_p Z_pᵀ, D = diag(known + σ_e²). Everything is a sum of
+/// squares: within sessions, of their means about the participant's, and of the participants' own.
+template <class Scalar>
+Weighted<Scalar> weighted(const Prepared& data, const std::array<Scalar, 3>& variances) {
+  const std::size_t width = data.columns() + 1;
+  Weighted<Scalar> result{Scalar(0.0), Triangle<Scalar>(width)};
+  CommonPart<Scalar> session(width), participant(width);
+  const bool equal = data.known.size() == 0;
+  const Scalar one_over = equal ? Scalar(1.0) / variances[kResidual] : Scalar(0.0);
+  if (equal) {
+    for (std::size_t i = 0; i < width; ++i) {
+      for (std::size_t k = 0; k <= i; ++k) {
+        result.products(i, k) += one_over * data.about_means(static_cast<Index>(i), static_cast<Index>(k));
+      }
+    }
+    result.log_det_V += logarithm(variances[kResidual]) * static_cast<double>(data.rows());
+  }
+  for (std::size_t p = 0; p < data.participants(); ++p) {
+    participant.clear();
+    for (std::size_t s = data.first_session[p]; s < data.first_session[p + 1]; ++s) {
+      const auto [begin, end] = data.sessions[s];
+      session.clear();
+      if (equal) {
+        session.weight = one_over * static_cast<double>(end - begin);
+        const auto row = [&](std::size_t i) { return data.means(static_cast<Index>(s), static_cast<Index>(i)); };
+        participant.add(session.shrink(variances[kSession], result.log_det_V), row, result.products);
+        continue;
+      }
+      for (Index r = begin; r < end; ++r) {
+        const Scalar variance = variances[kResidual] + data.known[r];
+        result.log_det_V += logarithm(variance);
+        const auto row = [&](std::size_t i) { return data.table(r, static_cast<Index>(i)); };
+        session.add(Scalar(1.0) / variance, row, result.products);
+      }
+      const Scalar weight = session.shrink(variances[kSession], result.log_det_V);
+      participant.add(
+          weight, [&](std::size_t i) { return session.mean[i]; }, result.products);
+    }
+    const Scalar weight = participant.shrink(variances[kParticipant], result.log_det_V);
+    for (std::size_t i = 0; i < width; ++i) {
+      const Scalar scaled = weight * participant.mean[i];
+      for (std::size_t k = 0; k <= i; ++k) result.products(i, k) += scaled * participant.mean[k];
+    }
+  }
+  return result;
+}
+
+/// Cholesky factor in place of a positive definite triangle, without square roots: L (unit, below) and the pivots.
+/// @returns false where a pivot of the first `order` is not positive
+template <class Scalar>
+bool factor(Triangle<Scalar>& matrix, std::size_t order) {
+  for (std::size_t k = 0; k < order; ++k) {
+    if (!(value_of(matrix(k, k)) > 0.0)) return false;
+    for (std::size_t i = k + 1; i < matrix.order; ++i) {
+      const Scalar multiplier = matrix(i, k) / matrix(k, k);
+      for (std::size_t j = k + 1; j <= i; ++j) matrix(i, j) -= multiplier * matrix(j, k);
+    }
+    for (std::size_t i = k + 1; i < matrix.order; ++i) matrix(i, k) = matrix(i, k) / matrix(k, k);
+  }
+  return true;
+}
+
+/// −2 ln L_R without constants, of the prepared data, and the residual sum of squares yᵀPy in it.
+template <class Scalar>
+struct Criterion {
+  Scalar value;
+  Scalar squares;
+};
+
+/// @param profiled  the residual variance is 1 in `variances`, and what it should be is found in closed form
+template <class Scalar>
+Criterion<Scalar> criterion(const Prepared& data, const std::array<Scalar, 3>& variances, bool profiled) {
+  Weighted<Scalar> all = weighted(data, variances);
+  const std::size_t p = data.columns();
+  Triangle<Scalar>& factors = all.products;
+  if (!factor(factors, p)) return {Scalar(kInfinity), Scalar(kInfinity)};
+  Scalar total = all.log_det_V;
+  for (std::size_t i = 0; i < p; ++i) total += logarithm(factors(i, i));
+  const Scalar squares = factors(p, p);
+  if (!(value_of(squares) > 0.0)) return {Scalar(kInfinity), Scalar(kInfinity)};
+  const auto degrees = static_cast<double>(data.rows()) - static_cast<double>(p);
+  total += profiled ? degrees * logarithm(squares) : squares;
+  return {total, squares};
+}
+
+/// The function to be made small: of `count` variables that are 0 or more.
+struct Objective {
+  std::size_t count = 0;
+  std::function<double(const std::array<double, kJetSize>&)> value;
+  std::function<Jet(const std::array<double, kJetSize>&)> jet;
+};
+
+struct Minimum {
+  std::array<double, kJetSize> at{};
+  double value = kInfinity;
+};
+
+/// Where the slope at 0 is not negative, that is a minimum over the variable.
+bool held_at_zero(double x, double slope) {
+  return x == 0.0 && slope >= 0.0;
+}
+
+/// A step of the variables that are free, in their logarithms, by the Hessian with the absolute values of its
+/// eigenvalues, no longer than e³ in any of them.
+std::array<double, kJetSize> step_of(const Objective& objective, const std::array<double, kJetSize>& at, const Jet& jet,
+                                     double& slope) {
+  std::array<double, kJetSize> step{};
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < objective.count; ++i) {
+    if (at[i] > 0.0) free.push_back(i);
+  }
+  slope = 0.0;
+  if (free.empty()) return step;
+  const auto n = static_cast<Index>(free.size());
+  Vector gradient(n);
+  Matrix hessian(n, n);
+  for (Index i = 0; i < n; ++i) {
+    const std::size_t a = free[static_cast<std::size_t>(i)];
+    gradient[i] = at[a] * jet.gradient[a];
+    for (Index k = 0; k < n; ++k) {
+      const std::size_t b = free[static_cast<std::size_t>(k)];
+      hessian(i, k) = at[a] * at[b] * jet.second(a, b) + (i == k ? gradient[i] : 0.0);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(hessian);
+  const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
+  Vector curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-8 * largest).cwiseMax(1e-12);
+  Vector move = -(eigen.eigenvectors() * (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(curvature));
+  const double longest = move.cwiseAbs().maxCoeff();
+  constexpr double kLongest = 3.0;
+  if (longest > kLongest) move *= kLongest / longest;
+  slope = gradient.dot(move);
+  for (Index i = 0; i < n; ++i) step[free[static_cast<std::size_t>(i)]] = move[i];
+  return step;
+}
+
+/// The best of a grid in which each variable is 0 or one of some powers of ten.
+Minimum on_grid(const Objective& objective) {
+  constexpr std::array kLevels = {0.0, 0.03, 0.3, 3.0, 30.0};
+  Minimum best;
+  std::size_t points = 1;
+  for (std::size_t i = 0; i < objective.count; ++i) points *= kLevels.size();
+  for (std::size_t index = 0; index < points; ++index) {
+    std::array<double, kJetSize> at{};
+    std::size_t rest = index;
+    for (std::size_t i = 0; i < objective.count; ++i) {
+      at[i] = kLevels[rest % kLevels.size()];
+      rest /= kLevels.size();
+    }
+    const double value = objective.value(at);
+    if (value < best.value) best = {at, value};
+  }
+  return best;
+}
+
+/// Newton's method in the logarithms of the variables; a variable goes to 0 where that is better and the slope there
+/// keeps it, and leaves it where the slope says so.
+Minimum minimum_of(const Objective& objective) {
+  Minimum best = on_grid(objective);
+  if (objective.count == 0 || !std::isfinite(best.value)) return best;
+  constexpr int kIterations = 200;
+  constexpr double kTolerance = 1e-11, kTiny = 1e-10;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Jet jet = objective.jet(best.at);
+    bool moved = false;
+    for (std::size_t i = 0; i < objective.count; ++i) {  // to 0, and from it
+      auto at = best.at;
+      if (at[i] > 0.0 && jet.gradient[i] > 0.0 &&
+          (at[i] < kTiny || (jet.second(i, i) > 0.0 && at[i] < jet.gradient[i] / jet.second(i, i)))) {
+        at[i] = 0.0;
+      } else if (at[i] == 0.0 && !held_at_zero(at[i], jet.gradient[i])) {
+        at[i] = jet.second(i, i) > 0.0 ? -jet.gradient[i] / jet.second(i, i) : 1e-2;
+      } else {
+        continue;
+      }
+      double value = objective.value(at);
+      for (int halving = 0; halving < 40 && at[i] > 0.0 && !(value < best.value); ++halving) {
+        at[i] *= 0.25;
+        value = objective.value(at);
+      }
+      if (value < best.value) {
+        best = {at, value};
+        moved = true;
+        break;
+      }
+    }
+    if (moved) continue;
+    double slope = 0.0;
+    const auto step = step_of(objective, best.at, jet, slope);
+    if (-slope < kTolerance * std::max(1.0, std::abs(best.value)) * 1e-3) break;
+    double length = 1.0;
+    for (int halving = 0; halving < 40; ++halving, length *= 0.5) {
+      auto at = best.at;
+      for (std::size_t i = 0; i < objective.count; ++i) at[i] *= std::exp(length * step[i]);
+      const double value = objective.value(at);
+      if (value < best.value) {
+        best = {at, value};
+        moved = true;
+        break;
+      }
+    }
+    if (!moved) break;
+  }
+  return best;
+}
+
+/// An objective from a template that takes doubles or jets.
+template <class Function>
+Objective objective_of(std::size_t count, const Function& function) {
+  return {count, [function](const std::array<double, kJetSize>& at) { return function(at); },
+          [function, count](const std::array<double, kJetSize>& at) {
+            std::array<Jet, kJetSize> jets;
+            for (std::size_t i = 0; i < count; ++i) jets[i] = Jet::variable(at[i], i);
+            return function(jets);
+          }};
+}
+
+Result<void> check_shapes(const Measurements& m) {
+  const Index rows = m.values.size();
+  const auto as_many = [&](std::size_t count) { return static_cast<Index>(count) == rows; };
+  if (!as_many(m.participants.size()) || !as_many(m.sessions.size()) || m.fixed.rows() != rows ||
+      (m.known_variance.size() > 0 && m.known_variance.size() != rows)) {
+    return bad_data(fmt::format("{} values, {} participants, {} sessions, {} rows of X and {} known variances", rows,
+                                m.participants.size(), m.sessions.size(), m.fixed.rows(), m.known_variance.size()),
+                    "give as many of each; known variances may be left out altogether");
+  }
+  for (Index i = 0; i < rows; ++i) {
+    if (std::isnan(m.values[i])) continue;
+    if (!std::isfinite(m.values[i]))
+      return bad_data(fmt::format("value {} is infinite", i + 1), "write NaN where it is missing");
+    if (!m.fixed.row(i).allFinite()) {
+      return bad_data(fmt::format("row {} of X is not finite", i + 1), "leave out rows whose condition is not known");
+    }
+    if (m.known_variance.size() > 0 && !(m.known_variance[i] >= 0.0 && std::isfinite(m.known_variance[i]))) {
+      return bad_data(fmt::format("known variance {} is {:g}", i + 1, m.known_variance[i]),
+                      "give a variance of 0 or more");
+    }
+  }
+  return {};
+}
+
+/// Rows that are there, by participant and session.
+std::vector<Index> sorted_rows(const Measurements& m) {
+  std::vector<Index> rows;
+  for (Index i = 0; i < m.values.size(); ++i) {
+    if (!std::isnan(m.values[i])) rows.push_back(i);
+  }
+  std::ranges::stable_sort(rows, {}, [&](Index i) {
+    const auto k = static_cast<std::size_t>(i);
+    return std::pair(m.participants[k], m.sessions[k]);
+  });
+  return rows;
+}
+
+std::string name_of(const Measurements& m, Index column) {
+  const auto k = static_cast<std::size_t>(column);
+  return k < m.names.size() ? fmt::format("'{}'", m.names[k]) : fmt::format("column {}", column + 1);
+}
+
+/// X = Q R by modified Gram–Schmidt, twice, so that a column that depends on those before it is seen and named.
+Result<Matrix> orthonormal(const Measurements& m, Matrix& X) {
+  Matrix R = Matrix::Zero(X.cols(), X.cols());
+  for (Index k = 0; k < X.cols(); ++k) {
+    const double length = X.col(k).norm();
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Index j = 0; j < k; ++j) {
+        const double along = X.col(j).dot(X.col(k));
+        R(j, k) += along;
+        X.col(k) -= along * X.col(j);
+      }
+    }
+    R(k, k) = X.col(k).norm();
+    constexpr double kDependent = 1e-10;
+    if (!(R(k, k) > kDependent * length)) {
+      return bad_data(fmt::format("{} of the fixed effects depends on those before it", name_of(m, k)),
+                      "leave it out: these data cannot tell it from them");
+    }
+    X.col(k) /= R(k, k);
+  }
+  return R;
+}
+
+Result<Prepared> prepare(const Measurements& m) {
+  if (auto ok = check_shapes(m); !ok) return tl::unexpected(ok.error());
+  const std::vector<Index> rows = sorted_rows(m);
+  const auto count = static_cast<Index>(rows.size());
+  const Index p = m.fixed.cols();
+  if (count <= p) {
+    return bad_data(fmt::format("{} values for {} fixed effects", count, p), "measure more, or ask for fewer effects");
+  }
+  Prepared data;
+  data.missing = static_cast<int>(m.values.size() - count);
+  data.table.resize(count, p + 1);
+  if (m.known_variance.size() > 0) data.known.resize(count);
+  for (Index r = 0; r < count; ++r) {
+    const Index i = rows[static_cast<std::size_t>(r)];
+    const auto k = static_cast<std::size_t>(i);
+    data.table.row(r) << m.fixed.row(i), m.values[i];
+    if (data.known.size() > 0) data.known[r] = m.known_variance[i];
+    const auto before = r > 0 ? static_cast<std::size_t>(rows[static_cast<std::size_t>(r - 1)]) : k;
+    const bool new_person = r == 0 || m.participants[k] != m.participants[before];
+    if (new_person) data.first_session.push_back(data.sessions.size());
+    if (new_person || m.sessions[k] != m.sessions[before]) data.sessions.push_back({r, r});
+    data.sessions.back().end = r + 1;
+  }
+  const std::size_t people = data.first_session.size();
+  data.first_session.push_back(data.sessions.size());
+  if (people < 2) return bad_data(fmt::format("{} participant with values", people), "give two or more");
+  data.has_session = data.sessions.size() < rows.size() && people < data.sessions.size();
+  data.has_participant = people < rows.size();
+
+  Matrix X = data.table.leftCols(p);
+  auto R = orthonormal(m, X);
+  if (!R) return tl::unexpected(R.error());
+  data.R = std::move(*R);
+  Vector y = data.table.col(p);
+  data.least_squares = Vector::Zero(p);
+  const double size = y.norm();
+  for (int pass = 0; pass < 2; ++pass) {
+    const Vector along = X.transpose() * y;
+    data.least_squares += along;
+    y -= X * along;
+  }
+  data.scale = y.norm() / std::sqrt(static_cast<double>(count - p));
+  constexpr double kRounding = 1e-13;
+  if (!(data.scale > kRounding * size / std::sqrt(static_cast<double>(count)))) {
+    return bad_data("the values do not vary beyond what the fixed effects explain", "check that they were not copied");
+  }
+  data.least_squares /= data.scale;
+  if (data.known.size() > 0) data.known /= data.scale * data.scale;
+  data.table << X, y / data.scale;
+
+  data.means.resize(static_cast<Index>(data.sessions.size()), p + 1);
+  data.about_means = Matrix::Zero(p + 1, p + 1);
+  for (std::size_t s = 0; s < data.sessions.size(); ++s) {
+    const auto [begin, end] = data.sessions[s];
+    const auto block = data.table.middleRows(begin, end - begin);
+    data.means.row(static_cast<Index>(s)) = block.colwise().mean();
+    const Matrix about = block.rowwise() - data.means.row(static_cast<Index>(s));
+    data.about_means += about.transpose() * about;
+  }
+  return data;
+}
+
+/// Which variances there are, in the order of the objective's variables: participant, session, and the residual where
+/// it is not profiled.
+struct Parameters {
+  bool participant, session, residual;
+
+  template <class Scalar>
+  [[nodiscard]] std::array<Scalar, 3> variances(const std::array<Scalar, kJetSize>& at) const {
+    std::size_t next = 0;
+    std::array<Scalar, 3> all = {Scalar(0.0), Scalar(0.0), Scalar(1.0)};
+    if (participant) all[kParticipant] = at[next++];
+    if (session) all[kSession] = at[next++];
+    if (residual) all[kResidual] = at[next++];
+    return all;
+  }
+  [[nodiscard]] std::size_t count() const {
+    return (participant ? 1U : 0U) + (session ? 1U : 0U) + (residual ? 1U : 0U);
+  }
+};
+
+bool profiled(const Prepared& data) {
+  return data.known.size() == 0;
+}
+
+/// Variances [scaled] at the maximum of the likelihood, and −2 ln of it without constants.
+struct Fitted {
+  std::array<double, 3> variances{};
+  double value = 0.0;
+};
+
+Result<Fitted> fitted(const Prepared& data) {
+  const Parameters parameters{data.has_participant, data.has_session, !profiled(data)};
+  const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
+    return criterion(data, parameters.variances(at), profiled(data)).value;
+  };
+  const Minimum minimum = minimum_of(objective_of(parameters.count(), function));
+  Fitted result{parameters.variances(minimum.at), minimum.value};
+  const auto degrees = static_cast<double>(data.rows()) - static_cast<double>(data.columns());
+  if (profiled(data) && std::isfinite(minimum.value)) {
+    const double residual = criterion(data, result.variances, true).squares / degrees;
+    for (double& one : result.variances) one *= residual;
+  }
+  constexpr double kNoResidual = 1e-14;
+  if (!std::isfinite(minimum.value) || (profiled(data) && result.variances[kResidual] < kNoResidual)) {
+    return bad_data("nothing varies within sessions and people",
+                    "check that values were not copied from one trial to the others");
+  }
+  return result;
+}
+
+/// The inverse of a triangle of jets that factor() has made L D Lᵀ of, its first `order` rows; full.
+std::vector<std::vector<Jet>> inverse_of(const Triangle<Jet>& factors, std::size_t order) {
+  std::vector<std::vector<Jet>> inverse(order, std::vector<Jet>(order));
+  for (std::size_t column = 0; column < order; ++column) {
+    std::vector<Jet>& x = inverse[column];
+    x[column] = Jet(1.0);
+    for (std::size_t i = 0; i < order; ++i) {
+      for (std::size_t k = 0; k < i; ++k) x[i] -= factors(i, k) * x[k];
+    }
+    for (std::size_t i = 0; i < order; ++i) x[i] = x[i] / factors(i, i);
+    for (std::size_t i = order; i-- > 0;) {
+      for (std::size_t k = i + 1; k < order; ++k) x[i] -= factors(k, i) * x[k];
+    }
+  }
+  return inverse;
+}
+
+/// Deviance, coefficients and all their derivatives at the fitted variances, unscaled.
+MixedModel summarised(const Prepared& data, const Fitted& fit) {
+  const std::size_t p = data.columns();
+  const auto order = static_cast<Index>(p);
+  const double scale2 = data.scale * data.scale;
+  MixedModel model;
+  model.participants = static_cast<int>(data.participants());
+  model.sessions = static_cast<int>(data.sessions.size());
+  model.rows = static_cast<int>(data.rows());
+  model.missing = data.missing;
+  if (data.known.size() > 0) model.typical_known_variance = scale2 * data.known.mean();
+  const std::array<VarianceComponent*, 3> components = {&model.participant, &model.session, &model.residual};
+  const std::array present = {data.has_participant, data.has_session, true};
+
+  std::vector<std::size_t> free;
+  std::array<Jet, 3> variances;
+  for (std::size_t i = 0; i < 3; ++i) {
+    components[i]->present = present[i];
+    components[i]->value = scale2 * fit.variances[i];
+    variances[i] = Jet::variable(fit.variances[i], i);
+    if (fit.variances[i] > 0.0) free.push_back(i);
+  }
+  const Jet deviance = criterion(data, variances, false).value;
+  Weighted<Jet> all = weighted(data, variances);
+  factor(all.products, p);
+  const double degrees = static_cast<double>(data.rows()) - static_cast<double>(p);
+  model.deviance = deviance.value + degrees * std::log(2.0 * std::numbers::pi * scale2) +
+                   2.0 * data.R.diagonal().array().abs().log().sum();
+
+  const auto n = static_cast<Index>(free.size());
+  Matrix information(n, n);
+  for (Index i = 0; i < n; ++i) {
+    for (Index k = 0; k < n; ++k) {
+      information(i, k) = 0.5 * deviance.second(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(k)]);
+    }
+  }
+  const Eigen::LLT<Matrix> cholesky(information);
+  const bool informed = n > 0 && cholesky.info() == Eigen::Success;
+  if (informed) {
+    model.variance_covariance = scale2 * scale2 * cholesky.solve(Matrix::Identity(n, n));
+    for (Index i = 0; i < n; ++i) {
+      components[free[static_cast<std::size_t>(i)]]->standard_error = std::sqrt(model.variance_covariance(i, i));
+    }
+  }
+
+  // β = β_ols + (XᵀV⁻¹X)⁻¹XᵀV⁻¹y, in the columns of Q; back by R⁻¹
+  Vector beta = Vector::Zero(order);
+  for (std::size_t i = p; i-- > 0;) {
+    beta[static_cast<Index>(i)] = all.products(p, i).value;
+    for (std::size_t k = i + 1; k < p; ++k) {
+      beta[static_cast<Index>(i)] -= all.products(k, i).value * beta[static_cast<Index>(k)];
+    }
+  }
+  const auto R = data.R.triangularView<Eigen::Upper>();
+  beta = R.solve(data.scale * (beta + data.least_squares));
+  const auto inverse = inverse_of(all.products, p);
+  const auto back = [&](const std::function<double(const Jet&)>& part, double factor) {
+    Matrix one(order, order);
+    for (Index i = 0; i < order; ++i) {
+      for (Index k = 0; k < order; ++k) {
+        one(i, k) = factor * part(inverse[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+      }
+    }
+    const Matrix half = R.solve(one);
+    return Matrix(R.solve(half.transpose()));
+  };
+  model.covariance = back([](const Jet& jet) { return jet.value; }, scale2);
+  if (informed) {
+    for (const std::size_t i : free) {
+      model.covariance_gradient.push_back(back([i](const Jet& jet) { return jet.gradient[i]; }, 1.0));
+    }
+  }
+  for (Index k = 0; k < order; ++k) {
+    model.effects.emplace_back().value = beta[k];
+  }
+  for (Index k = 0; k < order; ++k) {
+    model.effects[static_cast<std::size_t>(k)] = contrast(model, Vector::Unit(order, k));
+  }
+  return model;
+}
+
+/// The variance of an SEM [scaled], and its interval by χ² with Satterthwaite's degrees of freedom.
+Interval sem_interval(double variance, double variance_of_it) {
+  if (!(variance_of_it > 0.0)) return {0.0, kInfinity};
+  const double degrees = 2.0 * variance * variance / variance_of_it;
+  return {std::sqrt(variance * degrees / chi_square_quantile(1.0 - kTail95, degrees)),
+          std::sqrt(variance * degrees / chi_square_quantile(kTail95, degrees))};
+}
+
+/// The profile of −2 ln L_R over the ICC of the mean of m trials.
+class IccProfile {
+ public:
+  IccProfile(const Prepared& data, int trials) : data_(data), trials_(trials) {
+    if (data.known.size() > 0) typical_ = data.known.mean();
+  }
+
+  [[nodiscard]] double icc(const std::array<double, 3>& variances) const {
+    const double error = variances[kSession] + (variances[kResidual] + typical_) / trials_;
+    return variances[kParticipant] / (variances[kParticipant] + error);
+  }
+  /// Its minimum over the other variances, where the ICC is that. @param icc in [0, 1)
+  [[nodiscard]] double at(double icc) const {
+    const double odds = icc / (1.0 - icc);
+    const Parameters parameters{false, data_.has_session, !profiled(data_)};
+    const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
+      std::array<Scalar, 3> variances = parameters.variances(at);
+      variances[kParticipant] =
+          odds * (variances[kSession] + (variances[kResidual] + Scalar(typical_)) * (1.0 / trials_));
+      return criterion(data_, variances, profiled(data_)).value;
+    };
+    return minimum_of(objective_of(parameters.count(), function)).value;
+  }
+
+ private:
+  const Prepared& data_;
+  double trials_;
+  double typical_ = 0.0;
+};
+
+/// The end of the interval between a value inside it and one outside; the end itself where the outer one is inside.
+double end_of(const IccProfile& profile, double inside, double outside, double limit) {
+  if (profile.at(outside) <= limit) return outside;
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings && std::abs(outside - inside) > 1e-7; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (profile.at(middle) <= limit ? inside : outside) = middle;
+  }
+  return 0.5 * (inside + outside);
+}
+
+}  // namespace
+
+Result<MixedModel> fit_mixed_model(const Measurements& measurements) {
+  const auto data = prepare(measurements);
+  if (!data) return tl::unexpected(data.error());
+  const auto fit = fitted(*data);
+  if (!fit) return tl::unexpected(fit.error());
+  return summarised(*data, *fit);
+}
+
+FixedEffect contrast(const MixedModel& model, const Vector& weights) {
+  FixedEffect effect;
+  for (Index k = 0; k < weights.size(); ++k)
+    effect.value += weights[k] * model.effects[static_cast<std::size_t>(k)].value;
+  const double variance = weights.dot(model.covariance * weights);
+  effect.standard_error = std::sqrt(variance);
+  const auto n = static_cast<Index>(model.covariance_gradient.size());
+  Vector gradient(n);
+  for (Index i = 0; i < n; ++i) {
+    gradient[i] = weights.dot(model.covariance_gradient[static_cast<std::size_t>(i)] * weights);
+  }
+  const double of_variance = n > 0 ? gradient.dot(model.variance_covariance * gradient) : 0.0;
+  const bool estimated = model.participant.value > 0.0 || model.session.value > 0.0 || model.residual.value > 0.0;
+  // No information on the variances: as few degrees of freedom as the people leave.
+  const double fewest = std::max<double>(1.0, model.participants - static_cast<double>(weights.size()));
+  effect.degrees_of_freedom = of_variance > 0.0 ? 2.0 * variance * variance / of_variance
+                              : estimated       ? fewest
+                                                : kInfinity;
+  const double reach = student_quantile(1.0 - kTail95, effect.degrees_of_freedom) * effect.standard_error;
+  effect.interval95 = {effect.value - reach, effect.value + reach};
+  effect.p = student_two_sided(effect.value / effect.standard_error, effect.degrees_of_freedom);
+  return effect;
+}
+
+Result<ModelReliability> model_reliability(const Measurements& measurements, int trials) {
+  if (trials < 1) return bad_usage(fmt::format("the mean of {} trials does not exist", trials), "ask for 1 or more");
+  const auto data = prepare(measurements);
+  if (!data) return tl::unexpected(data.error());
+  ModelReliability result;
+  result.trials = trials;
+  result.icc = result.sem_between = result.sem_within = result.mdc95_between = result.mdc95_within = kNaN;
+  result.icc95 = {0.0, 1.0};
+  result.sem_between95 = result.sem_within95 = {0.0, kInfinity};
+  if (data->participants() < static_cast<std::size_t>(kMinPeople)) {
+    result.support = Support::too_few_people;
+  } else if (data->sessions.size() == data->participants()) {
+    result.support = Support::too_few_sessions;
+  }
+  if (result.support != Support::enough) return result;
+  const auto fit = fitted(*data);
+  if (!fit) return tl::unexpected(fit.error());
+  const MixedModel model = summarised(*data, *fit);
+
+  const double m = trials;
+  const double within = (model.residual.value + model.typical_known_variance) / m;
+  const double between = model.session.value + within;
+  result.icc = model.participant.value / (model.participant.value + between);
+  result.sem_within = std::sqrt(within);
+  result.sem_between = std::sqrt(between);
+  result.mdc95_within = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_within;
+  result.mdc95_between = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_between;
+  // The variances that are estimated, in their order, and what the two sums take of each.
+  std::vector<double> of_between, of_within;
+  for (const auto& [component, a, b] : {std::tuple(&model.participant, 0.0, 0.0), std::tuple(&model.session, 1.0, 0.0),
+                                        std::tuple(&model.residual, 1.0 / m, 1.0 / m)}) {
+    if (!component->standard_error) continue;
+    of_between.push_back(a);
+    of_within.push_back(b);
+  }
+  const auto spread = [&](const std::vector<double>& weights) {
+    const Eigen::Map<const Vector> w(weights.data(), static_cast<Index>(weights.size()));
+    return weights.empty() ? 0.0 : w.dot(model.variance_covariance * w);
+  };
+  result.sem_between95 = sem_interval(between, spread(of_between));
+  result.sem_within95 = sem_interval(within, spread(of_within));
+
+  const IccProfile profile(*data, trials);
+  constexpr double kNearlyOne = 1.0 - 1e-9;
+  const double limit = fit->value + chi_square_quantile(0.95, 1.0);
+  result.icc95 = {end_of(profile, result.icc, 0.0, limit), end_of(profile, result.icc, kNearlyOne, limit)};
+  return result;
+}
+
+}  // namespace mbk::reliability

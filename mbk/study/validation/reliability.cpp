@@ -1,0 +1,228 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/study/reliability/bland_altman.h"
+#include "mbk/study/reliability/comparison.h"
+#include "mbk/study/reliability/mixed_model.h"
+#include "mbk/study/reliability/test_retest.h"
+#include "mbk/study/validation/rows.h"
+#include "mbk/study/validation/seeded_runs.h"
+#include "mbk/study/validation/study.h"
+
+namespace mbk::validation {
+namespace reliability_detail {
+
+using numeric::Random;
+using reliability::Interval;
+using reliability::Measurements;
+
+constexpr int kPeople = 20, kSessions = 3, kTrials = 4;
+constexpr double kChange = reliability::kPublishedNormal95 * std::numbers::sqrt2;
+
+/// Variances by which people, sessions and trials differ.
+struct Truth {
+  const char* name;
+  double participant, session, residual;
+};
+
+/// Each cell of people × sessions is filled; a session moves all people alike.
+constexpr Truth kBalanced[] = {{"ICC 0.75", 3.0, 0.0, 1.0},
+                               {"ICC 0.3", 3.0, 0.0, 7.0},
+                               {"ICC 0.95", 19.0, 0.0, 1.0},
+                               {"ICC 0.75, sessions differ", 6.0, 1.0, 1.0}};
+/// Trials within sessions within people, and with cells missing.
+constexpr Truth kUnbalanced[] = {{"people, sessions, trials", 9.0, 2.0, 4.0},
+                                 {"hardly any between sessions", 9.0, 0.2, 4.0},
+                                 {"people hardly differ", 1.0, 2.0, 4.0}};
+constexpr double kMissingTrials = 0.15, kMissingSessions = 0.1;
+constexpr double kCondition = 0.7, kEffect = 0.8;
+
+bool holds(const Interval& interval, double truth) {
+  return interval.first <= truth && truth <= interval.second;
+}
+
+/// Whether it was so, or by how much it is off [%], of one run, under its name.
+struct Answers {
+  std::vector<std::pair<std::string, bool>> held, false_positive;
+  std::vector<std::pair<std::string, double>> error;
+};
+
+Result<void> balanced(Random& random, const Truth& truth, Answers& answers) {
+  Matrix scores(kPeople, kSessions);
+  Vector of_session(kSessions);
+  for (double& one : of_session) one = std::sqrt(truth.session) * random.normal();
+  for (Index i = 0; i < kPeople; ++i) {
+    const double own = std::sqrt(truth.participant) * random.normal();
+    for (Index j = 0; j < kSessions; ++j) {
+      scores(i, j) = own + of_session[j] + std::sqrt(truth.residual) * random.normal();
+    }
+  }
+  const auto found = reliability::test_retest(scores);
+  if (!found) return tl::unexpected(found.error());
+  const double agreement = truth.session + truth.residual;
+  const auto add = [&](std::string_view what, bool held) {
+    answers.held.emplace_back(fmt::format("{}: {}", truth.name, what), held);
+  };
+  const auto error = [&](std::string_view what, double value, double true_value) {
+    answers.error.emplace_back(fmt::format("{}: mean {}", truth.name, what), 100.0 * (value / true_value - 1.0));
+  };
+  const auto& one_way = found->icc[0];
+  const auto& by_agreement = found->icc[1];
+  const auto& by_consistency = found->icc[2];
+  const double icc_of_agreement = truth.participant / (truth.participant + agreement);
+  const double icc_of_consistency = truth.participant / (truth.participant + truth.residual);
+  if (truth.session == 0.0) add("ICC(1)", holds(one_way.interval95, icc_of_agreement));
+  add("ICC(A,1)", holds(by_agreement.interval95, icc_of_agreement));
+  add("ICC(C,1)", holds(by_consistency.interval95, icc_of_consistency));
+  const double true_mdc = kChange * std::sqrt(truth.residual);
+  add("MDC, consistency", holds(found->error[1].mdc95_interval, true_mdc));
+  error("MDC, consistency", found->error[1].mdc95, true_mdc);
+  if (truth.session == 0.0) error("MDC, agreement", found->error[0].mdc95, kChange * std::sqrt(agreement));
+
+  const auto limits = reliability::bland_altman(scores.col(0), scores.col(1));
+  if (!limits) return tl::unexpected(limits.error());
+  const double bias = of_session[1] - of_session[0];
+  const double reach = reliability::kPublishedNormal95 * std::sqrt(2.0 * truth.residual);
+  add("upper limit of agreement", holds(limits->upper.interval95, bias + reach));
+  return {};
+}
+
+/// Two groups that are alike, two conditions that are not; of half of the runs something is known of each value.
+Measurements unbalanced_measurements(Random& random, const Truth& truth, bool known) {
+  Measurements m;
+  std::vector<double> values, group, condition, variance;
+  for (int i = 0; i < kPeople; ++i) {
+    const double own = std::sqrt(truth.participant) * random.normal();
+    for (int j = 0; j < kSessions; ++j) {
+      const double of_session = std::sqrt(truth.session) * random.normal();
+      const bool missing = random.uniform() < kMissingSessions;
+      for (int k = 0; k < kTrials; ++k) {
+        // What is known is half of the residual's variance on average.
+        const double v = known ? truth.residual * random.uniform() : 0.0;
+        const double rest = known ? 0.5 * truth.residual : truth.residual;
+        const double value = own + of_session + kCondition * (k % 2) + std::sqrt(rest + v) * random.normal();
+        if (random.uniform() < kMissingTrials || missing) continue;
+        values.push_back(value);
+        group.push_back(i % 2);
+        condition.push_back(k % 2);
+        variance.push_back(v);
+        m.participants.push_back(i);
+        m.sessions.push_back(j);
+      }
+    }
+  }
+  const auto as_vector = [](const std::vector<double>& all) {
+    return Vector(Eigen::Map<const Vector>(all.data(), static_cast<Index>(all.size())));
+  };
+  m.values = as_vector(values);
+  m.fixed.resize(m.values.size(), 3);
+  m.fixed << Vector::Ones(m.values.size()), as_vector(group), as_vector(condition);
+  m.names = {"intercept", "group", "condition"};
+  if (known) m.known_variance = as_vector(variance);
+  return m;
+}
+
+Result<void> unbalanced(Random& random, const Truth& truth, bool known, Answers& answers) {
+  const Measurements m = unbalanced_measurements(random, truth, known);
+  const auto model = reliability::fit_mixed_model(m);
+  if (!model) return tl::unexpected(model.error());
+  const std::string name = fmt::format("{}{}", truth.name, known ? ", variances known" : "");
+  for (const int trials : {1, kTrials}) {
+    const auto found = reliability::model_reliability(m, trials);
+    if (!found) return tl::unexpected(found.error());
+    const double between = truth.session + truth.residual / trials;
+    const std::string mean = fmt::format("{}: mixed model, {} trial{}, ", name, trials, trials == 1 ? "" : "s");
+    answers.held.emplace_back(mean + "ICC", holds(found->icc95, truth.participant / (truth.participant + between)));
+    answers.held.emplace_back(mean + "SEM between sessions", holds(found->sem_between95, std::sqrt(between)));
+    answers.error.emplace_back(mean + "mean MDC between sessions",
+                               100.0 * (found->mdc95_between / (kChange * std::sqrt(between)) - 1.0));
+  }
+  answers.held.emplace_back(name + ": mixed model, condition", holds(model->effects[2].interval95, kCondition));
+  answers.false_positive.emplace_back(name + ": mixed model", model->effects[1].p <= 0.05);
+  return {};
+}
+
+Result<void> groups(Random& random, double ratio, Answers& answers) {
+  constexpr Index kGroup = kPeople / 2;
+  Vector first(kGroup), second(kGroup), shifted(kGroup);
+  for (double& x : first) x = random.normal();
+  for (double& x : second) x = ratio * random.normal();
+  for (double& x : shifted) x = kEffect + random.normal();
+  const auto found = reliability::difference(first, second, reliability::Pairing::unpaired);
+  const auto permuted = reliability::permutation_test(first, second, reliability::Pairing::unpaired,
+                                                      {.draws = 999, .seed = random.below(1U << 30U)});
+  const auto apart = reliability::difference(first, shifted, reliability::Pairing::unpaired);
+  if (!found) return tl::unexpected(found.error());
+  if (!permuted) return tl::unexpected(permuted.error());
+  if (!apart) return tl::unexpected(apart.error());
+  const std::string name = ratio == 1.0 ? "groups that vary alike" : "groups, one varies twice as much";
+  answers.false_positive.emplace_back(name + ": Welch", found->p <= 0.05);
+  answers.false_positive.emplace_back(name + ": permutation", permuted->p <= 0.05);
+  if (ratio == 1.0) answers.held.emplace_back("Hedges g of 0.8", holds(apart->effect.interval95, kEffect));
+  return {};
+}
+
+Result<Answers> answered(std::uint64_t seed) {
+  Answers answers;
+  std::uint32_t stream = 0;
+  for (const Truth& truth : kBalanced) {
+    Random random(seed, ++stream);
+    if (auto ok = balanced(random, truth, answers); !ok) return tl::unexpected(ok.error());
+  }
+  for (const Truth& truth : kUnbalanced) {
+    for (const bool known : {false, true}) {
+      Random random(seed, ++stream);
+      if (auto ok = unbalanced(random, truth, known, answers); !ok) return tl::unexpected(ok.error());
+    }
+  }
+  for (const double ratio : {1.0, 2.0}) {
+    Random random(seed, ++stream);
+    if (auto ok = groups(random, ratio, answers); !ok) return tl::unexpected(ok.error());
+  }
+  return answers;
+}
+
+}  // namespace reliability_detail
+
+Result<ValidationTable> reliability_study(const StudyOptions& options) {
+  using namespace reliability_detail;
+  const auto runs = seeded_runs(options, answered);
+  if (!runs) return tl::unexpected(runs.error());
+  ValidationTable table;
+  table.study = "reliability";
+  table.question =
+      "how often do the intervals of ICC, SEM and MDC hold the truth, and are groups called different that are alike?";
+  table.unit = "%";
+  table.runs = options.runs;
+  table.seed = options.seed;
+  for (std::size_t k = 0; k < runs->front().held.size(); ++k) {
+    table.rows.push_back(share_row(
+        runs->front().held[k].first + ": 95 % interval holds the truth", *runs,
+        [k](const Answers& run) { return run.held[k].second; }, kNominal));
+  }
+  constexpr double kWithin = 5.0;  // [%]
+  for (std::size_t k = 0; k < runs->front().error.size(); ++k) {
+    Vector error(options.runs);
+    for (Index i = 0; i < error.size(); ++i) error[i] = (*runs)[static_cast<std::size_t>(i)].error[k].second;
+    table.rows.push_back(bias_row(runs->front().error[k].first + ", off by", error, kWithin, "%"));
+  }
+  for (std::size_t k = 0; k < runs->front().false_positive.size(); ++k) {
+    table.rows.push_back(share_row(
+        runs->front().false_positive[k].first + ": called different by chance, at 5 %", *runs,
+        [k](const Answers& run) { return run.false_positive[k].second; }, kFalsePositives));
+  }
+  table.notes = {
+      fmt::format("A run is one study of each kind, drawn from its variances: {} people in {} sessions, with one value "
+                  "in each, or with {} trials of which {:g} % are missing, and {:g} % of the sessions.",
+                  kPeople, kSessions, kTrials, 100.0 * kMissingTrials, 100.0 * kMissingSessions),
+      "The intervals of ICC(1), ICC(C,1), limits of agreement and g are exact; those of ICC(A,1), by Satterthwaite's "
+      "degrees of freedom, and of the mixed model, by the profile of its likelihood, are not."};
+  return table;
+}
+
+}  // namespace mbk::validation
