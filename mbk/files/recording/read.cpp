@@ -21,6 +21,7 @@
 #include "mbk/files/recording/c3d.h"
 #include "mbk/files/recording/csv.h"
 #include "mbk/files/recording/hdf5_recording.h"
+#include "mbk/files/recording/likely_format.h"
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
 #include "mbk/files/recording/one_clock.h"
@@ -41,6 +42,13 @@ bool has_mat_header(std::string_view text) {
   return text.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
 }
 
+/// What is no table may be text of another kind, of which that is to be said rather than where it breaks off.
+Result<Contents> table_or_likely(Result<Contents> table, std::string_view text) {
+  if (table) return table;
+  const auto likely = likely_format(std::as_bytes(std::span(text)));
+  return likely ? not_read(*likely) : std::move(table);
+}
+
 Result<Contents> decode(std::shared_ptr<Buffer> file) {
   const std::span<const std::byte> bytes = file->bytes();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -51,9 +59,11 @@ Result<Contents> decode(std::shared_ptr<Buffer> file) {
   }
   if (has_mat_header(text) || text.starts_with("MATLAB 5.0")) return decode_mat_level5(std::move(file));
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
-  if (is_text(text)) return decode_csv(bytes);
+  if (is_text(text)) return table_or_likely(decode_csv(bytes), text);
+  if (const auto likely = likely_format(bytes)) return not_read(*likely);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
-  return bad_data("the content is of no known format", std::string(kFormats));
+  return bad_data("the content is of no known format",
+                  fmt::format("{}; a program of its own (Qualisys QTM, Vicon Nexus, …) exports one of them", kFormats));
 }
 
 /// A file, decoded, and where it came from.
@@ -76,7 +86,7 @@ Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& fi
   }
   // A number of the usual ten digits takes less memory than its text.
   if (auto ok = check_memory(passing->size()); !ok) return tl::unexpected(ok.error());
-  auto contents = decode_csv(*passing);
+  auto contents = table_or_likely(decode_csv(*passing), begin);
   if (!contents) return tl::unexpected(contents.error());
   SourceFile source{file.string(), contents->format, passing->sha256()};
   return Decoded{std::move(*contents), std::move(source)};
