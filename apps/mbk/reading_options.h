@@ -40,6 +40,9 @@ class RecordingReader {
   /// FILE, or the first part.
   [[nodiscard]] const std::filesystem::path& file(int k) const { return records_[static_cast<std::size_t>(k)].file; }
 
+  /// Its trial by name; "" where FILE holds one record only.
+  [[nodiscard]] const std::string& trial(int k) const { return records_[static_cast<std::size_t>(k)].trial; }
+
   /// Where --sensor is given, the force is that of its voltages.
   /// @param k  0 … count() − 1    @fails  as recording::read; the error names the file.
   [[nodiscard]] Result<Recording> read(int k) const;

@@ -174,4 +174,13 @@ Result<FileContents> list_contents(const std::filesystem::path& file) {
   return with_decoded(file, [](Decoded decoded) { return Result<FileContents>(listed(std::move(decoded))); });
 }
 
+Result<Contents> read_contents(const std::filesystem::path& file, const std::string& /*trial*/) {
+  return with_decoded(file, [](Decoded decoded) { return Result<Contents>(std::move(decoded.contents)); });
+}
+
+bool nothing_is_recognised(const Error& error) {
+  return error.kind == ErrorKind::data &&
+         (error.message.starts_with(kNothingRecognised) || error.message.starts_with(kOnlyTimeRecognised));
+}
+
 }  // namespace mbk::recording
