@@ -31,6 +31,7 @@ std::vector<std::string> seeds() {
           "q1=1:deg,q2=2,tau1=3:N.m",
           "x=S:H.x,xr=5:rad",
           "t=1,x=-logs:mm,ax=7:g",
+          "x=logs[2]*2:mm,Fx=-logs[10],y=y[1],t=clock[1]:ms",
           "Fx=-Fx*-8.56+0.54:N,Vx=3:mV,q3=2*2:mm,tau8=y-1e-3:N"};
 }
 

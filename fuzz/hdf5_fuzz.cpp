@@ -1,6 +1,7 @@
 // Any bytes whatever are read as HDF5 or refused: within the memory that was allowed, and in one line.
 
 #include "fuzz/fuzz.h"
+#include "fuzz/hdf5_seeds.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/hdf5/read_hdf5.h"
 #include "mbk/files/recording/encode.h"
@@ -8,7 +9,8 @@
 namespace mbk::fuzz {
 
 std::vector<std::string> seeds() {
-  return {recording::encode_hdf5(small_recording()).value(), recording::encode_mat_hdf5(small_recording()).value()};
+  return {recording::encode_hdf5(small_recording()).value(), recording::encode_mat_hdf5(small_recording()).value(),
+          hdf5_of_others()};
 }
 
 }  // namespace mbk::fuzz

@@ -1,13 +1,15 @@
 // Any HDF5 file, of MATLAB or not, becomes a recording or is refused in one line.
 
 #include "fuzz/fuzz.h"
+#include "fuzz/hdf5_seeds.h"
 #include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/hdf5_recording.h"
 
 namespace mbk::fuzz {
 
 std::vector<std::string> seeds() {
-  return {recording::encode_hdf5(small_recording()).value(), recording::encode_mat_hdf5(small_recording()).value()};
+  return {recording::encode_hdf5(small_recording()).value(), recording::encode_mat_hdf5(small_recording()).value(),
+          hdf5_of_others()};
 }
 
 }  // namespace mbk::fuzz

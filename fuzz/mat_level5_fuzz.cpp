@@ -34,7 +34,10 @@ std::vector<std::string> seeds() {
           header5() + compressed5(double5("logs", logs(4))) + compressed5(events),
           kCompress + double5("logs", logs(4)),
           kCompress + trial,
-          kCompress + events};
+          kCompress + events,
+          header5() + matrix5("c", {2, 2}, double5("", column) + text + trial + matrix5("", {1, 1}, text, 1), 1),
+          header5() + matrix5("p", {2, 1, 2}, element5(9, raw(1.0) + raw(2.0) + raw(3.0) + raw(4.0))) +
+              matrix5("t", {1, 3}, element5(4, ""), 4)};
 }
 
 }  // namespace mbk::fuzz

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "apps/mbk/commands.h"
@@ -9,7 +10,10 @@
 #include "apps/mbk/output.h"
 #include "apps/mbk/readers_option.h"
 #include "apps/mbk/reading_options.h"
+#include "mbk/files/recording/read.h"
+#include "mbk/files/recording/trial_files.h"
 #include "mbk/files/recording/write.h"
+#include "mbk/files/recording/write_contents.h"
 
 namespace mbk::app {
 namespace {
@@ -43,6 +47,61 @@ std::string summary_line(const Recording& recording, const std::filesystem::path
                      count(recording.metadata.size(), "entry", "entries"));
 }
 
+/// What a command converts, and to what.
+struct Conversion {
+  const ConvertArguments& arguments;
+  recording::Format format;
+  RecordingReader reader;
+};
+
+/// "mbk: log.mat: …", or of a trial "mbk: exam.zip, trial 3: …".
+void say_of(const Conversion& job, int k, std::string_view note) {
+  const std::string& trial = job.reader.trial(k);
+  say("mbk: {}{}: {}\n", job.reader.file(k).string(), trial.empty() ? "" : ", trial " + trial, note);
+}
+
+/// Every array as it stands, where no channel is recognised.
+int copy_arrays(const Conversion& job, int k, const std::filesystem::path& file, const Error& unrecognised) {
+  const auto contents = job.reader.read_contents(k);
+  if (!contents) return report_error(contents.error());
+  if (contents->arrays.empty()) return report_error(unrecognised);
+  const auto said = recording::write_contents(*contents, file, job.format, job.arguments.overwrite,
+                                              job.arguments.readers.value_or(Readers::owner));
+  if (!said) return report_error(said.error());
+  say_of(job, k,
+         fmt::format("{}: every array was written as it stands, under its own name and in its own unit",
+                     unrecognised.message.substr(0, unrecognised.message.find(';'))));
+  for (const std::string& one : *said) say("mbk: {}: {}\n", file.string(), one);
+  if (job.arguments.quiet) return kFine;
+  for (const std::string& note : contents->notes) say_of(job, k, note);
+  const std::size_t count = contents->arrays.size();
+  const std::string line = fmt::format("{}: {}, {} {} as they stand\n", file.string(), recording::text(job.format),
+                                       count, count == 1 ? "array" : "arrays");
+  if (auto ok = Output().write(line); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+int convert_one(const Conversion& job, int k, const std::filesystem::path& file) {
+  const auto recording = job.reader.read(k);
+  if (!recording) {
+    const ReadingArguments& reading = job.arguments.reading;
+    const bool whole =
+        reading.channels.empty() && !reading.parts && recording::nothing_is_recognised(recording.error());
+    return whole ? copy_arrays(job, k, file, recording.error()) : report_error(recording.error());
+  }
+  const Readers readers = job.arguments.readers.value_or(Readers::owner);
+  if (auto ok = recording::write(*recording, file, job.format, job.arguments.overwrite, readers); !ok) {
+    return report_error(ok.error());
+  }
+  for (const std::string& lost : recording::lost_in(*recording, job.format)) {
+    say("mbk: {}: not written: {}\n", file.string(), lost);
+  }
+  if (job.arguments.quiet) return kFine;
+  for (const std::string& note : recording->notes) say_of(job, k, note);
+  if (auto ok = Output().write(summary_line(*recording, file, job.format)); !ok) return report_error(ok.error());
+  return kFine;
+}
+
 int run(ConvertArguments arguments) {
   ReadingArguments& reading = arguments.reading;
   Output output;
@@ -52,28 +111,21 @@ int run(ConvertArguments arguments) {
   if (auto ok = check_files(reading.files, output, reading.parts); !ok) return report_error(ok.error());
   const auto format = recording::format_of(*output.file, arguments.format);
   if (!format) return report_error(format.error());
-  const auto reader = RecordingReader::of(reading, arguments.sensor);
+  auto reader = RecordingReader::of(reading, arguments.sensor);
   if (!reader) return report_error(reader.error());
-  if (reader->count() > 1) {
-    return report_error(bad_usage(fmt::format("{} holds {} trials, and one file is to be written",
-                                              reading.files.front().string(), reader->count()),
-                                  "name one with --trial ('mbk info' lists them)")
-                            .value());
+  std::vector<std::string> trials;
+  for (int k = 0; k < reader->count(); ++k) trials.push_back(reader->trial(k));
+  const auto files = recording::files_of_trials(*output.file, trials);
+  if (!files) return report_error(files.error());
+  for (const std::filesystem::path& file : *files) {
+    if (auto ok = check_new_file(file, "OUT", output.overwrite, reading.files); !ok) return report_error(ok.error());
   }
-  const auto read = reader->read(0);
-  if (!read) return report_error(read.error());
-  const Recording& recording = *read;
-  const Readers readers = arguments.readers.value_or(Readers::owner);
-  if (auto ok = recording::write(recording, *output.file, *format, output.overwrite, readers); !ok) {
-    return report_error(ok.error());
+  const Conversion job{arguments, *format, std::move(*reader)};
+  int code = kFine;
+  for (int k = 0; k < job.reader.count(); ++k) {
+    code = std::max(code, convert_one(job, k, (*files)[static_cast<std::size_t>(k)]));
   }
-  for (const std::string& lost : recording::lost_in(recording, *format)) {
-    say("mbk: {}: not written: {}\n", output.file->string(), lost);
-  }
-  if (arguments.quiet) return kFine;
-  for (const std::string& note : recording.notes) say("mbk: {}: {}\n", reading.files.front().string(), note);
-  if (auto ok = Output().write(summary_line(recording, *output.file, *format)); !ok) return report_error(ok.error());
-  return kFine;
+  return code;
 }
 
 }  // namespace
@@ -88,7 +140,12 @@ Action add_convert(CLI::App& app) {
       "  mbk convert trial.csv trial.mat --format mat73\n"
       "  mbk convert --parts log_1.mat log_2.mat log_3.mat whole.h5\n"
       "  mbk convert drive.csv drive.h5 --channels time=1:ms,x=2:mm,F=-3 --axes 1\n"
-      "      units and signs are put right on the way: what is written is SI\n\n"
+      "      units and signs are put right on the way: what is written is SI\n"
+      "  mbk convert exam.zip out_{trial}.h5\n"
+      "      of a file that holds several trials, one file for each; {trial} is its name (--trial takes one of them)\n"
+      "  mbk convert other.mat other.csv\n"
+      "      where no channel is recognised, every array is written as it stands, under its own name and in its own "
+      "unit\n\n"
       "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
       "What was ignored in reading, or has no place in the new format, is said on standard error.");
   add_reading_options(*command, arguments->reading);

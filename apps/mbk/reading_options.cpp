@@ -141,15 +141,24 @@ Result<Recording> RecordingReader::read(int k) const {
     return bad_data("is the journal of a session that was cut off, or still runs",
                     fmt::format("'mbk recover {}' makes a recording of it", file(k).string()), file(k).string());
   }
-  recording::ReadOptions options = options_;
-  options.trial = records_[static_cast<std::size_t>(k)].trial;
-  options.open = records_[static_cast<std::size_t>(k)].open;
+  const recording::ReadOptions options = options_of(k);
   auto one = parts_ ? recording::read_parts(files(), options) : recording::read(file(k), options);
   if (one && sensor_) {
     one = calibration::force_from_voltage(std::move(*one), *sensor_);
     if (!one) one = tl::unexpected(one.error().in(file(k).string()));
   }
   return one;
+}
+
+Result<recording::Contents> RecordingReader::read_contents(int k) const {
+  return recording::read_contents(file(k), options_of(k));
+}
+
+recording::ReadOptions RecordingReader::options_of(int k) const {
+  recording::ReadOptions options = options_;
+  options.trial = records_[static_cast<std::size_t>(k)].trial;
+  options.open = records_[static_cast<std::size_t>(k)].open;
+  return options;
 }
 
 std::vector<std::filesystem::path> RecordingReader::files() const {

@@ -41,10 +41,15 @@ class RecordingReader {
   /// FILE, or the first part.
   [[nodiscard]] const std::filesystem::path& file(int k) const { return records_[static_cast<std::size_t>(k)].file; }
 
+  /// Its trial by name; "" where FILE holds one record only.
+  [[nodiscard]] const std::string& trial(int k) const { return records_[static_cast<std::size_t>(k)].trial; }
+
   /// Where --sensor is given, the force is that of its voltages.
   /// @param k  0 … count() − 1    @fails  as recording::read; the error names the file.
   [[nodiscard]] Result<Recording> read(int k) const;
-  /// The same, of a session's recording only the perturbation.   @fails  data: the person has withdrawn.
+  /// What stands in it, before anything is said about channels.   @fails  as recording::read_contents
+  [[nodiscard]] Result<recording::Contents> read_contents(int k) const;
+  /// As `read`, of a session's recording only the perturbation.   @fails  data: the person has withdrawn.
   [[nodiscard]] Result<Recording> read_perturbation(int k) const;
 
  private:
@@ -58,6 +63,7 @@ class RecordingReader {
                                                               const std::string& trial);
 
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
+  [[nodiscard]] recording::ReadOptions options_of(int k) const;
 
   std::vector<Record> records_;
   bool parts_ = false;

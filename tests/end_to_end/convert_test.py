@@ -132,6 +132,60 @@ class Convert(Case):
             self.assertEqual(self.info(self.folder / f"log_{name}"), self.info(self.folder / "log_a.h5"))
 
 
+class Unrecognised(Case):
+    """Files whose channels are not recognised go over as they stand."""
+
+    def test_every_array_under_its_own_name_and_unit(self):
+        names = ("clock [ms]", "gaze_left [deg]", "pupil")
+        columns = [[0, 1, 2], [10.5, 20.25, 0.1], [3, 4, 5]]
+        source = write_csv(self.folder / "gaze.csv", columns, names)
+        for end in ("h5", "mat", "csv"):
+            target = self.folder / f"out.{end}"
+            ran = self.mbk("convert", source, target)
+            self.assertRegex(ran.out, rf"\A{target}: \w+( v5)?, 3 arrays as they stand\n\Z")
+            self.assertIn(f"mbk: {source}: no channel is recognised: every array was written as it stands, under its "
+                          "own name and in its own unit\n", ran.err)
+            listed = self.fine("info", target)
+            for values in ("0.1", "20.25"):
+                self.assertIn(values, listed.out)
+        back = (self.folder / "out.csv").read_text().splitlines()
+        self.assertEqual(back[-4:], [",".join(names), "0,10.5,3", "1,20.25,4", "2,0.1,5"])
+        self.assertIn("'gaze_left [deg]' is called 'gaze_left__deg_' there",
+                      self.mbk("convert", source, self.folder / "again.mat").err)
+
+    @unittest.skipIf(h5py is None or scipy is None, "h5py or SciPy is not there")
+    def test_others_find_the_arrays(self):
+        with h5py.File(self.folder / "in.h5", "w") as file:
+            file["trial/gaze"] = [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]
+            file["trial/gaze"].attrs["unit"] = "deg"
+            file["trial/lamp"] = [1, 0]
+            file.attrs["participant"] = "7"
+        self.mbk("convert", self.folder / "in.h5", self.folder / "out.mat", "--quiet")
+        variables = scipy.io.loadmat(self.folder / "out.mat", squeeze_me=True)
+        self.assertEqual(variables["trial_gaze"].tolist(), [[1, 2], [3, 4], [5, 6]])
+        self.assertEqual(variables["units"]["trial_gaze"], "deg")
+        self.assertEqual(variables["metadata"]["participant"], "7")
+        self.mbk("convert", self.folder / "in.h5", self.folder / "out.h5")
+        with h5py.File(self.folder / "out.h5") as file:
+            self.assertEqual(file["trial/gaze"][:].tolist(), [[1, 2], [3, 4], [5, 6]])
+            self.assertEqual(file["trial/gaze"].attrs["unit"], "deg")
+            self.assertEqual(file.attrs["participant"], "7")
+        self.refused(BAD_DATA, "convert", self.folder / "in.h5", self.folder / "out.csv",
+                     says=["'trial/gaze' has 3 samples, 'trial/lamp' has 2", "write .h5 or .mat"])
+        self.assertEqual(self.names(), ["in.h5", "out.h5", "out.mat"])
+
+    def test_what_is_wrong_with_a_map_or_a_channel_is_still_an_error(self):
+        source = write_csv(self.folder / "gaze.csv", [[0, 1], [1, 2]], ("clock", "gaze"))
+        self.refused(BAD_DATA, "convert", source, self.folder / "out.h5", "--channels", "x=none", says="'none'")
+        source = write_csv(self.folder / "no_time.csv", [[0, 1], [1, 2]], ("x", "Fx"))
+        self.refused(BAD_DATA, "convert", source, self.folder / "out.h5", says="--rate")
+        self.assertEqual(self.names(), ["gaze.csv", "no_time.csv"])
+
+    def test_a_place_for_trials_where_there_are_none(self):
+        self.refused(WRONG_USAGE, "convert", make_log().path, self.folder / "out_{trial}.h5",
+                     says=["holds one record", "leave {trial} out"])
+
+
 class Refusals(Case):
     def test_wrong_usage(self):
         log = copy(make_log().path, self.folder / "log.mat")

@@ -161,7 +161,8 @@ class Effects(Case):
 
     def test_each_option_of_the_help_is_known_to_these_tests(self):
         options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
-        elsewhere = {"--help", "--channels", "--variable", "--parts", "--json", "--out", "--overwrite", "--quiet",
+        elsewhere = {"--help", "--channels", "--variable", "--parts", "--trial", "--clock",
+                     "--json", "--out", "--overwrite", "--quiet",
                      "--pool", "--decimate-check", "--report", "--report-note",
                      "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay",  # sensor_test.py
                      "--robot",  # robot_force_test.py

@@ -213,12 +213,11 @@ class Assembler {
       if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
     }
     const bool time = !signals_.empty();
-    return bad_data(
-        fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
-        !contents_.table ? "say which is which, as in --channels " + example_map()
-        : contents_.arrays.front().rate_hz > 0.0
-            ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
-            : "say which is which, as in --channels time=1,x=2,Fx=3");
+    return bad_data(fmt::format("{}; {}", time ? kOnlyTimeRecognised : kNothingRecognised, inventory(contents_)),
+                    !contents_.table ? "say which is which, as in --channels " + example_map()
+                    : contents_.arrays.front().rate_hz > 0.0
+                        ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
+                        : "say which is which, as in --channels time=1,x=2,Fx=3");
   }
 
   /// What a map of the variables could look like, with names that there are: "\"time=NAME,x=pos[1],Fx=force[1]\"".

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/files/hdf5/tree.h"
+#include "mbk/files/recording/mat_variables.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::recording {
@@ -20,6 +24,11 @@ namespace mbk::recording {
 /// @fails  as mat_variables does.
 [[nodiscard]] Result<std::string> encode_mat_hdf5(const Recording& recording);
 
+/// Variables as they are, in either version. Each name is there once.
+/// @fails  more than 2³¹ bytes of a matrix, in v5.
+[[nodiscard]] Result<std::string> encode_mat_level5(const std::vector<MatVariable>& variables);
+[[nodiscard]] Result<std::string> encode_mat_hdf5(const std::vector<MatVariable>& variables);
+
 /// /time and `/channels/<name>`, one-dimensional, with the attributes `unit` and `frame`; /events/time, value and name;
 /// metadata, `format` and `software` as attributes of the root.
 /// @fails  a name that HDF5 cannot hold; metadata called `format`.
@@ -29,6 +38,12 @@ namespace mbk::recording {
 /// before it: "# key: value", "# event TIME VALUE NAME".
 /// @fails  a name or key that would not be found again.
 [[nodiscard]] Result<std::string> encode_csv(const Recording& recording);
+
+/// Appends the shortest digits that give the number back.
+void append_number(std::string& text, double value);
+
+/// /events of an HDF5 file: time, value, name.
+[[nodiscard]] hdf5::Group hdf5_events(const std::vector<Event>& events);
 
 /// What `format` and the first line of a CSV file say.
 inline constexpr std::string_view kLayout = "mbk.recording/1";

@@ -10,16 +10,6 @@
 namespace mbk::recording {
 namespace {
 
-/// The shortest digits that give the number back.
-void append(std::string& text, double value) {
-  if (!std::isfinite(value)) {
-    text += std::isnan(value) ? "NaN" : value > 0.0 ? "Inf" : "-Inf";
-    return;
-  }
-  char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-}
-
 Result<void> append_comments(std::string& text, const Recording& recording) {
   text = fmt::format("# {}, written by mbk {}\n", kLayout, version());
   for (const auto& [key, value] : recording.metadata) {
@@ -31,9 +21,9 @@ Result<void> append_comments(std::string& text, const Recording& recording) {
   }
   for (const Event& event : recording.events) {
     text += "# event ";
-    append(text, event.time);
+    append_number(text, event.time);
     text += ' ';
-    append(text, event.value);
+    append_number(text, event.value);
     text += fmt::format(" {}\n", event.name);
   }
   return {};
@@ -55,16 +45,25 @@ Result<void> append_header(std::string& text, const std::vector<const Channel*>&
 
 }  // namespace
 
+void append_number(std::string& text, double value) {
+  if (!std::isfinite(value)) {
+    text += std::isnan(value) ? "NaN" : value > 0.0 ? "Inf" : "-Inf";
+    return;
+  }
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
 Result<std::string> encode_csv(const Recording& recording) {
   std::string text;
   if (auto ok = append_comments(text, recording); !ok) return tl::unexpected(ok.error());
   const std::vector<const Channel*> channels = in_order(recording.channels);
   if (auto ok = append_header(text, channels); !ok) return tl::unexpected(ok.error());
   for (Index k = 0; k < recording.samples(); ++k) {
-    append(text, recording.time[k]);
+    append_number(text, recording.time[k]);
     for (const Channel* const channel : channels) {
       text += ',';
-      append(text, channel->values[k]);
+      append_number(text, channel->values[k]);
     }
     text += '\n';
   }

@@ -21,7 +21,9 @@ hdf5::Dataset time_series(const Vector& values) {
   return dataset;
 }
 
-hdf5::Group group_of(const std::vector<Event>& events) {
+}  // namespace
+
+hdf5::Group hdf5_events(const std::vector<Event>& events) {
   Vector times(std::ssize(events)), values(std::ssize(events));
   hdf5::Texts names;
   for (std::size_t k = 0; k < events.size(); ++k) {
@@ -35,8 +37,6 @@ hdf5::Group group_of(const std::vector<Event>& events) {
   group.datasets["name"] = {{{names.size()}, std::move(names)}, {}};
   return group;
 }
-
-}  // namespace
 
 Result<std::string> encode_hdf5(const Recording& recording) {
   hdf5::Group root;
@@ -56,7 +56,7 @@ Result<std::string> encode_hdf5(const Recording& recording) {
     dataset.attributes["unit"] = one_text(channel.unit);
     dataset.attributes["frame"] = one_text(channel.frame);
   }
-  if (!recording.events.empty()) root.groups["events"] = group_of(recording.events);
+  if (!recording.events.empty()) root.groups["events"] = hdf5_events(recording.events);
   return hdf5::serialise(root);
 }
 

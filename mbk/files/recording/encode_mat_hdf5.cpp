@@ -93,8 +93,12 @@ std::string user_block() {
 Result<std::string> encode_mat_hdf5(const Recording& recording) {
   const auto variables = mat_variables(recording);
   if (!variables) return tl::unexpected(variables.error());
+  return encode_mat_hdf5(*variables);
+}
+
+Result<std::string> encode_mat_hdf5(const std::vector<MatVariable>& variables) {
   Encoder encoder;
-  for (const MatVariable& variable : *variables) encoder.add(encoder.root, variable);
+  for (const MatVariable& variable : variables) encoder.add(encoder.root, variable);
   return hdf5::serialise(encoder.root, user_block());
 }
 

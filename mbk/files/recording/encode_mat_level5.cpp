@@ -20,6 +20,7 @@ constexpr std::uint32_t kInt8 = 1, kUint16 = 4, kInt32 = 5, kUint32 = 6, kDouble
 constexpr std::uint32_t kCellClass = 1, kStructClass = 2, kCharClass = 4, kDoubleClass = 6;
 
 constexpr std::size_t kHeaderText = 116;
+constexpr std::uint64_t kLargest = std::uint64_t{1} << 31;  ///< [bytes], since sizes within a v5 file have 32 bits
 
 /// Numbers in the byte order of this machine; the header says which that is.
 template <class Number>
@@ -97,15 +98,24 @@ std::string header() {
 }  // namespace
 
 Result<std::string> encode_mat_level5(const Recording& recording) {
-  constexpr std::uint64_t kLargest = std::uint64_t{1} << 31;  // sizes within a v5 file have 32 bits
   if (static_cast<std::uint64_t>(recording.samples()) * kLogsRows * sizeof(double) >= kLargest) {
     return bad_data(fmt::format("{} samples are too many for a MAT v5 file", recording.samples()),
                     "write it as MAT v7.3 or HDF5");
   }
   const auto variables = mat_variables(recording);
   if (!variables) return tl::unexpected(variables.error());
+  return encode_mat_level5(*variables);
+}
+
+Result<std::string> encode_mat_level5(const std::vector<MatVariable>& variables) {
   std::string file = header();
-  for (const MatVariable& variable : *variables) {
+  for (const MatVariable& variable : variables) {
+    if (const auto* const matrix = std::get_if<Matrix>(&variable.value);
+        matrix != nullptr && static_cast<std::uint64_t>(matrix->size()) * sizeof(double) >= kLargest) {
+      return bad_data(fmt::format("{}×{} numbers of '{}' are too many for a MAT v5 file", matrix->rows(),
+                                  matrix->cols(), variable.name),
+                      "write it as MAT v7.3 or HDF5");
+    }
     file += element(
         kCompressed,
         hdf5::deflated(std::visit([&](const auto& value) { return encoded(variable.name, value); }, variable.value)));

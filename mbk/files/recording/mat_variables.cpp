@@ -30,6 +30,8 @@ Matrix logs_of(const Recording& recording) {
   return logs;
 }
 
+}  // namespace
+
 MatVariable::Structure structure_of(const std::vector<Event>& events) {
   const auto count = static_cast<Index>(events.size());
   Matrix times(count, 1), values(count, 1);
@@ -42,8 +44,6 @@ MatVariable::Structure structure_of(const std::vector<Event>& events) {
   }
   return {{"time", std::move(times)}, {"name", std::move(names)}, {"value", std::move(values)}};
 }
-
-}  // namespace
 
 Result<std::vector<MatVariable>> mat_variables(const Recording& recording) {
   const auto metadata = metadata_to_write(recording);

@@ -19,6 +19,9 @@ struct MatVariable {
   std::variant<Matrix, std::string, Cells, Structure> value;
 };
 
+/// `events` of a MAT file: time, name, value.
+[[nodiscard]] MatVariable::Structure structure_of(const std::vector<Event>& events);
+
 /// What a MAT file holds of a recording, whatever its version: the 19×N matrix `logs` where every channel has a row in
 /// it, and otherwise (one axis) one column for each channel, and `time`. Rows of `logs` that have no channel are NaN,
 /// so that nobody takes them for measured zeros; a channel that is NaN throughout would be taken for such a row, and

@@ -25,6 +25,7 @@
 #include "mbk/files/recording/assemble.h"
 #include "mbk/files/recording/csv.h"
 #include "mbk/files/recording/hdf5_recording.h"
+#include "mbk/files/recording/likely_format.h"
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
 #include "mbk/files/recording/one_clock.h"
@@ -84,7 +85,15 @@ Result<Contents> decode_zip(std::span<const std::byte> bytes) {
   const auto archive = ZipArchive::open(bytes);
   if (!archive) return tl::unexpected(archive.error());
   if (looks_like_npz(*archive)) return decode_npz(*archive);
+  if (const auto likely = likely_format(bytes)) return not_read(*likely);
   return bad_data("the zip archive holds no recording", "unpack it, and name the files in it");
+}
+
+/// What is no table may be text of another kind, of which that is to be said rather than where it breaks off.
+Result<Contents> table_or_likely(Result<Contents> table, std::string_view text) {
+  if (table) return table;
+  const auto likely = likely_format(std::as_bytes(std::span(text)));
+  return likely ? not_read(*likely) : std::move(table);
 }
 
 Result<Contents> decode(std::shared_ptr<Buffer> file) {
@@ -97,11 +106,13 @@ Result<Contents> decode(std::shared_ptr<Buffer> file) {
   }
   if (has_mat_header(text) || text.starts_with("MATLAB 5.0")) return decode_mat_level5(std::move(file));
   if (looks_like_mat_level4(bytes)) return decode_mat_level4(bytes);
-  if (is_text(text) || looks_like_utf16(bytes)) return decode_text(bytes, text);
+  if (is_text(text) || looks_like_utf16(bytes)) return table_or_likely(decode_text(bytes, text), text);
   if (looks_like_npy(bytes)) return decode_npy(bytes);
   if (ZipArchive::looks_like_zip(bytes)) return decode_zip(bytes);
+  if (const auto likely = likely_format(bytes)) return not_read(*likely);
   if (looks_like_c3d(bytes)) return decode_c3d(bytes);
-  return bad_data("the content is of no known format", std::string(kFormats));
+  return bad_data("the content is of no known format",
+                  fmt::format("{}; a program of its own (Qualisys QTM, Vicon Nexus, …) exports one of them", kFormats));
 }
 
 /// A file, decoded, and where it came from.
@@ -125,7 +136,7 @@ Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& fi
   }
   // A number of the usual ten digits takes less memory than its text.
   if (auto ok = check_memory(passing->size()); !ok) return tl::unexpected(ok.error());
-  auto contents = decode_csv(*passing);
+  auto contents = table_or_likely(decode_csv(*passing), begin);
   if (!contents) return tl::unexpected(contents.error());
   SourceFile source{file.string(), contents->format, passing->sha256()};
   return Decoded{std::move(*contents), std::move(source)};
@@ -276,6 +287,19 @@ Result<FileContents> list_contents(const std::filesystem::path& file, const Read
     if (!decoded) return tl::unexpected(decoded.error());
     return listed(std::move(*decoded));
   });
+}
+
+Result<Contents> read_contents(const std::filesystem::path& file, const ReadOptions& options) {
+  return with_file(file, [&]() -> Result<Contents> {
+    auto decoded = decode_file(file, options, false);
+    if (!decoded) return tl::unexpected(decoded.error());
+    return std::move(decoded->contents);
+  });
+}
+
+bool nothing_is_recognised(const Error& error) {
+  return error.kind == ErrorKind::data &&
+         (error.message.starts_with(kNothingRecognised) || error.message.starts_with(kOnlyTimeRecognised));
 }
 
 }  // namespace mbk::recording

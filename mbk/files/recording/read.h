@@ -66,6 +66,14 @@ struct ReadOptions {
 /// @fails  data: the file cannot be read, is damaged or of another format.
 [[nodiscard]] Result<FileContents> list_contents(const std::filesystem::path& file, const ReadOptions& options = {});
 
+/// The same with all numbers, as they stand: for a file of which nothing is recognised, and which is to be copied.
+/// @param options  as of list_contents
+/// @fails  as list_contents
+[[nodiscard]] Result<Contents> read_contents(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// Whether `read` refused a sound file for this alone, that no channel of it is recognised.
+[[nodiscard]] bool nothing_is_recognised(const Error& error);
+
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.
 /// @fails  usage: no parts, or a name without a number at its end. data: names of different records; a number missing

@@ -1,0 +1,89 @@
+#include "mbk/files/recording/likely_format.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "mbk/files/contents/test_files.h"
+#include "mbk/files/recording/read.h"
+
+namespace mbk::recording {
+namespace likely_format_test {
+
+using namespace std::string_literals;
+using testing::HasSubstr;
+
+std::string what(const std::string& bytes) {
+  const auto likely = likely_format(std::as_bytes(std::span(bytes)));
+  return likely ? std::string(likely->what) : "nothing";
+}
+
+/// A zip archive that begins with a file of this name and has another in its directory.
+std::string zip(const std::string& first, const std::string& later = "") {
+  return "PK\3\4"s + std::string(26, '\0') + first + std::string(100'000, 'x') + "PK\1\2" + std::string(42, '\0') +
+         later;
+}
+
+TEST(LikelyFormat, KnowsFilesByTheirFirstBytes) {
+  for (const auto& [bytes, is] : {
+           std::pair{"TDSm\x0E\0"s, "TDMS"},
+           {"\xFF"s + "BIOSEMI", "BDF"},
+           {"0       X X X X", "EDF"},
+           {"#ROSBAG V1.2\n", "version 1"},
+           {"SQLite format 3\0"s, "SQLite"},
+           {"\x93NUMPY\x01\0"s, "NumPy array"},
+           {"PAR1\x15", "Parquet"},
+           {"ARROW1\0\0"s, "Arrow"},
+           {"\x80\x04\x95\x10", "pickle"},
+           {"X\n\0\0\0\3"s, "R object"},
+           {"RDX3\nX", "R data"},
+           {"\x1F\x8B\x08", "gzip"},
+           {"\xFD"s + "7zXZ\0"s, "xz"},
+           {"\x28\xB5\x2F\xFD", "Zstandard"},
+           {"7z\xBC\xAF\x27\x1C", "7z"},
+           {std::string(257, 'a') + "ustar", "tar"},
+           {"%PDF-1.7", "PDF"},
+           {"\x89PNG\r\n\x1A\n", "PNG"},
+           {"\xFF\xD8\xFF\xE0", "JPEG"},
+           {"LabVIEW Measurement\t\r\nWriter_Version\t2", ".lvm"},
+           {"ID;PWXL;N;E", "SYLK"},
+           {"\xEF\xBB\xBF<?xml version", "XML"},
+           {"\xFF\xFEt\0"s, "UTF-16"},
+           {"{\"schema\": \"mbk.result/2\"}", "JSON"},
+           {"function y = f(x)", "MATLAB program"},
+       }) {
+    EXPECT_THAT(what(bytes), HasSubstr(is)) << bytes;
+  }
+  for (const char* bytes : {"", "P", "time,x\n0,1\n", "TDS", "GDF", "\x80"}) EXPECT_EQ(what(bytes), "nothing") << bytes;
+}
+
+TEST(LikelyFormat, LooksIntoArchives) {
+  EXPECT_EQ(what(zip("[Content_Types].xml", "xl/workbook.xml")), "an Excel workbook");
+  EXPECT_EQ(what(zip("mimetypeapplication/vnd.oasis.opendocument.spreadsheet")), "an OpenDocument sheet");
+  EXPECT_EQ(what(zip("[Content_Types].xml", "simulink/blockdiagram.xml")), "a Simulink model (.slx)");
+  EXPECT_EQ(what(zip("force.npy")), "a NumPy archive (.npz)");
+  EXPECT_EQ(what(zip("raw/01_01.c3d")), "a zip archive with C3D files");
+  EXPECT_EQ(what(zip("readme.txt")), "a zip archive");
+  EXPECT_EQ(what("PK\5\6" + std::string(18, '\0')), "an empty zip archive");
+}
+
+TEST(LikelyFormat, IsSaidByTheReader) {
+  const test::Folder folder;
+  const auto line = [&](const std::string& bytes) {
+    const auto recording = read(folder.write("trial.csv", bytes), {});
+    EXPECT_FALSE(recording);
+    return recording ? "" : recording.error().line();
+  };
+  EXPECT_THAT(line(zip("[Content_Types].xml", "xl/workbook.xml")),
+              HasSubstr("it is an Excel workbook, which is not read; save the sheet as CSV (File > Save As)"));
+  EXPECT_THAT(line("LabVIEW Measurement\t\nWriter_Version\t2\n***End_of_Header***\t\n"), HasSubstr(".lvm"));
+  EXPECT_THAT(line("\x01\x7F\x03"), HasSubstr("no known format; MAT (v4 to v7.3), HDF5, CSV and C3D are read"));
+  // A table is a table, whatever its first letters.
+  const auto table = read(folder.write("trial.csv", "ID;Pressure\n0;1\n1;2\n"), {});
+  ASSERT_FALSE(table);
+  EXPECT_THAT(table.error().line(), HasSubstr("no channel is recognised"));
+}
+
+}  // namespace likely_format_test
+}  // namespace mbk::recording

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Files that mbk does not read: every command that reads says what such a file is and how its data can be had."""
+
+import gzip
+import io
+import lzma
+import pickle
+import sqlite3
+import unittest
+import zipfile
+
+from command import Case, main
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+
+def zipped(*names):
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name in names:
+            archive.writestr(name, "0,1\n")
+    return packed.getvalue()
+
+
+class LikelyFormat(Case):
+    def test_every_reading_command_says_it(self):
+        path = self.file("trial.csv", zipped("[Content_Types].xml", "xl/workbook.xml"))
+        says = "it is an Excel workbook, which is not read; save the sheet as CSV (File > Save As) and pass that"
+        for command in ("info", "measure", "identify", "passivity", "explore", "movement"):
+            self.bad_data(path, command=command, says=says)
+        self.bad_data(path, "--poles", "2", "--zeros", "1", command="tf", says=says)
+        self.bad_data(path, self.folder / "out.h5", command="convert", says=says)
+        self.assertEqual(self.names(), ["trial.csv"])
+
+    def test_files_as_programs_write_them(self):
+        with sqlite3.connect(self.folder / "bag.db3") as database:
+            database.execute("create table topics (id integer)")
+        for name, content, says in (
+                ("a.ods", zipped("mimetypeapplication/vnd.oasis.opendocument.spreadsheet"), "an OpenDocument sheet"),
+                ("a.zip", zipped("a.txt"), "a zip archive, which is not read; unpack it"),
+                ("a.csv.gz", gzip.compress(b"time,x\n0,1\n"), "packed by gzip, which is not read; unpack it with gunzip"),
+                ("a.csv.xz", lzma.compress(b"time,x\n0,1\n"), "packed by xz"),
+                ("a.pickle", pickle.dumps([1.0, 2.0]), "a Python pickle"),
+                ("bag.db3", None, "an SQLite database"),
+                ("a.lvm", "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\n***End_of_Header***\t\n0\t1\n",
+                 "a LabVIEW measurement file"),
+                ("a.slk", "ID;PWXL;N;E\nP;PGeneral\nC;Y1;X1;K\"t\"\n", "a SYLK sheet (.slk)"),
+                ("a.tdms", b"TDSm\x0e\0\0\0" + bytes(40), "nptdms"),
+                ("a.pdf", b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n", "a PDF document"),
+                ("a.json", '{"schema": "mbk.result/2"}', "JSON text"),
+                ("a.qtm", b"\x01\x02qtm" + bytes(90), "Qualisys QTM")):
+            with self.subTest(name):
+                path = self.folder / name if content is None else self.file(name, content)
+                self.bad_data(path, command="info", says=says)
+
+    @unittest.skipIf(numpy is None, "NumPy is not installed")
+    def test_an_array_of_numpy(self):
+        numpy.save(self.folder / "a.npy", numpy.zeros(9))
+        self.bad_data(self.folder / "a.npy", command="info", says=["a NumPy array (.npy)", "numpy.savetxt"])
+
+
+if __name__ == "__main__":
+    main()
