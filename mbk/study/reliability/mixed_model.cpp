@@ -17,7 +17,7 @@
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/study/reliability/distributions.h"
-#include "mbk/study/reliability/jet.h"
+#include "mbk/study/reliability/second_order_jet.h"
 
 namespace mbk::reliability {
 namespace {
@@ -268,6 +268,9 @@ Criterion<Scalar> criterion(const Prepared& data, const std::array<Scalar, 3>& v
   return {total, squares};
 }
 
+/// How near to the minimum of −2 ln L a search ends.
+constexpr double kOfFit = 1e-12, kOfProfile = 1e-7;
+
 /// The function to be made small: of `count` variables that are 0 or more.
 struct Objective {
   std::size_t count = 0;
@@ -340,13 +343,14 @@ Minimum on_grid(const Objective& objective) {
 
 /// Newton's method in the logarithms of the variables; a variable goes to 0 where that is better and the slope there
 /// keeps it, and leaves it where the slope says so. It begins at `start`, or, where
-/// that has no likelihood, at the best point of a grid.
-Minimum minimum_from(const Objective& objective, const std::array<double, kJetSize>& start) {
+/// that has no likelihood, at the best point of a grid, and ends
+/// where a step promises less than `tolerance`.
+Minimum minimum_from(const Objective& objective, const std::array<double, kJetSize>& start, double tolerance) {
   Minimum best{start, objective.value(start)};
   if (!std::isfinite(best.value)) best = on_grid(objective);
   if (objective.count == 0 || !std::isfinite(best.value)) return best;
   constexpr int kIterations = 200;
-  constexpr double kTolerance = 1e-11, kTiny = 1e-10;
+  constexpr double kTiny = 1e-10;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Jet jet = objective.jet(best.at);
     bool moved = false;
@@ -374,7 +378,7 @@ Minimum minimum_from(const Objective& objective, const std::array<double, kJetSi
     if (moved) continue;
     double slope = 0.0;
     const auto step = step_of(objective, best.at, jet, slope);
-    if (-slope < kTolerance * std::max(1.0, std::abs(best.value)) * 1e-3) break;
+    if (-slope < tolerance) break;
     double length = 1.0;
     for (int halving = 0; halving < 40; ++halving, length *= 0.5) {
       auto at = best.at;
@@ -564,7 +568,7 @@ Result<Fitted> fitted(const Prepared& data) {
     return criterion(data, parameters.variances(at), profiled(data)).value;
   };
   const Objective objective = objective_of(parameters.count(), function);
-  const Minimum minimum = minimum_from(objective, on_grid(objective).at);
+  const Minimum minimum = minimum_from(objective, on_grid(objective).at, kOfFit);
   Fitted result{parameters.variances(minimum.at), minimum.value};
   const auto degrees = static_cast<double>(data.rows()) - static_cast<double>(data.columns());
   if (profiled(data) && std::isfinite(minimum.value)) {
@@ -691,7 +695,7 @@ class Profile {
       const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
         return criterion(data, variances_at(x, at), profiled).value;
       };
-      return minimum_from(objective_of(others, function), start);
+      return minimum_from(objective_of(others, function), start, kOfProfile);
     };
     minimum_ = search_(estimate, last_).value;
   }
@@ -724,7 +728,7 @@ class Profile {
     }
     // false position with Illinois's halving; by halves where the outer end has no likelihood
     constexpr int kSections = 60;
-    constexpr double kNear = 1e-5;
+    constexpr double kNear = 1e-4;
     for (int i = 0; i < kSections && std::abs(outside - inside) > kNear; ++i) {
       const double share = std::isfinite(f_outside) ? f_inside / (f_inside - f_outside) : 0.5;
       const double middle = inside + share * (outside - inside), f = above(std::exp(middle));
