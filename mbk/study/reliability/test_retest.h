@@ -55,8 +55,8 @@ struct TestRetest {
   std::vector<Icc> icc;                 ///< of one: one-way, agreement, consistency; then of k; empty where not enough
   std::vector<MeasurementError> error;  ///< agreement, consistency; empty where not enough
   /// Of ICC(A, 1), by modified large samples (Cappelleri & Ting 2003); within [0, 1]. The published interval, which
-  /// stands in `icc`, holds the truth in 91 % instead of 95 % of studies with three sessions that differ as much as
-  /// trials do; this one in 95 % (`mbk validate reliability`). Where they disagree, this one is to be believed.
+  /// stands in `icc`, holds the truth in 91 % of studies with three sessions that differ as much as the residual; this
+  /// one in 96 % (`mbk validate reliability`).
   Interval agreement_by_large_samples95;
 };
 
