@@ -33,7 +33,7 @@ TYPED = {  # what has been typed → what is offered
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
     ("validate", ""): ["after-onset", "change", "closed-loop", "coverage", "faults", "frequency-response", "live-estimate",
                        "misspecification", "one-dimensional", "participant", "passivity", "ramp-and-hold", "recovery",
-                       "reflex", "robot", "servo-displacement", "springs",
+                       "reflex", "reliability", "robot", "servo-displacement", "springs",
                        "teleoperation",
                        "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],

@@ -11,12 +11,13 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/study/reliability/distributions.h"
-#include "mbk/study/reliability/jet.h"
+#include "mbk/study/reliability/second_order_jet.h"
 
 namespace mbk::reliability {
 namespace {
@@ -35,6 +36,8 @@ struct Triangle {
   std::vector<Scalar> entries;
 };
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Rows of one session. Their order within [X y] is kept, so each is a row of `table`.
 struct SessionRows {
   Index begin, end;
@@ -52,9 +55,9 @@ struct Prepared {
   double scale = 1.0;
   int missing = 0;
   bool has_participant = false, has_session = false;
-  // where nothing is known: for each session its mean row, and all squares about these
-  Matrix means;
-  Matrix about_means;
+  Matrix means;          // of each session, a row
+  RowMajor about;        // N×(p + 1): of each row, less the mean of its session
+  Matrix squares_about;  // the sum of their squares
 
   [[nodiscard]] std::size_t columns() const { return static_cast<std::size_t>(table.cols()) - 1; }
   [[nodiscard]] Index rows() const { return table.rows(); }
@@ -82,7 +85,7 @@ Jet logarithm(const Jet& x) {
 }
 
 /// A group of means, each with its weight 1/variance, whose common part has a variance of its own: their squares about
-/// their weighted mean are added to `products`, and that mean and the weight of it with the variance are handed on.
+/// their weighted mean are added to `products`.
 template <class Scalar>
 class CommonPart {
  public:
@@ -110,13 +113,6 @@ class CommonPart {
       for (std::size_t k = 0; k <= i; ++k) products(i, k) += scaled * step[k];
     }
   }
-  /// The weight of the mean once the common part varies too, and what that adds to ln det V.
-  Scalar shrink(const Scalar& variance, Scalar& log_det_V) {
-    const Scalar inflation = Scalar(1.0) + variance * weight;
-    log_det_V += logarithm(inflation);
-    return weight / inflation;
-  }
-
   Scalar weight = Scalar(0.0);
   std::vector<Scalar> mean;
 
@@ -124,19 +120,87 @@ class CommonPart {
   std::vector<Scalar> step_;
 };
 
+/// f of a variance, by f and its two derivatives.
+double lifted(double /*variance*/, const std::array<double, 3>& f) {
+  return f[0];
+}
+Jet lifted(const Jet& variance, const std::array<double, 3>& f) {
+  return Jet::chain(variance, f[0], f[1], f[2]);
+}
+
+/// The rows of one session, each with a weight 1/(known + σ_e²): their weight and weighted mean, and what is added to
+/// the products and to ln det V. All depends on one variance, by which it is derived in plain numbers. The sums are
+/// about the plain mean, so that nothing large is subtracted.
+template <class Scalar>
+class SessionSums {
+ public:
+  explicit SessionSums(std::size_t width) : mean(width, Scalar(0.0)), first_(width), second_(width * (width + 1) / 2) {}
+
+  void add(const Prepared& data, std::size_t s, const Scalar& residual, Triangle<Scalar>& products, Scalar& log_det_V) {
+    constexpr std::size_t kOrders = std::is_same_v<Scalar, double> ? 1 : 3;
+    const std::size_t width = mean.size();
+    std::array<double, 3> total{}, logarithms{};
+    std::ranges::fill(first_, std::array<double, 3>{});
+    std::ranges::fill(second_, std::array<double, 3>{});
+    const auto [begin, end] = data.sessions[s];
+    for (Index r = begin; r < end; ++r) {
+      const double variance = value_of(residual) + data.known[r], x = 1.0 / variance;
+      const std::array<double, 3> weights = {x, -x * x, 2.0 * x * x * x};
+      logarithms[0] += std::log(variance);
+      logarithms[1] += weights[0];
+      logarithms[2] += weights[1];
+      const double* row = &data.about(r, 0);
+      for (std::size_t order = 0; order < kOrders; ++order) {
+        total[order] += weights[order];
+        for (std::size_t i = 0, at = 0; i < width; ++i) {
+          const double weighted_entry = weights[order] * row[i];
+          first_[i][order] += weighted_entry;
+          for (std::size_t k = 0; k <= i; ++k, ++at) second_[at][order] += weighted_entry * row[k];
+        }
+      }
+    }
+    log_det_V += lifted(residual, logarithms);
+    weight = lifted(residual, total);
+    const Scalar inverse = Scalar(1.0) / weight;
+    for (std::size_t i = 0, at = 0; i < width; ++i) {
+      const Scalar off = lifted(residual, first_[i]) * inverse;
+      mean[i] = off;
+      for (std::size_t k = 0; k <= i; ++k, ++at) {
+        products(i, k) += lifted(residual, second_[at]) - weight * off * mean[k];
+      }
+    }
+    for (std::size_t i = 0; i < width; ++i) mean[i] += Scalar(data.means(static_cast<Index>(s), static_cast<Index>(i)));
+  }
+
+  Scalar weight = Scalar(0.0);
+  std::vector<Scalar> mean;
+
+ private:
+  std::vector<std::array<double, 3>> first_, second_;
+};
+
+/// The weight of a mean once what its values have in common varies too, and what that adds to ln det V.
+template <class Scalar>
+Scalar shrunk(const Scalar& weight, const Scalar& variance, Scalar& log_det_V) {
+  const Scalar inflation = Scalar(1.0) + variance * weight;
+  log_det_V += logarithm(inflation);
+  return weight / inflation;
+}
+
 /// [X y]ᵀV⁻¹[X y] and ln det V of V = D + σ_s² Z_s Z_sᵀ + σ_p² Z_p Z_pᵀ, D = diag(known + σ_e²). Everything is a sum of
 /// squares: within sessions, of their means about the participant's, and of the participants' own.
 template <class Scalar>
 Weighted<Scalar> weighted(const Prepared& data, const std::array<Scalar, 3>& variances) {
   const std::size_t width = data.columns() + 1;
   Weighted<Scalar> result{Scalar(0.0), Triangle<Scalar>(width)};
-  CommonPart<Scalar> session(width), participant(width);
+  SessionSums<Scalar> session(width);
+  CommonPart<Scalar> participant(width);
   const bool equal = data.known.size() == 0;
   const Scalar one_over = equal ? Scalar(1.0) / variances[kResidual] : Scalar(0.0);
   if (equal) {
     for (std::size_t i = 0; i < width; ++i) {
       for (std::size_t k = 0; k <= i; ++k) {
-        result.products(i, k) += one_over * data.about_means(static_cast<Index>(i), static_cast<Index>(k));
+        result.products(i, k) += one_over * data.squares_about(static_cast<Index>(i), static_cast<Index>(k));
       }
     }
     result.log_det_V += logarithm(variances[kResidual]) * static_cast<double>(data.rows());
@@ -144,25 +208,20 @@ Weighted<Scalar> weighted(const Prepared& data, const std::array<Scalar, 3>& var
   for (std::size_t p = 0; p < data.participants(); ++p) {
     participant.clear();
     for (std::size_t s = data.first_session[p]; s < data.first_session[p + 1]; ++s) {
-      const auto [begin, end] = data.sessions[s];
-      session.clear();
       if (equal) {
-        session.weight = one_over * static_cast<double>(end - begin);
+        const auto [begin, end] = data.sessions[s];
+        const Scalar weight =
+            shrunk(one_over * static_cast<double>(end - begin), variances[kSession], result.log_det_V);
         const auto row = [&](std::size_t i) { return data.means(static_cast<Index>(s), static_cast<Index>(i)); };
-        participant.add(session.shrink(variances[kSession], result.log_det_V), row, result.products);
+        participant.add(weight, row, result.products);
         continue;
       }
-      for (Index r = begin; r < end; ++r) {
-        const Scalar variance = variances[kResidual] + data.known[r];
-        result.log_det_V += logarithm(variance);
-        const auto row = [&](std::size_t i) { return data.table(r, static_cast<Index>(i)); };
-        session.add(Scalar(1.0) / variance, row, result.products);
-      }
-      const Scalar weight = session.shrink(variances[kSession], result.log_det_V);
+      session.add(data, s, variances[kResidual], result.products, result.log_det_V);
+      const Scalar weight = shrunk(session.weight, variances[kSession], result.log_det_V);
       participant.add(
           weight, [&](std::size_t i) { return session.mean[i]; }, result.products);
     }
-    const Scalar weight = participant.shrink(variances[kParticipant], result.log_det_V);
+    const Scalar weight = shrunk(participant.weight, variances[kParticipant], result.log_det_V);
     for (std::size_t i = 0; i < width; ++i) {
       const Scalar scaled = weight * participant.mean[i];
       for (std::size_t k = 0; k <= i; ++k) result.products(i, k) += scaled * participant.mean[k];
@@ -208,6 +267,9 @@ Criterion<Scalar> criterion(const Prepared& data, const std::array<Scalar, 3>& v
   total += profiled ? degrees * logarithm(squares) : squares;
   return {total, squares};
 }
+
+/// How near to the minimum of −2 ln L a search ends.
+constexpr double kOfFit = 1e-12, kOfProfile = 1e-7;
 
 /// The function to be made small: of `count` variables that are 0 or more.
 struct Objective {
@@ -280,12 +342,15 @@ Minimum on_grid(const Objective& objective) {
 }
 
 /// Newton's method in the logarithms of the variables; a variable goes to 0 where that is better and the slope there
-/// keeps it, and leaves it where the slope says so.
-Minimum minimum_of(const Objective& objective) {
-  Minimum best = on_grid(objective);
+/// keeps it, and leaves it where the slope says so. It begins at `start`, or, where
+/// that has no likelihood, at the best point of a grid, and ends
+/// where a step promises less than `tolerance`.
+Minimum minimum_from(const Objective& objective, const std::array<double, kJetSize>& start, double tolerance) {
+  Minimum best{start, objective.value(start)};
+  if (!std::isfinite(best.value)) best = on_grid(objective);
   if (objective.count == 0 || !std::isfinite(best.value)) return best;
   constexpr int kIterations = 200;
-  constexpr double kTolerance = 1e-11, kTiny = 1e-10;
+  constexpr double kTiny = 1e-10;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Jet jet = objective.jet(best.at);
     bool moved = false;
@@ -313,7 +378,7 @@ Minimum minimum_of(const Objective& objective) {
     if (moved) continue;
     double slope = 0.0;
     const auto step = step_of(objective, best.at, jet, slope);
-    if (-slope < kTolerance * std::max(1.0, std::abs(best.value)) * 1e-3) break;
+    if (-slope < tolerance) break;
     double length = 1.0;
     for (int halving = 0; halving < 40; ++halving, length *= 0.5) {
       auto at = best.at;
@@ -457,14 +522,14 @@ Result<Prepared> prepare(const Measurements& m) {
   data.table << X, y / data.scale;
 
   data.means.resize(static_cast<Index>(data.sessions.size()), p + 1);
-  data.about_means = Matrix::Zero(p + 1, p + 1);
+  data.about.resize(count, p + 1);
   for (std::size_t s = 0; s < data.sessions.size(); ++s) {
     const auto [begin, end] = data.sessions[s];
     const auto block = data.table.middleRows(begin, end - begin);
     data.means.row(static_cast<Index>(s)) = block.colwise().mean();
-    const Matrix about = block.rowwise() - data.means.row(static_cast<Index>(s));
-    data.about_means += about.transpose() * about;
+    data.about.middleRows(begin, end - begin) = block.rowwise() - data.means.row(static_cast<Index>(s));
   }
+  data.squares_about = data.about.transpose() * data.about;
   return data;
 }
 
@@ -502,7 +567,8 @@ Result<Fitted> fitted(const Prepared& data) {
   const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
     return criterion(data, parameters.variances(at), profiled(data)).value;
   };
-  const Minimum minimum = minimum_of(objective_of(parameters.count(), function));
+  const Objective objective = objective_of(parameters.count(), function);
+  const Minimum minimum = minimum_from(objective, on_grid(objective).at, kOfFit);
   Fitted result{parameters.variances(minimum.at), minimum.value};
   const auto degrees = static_cast<double>(data.rows()) - static_cast<double>(data.columns());
   if (profiled(data) && std::isfinite(minimum.value)) {
@@ -615,53 +681,137 @@ MixedModel summarised(const Prepared& data, const Fitted& fit) {
   return model;
 }
 
-/// The variance of an SEM [scaled], and its interval by χ² with Satterthwaite's degrees of freedom.
-Interval sem_interval(double variance, double variance_of_it) {
-  if (!(variance_of_it > 0.0)) return {0.0, kInfinity};
-  const double degrees = 2.0 * variance * variance / variance_of_it;
-  return {std::sqrt(variance * degrees / chi_square_quantile(1.0 - kTail95, degrees)),
-          std::sqrt(variance * degrees / chi_square_quantile(kTail95, degrees))};
-}
-
-/// The profile of −2 ln L_R over the ICC of the mean of m trials.
-class IccProfile {
+/// −2 ln L_R over one function x ≥ 0 of the variances, its minimum over all others: near the one before, so that each
+/// search begins where the last one ended.
+class Profile {
  public:
-  IccProfile(const Prepared& data, int trials) : data_(data), trials_(trials) {
-    if (data.known.size() > 0) typical_ = data.known.mean();
+  /// @param variances_at  the three variances of x and of the other variables
+  /// @param estimate  x and the others where the likelihood has its maximum
+  template <class VariancesAt>
+  Profile(const Prepared& data, bool profiled, std::size_t others, const VariancesAt& variances_at, double estimate,
+          const std::array<double, kJetSize>& others_there)
+      : estimate_(estimate), last_(others_there) {
+    search_ = [&data, profiled, others, variances_at](double x, const std::array<double, kJetSize>& start) {
+      const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
+        return criterion(data, variances_at(x, at), profiled).value;
+      };
+      return minimum_from(objective_of(others, function), start, kOfProfile);
+    };
+    minimum_ = search_(estimate, last_).value;
   }
 
-  [[nodiscard]] double icc(const std::array<double, 3>& variances) const {
-    const double error = variances[kSession] + (variances[kResidual] + typical_) / trials_;
-    return variances[kParticipant] / (variances[kParticipant] + error);
-  }
-  /// Its minimum over the other variances, where the ICC is that. @param icc in [0, 1)
-  [[nodiscard]] double at(double icc) const {
-    const double odds = icc / (1.0 - icc);
-    const Parameters parameters{false, data_.has_session, !profiled(data_)};
-    const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
-      std::array<Scalar, 3> variances = parameters.variances(at);
-      variances[kParticipant] =
-          odds * (variances[kSession] + (variances[kResidual] + Scalar(typical_)) * (1.0 / trials_));
-      return criterion(data_, variances, profiled(data_)).value;
-    };
-    return minimum_of(objective_of(parameters.count(), function)).value;
-  }
+  /// Where it is less than χ² above its minimum.
+  Interval interval95() { return {end(-1.0), end(1.0)}; }
 
  private:
-  const Prepared& data_;
-  double trials_;
-  double typical_ = 0.0;
+  /// Signed root of what it is above the minimum, less that of χ²: nearly a straight line in ln x.
+  double above(double x) {
+    const Minimum found = search_(x, last_);
+    if (!std::isfinite(found.value)) return kInfinity;
+    last_ = found.at;
+    return std::sqrt(std::max(found.value - minimum_, 0.0)) - numeric::kNormal95;
+  }
+
+  double end(double direction) {
+    constexpr double kAlmostNothing = 1e-6, kFarthest = 40.0, kStep = 0.25;
+    if (direction < 0.0 && (!(estimate_ > kAlmostNothing) || above(0.0) <= 0.0)) return 0.0;
+    double inside = std::log(std::max(estimate_, kAlmostNothing)), f_inside = above(std::exp(inside));
+    if (!(f_inside < 0.0)) return std::exp(inside);
+    double step = direction * kStep, outside = inside + step, f_outside = above(std::exp(outside));
+    while (f_outside < 0.0) {
+      if (std::abs(outside) > kFarthest) return direction < 0.0 ? 0.0 : kInfinity;
+      inside = outside;
+      f_inside = f_outside;
+      step *= 1.5;
+      outside += step;
+      f_outside = above(std::exp(outside));
+    }
+    // false position with Illinois's halving; by halves where the outer end has no likelihood
+    constexpr int kSections = 60;
+    constexpr double kNear = 1e-4;
+    for (int i = 0; i < kSections && std::abs(outside - inside) > kNear; ++i) {
+      const double share = std::isfinite(f_outside) ? f_inside / (f_inside - f_outside) : 0.5;
+      const double middle = inside + share * (outside - inside), f = above(std::exp(middle));
+      if (std::abs(f) < kNear) return std::exp(middle);
+      if (f < 0.0) {
+        inside = middle;
+        f_inside = f;
+        f_outside *= last_moved_ == 1 ? 0.5 : 1.0;
+        last_moved_ = 1;
+      } else {
+        outside = middle;
+        f_outside = f;
+        f_inside *= last_moved_ == 2 ? 0.5 : 1.0;
+        last_moved_ = 2;
+      }
+    }
+    return std::exp(0.5 * (inside + outside));
+  }
+
+  std::function<Minimum(double, const std::array<double, kJetSize>&)> search_;
+  double estimate_ = 0.0, minimum_ = 0.0;
+  std::array<double, kJetSize> last_{};
+  int last_moved_ = 0;  // 1: the inner end, 2: the outer one
 };
 
-/// The end of the interval between a value inside it and one outside; the end itself where the outer one is inside.
-double end_of(const IccProfile& profile, double inside, double outside, double limit) {
-  if (profile.at(outside) <= limit) return outside;
-  constexpr int kHalvings = 40;
-  for (int i = 0; i < kHalvings && std::abs(outside - inside) > 1e-7; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    (profile.at(middle) <= limit ? inside : outside) = middle;
+/// The interval of σ_p²/(σ_p² + σ_s² + (σ_e² + v̄)/m), by its odds.
+Interval icc_interval(const Prepared& data, const Fitted& fit, double trials) {
+  const double typical = data.known.size() > 0 ? data.known.mean() : 0.0;
+  const bool by_ratio = profiled(data);
+  const Parameters parameters{false, data.has_session, !by_ratio};
+  const auto variances_at = [=]<class Scalar>(double odds, const std::array<Scalar, kJetSize>& at) {
+    std::array<Scalar, 3> variances = parameters.variances(at);
+    variances[kParticipant] = odds * (variances[kSession] + (variances[kResidual] + Scalar(typical)) * (1.0 / trials));
+    return variances;
+  };
+  const double unit = by_ratio ? fit.variances[kResidual] : 1.0;
+  const double between = fit.variances[kSession] + (fit.variances[kResidual] + typical) / trials;
+  std::array<double, kJetSize> others{};
+  std::size_t next = 0;
+  if (parameters.session) others[next++] = fit.variances[kSession] / unit;
+  if (parameters.residual) others[next++] = fit.variances[kResidual] / unit;
+  Profile profile(data, by_ratio, parameters.count(), variances_at, fit.variances[kParticipant] / between, others);
+  const auto [low, high] = profile.interval95();
+  return {low / (1.0 + low), std::isinf(high) ? 1.0 : high / (1.0 + high)};
+}
+
+/// The interval of σ_s² + σ_e²/m, without what is known.
+Interval between_interval(const Prepared& data, const Fitted& fit, double trials) {
+  const bool participant = data.has_participant, session = data.has_session;
+  const auto variances_at = [=]<class Scalar>(double between, const std::array<Scalar, kJetSize>& at) {
+    std::array<Scalar, 3> variances = {Scalar(0.0), Scalar(0.0), Scalar(trials * between)};
+    std::size_t next = 0;
+    if (participant) variances[kParticipant] = at[next++];
+    if (!session) return variances;
+    const Scalar whole = Scalar(1.0) + at[next];  // the other one is the odds of the session's part
+    variances[kSession] = Scalar(between) * at[next] / whole;
+    variances[kResidual] = Scalar(trials * between) / whole;
+    return variances;
+  };
+  std::array<double, kJetSize> others{};
+  std::size_t next = 0;
+  if (participant) others[next++] = fit.variances[kParticipant];
+  constexpr double kLargeOdds = 1e3;
+  const double residual = fit.variances[kResidual] / trials;
+  if (session) {
+    others[next++] = std::min(kLargeOdds, fit.variances[kSession] / std::max(residual, 1e-300));
   }
-  return 0.5 * (inside + outside);
+  return Profile(data, false, next, variances_at, fit.variances[kSession] + residual, others).interval95();
+}
+
+/// The interval of σ_e², without what is known.
+Interval residual_interval(const Prepared& data, const Fitted& fit) {
+  const Parameters parameters{data.has_participant, data.has_session, false};
+  const auto variances_at = [=]<class Scalar>(double residual, const std::array<Scalar, kJetSize>& at) {
+    std::array<Scalar, 3> variances = parameters.variances(at);
+    variances[kResidual] = Scalar(residual);
+    return variances;
+  };
+  std::array<double, kJetSize> others{};
+  std::size_t next = 0;
+  if (parameters.participant) others[next++] = fit.variances[kParticipant];
+  if (parameters.session) others[next++] = fit.variances[kSession];
+  return Profile(data, false, parameters.count(), variances_at, fit.variances[kResidual], others).interval95();
 }
 
 }  // namespace
@@ -725,25 +875,12 @@ Result<ModelReliability> model_reliability(const Measurements& measurements, int
   result.sem_between = std::sqrt(between);
   result.mdc95_within = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_within;
   result.mdc95_between = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_between;
-  // The variances that are estimated, in their order, and what the two sums take of each.
-  std::vector<double> of_between, of_within;
-  for (const auto& [component, a, b] : {std::tuple(&model.participant, 0.0, 0.0), std::tuple(&model.session, 1.0, 0.0),
-                                        std::tuple(&model.residual, 1.0 / m, 1.0 / m)}) {
-    if (!component->standard_error) continue;
-    of_between.push_back(a);
-    of_within.push_back(b);
-  }
-  const auto spread = [&](const std::vector<double>& weights) {
-    const Eigen::Map<const Vector> w(weights.data(), static_cast<Index>(weights.size()));
-    return weights.empty() ? 0.0 : w.dot(model.variance_covariance * w);
-  };
-  result.sem_between95 = sem_interval(between, spread(of_between));
-  result.sem_within95 = sem_interval(within, spread(of_within));
-
-  const IccProfile profile(*data, trials);
-  constexpr double kNearlyOne = 1.0 - 1e-9;
-  const double limit = fit->value + chi_square_quantile(0.95, 1.0);
-  result.icc95 = {end_of(profile, result.icc, 0.0, limit), end_of(profile, result.icc, kNearlyOne, limit)};
+  const double scale2 = data->scale * data->scale;
+  const auto root = [&](double variance) { return std::sqrt(scale2 * variance + model.typical_known_variance / m); };
+  const Interval of_between = between_interval(*data, *fit, m), of_residual = residual_interval(*data, *fit);
+  result.sem_between95 = {root(of_between.first), root(of_between.second)};
+  result.sem_within95 = {root(of_residual.first / m), root(of_residual.second / m)};
+  result.icc95 = icc_interval(*data, *fit, m);
   return result;
 }
 

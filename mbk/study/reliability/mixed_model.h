@@ -82,11 +82,11 @@ struct ModelReliability {
   double mdc95_between = 0, mdc95_within = 0;  ///< 1.96 √2 SEM
 };
 
-/// The interval of the ICC is that of its profile restricted likelihood: the values at which −2 ln of it rises by less
-/// than 3.84 above its minimum over the other variances. It needs neither equal numbers of trials nor a variance above
-/// 0; how often it holds the truth is in `mbk validate reliability`. Those of the SEM are by χ² with Satterthwaite's
-/// degrees of freedom; (0, ∞) where these are not known. Fixed effects decide what is counted as error: with a column
-/// for each session the ICC is one of consistency.
+/// Intervals are those of profile restricted likelihoods: the values at which −2 ln of it rises by less than 3.84 above
+/// its minimum over the other variances. They need neither equal numbers of trials nor variances above 0; how often
+/// they hold the truth is in `mbk validate reliability`. Near 0 a variance cannot be missed below, and they hold it
+/// more often. Fixed effects decide what is counted as error: with a column for each session the ICC is one of
+/// consistency.
 /// @param trials ≥ 1: m
 /// @fails  as fit_mixed_model; usage: trials < 1.
 [[nodiscard]] Result<ModelReliability> model_reliability(const Measurements& measurements, int trials = 1);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 namespace mbk::reliability {
 namespace test_retest_test {
 
@@ -36,6 +39,68 @@ TEST(TestRetest, GivesTheNumbersOfShroutAndFleiss) {
   EXPECT_EQ(result->error[1].form, IccForm::consistency);
   EXPECT_NEAR(result->error[1].sem, 1.009675, kPrinted);
   EXPECT_NEAR(result->error[1].mdc95, 2.798677, kPrinted);
+}
+
+/// How often it holds the truth is judged by `mbk validate reliability`.
+TEST(TestRetest, IntervalByLargeSamplesIsAboutTheEstimateAndWithinNoneAndAll) {
+  const auto result = test_retest(shrout_and_fleiss());
+  const auto [low, high] = result->agreement_by_large_samples95;
+  const Icc& published = result->icc[1];
+  EXPECT_LT(low, published.value);
+  EXPECT_GT(high, published.value);
+  EXPECT_LT(low, published.interval95.first + 0.05);
+  EXPECT_GE(low, 0.0);
+  EXPECT_LE(high, 1.0);
+}
+
+TEST(TestRetest, DoesNotSeeAShiftAndScalesItsErrorWithTheUnit) {
+  const Matrix scores = shrout_and_fleiss();
+  const auto one = test_retest(scores), other = test_retest((1000.0 * scores).array() + 1e7);
+  ASSERT_TRUE(one && other);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(other->icc[i].value, one->icc[i].value, 1e-9);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(other->error[i].sem, 1000.0 * one->error[i].sem, 1e-6);
+}
+
+TEST(TestRetest, MeanSquaresAreThoseOfPlainSums) {
+  const Matrix x = shrout_and_fleiss();
+  const auto squares = mean_squares(x);
+  ASSERT_TRUE(squares);
+  double total = 0.0;
+  for (Index i = 0; i < 6; ++i) {
+    for (Index j = 0; j < 4; ++j) total += std::pow(x(i, j) - x.mean(), 2);
+  }
+  EXPECT_NEAR(5.0 * squares->between_people + 3.0 * squares->between_sessions + 15.0 * squares->residual, total, 1e-10);
+  EXPECT_NEAR(5.0 * squares->between_people + 18.0 * squares->within_people, total, 1e-10);
+  EXPECT_NEAR(squares->between_people, 11.24, 5e-3);  // Shrout & Fleiss (1979), table 3
+  EXPECT_NEAR(squares->between_sessions, 32.49, 5e-3);
+  EXPECT_NEAR(squares->residual, 1.02, 5e-3);
+  EXPECT_NEAR(squares->within_people, 6.26, 5e-3);
+}
+
+TEST(TestRetest, IsOneWhereNothingButPeopleDiffer) {
+  Matrix scores(6, 3);
+  for (Index i = 0; i < 6; ++i) scores.row(i).setConstant(static_cast<double>(i));
+  const auto result = test_retest(scores);
+  ASSERT_TRUE(result);
+  for (const Icc& icc : result->icc) {
+    EXPECT_EQ(icc.value, 1.0);
+    EXPECT_EQ(icc.interval95, Interval(1.0, 1.0));
+  }
+  EXPECT_EQ(result->error[0].sem, 0.0);
+}
+
+TEST(TestRetest, SaysWhatItLacks) {
+  const Matrix scores = shrout_and_fleiss();
+  EXPECT_EQ(test_retest(scores.topRows(4))->support, Support::too_few_people);
+  EXPECT_TRUE(test_retest(scores.topRows(4))->icc.empty());
+  EXPECT_EQ(test_retest(scores.leftCols(1))->support, Support::too_few_sessions);
+  EXPECT_EQ(test_retest(Matrix::Constant(8, 3, 0.1))->support, Support::no_variation);
+  EXPECT_FALSE(test_retest(Matrix()));
+  Matrix missing = scores;
+  missing(2, 1) = NAN;
+  const auto refused = test_retest(missing);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("person 3 in session 2"), std::string::npos);
 }
 
 }  // namespace test_retest_test

@@ -6,8 +6,8 @@
 namespace mbk::validation {
 namespace reliability_study_test {
 
-TEST(ReliabilityStudy, RefutesNothingInAHundredRuns) {
-  const auto table = reliability_study({.runs = 100, .seed = 5});
+TEST(ReliabilityStudy, RefutesNothingInSixtyRuns) {
+  const auto table = reliability_study({.runs = 60, .seed = 5});
   ASSERT_TRUE(table) << table.error().line();
   EXPECT_EQ(table->study, "reliability");
   expect_nothing_refuted(*table);
