@@ -44,7 +44,12 @@ Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const S
 }  // namespace
 
 void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
-  command.add_option("FILE", arguments.files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d")->required();
+  command
+      .add_option(
+          "FILE", arguments.files,
+          "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d, .npy, .npz, .sto, .mot, .trc, or the folder of a BIDS "
+          "data set")
+      ->required();
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
@@ -105,7 +110,8 @@ Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const s
   const auto trials = recording::list_trials(file);
   std::vector<Record> records;
   if (!trials || trials->empty()) {  // what is wrong with a file is said where it is read
-    if (trials && !trial.empty()) {
+    std::error_code code;
+    if (trials && !trial.empty() && std::filesystem::exists(file, code)) {
       return tl::unexpected(
           bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out")
               .value()

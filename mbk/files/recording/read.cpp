@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "mbk/files/archive/zip_archive.h"
+#include "mbk/files/bids/read_run.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/contents/memory.h"
 #include "mbk/files/contents/sha256.h"
@@ -108,7 +109,33 @@ Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& fi
   return Decoded{std::move(*contents), std::move(source)};
 }
 
-Result<Decoded> decode_file(const std::filesystem::path& file) {
+/// One recording of a BIDS data set.
+Result<Decoded> decode_bids_run(const std::filesystem::path& path, const std::string& trial) {
+  const auto runs = find_bids_runs(path);
+  if (!runs) return tl::unexpected(runs.error());
+  if (runs->empty()) {
+    return bad_data("the folder holds no BIDS recording (no …_motion.tsv)",
+                    "name a file, or the folder of a data set with motion data");
+  }
+  const BidsRun* run = runs->size() == 1 && trial.empty() ? &runs->front() : nullptr;
+  for (const BidsRun& one : *runs) {
+    if (one.name.name == trial) run = &one;
+  }
+  if (run == nullptr) {
+    return trial.empty() ? bad_usage(fmt::format("the folder holds {} recordings", runs->size()),
+                                     fmt::format("say which, as in --trial {}", runs->front().name.name))
+                         : bad_usage(fmt::format("there is no recording '{}'", trial), "'mbk info' lists them");
+  }
+  auto contents = read_bids_run(run->motion);
+  if (!contents) return tl::unexpected(trial.empty() ? contents.error() : contents.error().in(trial));
+  const auto bytes = read_file(run->motion);
+  if (!bytes) return tl::unexpected(bytes.error());
+  SourceFile source{run->motion.string(), contents->format, sha256(bytes->bytes())};
+  return Decoded{std::move(*contents), std::move(source)};
+}
+
+Result<Decoded> decode_file(const std::filesystem::path& file, const std::string& trial) {
+  if (may_be_bids(file)) return decode_bids_run(file, trial);
   auto table = decode_long_table(file);
   if (!table) return tl::unexpected(table.error());
   if (*table) {
@@ -163,9 +190,10 @@ FileContents listed(Decoded decoded) {
 
 /// Decodes the file and hands it on; every failure names the file.
 template <class Use>
-auto with_decoded(const std::filesystem::path& file, const Use& use) -> decltype(use(Decoded{})) {
+auto with_decoded(const std::filesystem::path& file, const std::string& trial, const Use& use)
+    -> decltype(use(Decoded{})) {
   try {
-    auto decoded = decode_file(file);
+    auto decoded = decode_file(file, trial);
     if (!decoded) return tl::unexpected(decoded.error().in(file.string()));
     auto result = use(std::move(*decoded));
     if (!result) return tl::unexpected(result.error().in(file.string()));
@@ -179,15 +207,21 @@ auto with_decoded(const std::filesystem::path& file, const Use& use) -> decltype
 }  // namespace
 
 Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options) {
-  return with_decoded(file, [&](Decoded decoded) { return assemble_file(std::move(decoded), options); });
+  return with_decoded(file, options.trial, [&](Decoded decoded) { return assemble_file(std::move(decoded), options); });
 }
 
-Result<std::vector<TrialName>> list_trials(const std::filesystem::path& /*file*/) {
-  return std::vector<TrialName>();
+Result<std::vector<TrialName>> list_trials(const std::filesystem::path& file) {
+  std::vector<TrialName> trials;
+  std::error_code code;
+  if (!std::filesystem::is_directory(file, code)) return trials;
+  auto runs = find_bids_runs(file);
+  if (!runs) return tl::unexpected(runs.error().in(file.string()));
+  for (BidsRun& run : *runs) trials.push_back(std::move(run.name));
+  return trials;
 }
 
 Result<FileContents> list_contents(const std::filesystem::path& file) {
-  return with_decoded(file, [](Decoded decoded) { return Result<FileContents>(listed(std::move(decoded))); });
+  return with_decoded(file, "", [](Decoded decoded) { return Result<FileContents>(listed(std::move(decoded))); });
 }
 
 }  // namespace mbk::recording
