@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "apps/mbk/commands.h"
@@ -13,6 +14,7 @@
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/trial_files.h"
 #include "mbk/files/recording/write.h"
+#include "mbk/files/recording/write_bids.h"
 #include "mbk/files/recording/write_contents.h"
 
 namespace mbk::app {
@@ -21,30 +23,61 @@ namespace {
 struct ConvertArguments {
   ReadingArguments reading;  ///< its files: those to read, and last the one to write
   SensorArguments sensor;
-  std::string format;
+  std::string format, bids;
   bool overwrite = false, quiet = false;
   std::optional<Readers> readers;
 };
 
-Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output, bool parts) {
+Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output, bool parts,
+                         bool to_data_set) {
   if (inputs.empty()) return bad_usage("one file is named where two are needed", "mbk convert IN OUT");
   if (inputs.size() > 1 && !parts) {
     return bad_usage(fmt::format("{} files to read, and one to write", inputs.size()),
                      "pass --parts where they are numbered parts of one record, else convert each one separately");
   }
+  if (to_data_set) return {};
+  std::error_code code;
+  if (std::filesystem::is_directory(*output.file, code)) {
+    return fail(ErrorKind::usage, "is a folder",
+                "name a file, or say with --bids what the recording is in a BIDS data set, as in --bids "
+                "sub-07_task-reach_run-1",
+                output.file->string());
+  }
   return check_new_file(*output.file, "OUT", output.overwrite, inputs);
 }
 
+/// The one recording that is converted.
+Result<Recording> read_one(const ReadingArguments& reading, const SensorArguments& sensor) {
+  const auto reader = RecordingReader::of(reading, sensor);
+  if (!reader) return tl::unexpected(reader.error());
+  if (reader->count() > 1) {
+    return fail(ErrorKind::usage, fmt::format("holds {} recordings, and one is converted", reader->count()),
+                "say which with --trial; 'mbk info' lists them", reading.files.front().string());
+  }
+  return reader->read(0);
+}
+
 /// "log.h5: HDF5, 62.1 s, 6 channels, 2 events, 9 entries of metadata".
-std::string summary_line(const Recording& recording, const std::filesystem::path& file, recording::Format format) {
+std::string summary_line(const Recording& recording, const std::filesystem::path& file, std::string_view format) {
   const auto count = [](std::size_t n, std::string_view one, std::string_view more) {
     return fmt::format("{} {}", n, n == 1 ? one : more);
   };
-  return fmt::format("{}: {}, {:.6g} s, {}, {}, {} of metadata\n", file.string(), recording::text(format),
+  return fmt::format("{}: {}, {:.6g} s, {}, {}, {} of metadata\n", file.string(), format,
                      recording.time[recording.samples() - 1] - recording.time[0],
                      count(recording.channels.size(), "channel", "channels"),
                      count(recording.events.size(), "event", "events"),
                      count(recording.metadata.size(), "entry", "entries"));
+}
+
+/// Says what was not written, what was noted in reading, and what there is now.
+int report(const ConvertArguments& arguments, const Recording& recording, const std::filesystem::path& file,
+           std::string_view format, const std::vector<std::string>& lost,
+           const std::function<void(const std::string&)>& say_note) {
+  for (const std::string& one : lost) say("mbk: {}: not written: {}\n", file.string(), one);
+  if (arguments.quiet) return kFine;
+  for (const std::string& note : recording.notes) say_note(note);
+  if (auto ok = Output().write(summary_line(recording, file, format)); !ok) return report_error(ok.error());
+  return kFine;
 }
 
 /// What a command converts, and to what.
@@ -93,13 +126,24 @@ int convert_one(const Conversion& job, int k, const std::filesystem::path& file)
   if (auto ok = recording::write(*recording, file, job.format, job.arguments.overwrite, readers); !ok) {
     return report_error(ok.error());
   }
-  for (const std::string& lost : recording::lost_in(*recording, job.format)) {
-    say("mbk: {}: not written: {}\n", file.string(), lost);
+  return report(job.arguments, *recording, file, recording::text(job.format),
+                recording::lost_in(*recording, job.format), [&](const std::string& note) { say_of(job, k, note); });
+}
+
+/// Adds the recording to a data set.
+int run_bids(const ConvertArguments& arguments, const std::filesystem::path& folder) {
+  if (!arguments.format.empty()) {
+    return report_error(bad_usage("--bids and --format say two formats", "leave one of them out").value());
   }
-  if (job.arguments.quiet) return kFine;
-  for (const std::string& note : recording->notes) say_of(job, k, note);
-  if (auto ok = Output().write(summary_line(*recording, file, job.format)); !ok) return report_error(ok.error());
-  return kFine;
+  const auto recording = read_one(arguments.reading, arguments.sensor);
+  if (!recording) return report_error(recording.error());
+  const auto motion = recording::write_bids(*recording, folder, arguments.bids, arguments.overwrite,
+                                            arguments.readers.value_or(Readers::owner));
+  if (!motion) return report_error(motion.error());
+  const auto say_note = [&](const std::string& note) {
+    say("mbk: {}: {}\n", arguments.reading.files.front().string(), note);
+  };
+  return report(arguments, *recording, *motion, "BIDS motion", recording::lost_in_bids(*recording), say_note);
 }
 
 int run(ConvertArguments arguments) {
@@ -108,7 +152,10 @@ int run(ConvertArguments arguments) {
   output.file = reading.files.back();
   output.overwrite = arguments.overwrite;
   reading.files.pop_back();
-  if (auto ok = check_files(reading.files, output, reading.parts); !ok) return report_error(ok.error());
+  if (auto ok = check_files(reading.files, output, reading.parts, !arguments.bids.empty()); !ok) {
+    return report_error(ok.error());
+  }
+  if (!arguments.bids.empty()) return run_bids(arguments, *output.file);
   const auto format = recording::format_of(*output.file, arguments.format);
   if (!format) return report_error(format.error());
   auto reader = RecordingReader::of(reading, arguments.sensor);
@@ -132,13 +179,15 @@ int run(ConvertArguments arguments) {
 
 Action add_convert(CLI::App& app) {
   auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command = add_command(app, "convert", "a recording in another format: HDF5, MAT, CSV");
+  CLI::App* command = add_command(app, "convert", "a recording in another format: HDF5, MAT, CSV, BIDS");
   command->footer(
       "Examples:\n"
       "  mbk convert log.mat log.h5\n"
       "      the end of the second name says the format: .h5 (or .hdf5), .mat (v5) or .csv\n"
       "  mbk convert trial.csv trial.mat --format mat73\n"
       "  mbk convert --parts log_1.mat log_2.mat log_3.mat whole.h5\n"
+      "  mbk convert log.h5 data_set --bids sub-07_ses-2_task-reach_run-1\n"
+      "      adds the recording to a BIDS data set (Motion), or makes a new one\n"
       "  mbk convert drive.csv drive.h5 --channels time=1:ms,x=2:mm,F=-3 --axes 1\n"
       "      units and signs are put right on the way: what is written is SI\n"
       "  mbk convert exam.zip out_{trial}.h5\n"
@@ -153,6 +202,12 @@ Action add_convert(CLI::App& app) {
   command->get_option("FILE")->description("the recording to read (several with --parts), and last the one to write");
   command->add_option("--format", arguments->format, "of the file to write; otherwise by the end of its name")
       ->type_name(fmt::format("{}", fmt::join(kWordList<recording::Format>, "|")))
+      ->check(not_empty());
+  command
+      ->add_option("--bids", arguments->bids,
+                   "the last FILE is the folder of a BIDS data set: what the recording is in it, as "
+                   "sub-LABEL[_ses-LABEL]_task-LABEL[_tracksys-LABEL][_acq-LABEL][_run-NUMBER]")
+      ->type_name("NAME")
       ->check(not_empty());
   command->add_flag("--overwrite", arguments->overwrite, "replace the file to write where it is there");
   add_readers_option(*command, arguments->readers);

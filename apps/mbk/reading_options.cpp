@@ -47,7 +47,8 @@ Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const S
 void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
   command
       .add_option("FILE", arguments.files,
-                  "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d, .kinarm, .zip of a KINARM exam")
+                  "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d, .kinarm, .zip of a KINARM exam, .npy, .npz, .sto, "
+                  ".mot, .trc, or the folder of a BIDS data set")
       ->required();
   command
       .add_option("--channels", arguments.channels,
@@ -117,7 +118,8 @@ Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const s
                                     : recording::list_trials(file);
   std::vector<Record> records;
   if (!open || !trials || trials->empty()) {  // what is wrong with a file is said where it is read
-    if (open && trials && !trial.empty()) {
+    std::error_code code;
+    if (open && trials && !trial.empty() && std::filesystem::exists(file, code)) {
       return tl::unexpected(
           bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out")
               .value()

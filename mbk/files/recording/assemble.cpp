@@ -330,7 +330,7 @@ class Assembler {
         const bool stamped = kind->name == "time" && array.clock >= 0;  // its time is that of its stream
         return stamped || (kind->only_if_asked && !is_requested(*kind));
       });
-      if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
+      if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array) && !array.obstacle)) {
         aside.push_back(array.name);
         continue;
       }
@@ -548,6 +548,7 @@ class Assembler {
       return decimated(entry, at, asked);
     }
     if (const Array* array = find(contents_, entry.source)) {
+      if (array->obstacle) return tl::unexpected(array->obstacle->in(fmt::format("channel {}", entry.channel)));
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
                                   entry.source, shape(*array)),
@@ -688,7 +689,8 @@ class Assembler {
 
   Result<void> check() const {
     for (const Signal& signal : signals_) {
-      if (signal.line.array->obstacle) return tl::unexpected(signal.line.array->obstacle->in(signal.kind->name));
+      if (signal.line.array->obstacle)
+        return tl::unexpected(signal.line.array->obstacle->in(fmt::format("channel {}", signal.kind->name)));
     }
     if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
       return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");

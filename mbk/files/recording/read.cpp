@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <optional>
 #include <span>
@@ -20,7 +18,6 @@
 #include "mbk/files/contents/memory.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/files/hdf5/read_hdf5.h"
-#include "mbk/files/kinarm/kinarm_exam.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
 #include "mbk/files/recording/csv.h"
@@ -29,34 +26,17 @@
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
 #include "mbk/files/recording/one_clock.h"
+#include "mbk/files/recording/open_trials.h"
 #include "mbk/files/tables/npy.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
 
 namespace mbk::recording {
 
-class OpenTrials {
- public:
-  OpenTrials(KinarmExam exam, std::shared_ptr<const Buffer> file) : exam_(std::move(exam)), file_(std::move(file)) {}
-
-  [[nodiscard]] const KinarmExam& exam() const { return exam_; }
-  /// Of the file; computed when it is asked for first.
-  [[nodiscard]] std::string sum() const {
-    std::call_once(once_, [&] { sum_ = sha256(file_->bytes()); });
-    return sum_;
-  }
-
- private:
-  KinarmExam exam_;
-  std::shared_ptr<const Buffer> file_;
-  mutable std::once_flag once_;
-  mutable std::string sum_;
-};
-
 namespace {
 
 constexpr std::string_view kFormats =
-    "MAT (v4 to v7.3), HDF5, CSV, C3D, NumPy and OpenSim files and KINARM exams are read";
+    "MAT (v4 to v7.3), HDF5, CSV, C3D, NumPy and OpenSim files, KINARM exams and BIDS data sets are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -115,12 +95,6 @@ Result<Contents> decode(std::shared_ptr<Buffer> file) {
                   fmt::format("{}; a program of its own (Qualisys QTM, Vicon Nexus, …) exports one of them", kFormats));
 }
 
-/// A file, decoded, and where it came from.
-struct Decoded {
-  Contents contents;
-  SourceFile source;
-};
-
 /// A long table, read in passing; nothing where the file is something else.
 Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& file) {
   constexpr std::size_t kLong = 4 * FileInPassing::kPiece;
@@ -142,50 +116,14 @@ Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& fi
   return Decoded{std::move(*contents), std::move(source)};
 }
 
-/// Whether the file begins as a zip archive does. What is wrong with it is said where it is read.
-bool begins_as_zip(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return false;
-  std::vector<char> begin(64);
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return ZipArchive::looks_like_zip(std::as_bytes(std::span(begin).first(static_cast<std::size_t>(stream.gcount()))));
-}
-
-/// The exam that the file is; nullptr where it is none.
-Result<std::shared_ptr<const OpenTrials>> open_zip(const std::filesystem::path& file) {
-  if (!begins_as_zip(file)) return std::shared_ptr<const OpenTrials>();
-  auto bytes = read_file(file);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const auto shared = std::make_shared<const Buffer>(std::move(*bytes));
-  const auto archive = ZipArchive::open(shared->bytes());
-  if (!archive) return tl::unexpected(archive.error());
-  if (!KinarmExam::is_exam(*archive)) return std::shared_ptr<const OpenTrials>();
-  auto exam = KinarmExam::open(shared);
-  if (!exam) return tl::unexpected(exam.error());
-  return std::make_shared<const OpenTrials>(std::move(*exam), shared);
-}
-
-/// One trial of an exam.
-Result<Decoded> decode_trial(const OpenTrials& open, const std::filesystem::path& file, const ReadOptions& options,
-                             bool needs_arm) {
-  ExamChoice choice{options.trial, std::nullopt, needs_arm};
-  if (!options.arm.empty()) choice.arm = options.arm == "left" ? Arm::left : Arm::right;
-  auto contents = open.exam().decode(choice);
-  if (!contents) return tl::unexpected(contents.error());
-  SourceFile source{file.string(), contents->format, open.sum()};
-  if (open.exam().trials().size() > 1) source.trial = options.trial;
-  return Decoded{std::move(*contents), std::move(source)};
-}
-
 /// @param needs_arm  an arm must be named where there are two
 Result<Decoded> decode_file(const std::filesystem::path& file, const ReadOptions& options, bool needs_arm) {
   if (!options.arm.empty() && options.arm != "right" && options.arm != "left") {
     return bad_usage(fmt::format("there is no arm '{}'", options.arm), "name the right or the left one");
   }
-  auto open = options.open ? Result<std::shared_ptr<const OpenTrials>>(options.open) : open_zip(file);
+  auto open = options.open ? Result<std::shared_ptr<const OpenTrials>>(options.open) : open_as_trials(file);
   if (!open) return tl::unexpected(open.error());
-  if (*open) return decode_trial(**open, file, options, needs_arm);
+  if (*open) return (*open)->decode(file, options, needs_arm);
   if (!options.arm.empty()) {
     return bad_usage(fmt::format("--arm {}: the file tells no arms apart", options.arm), "leave --arm out");
   }
@@ -274,11 +212,11 @@ Result<std::vector<TrialName>> list_trials(const std::filesystem::path& file) {
 }
 
 Result<std::shared_ptr<const OpenTrials>> open_trials(const std::filesystem::path& file) {
-  return with_file(file, [&] { return open_zip(file); });
+  return with_file(file, [&] { return open_as_trials(file); });
 }
 
 const std::vector<TrialName>& trials_of(const OpenTrials& open) {
-  return open.exam().trials();
+  return open.trials();
 }
 
 Result<FileContents> list_contents(const std::filesystem::path& file, const ReadOptions& options) {

@@ -26,7 +26,23 @@ constexpr auto kExtensions = std::to_array<Extension>({
     {".csv", Format::csv},
 });
 
-Result<void> check(const Recording& recording) {
+Result<std::string> encode(const Recording& recording, Format format) {
+  switch (format) {
+    case Format::mat5:
+      return encode_mat_level5(recording);
+    case Format::mat73:
+      return encode_mat_hdf5(recording);
+    case Format::hdf5:
+      return encode_hdf5(recording);
+    case Format::csv:
+      break;
+  }
+  return encode_csv(recording);
+}
+
+}  // namespace
+
+Result<void> check_writable(const Recording& recording) {
   if (recording.samples() == 0) return bad_data("a recording without samples is not written");
   if (recording.channels.empty()) return bad_data("a recording without channels is not written");
   std::set<std::string_view> names;
@@ -50,22 +66,6 @@ Result<void> check(const Recording& recording) {
   }
   return {};
 }
-
-Result<std::string> encode(const Recording& recording, Format format) {
-  switch (format) {
-    case Format::mat5:
-      return encode_mat_level5(recording);
-    case Format::mat73:
-      return encode_mat_hdf5(recording);
-    case Format::hdf5:
-      return encode_hdf5(recording);
-    case Format::csv:
-      break;
-  }
-  return encode_csv(recording);
-}
-
-}  // namespace
 
 std::string_view text(Format format) {
   switch (format) {
@@ -96,21 +96,24 @@ Result<Format> format_of(const std::filesystem::path& file, std::string_view nam
               "let it end with .h5, .mat or .csv", file.string());
 }
 
-std::vector<std::string> lost_in(const Recording& recording, Format format) {
+std::vector<std::string> lost_frames(const Recording& recording, std::string_view format) {
   std::vector<std::string> lost;
-  if (format == Format::hdf5) return lost;
   for (const Channel& channel : recording.channels) {
     const auto kind = std::ranges::find(channel_kinds(), channel.name, &ChannelKind::name);
     if (channel.frame == (kind == channel_kinds().end() ? "" : kind->frame)) continue;
-    lost.push_back(fmt::format("the frame of {} ('{}'): {} files have no place for it", channel.name, channel.frame,
-                               text(format)));
+    lost.push_back(
+        fmt::format("the frame of {} ('{}'): {} files have no place for it", channel.name, channel.frame, format));
   }
   return lost;
 }
 
+std::vector<std::string> lost_in(const Recording& recording, Format format) {
+  return format == Format::hdf5 ? std::vector<std::string>() : lost_frames(recording, text(format));
+}
+
 Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format, bool overwrite,
                    Readers readers) {
-  if (auto ok = check(recording); !ok) return tl::unexpected(ok.error().in(file.string()));
+  if (auto ok = check_writable(recording); !ok) return tl::unexpected(ok.error().in(file.string()));
   const auto bytes = encode(recording, format);
   if (!bytes) return tl::unexpected(bytes.error().in(file.string()));
   return write_file(file, overwrite, *bytes, readers);

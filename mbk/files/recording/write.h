@@ -35,6 +35,12 @@ enum class Format {
 /// What such a file has no place for, in words; nothing where everything comes back.
 [[nodiscard]] std::vector<std::string> lost_in(const Recording& recording, Format format);
 
+/// The frames among them: channels whose frame is another than their name implies.
+[[nodiscard]] std::vector<std::string> lost_frames(const Recording& recording, std::string_view format);
+
+/// @fails  data: no samples or channels; a channel twice or of another length; a text that is not one line.
+[[nodiscard]] Result<void> check_writable(const Recording& recording);
+
 /// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes,
 /// whatever the order of their channels. What was measured on a person is for the file's owner alone, unless `readers`
 /// says otherwise.

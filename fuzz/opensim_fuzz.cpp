@@ -1,0 +1,31 @@
+#include "fuzz/fuzz.h"
+#include "mbk/files/tables/octave_text.h"
+#include "mbk/files/tables/opensim.h"
+
+namespace mbk::fuzz {
+
+std::vector<std::string> seeds() {
+  return {
+      "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\n\nendheader\ntime\tq1\tF\n0\t90\t1\n0.1\tNAN\t\n",
+      "name old\ndatacolumns 2\ndatarows 1\nendheader\n\n  time   x \n 0.0  10.0\n 1 -nan\n",
+      "PathFileType\t4\t(X/Y/Z)\ta.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t2\t1\tmm\nFrame#\tTime\tHand\t\t\n"
+      "\t\tX1\tY1\tZ1\n\n1\t0\t1\t2\t3\n2\t0.01\t\t\n",
+      "# Created by Octave 7\n# name: t\n# type: matrix\n# rows: 2\n# columns: 2\n 0 1\n 2 NA\n\n\n"
+      "# name: r\n# type: range\n# base, limit, increment\n0 5 1\n\n# name: s\n# type: scalar struct\n# ndims: 2\n 1 "
+      "1\n"
+      "# length: 2\n# name: x\n# type: scalar\n1.5\n\n# name: n\n# type: string\n# elements: 1\n# length: 2\nab\n\n"
+      "# name: c\n# type: cell\n# rows: 1\n# columns: 1\n# name: <cell-element>\n# type: scalar\n1\n\n"
+      "# name: i\n# type: int32 matrix\n# ndims: 2\n 2 1\n  1\n  2\n\n"};
+}
+
+}  // namespace mbk::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace mbk::recording;  // NOLINT(google-build-using-namespace): that is what is tried
+  const auto bytes = mbk::fuzz::bytes_of(data, size);
+  const auto text = mbk::fuzz::text_of(data, size);
+  if (looks_like_octave_text(text)) mbk::fuzz::check_decoded(decode_octave_text(bytes), size);
+  if (looks_like_opensim(text)) mbk::fuzz::check_decoded(decode_opensim(bytes), size);
+  if (looks_like_trc(text)) mbk::fuzz::check_decoded(decode_trc(bytes), size);
+  return 0;
+}

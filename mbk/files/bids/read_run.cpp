@@ -1,0 +1,393 @@
+#include "mbk/files/bids/read_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "mbk/base/core/printable.h"
+#include "mbk/files/bids/bids_words.h"
+#include "mbk/files/contents/cells.h"
+#include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/memory.h"
+#include "mbk/files/contents/text_lines.h"
+
+namespace mbk::recording {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::string_view kMotion = "_motion.tsv", kChannels = "_channels.tsv", kSidecar = "_motion.json",
+                           kDescriptions = "_channels.json", kEvents = "_events.tsv";
+constexpr std::size_t kMaxColumns = 10'000;
+
+std::string shown(std::string_view cell) {
+  return printable(std::string(cell.substr(0, 60)));
+}
+
+/// A table with a header, cell by cell.
+struct Tsv {
+  std::vector<std::string_view> header;
+  std::vector<std::vector<std::string_view>> rows;
+  std::vector<std::size_t> lines;  ///< number of the line of each row
+
+  [[nodiscard]] std::string_view cell(std::size_t row, std::string_view column) const {
+    const auto at = static_cast<std::size_t>(std::ranges::find(header, column) - header.begin());
+    const std::string_view found = at < rows[row].size() ? rows[row][at] : std::string_view();
+    return found == kNotAvailable ? std::string_view() : found;
+  }
+  [[nodiscard]] bool has(std::string_view column) const { return std::ranges::find(header, column) != header.end(); }
+};
+
+Tsv parse_tsv(std::string_view text) {
+  Tsv table;
+  TextLines lines(text);
+  if (const auto header = lines.next_filled()) table.header = split(header->text, '\t');
+  for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
+    table.rows.push_back(split(line->text, '\t'));
+    table.lines.push_back(line->number);
+  }
+  return table;
+}
+
+std::optional<double> positive(const Json& sidecar, const char* key) {
+  const auto entry = sidecar.find(key);
+  if (entry == sidecar.end() || !entry->is_number()) return std::nullopt;
+  const double value = entry->get<double>();
+  return value > 0.0 && value < 1e300 ? std::optional(value) : std::nullopt;
+}
+
+class Run {
+ public:
+  explicit Run(const BidsTexts& texts) : texts_(texts) {}
+
+  Result<Contents> run() {
+    contents_.format = "BIDS motion";
+    contents_.table = true;
+    if (auto ok = take_sidecars(); !ok) return tl::unexpected(ok.error());
+    channels_ = parse_tsv(texts_.channels);
+    for (const std::string_view column : {"name", "type", "units"}) {
+      if (channels_.has(column)) continue;
+      return bad_data(fmt::format("it has no column '{}'", column), "every channel needs name, type and units",
+                      std::string(kChannels.substr(1)));
+    }
+    const std::size_t count = channels_.rows.size();
+    if (count == 0 || count > kMaxColumns) {
+      return bad_data(fmt::format("it describes {} channels", count), "describe every column of motion.tsv",
+                      std::string(kChannels.substr(1)));
+    }
+    if (auto ok = take_numbers(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = name_channels(); !ok) return tl::unexpected(ok.error());
+    take_events();
+    return std::move(contents_);
+  }
+
+ private:
+  Result<void> take_sidecars() {
+    sidecar_ = Json::object();
+    for (const std::string& text : texts_.sidecars) {
+      const Json one = Json::parse(text, nullptr, false);
+      if (!one.is_object()) {
+        return bad_data("it is not a JSON object", "correct it", std::string(kSidecar.substr(1)));
+      }
+      for (const auto& [key, value] : one.items()) sidecar_[key] = value;
+    }
+    const Json descriptions = Json::parse(texts_.descriptions, nullptr, false);
+    const auto own = descriptions.is_object() ? descriptions.find(kMetadataKey) : descriptions.end();
+    if (own != descriptions.end() && own->is_object() && own->contains("Levels") && (*own)["Levels"].is_object()) {
+      for (const auto& [key, value] : (*own)["Levels"].items()) {
+        if (value.is_string()) contents_.metadata[printable(key)] = printable(value.get<std::string>());
+      }
+      return {};
+    }
+    const auto task = sidecar_.find("TaskName");
+    if (task != sidecar_.end() && task->is_string()) contents_.metadata["task"] = printable(task->get<std::string>());
+    if (!texts_.label.empty()) contents_.metadata["participant"] = printable(texts_.label);
+    return {};
+  }
+
+  Result<void> take_numbers() {
+    const std::size_t columns = channels_.rows.size();
+    const auto lines_there = static_cast<std::uint64_t>(std::ranges::count(texts_.motion, '\n')) + 1;
+    const std::uint64_t rows_there = std::min<std::uint64_t>(lines_there, texts_.motion.size() / columns + 1);
+    if (auto ok = check_memory(8 * rows_there * columns); !ok) return ok;
+    std::vector<Vector> numbers(columns, Vector(static_cast<Index>(rows_there)));
+    TextLines lines(texts_.motion);
+    Index rows = 0;
+    for (auto line = lines.next(); line; line = lines.next()) {
+      if (line->text.empty()) continue;
+      const auto cells = split(line->text, '\t');
+      const std::string where = fmt::format("{}, line {}", kMotion.substr(1), line->number);
+      if (line->number == 1 && is_header(cells)) {
+        contents_.notes.emplace_back(
+            "its first line repeats the names of the channels, which the standard does not ask for");
+        continue;
+      }
+      if (!line->terminated && cells.size() < columns) {
+        contents_.notes.push_back(
+            fmt::format("line {} is incomplete (the recording was cut off there) and was ignored", line->number));
+        break;
+      }
+      if (cells.size() != columns) {
+        return bad_data(fmt::format("it has {} columns, {} describes {}", cells.size(), kChannels.substr(1), columns),
+                        "describe every column, in the order in which they stand", where);
+      }
+      for (std::size_t c = 0; c < columns; ++c) {
+        const auto value = cells[c] == kNotAvailable ? std::numeric_limits<double>::quiet_NaN() : cell_number(cells[c]);
+        if (!value) {
+          return bad_data(fmt::format("'{}' is not a number", shown(cells[c])), "write n/a where a value is missing",
+                          fmt::format("{}, column {}", where, c + 1));
+        }
+        numbers[c][rows] = *value;
+      }
+      ++rows;
+    }
+    if (rows == 0)
+      return bad_data("it holds no line of numbers", "nothing was recorded", std::string(kMotion.substr(1)));
+    for (Vector& column : numbers) {
+      column.conservativeResize(rows);
+      contents_.arrays.emplace_back().values = SharedMatrix::of_column(std::move(column));
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool is_header(const std::vector<std::string_view>& cells) const {
+    if (cells.size() != channels_.rows.size()) return false;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      if (cells[c] != channels_.cell(c, "name") || general_number(cells[c])) return false;
+    }
+    return true;
+  }
+
+  Result<void> name_channels() {
+    const auto effective = positive(sidecar_, "SamplingFrequencyEffective");
+    const auto nominal = positive(sidecar_, "SamplingFrequency");
+    const double rate = effective.value_or(nominal.value_or(0.0));
+    bool timed = false;
+    std::vector<std::string> bad;
+    for (std::size_t c = 0; c < contents_.arrays.size(); ++c) {
+      Array& array = contents_.arrays[c];
+      array.name = printable(std::string(channels_.cell(c, "name")));
+      array.unit = printable(std::string(channels_.cell(c, "units")));
+      if (channels_.cell(c, "type") == "LATENCY" && !timed) {
+        timed = true;
+        array.means = "time";
+        if (array.unit.empty()) array.unit = "s";
+      }
+      if (channels_.cell(c, "status") == "bad") bad.push_back(array.name);
+    }
+    if (!bad.empty()) {
+      contents_.notes.push_back(fmt::format("channels.tsv says of these that they are bad: {}", fmt::join(bad, ", ")));
+    }
+    if (timed) return {};
+    if (rate == 0.0) {
+      return bad_data("it says no SamplingFrequency, and no channel is of type LATENCY",
+                      "write the sampling frequency into it", std::string(kSidecar.substr(1)));
+    }
+    for (Array& array : contents_.arrays) array.rate_hz = rate;
+    if (effective && nominal && *effective != *nominal) {
+      contents_.notes.push_back(
+          fmt::format("the rate is the effective one, {:.9g} Hz; nominal are {:.9g} Hz", *effective, *nominal));
+    }
+    return {};
+  }
+
+  void take_events() {
+    if (texts_.events.empty()) return;
+    const Tsv events = parse_tsv(texts_.events);
+    double begin = 0.0;
+    for (const Array& array : contents_.arrays) {
+      if (array.means == "time") begin = array.values(0, 0) / (array.unit == "ms" ? 1e3 : 1.0);
+    }
+    std::size_t left_out = 0;
+    for (std::size_t k = 0; k < events.rows.size(); ++k) {
+      const auto number = [&](std::string_view column) -> std::optional<double> {
+        const std::string_view cell = events.cell(k, column);
+        return cell.empty() ? std::nullopt : general_number(cell);
+      };
+      const auto onset = number("onset"), exact = number(kRecordedTime);
+      if (!onset && !exact) {
+        ++left_out;
+        continue;
+      }
+      std::string_view name;
+      for (const std::string_view column : {"trial_type", "event_type", "stim_type"}) {
+        if (name.empty()) name = events.cell(k, column);
+      }
+      const std::string_view value = events.cell(k, "value");
+      const auto as_number = value.empty() ? std::optional(0.0) : general_number(value);
+      if (name.empty() && !as_number) name = value;
+      contents_.events.push_back(
+          {exact ? *exact : begin + *onset, printable(std::string(name)), as_number.value_or(0.0)});
+    }
+    if (left_out > 0) contents_.notes.push_back(fmt::format("{} events have no onset; ignored", left_out));
+  }
+
+  const BidsTexts& texts_;
+  Json sidecar_;
+  Tsv channels_;
+  Contents contents_;
+};
+
+/// Names by their letters, and numbers in them by their value.
+bool is_before(std::string_view a, std::string_view b) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  while (!a.empty() && !b.empty()) {
+    if (digit(a.front()) && digit(b.front())) {
+      const auto number = [&](std::string_view& text) {
+        text.remove_prefix(std::min(text.find_first_not_of('0'), text.size()));
+        const std::size_t end = static_cast<std::size_t>(std::ranges::find_if_not(text, digit) - text.begin());
+        const std::string_view found = text.substr(0, end);
+        text.remove_prefix(end);
+        return found;
+      };
+      const std::string_view one = number(a), other = number(b);
+      if (one.size() != other.size()) return one.size() < other.size();
+      if (one != other) return one < other;
+      continue;
+    }
+    if (a.front() != b.front()) return a.front() < b.front();
+    a.remove_prefix(1);
+    b.remove_prefix(1);
+  }
+  return a.size() < b.size();
+}
+
+std::string stem_of(const fs::path& motion) {
+  const std::string name = motion.filename().string();
+  return name.substr(0, name.size() - kMotion.size());
+}
+
+std::string without_tracking_system(const std::string& stem) {
+  std::string kept;
+  for (const std::string_view part : split(stem, '_')) {
+    if (!part.starts_with("tracksys-")) kept += (kept.empty() ? "" : "_") + std::string(part);
+  }
+  return kept;
+}
+
+/// Whether every part of a more general name, before its suffix, stands in that of the recording.
+bool applies(std::string_view general, const std::vector<std::string_view>& parts) {
+  return general.empty() || std::ranges::all_of(split(general, '_'), [&](std::string_view part) {
+           return part.empty() || std::ranges::find(parts, part) != parts.end();
+         });
+}
+
+Result<std::string> read_text(const fs::path& file) {
+  const auto bytes = read_file(file);
+  if (!bytes) return tl::unexpected(bytes.error().in(file.filename().string()));
+  const auto text = bytes->bytes();
+  return std::string(reinterpret_cast<const char*>(text.data()), text.size());
+}
+
+/// Files with that end that hold for a recording, the most general first: those of its folder and of the folders above,
+/// up to the data set.
+std::vector<fs::path> files_for(const fs::path& motion, std::string_view end) {
+  constexpr int kUp = 4;
+  const std::string stem = stem_of(motion);
+  const auto parts = split(stem, '_');
+  std::vector<fs::path> found;
+  fs::path folder = motion.has_parent_path() ? motion.parent_path() : fs::path(".");
+  for (int k = 0; k < kUp; ++k) {
+    std::vector<fs::path> here;
+    std::error_code code;
+    for (fs::directory_iterator entry(folder, code), last; !code && entry != last; entry.increment(code)) {
+      const std::string name = entry->path().filename().string();
+      const bool bare = name == end.substr(1);
+      if (!bare && !name.ends_with(end)) continue;
+      if (applies(bare ? std::string_view() : std::string_view(name).substr(0, name.size() - end.size()), parts)) {
+        here.push_back(entry->path());
+      }
+    }
+    std::ranges::sort(here, {}, [](const fs::path& path) { return path.filename().string().size(); });
+    found.insert(found.begin(), here.begin(), here.end());
+    const bool is_root = fs::exists(folder / "dataset_description.json", code);
+    const std::string name = fs::absolute(folder, code).lexically_normal().filename().string();
+    if (is_root || !(name == "motion" || name.starts_with("ses-") || name.starts_with("sub-"))) break;
+    folder = fs::absolute(folder, code).lexically_normal().parent_path();
+  }
+  return found;
+}
+
+}  // namespace
+
+Result<Contents> decode_bids(const BidsTexts& texts) {
+  return Run(texts).run();
+}
+
+bool may_be_bids(const fs::path& path) {
+  std::error_code code;
+  return path.filename().string().ends_with(kMotion) || fs::is_directory(path, code);
+}
+
+Result<std::vector<BidsRun>> find_bids_runs(const fs::path& path) {
+  constexpr int kDeepest = 4;
+  std::vector<BidsRun> runs;
+  std::error_code code;
+  if (!fs::is_directory(path, code)) {
+    runs.push_back({{stem_of(path), ""}, path});
+    return runs;
+  }
+  for (fs::recursive_directory_iterator entry(path, code), last; !code && entry != last; entry.increment(code)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) {
+      const bool other = name == "derivatives" || name == "sourcedata" || name == "code" || name.starts_with('.');
+      if (other || entry.depth() >= kDeepest) entry.disable_recursion_pending();
+    } else if (name.ends_with(kMotion) && name.starts_with("sub-")) {
+      runs.push_back({{stem_of(entry->path()), ""}, entry->path()});
+    }
+  }
+  if (code) return bad_data(fmt::format("the folder cannot be read: {}", code.message()), "check its permissions");
+  std::ranges::sort(runs, is_before, [](const BidsRun& run) { return std::string_view(run.name.name); });
+  std::set<std::string> shorter;
+  bool alike = false;
+  for (const BidsRun& run : runs) alike = !shorter.insert(without_tracking_system(run.name.name)).second || alike;
+  if (!alike) {
+    for (BidsRun& run : runs) run.name.name = without_tracking_system(run.name.name);
+  }
+  for (BidsRun& run : runs) run.name.name = printable(run.name.name);
+  return runs;
+}
+
+Result<Contents> read_bids_run(const fs::path& motion) {
+  const auto numbers = read_text(motion);
+  if (!numbers) return tl::unexpected(numbers.error());
+  const auto channel_files = files_for(motion, kChannels);
+  if (channel_files.empty()) {
+    return bad_data(fmt::format("there is no {}{} beside it", stem_of(motion), kChannels),
+                    "it must say name, type and units of every column");
+  }
+  const auto channels = read_text(channel_files.back());
+  if (!channels) return tl::unexpected(channels.error());
+  BidsTexts texts{*numbers, *channels, {}, "", "", ""};
+  for (const fs::path& file : files_for(motion, kSidecar)) {
+    auto text = read_text(file);
+    if (!text) return tl::unexpected(text.error());
+    texts.sidecars.push_back(std::move(*text));
+  }
+  std::string events, descriptions;
+  for (auto& [text, end] : {std::pair(&events, kEvents), std::pair(&descriptions, kDescriptions)}) {
+    const auto files = files_for(motion, end);
+    if (files.empty()) continue;
+    auto found = read_text(files.back());
+    if (!found) return tl::unexpected(found.error());
+    *text = std::move(*found);
+  }
+  texts.events = events;
+  texts.descriptions = descriptions;
+  const std::string stem = stem_of(motion);
+  for (const std::string_view part : split(stem, '_')) {
+    if (part.starts_with("sub-")) texts.label = std::string(part.substr(4));
+  }
+  return decode_bids(texts);
+}
+
+}  // namespace mbk::recording

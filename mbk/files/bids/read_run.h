@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/contents/contents.h"
+
+namespace mbk::recording {
+
+/// The texts that are one recording of a BIDS data set.
+struct BidsTexts {
+  std::string_view motion;            ///< …_motion.tsv: numbers without a header
+  std::string_view channels;          ///< …_channels.tsv
+  std::vector<std::string> sidecars;  ///< …_motion.json, the most general first: what follows replaces what it repeats
+  std::string_view events;            ///< …_events.tsv; "" where there is none
+  std::string_view descriptions;      ///< …_channels.json; "" where there is none
+  std::string label;                  ///< of the participant
+};
+
+/// Reads the columns of the recording under the names that channels.tsv gives them, in its units. Time stamps are those
+/// of its first channel of type LATENCY; without one the rate is the effective sampling frequency or, where that is not
+/// said, the nominal one. "n/a" is NaN. Metadata are those that mbk wrote, or else task and label of the participant.
+/// @fails  data: a text is missing or damaged; there are not as many columns as channels.tsv describes; what is not a
+///         number; no sampling frequency and no time stamps.
+[[nodiscard]] Result<Contents> decode_bids(const BidsTexts& texts);
+
+/// Whether the path is a folder, or the motion.tsv of a recording.
+[[nodiscard]] bool may_be_bids(const std::filesystem::path& path);
+
+/// A recording of a data set.
+struct BidsRun {
+  TrialName name;
+  std::filesystem::path motion;  ///< its motion.tsv
+};
+
+/// The recordings in a data set, in the folder of a participant or session, or in one motion.tsv; in the order of their
+/// names, numbers by their value. The tracking system is part of a name only where others are alike without it.
+/// @fails  data: the folder cannot be read.
+[[nodiscard]] Result<std::vector<BidsRun>> find_bids_runs(const std::filesystem::path& path);
+
+/// Reads one of them. JSON files of folders above hold for it, too, as the standard says.
+/// @fails  data: as decode_bids; a file is missing or cannot be read.
+[[nodiscard]] Result<Contents> read_bids_run(const std::filesystem::path& motion);
+
+}  // namespace mbk::recording

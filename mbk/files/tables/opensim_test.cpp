@@ -1,0 +1,104 @@
+#include "mbk/files/tables/opensim.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <span>
+#include <string>
+
+namespace mbk::recording {
+namespace opensim_test {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kMotion =
+    "Coordinates\nversion=1\nnRows=3\nnColumns=3\ninDegrees=yes\nUnits are S.I. units\n\nendheader\ntime\tq1\tF\n"
+    "0\t90\t1\n0.01\tNAN\t2\n0.02\t\t3\n";
+const std::string kMarkers =
+    "PathFileType\t4\t(X/Y/Z)\ta.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n100\t100\t3\t2\tmm\n"
+    "Frame#\tTime\tHand\t\t\tHand\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n1\t0\t1\t2\t3\t4\t5\t6\n2\t0.01\t1\t2\t3\t-"
+    "nan\t\t\n"
+    "3\t0.02\t1\t2\t3\n";
+
+std::vector<std::string> names_of(const Contents& contents) {
+  std::vector<std::string> names;
+  for (const Array& array : contents.arrays) names.push_back(array.name);
+  return names;
+}
+
+template <class Decode>
+std::string error_of(Decode decode, const std::string& text) {
+  const auto contents = decode(std::as_bytes(std::span(text)));
+  return contents ? "none" : contents.error().line();
+}
+
+TEST(DecodeOpensim, ReadsTablesOfToday) {
+  ASSERT_TRUE(looks_like_opensim(kMotion));
+  const auto contents = decode_opensim(std::as_bytes(std::span(kMotion)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_THAT(names_of(*contents), ElementsAre("time", "q1", "F"));
+  EXPECT_EQ(contents->angle_unit, "deg");
+  EXPECT_EQ(contents->arrays[2].values, Vector::LinSpaced(3, 1, 3));
+  EXPECT_EQ(contents->arrays[1].values(0, 0), 90);
+  EXPECT_TRUE(std::isnan(contents->arrays[1].values(1, 0)) && std::isnan(contents->arrays[1].values(2, 0)));
+  EXPECT_TRUE(contents->notes.empty());
+}
+
+TEST(DecodeOpensim, ReadsOldTables) {
+  const std::string old = "name old\ndatacolumns 2\ndatarows 9\nendheader\n\n  time   x \n 0.0  10.0\n 1 1.#QNAN\n";
+  ASSERT_TRUE(looks_like_opensim(old));
+  const auto contents = decode_opensim(std::as_bytes(std::span(old)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_THAT(names_of(*contents), ElementsAre("time", "x"));
+  EXPECT_EQ(contents->angle_unit, "");
+  EXPECT_TRUE(std::isnan(contents->arrays[1].values(1, 0)));
+  EXPECT_THAT(contents->notes, Contains("the header says 9 rows, and there are 2: the file may have been cut off"));
+}
+
+TEST(DecodeOpensim, RefusesWhatIsNoTable) {
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\n"), HasSubstr("no labels"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\n0\t1\n"), HasSubstr("no labels"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n"), HasSubstr("no line of numbers"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\t1\t2\n"),
+              HasSubstr("line 4: 3 numbers where there are 2"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\tone\n"), HasSubstr("line 4, column 2: 'one'"));
+}
+
+TEST(DecodeOpensim, LeavesAnIncompleteLastLineAside) {
+  const std::string cut = "a\nendheader\ntime\tx\n0\t1\n0.1";
+  const auto contents = decode_opensim(std::as_bytes(std::span(cut)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays[0].values.rows(), 1);
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("line 5 is incomplete")));
+}
+
+TEST(DecodeTrc, ReadsMarkersWithUnitAndRate) {
+  ASSERT_TRUE(looks_like_trc(kMarkers));
+  const auto contents = decode_trc(std::as_bytes(std::span(kMarkers)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_THAT(names_of(*contents),
+              ElementsAre("Frame#", "Time", "Hand.x", "Hand.y", "Hand.z", "Hand#2.x", "Hand#2.y", "Hand#2.z"));
+  EXPECT_EQ(contents->arrays[2].unit, "mm");
+  EXPECT_EQ(contents->arrays[2].rate_hz, 100.0);
+  EXPECT_EQ(contents->arrays[1].unit, "s");
+  EXPECT_EQ(contents->arrays[7].values(0, 0), 6);
+  EXPECT_TRUE(std::isnan(contents->arrays[5].values(1, 0)) && std::isnan(contents->arrays[7].values(2, 0)));
+}
+
+TEST(DecodeTrc, RefusesWhatDoesNotFit) {
+  const auto with = [](std::string_view from, std::string_view to) {
+    std::string text = kMarkers;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_THAT(error_of(decode_trc, with("\t2\tmm", "\t3\tmm")), HasSubstr("says 3 markers, and names 2"));
+  EXPECT_THAT(error_of(decode_trc, with("Frame#", "Row")), HasSubstr("does not begin with Frame# and Time"));
+  EXPECT_THAT(error_of(decode_trc, with("\t5\t6\n", "\t5\t6\t7\n")), HasSubstr("9 cells where"));
+  EXPECT_THAT(error_of(decode_trc, with("1\t0\t1", "1\tx\t1")), HasSubstr("line 7, column 2: 'x'"));
+  EXPECT_THAT(error_of(decode_trc, "PathFileType\t4\n"), HasSubstr("five lines of header"));
+}
+
+}  // namespace opensim_test
+}  // namespace mbk::recording
