@@ -41,6 +41,9 @@ class RecordingReader {
   /// FILE, or the first part.
   [[nodiscard]] const std::filesystem::path& file(int k) const { return records_[static_cast<std::size_t>(k)].file; }
 
+  /// The trials of the only FILE, where it holds several and all of them are read; otherwise none.
+  [[nodiscard]] std::vector<recording::TrialName> trials() const;
+
   /// Where --sensor is given, the force is that of its voltages.
   /// @param k  0 … count() − 1    @fails  as recording::read; the error names the file.
   [[nodiscard]] Result<Recording> read(int k) const;

@@ -210,7 +210,7 @@ class Assembler {
     return bad_data(
         fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
         !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
-        : contents_.arrays.front().rate_hz > 0.0
+        : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
             ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
             : "say which is which, as in --channels time=1,x=2,Fx=3");
   }
