@@ -110,6 +110,7 @@ struct KinarmExam::Open {
         const std::string_view name = member.name;
         if (!name.starts_with(kRaw) || !name.ends_with(kC3d) || name == kCommonC3d) continue;
         const std::string label(name.substr(kRaw.size(), name.size() - kRaw.size() - kC3d.size()));
+        if (label.find('/') != std::string::npos) continue;
         Part& part = found[label];
         part.label = label;
         part.members = {member.name};
