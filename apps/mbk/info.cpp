@@ -82,9 +82,9 @@ int run(const InfoArguments& arguments) {
   } else {
     const auto reader = RecordingReader::of(reading, arguments.sensor);
     if (!reader) return report_error(reader.error());
-    if (reader->count() > 1 && reading.files.size() == 1 && !arguments.output.json) {
-      const auto trials = recording::list_trials(reading.files.front());
-      if (trials && !trials->empty()) return show_trials(arguments, *reader, *trials);
+    const std::vector<recording::TrialName> trials = reader->trials();
+    if (!trials.empty() && reading.files.size() == 1 && !arguments.output.json) {
+      return show_trials(arguments, *reader, trials);
     }
     for (int k = 0; k < reader->count(); ++k) {
       auto one = reader->read(k);

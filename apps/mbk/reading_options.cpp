@@ -67,7 +67,7 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
       ->type_name("N|NAME")
       ->check(not_empty());
   command
-      .add_option("--arm", arguments.arm, "whose hand is the hand, where a KINARM exam recorded both: right or left")
+      .add_option("--side", arguments.arm, "whose hand is the hand, where a KINARM exam recorded both: right or left")
       ->type_name("right|left")
       ->check([](const std::string& arm) {
         return arm == "right" || arm == "left" ? "" : fmt::format("{} is neither right nor left", quoted(arm));
@@ -136,6 +136,14 @@ Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const s
                                               trials->front().name, trials->back().name))
                             .value()
                             .in(file.string()));
+}
+
+std::vector<recording::TrialName> RecordingReader::trials() const {
+  std::vector<recording::TrialName> trials;
+  if (parts_ || records_.size() < 2 || records_.front().file != records_.back().file) return trials;
+  trials = records_.front().open ? recording::trials_of(*records_.front().open)
+                                 : recording::list_trials(records_.front().file).value_or(trials);
+  return trials.size() == records_.size() ? trials : std::vector<recording::TrialName>();
 }
 
 Result<Recording> RecordingReader::read(int k) const {

@@ -43,6 +43,8 @@ class RecordingReader {
 
   /// Its trial by name; "" where FILE holds one record only.
   [[nodiscard]] const std::string& trial(int k) const { return records_[static_cast<std::size_t>(k)].trial; }
+  /// The trials of the only FILE, where it holds several and all of them are read; otherwise none.
+  [[nodiscard]] std::vector<recording::TrialName> trials() const;
 
   /// Where --sensor is given, the force is that of its voltages.
   /// @param k  0 … count() − 1    @fails  as recording::read; the error names the file.

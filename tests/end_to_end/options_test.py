@@ -167,6 +167,8 @@ class Effects(Case):
                      "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay",  # sensor_test.py
                      "--robot",  # robot_force_test.py
                      "--ranges", "--ignore-range",  # mistakes_test.py
+                     "--side", "--trial",  # kinarm_test.py
+                     "--clock",  # of files with several streams
                      "--arm"}  # joint_domain_test.py
         self.assertEqual(options, set(NUMBERS) | set(WORDS) | elsewhere)
 

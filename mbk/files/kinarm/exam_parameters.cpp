@@ -69,7 +69,11 @@ std::string key_of(std::string_view group, std::string_view name) {
 std::string value_text(const ExamValue& value) {
   if (value.is_text) return fmt::format("{}", fmt::join(value.texts, "; "));
   std::string text;
-  for (const double number : value.numbers) text += (text.empty() ? "" : " ") + fmt::format("{:.9g}", number);
+  for (const double number : value.numbers) {
+    const auto real = static_cast<float>(number);  // the shortest text that stands for what is stored
+    text += text.empty() ? "" : " ";
+    text += static_cast<double>(real) == number ? fmt::format("{}", real) : fmt::format("{:.15g}", number);
+  }
   return text;
 }
 

@@ -229,7 +229,7 @@ std::string length_text(double metres) {
 }
 
 /// Whether the recorded hand does not contradict the geometry; a note says how they compare.
-bool agrees(Arm arm, const ExamTrial& trial, const ArmGeometry& geometry, const JointMotion& joints,
+bool agrees(Arm arm, const ExamTrial& trial, const HandGeometry& geometry, const JointMotion& joints,
             const HandSignal& position, std::vector<std::string>& notes) {
   const RecordedHand recorded = recorded_hand(arm, trial);
   const std::string hand = fmt::format("{0}_hand_x, {0}_hand_y", name_of(arm));

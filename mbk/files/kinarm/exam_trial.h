@@ -8,9 +8,9 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/files/contents/contents.h"
-#include "mbk/files/kinarm/arm_geometry.h"
 #include "mbk/files/kinarm/exam_parameters.h"
 #include "mbk/files/kinarm/force_sign.h"
+#include "mbk/files/kinarm/hand_geometry.h"
 #include "mbk/model/trial/recording.h"
 
 namespace mbk::recording {

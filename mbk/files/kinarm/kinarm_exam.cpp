@@ -110,6 +110,7 @@ struct KinarmExam::Open {
         const std::string_view name = member.name;
         if (!name.starts_with(kRaw) || !name.ends_with(kC3d) || name == kCommonC3d) continue;
         const std::string label(name.substr(kRaw.size(), name.size() - kRaw.size() - kC3d.size()));
+        if (label.find('/') != std::string::npos) continue;
         Part& part = found[label];
         part.label = label;
         part.members = {member.name};
@@ -487,12 +488,12 @@ struct KinarmExam::Open {
       if (std::ranges::find(arms, *choice.arm) != arms.end()) return choice.arm;
       if (!choice.needs_arm) return std::optional<Arm>();
       return bad_usage(
-          fmt::format("--arm {}: that arm was not recorded", *choice.arm == Arm::right ? "right" : "left"),
-          arms.empty() ? "the joints of no arm were recorded; name the channels with --channels" : "leave --arm out");
+          fmt::format("--side {}: that arm was not recorded", *choice.arm == Arm::right ? "right" : "left"),
+          arms.empty() ? "the joints of no arm were recorded; name the channels with --channels" : "leave --side out");
     }
     if (arms.size() == 1) return std::optional(arms.front());
     if (arms.size() > 1 && choice.needs_arm) {
-      return bad_usage("both arms were recorded, and none is named", "pass --arm right or --arm left");
+      return bad_usage("both arms were recorded, and none is named", "pass --side right or --side left");
     }
     return std::optional<Arm>();
   }
@@ -532,6 +533,11 @@ struct KinarmExam::Open {
     if (!trial) return tl::unexpected(trial.error());
     auto loaded = load(**trial, everything);
     if (!loaded) return tl::unexpected(loaded.error());
+    if (loaded->signals.empty()) {
+      std::string why = "the trial holds no signal";
+      for (const std::string& note : loaded->notes) why += "; " + note;
+      return bad_data(std::move(why), "nothing was recorded, or it is damaged");
+    }
     const std::vector<Arm> arms = arms_of(*loaded);
     const auto arm = chosen_arm(arms, choice);
     if (!arm) return tl::unexpected(arm.error());
@@ -547,10 +553,10 @@ struct KinarmExam::Open {
           "the joints of no arm were recorded, so that no hand is computed; a hand that was "
           "resampled is no measure of velocity");
     } else if (arms.size() == 2) {
-      contents.notes.push_back(*arm
-                                   ? fmt::format("both arms were recorded; the {} one is taken, as asked",
-                                                 **arm == Arm::right ? "right" : "left")
-                                   : "both arms were recorded, and none is taken; --arm right or --arm left takes one");
+      contents.notes.push_back(
+          *arm ? fmt::format("both arms were recorded; the {} one is taken, as asked",
+                             **arm == Arm::right ? "right" : "left")
+               : "both arms were recorded, and none is taken; --side right or --side left takes one");
     }
     for (const Arm one : arms) {
       if (!*arm || one == **arm) take_arm(one, *arm == one, *loaded, contents);

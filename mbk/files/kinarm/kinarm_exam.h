@@ -10,7 +10,7 @@
 #include "mbk/files/archive/zip_archive.h"
 #include "mbk/files/contents/contents.h"
 #include "mbk/files/contents/file_bytes.h"
-#include "mbk/files/kinarm/arm_geometry.h"
+#include "mbk/files/kinarm/hand_geometry.h"
 
 namespace mbk::recording {
 

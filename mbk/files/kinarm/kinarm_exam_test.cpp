@@ -118,6 +118,7 @@ TEST(KinarmExam, ParametersAreMetadataAndThePersonStaysInTheExam) {
   EXPECT_EQ(contents.metadata.at("EXPERIMENT_TASK_PROTOCOL"), "Reaching, 8 targets");
   EXPECT_EQ(contents.metadata.at("TRIAL_TP"), "4");
   EXPECT_EQ(contents.metadata.at("RIGHT_KINARM_VERSION"), "KINARM_EP_2.0");
+  EXPECT_EQ(contents.metadata.at("RIGHT_KINARM_L1_L"), "0.31");
   EXPECT_EQ(contents.metadata.at("trial"), "1");
   std::string all = notes(contents);
   for (const auto& [key, value] : contents.metadata) all += key + "=" + value + "\n";
@@ -272,7 +273,7 @@ TEST(KinarmExam, OfTwoArmsOneMustBeNamed) {
   exam.common += ExamOfTest::end_point(left, "LEFT");
   test::add_arm(exam.trials.front(), "Left", left, 2.0);
   exam.trials.front().hand = "Left_Hand";
-  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("--arm right or --arm left"));
+  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("--side right or --side left"));
   const Contents contents = decoded(exam.bytes(), {"", Arm::left});
   EXPECT_EQ(means(contents, "Left_hand_x"), "hand_x");
   EXPECT_EQ(means(contents, "Left_M2TorCMD"), "torque_2");
@@ -446,6 +447,8 @@ TEST(KinarmExam, RefusesWhatIsNoExamOrHoldsNoTrial) {
   ExamOfTest exam = small_exam();
   exam.trials.clear();
   EXPECT_THAT(refusal(exam.bytes()), HasSubstr("no trial"));
+  exam.trials.push_back(TrialOfTest());
+  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("no signal"));
 }
 
 TEST(KinarmExam, RefusesVersionsAndCountsThatItCannotRead) {

@@ -81,7 +81,7 @@ class Cursor {
 };
 
 ExamValue value_of(Cursor& cursor, std::string_view name) {
-  enum Kind : std::int32_t { kText = 0, kByte = 1, kWhole = 2, kReal = 3 };
+  constexpr std::int32_t kText = 0, kByte = 1, kWhole = 2, kReal = 3;
   const std::int32_t kind = cursor.whole("type of a parameter");
   if (kind < kText || kind > kReal) {
     cursor.refuse(fmt::format("parameter {} is of the unknown type {}", name, kind));

@@ -25,7 +25,7 @@ struct KinarmHeader {
   std::vector<std::string> kinematics, positions;  ///< labels
 };
 
-/// <label>.kinematics
+/// LABEL.kinematics
 struct KinarmSignal {
   std::string label, unit;
   Vector values;  ///< f32 as doubles; of a status the 32 bits as a whole number
@@ -34,7 +34,7 @@ struct KinarmSignal {
 /// Whether a signal is the status of a force sensor: an f32 of which only the bits mean something.
 [[nodiscard]] bool is_status(std::string_view label);
 
-/// <label>.position
+/// LABEL.position
 struct KinarmPosition {
   std::string label;
   Vector x, y;  ///< [m], f32 as doubles

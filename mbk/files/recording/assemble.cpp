@@ -215,7 +215,7 @@ class Assembler {
     const bool time = !signals_.empty();
     return bad_data(fmt::format("{}; {}", time ? kOnlyTimeRecognised : kNothingRecognised, inventory(contents_)),
                     !contents_.table ? "say which is which, as in --channels " + example_map()
-                    : contents_.arrays.front().rate_hz > 0.0
+                    : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
                         ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
                         : "say which is which, as in --channels time=1,x=2,Fx=3");
   }

@@ -125,7 +125,7 @@ Result<Decoded> decode_file(const std::filesystem::path& file, const ReadOptions
   if (!open) return tl::unexpected(open.error());
   if (*open) return (*open)->decode(file, options, needs_arm);
   if (!options.arm.empty()) {
-    return bad_usage(fmt::format("--arm {}: the file tells no arms apart", options.arm), "leave --arm out");
+    return bad_usage(fmt::format("--side {}: the file tells no arms apart", options.arm), "leave --side out");
   }
   auto table = decode_long_table(file);
   if (!table) return tl::unexpected(table.error());

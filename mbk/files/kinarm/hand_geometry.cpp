@@ -1,4 +1,4 @@
-#include "mbk/files/kinarm/arm_geometry.h"
+#include "mbk/files/kinarm/hand_geometry.h"
 
 #include <fmt/format.h>
 
@@ -43,7 +43,7 @@ std::string_view capitals_of(Arm arm) {
   return arm == Arm::right ? "RIGHT" : "LEFT";
 }
 
-HandSignal ArmGeometry::position(const JointMotion& joints) const {
+HandSignal HandGeometry::position(const JointMotion& joints) const {
   return each(joints.q1->size(), [&](Index i) {
     const double s1 = std::sin((*joints.q1)[i]), c1 = std::cos((*joints.q1)[i]);
     const double s2 = std::sin((*joints.q2)[i]), c2 = std::cos((*joints.q2)[i]);
@@ -51,7 +51,7 @@ HandSignal ArmGeometry::position(const JointMotion& joints) const {
   });
 }
 
-HandSignal ArmGeometry::velocity(const JointMotion& joints) const {
+HandSignal HandGeometry::velocity(const JointMotion& joints) const {
   const Vector& v1 = *joints.v1;
   const Vector& v2 = *joints.v2;
   return each(joints.q1->size(), [&](Index i) {
@@ -62,7 +62,7 @@ HandSignal ArmGeometry::velocity(const JointMotion& joints) const {
   });
 }
 
-HandSignal ArmGeometry::acceleration(const JointMotion& joints) const {
+HandSignal HandGeometry::acceleration(const JointMotion& joints) const {
   const Vector& v1 = *joints.v1;
   const Vector& v2 = *joints.v2;
   const Vector& a1 = *joints.a1;
@@ -78,7 +78,7 @@ HandSignal ArmGeometry::acceleration(const JointMotion& joints) const {
   });
 }
 
-HandSignal ArmGeometry::commanded_force(const JointMotion& joints) const {
+HandSignal HandGeometry::commanded_force(const JointMotion& joints) const {
   const Vector& torque1 = *joints.torque1;
   const Vector& torque2 = *joints.torque2;
   return each(joints.q1->size(), [&](Index i) {
@@ -93,7 +93,7 @@ HandSignal ArmGeometry::commanded_force(const JointMotion& joints) const {
   });
 }
 
-Result<ArmGeometry> geometry_of(Arm arm, const ExamParameters& parameters) {
+Result<HandGeometry> geometry_of(Arm arm, const ExamParameters& parameters) {
   // The version of a robot stands with its own arm, or with the right one where both belong to one robot.
   const std::string own = fmt::format("{}_KINARM", capitals_of(arm));
   std::string version = parameters.text(own, "VERSION");
@@ -110,8 +110,8 @@ Result<ArmGeometry> geometry_of(Arm arm, const ExamParameters& parameters) {
   if (!link1) return tl::unexpected(link1.error());
   const auto link2 = length(parameters, group, second);
   if (!link2) return tl::unexpected(link2.error());
-  ArmGeometry geometry{*link1, *link2, 0.0,
-                       fmt::format("{}:{} {:.6g} m, {} {:.6g} m", group, first, *link1, second, *link2)};
+  HandGeometry geometry{*link1, *link2, 0.0,
+                        fmt::format("{}:{} {:.6g} m, {} {:.6g} m", group, first, *link1, second, *link2)};
   if (end_point) return geometry;
   const std::string offset = side + "_PTR_ANTERIOR";
   const auto pointer = parameters.number(group, offset);

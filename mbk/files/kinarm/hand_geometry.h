@@ -38,7 +38,7 @@ struct HandSignal {
 
 /// Two links that are driven at global angles, and a pointer that stands off the second at a right angle:
 /// r = L1 (cos q1, sin q1) + L2 (cos q2, sin q2) + p (−sin q2, cos q2)    [m], from the axis of the first link
-struct ArmGeometry {
+struct HandGeometry {
   double link1 = 0.0, link2 = 0.0;  ///< L1, L2 [m]
   double pointer = 0.0;             ///< p [m], towards larger q2
   std::string from;                 ///< where the lengths stand, for people
@@ -57,6 +57,6 @@ struct ArmGeometry {
 /// KINARM_EP) has L1_L and L2_L, an Exoskeleton (KINARM_H, KINARM_M) RIGHT_L1, RIGHT_L2 and RIGHT_PTR_ANTERIOR of
 /// CALIBRATION, of which the last turns its sign for the left arm.
 /// @fails  data: the version is neither; a length is missing or not positive.
-[[nodiscard]] Result<ArmGeometry> geometry_of(Arm arm, const ExamParameters& parameters);
+[[nodiscard]] Result<HandGeometry> geometry_of(Arm arm, const ExamParameters& parameters);
 
 }  // namespace mbk::recording
