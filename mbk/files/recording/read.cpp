@@ -114,7 +114,7 @@ Result<Decoded> decode_bids_run(const std::filesystem::path& path, const std::st
   const auto runs = find_bids_runs(path);
   if (!runs) return tl::unexpected(runs.error());
   if (runs->empty()) {
-    return bad_data("the folder holds no BIDS recording (no …_motion.tsv)",
+    return bad_data("it is a folder without a BIDS recording (…_motion.tsv)",
                     "name a file, or the folder of a data set with motion data");
   }
   const BidsRun* run = runs->size() == 1 && trial.empty() ? &runs->front() : nullptr;
