@@ -204,7 +204,7 @@ class Read(DataSet):
         (self.set / "sub-a/motion/sub-a_task-walk_tracksys-imu_channels.tsv").unlink()
         self.bad_data(motion, says=["_channels.tsv"], command="info")
         (self.folder / "nothing").mkdir()
-        self.bad_data(self.folder / "nothing", says=["no BIDS recording"], command="info")
+        self.bad_data(self.folder / "nothing", says=["without a BIDS recording"], command="info")
 
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ class BidsTrials : public OpenTrials {
   [[nodiscard]] Result<Decoded> decode(const std::filesystem::path& /*file*/, const ReadOptions& options,
                                        bool /*needs_arm*/) const override {
     if (!options.arm.empty()) {
-      return bad_usage(fmt::format("--arm {}: a data set tells no arms apart", options.arm), "leave --arm out");
+      return bad_usage(fmt::format("--side {}: a data set tells no arms apart", options.arm), "leave --side out");
     }
     const auto run = this->run(options.trial);
     if (!run) return tl::unexpected(run.error());
@@ -73,7 +73,7 @@ class BidsTrials : public OpenTrials {
  private:
   [[nodiscard]] Result<const BidsRun*> run(const std::string& trial) const {
     if (runs_.empty()) {
-      return bad_data("the folder holds no BIDS recording (no …_motion.tsv)",
+      return bad_data("it is a folder without a BIDS recording (…_motion.tsv)",
                       "name a file, or the folder of a data set with motion data");
     }
     if (runs_.size() == 1 && trial.empty()) return &runs_.front();
