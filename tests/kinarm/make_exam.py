@@ -36,6 +36,8 @@ import zipfile
 import numpy as np
 
 ARMS = ("Right", "Left")
+#: Who the participant is; nothing of it may be found anywhere else.
+PERSONAL = ("MUSTERMANN-1970", "Erika Mustermann", "1970-08-12")
 EVENTS = ("TASK_START", "Öffnen", "到達", "TRIAL_END")
 #: N·s²/m, N·s/m, N/m of the arm that is moved and of the other one
 IMPEDANCES = {
@@ -180,7 +182,7 @@ def common_groups(options, robots):
         "START_DATE_TIME": ("", "2024-02-29 14:31:07"),
         "TASK_PROTOCOL": ("", "impedance at rest"),
         "TASK_PROGRAM": ("", "Impedance"),
-        "SUBJECT_ID": ("personal", "MUSTERMANN-1970"),
+        "SUBJECT_ID": ("personal", PERSONAL[0]),
     }
     if options["tdk"]:
         experiment["TASK_PROGRAM_BUILD_TDK"] = ("", options["tdk"])
@@ -196,8 +198,8 @@ def common_groups(options, robots):
         "EXPERIMENT": ("what was done", experiment),
         "CALIBRATION": ("lengths", calibration),
         "SUBJECT": ("the person", {
-            "NAME": ("personal", "Erika Mustermann"),
-            "DATE_OF_BIRTH": ("personal", "1970-08-12"),
+            "NAME": ("personal", PERSONAL[1]),
+            "DATE_OF_BIRTH": ("personal", PERSONAL[2]),
             "SEX": ("personal", "F"),
             "HANDEDNESS": ("personal", "R"),
             "HEIGHT": ("personal", [1.71]),
