@@ -182,7 +182,7 @@ class Assembler {
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
     follow_metadata();
     extract();
-    if (clock_ != nullptr) {
+    if (clock_ != nullptr && recording_.time.size() == 0) {
       if (auto ok = settle_clock(); !ok) return tl::unexpected(ok.error());
     }
     if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
@@ -190,6 +190,8 @@ class Assembler {
   }
 
  private:
+  static bool is_time(const ChannelKind* kind) { return kind->name == "time"; }
+
   // ---- which signals ----
 
   Result<void> recognise() {
@@ -205,7 +207,9 @@ class Assembler {
     const bool time = !signals_.empty();
     return bad_data(
         fmt::format("{} is recognised; {}", time ? "no channel but time" : "no channel", inventory(contents_)),
-        !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
+        !contents_.clocks.empty() && !contents_.arrays.empty()
+            ? fmt::format("say which is which, as in --channels x={},Fx=STREAM.LABEL", contents_.arrays.front().name)
+        : !contents_.table ? "say which is which, as in --channels time=t,x=2,Fx=10 (--variable NAME for a matrix)"
         : contents_.arrays.front().rate_hz > 0.0
             ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
             : "say which is which, as in --channels time=1,x=2,Fx=3");
@@ -294,6 +298,7 @@ class Assembler {
                                           : contents_.table    ? std::string_view(array.name)
                                                                : leaf(array.name));
       std::erase_if(name.kinds, [&](const ChannelKind* kind) { return kind->only_if_asked && !is_requested(*kind); });
+      if (array.clock >= 0) std::erase_if(name.kinds, is_time);  // the clock says it
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array))) {
         aside.push_back(array.name);
         continue;
@@ -419,7 +424,6 @@ class Assembler {
 
   /// A map that does not name the time leaves it to its own name, or to row 1 of a logs matrix.
   Result<void> find_time() {
-    const auto is_time = [](const ChannelKind* kind) { return kind->name == "time"; };
     if (std::ranges::any_of(signals_, [&](const Signal& s) { return is_time(s.kind); })) return {};
     const ChannelKind* const time = kinds_called("time").front();
     const Line& first = signals_.front().line;
@@ -429,6 +433,7 @@ class Assembler {
       return {};
     }
     for (const Array& array : contents_.arrays) {
+      if (array.clock >= 0) continue;  // the clock says it
       const ColumnName name = parse_column_name(array.name);
       const Line line = vector_of(array);
       if (std::ranges::none_of(name.kinds, is_time) || is_matrix(array) || line.size() != first.size()) continue;
@@ -624,7 +629,15 @@ class Assembler {
                                   "interpolated",
                                   fastest(used).name));
     }
-    return {};
+    return check_named_time(used);
+  }
+
+  /// A map may say that other stamps of the stream are its time, as those that were not corrected.
+  [[nodiscard]] Result<void> check_named_time(std::span<const Clock* const> used) const {
+    const bool named = std::ranges::any_of(signals_, [](const Signal& s) { return is_time(s.kind); });
+    if (!named || clock_ == nullptr || (used.size() == 1 && used.front() == clock_)) return {};
+    return bad_usage("time is named, and the channels come from streams with clocks of their own",
+                     "leave time out of --channels, and say with --clock whose time stamps the recording has");
   }
 
   static const Clock& fastest(std::span<const Clock* const> clocks) {

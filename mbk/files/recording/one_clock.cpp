@@ -59,6 +59,10 @@ double rate_of(const Clock& clock) {
 
 Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSignal> signals) {
   if (chosen.time.size() == 0) return bad_data(fmt::format("'{}' has no samples", chosen.name), "name another clock");
+  // One stream is taken as it was recorded.
+  if (std::ranges::all_of(signals, [&](const ClockedSignal& signal) { return signal.clock == &chosen; })) {
+    return CommonClock{chosen.time, {}};
+  }
   if (auto ok = check_rises(chosen); !ok) return tl::unexpected(ok.error());
   double begin = chosen.time[0], end = chosen.time[chosen.time.size() - 1];
   for (const ClockedSignal& signal : signals) {

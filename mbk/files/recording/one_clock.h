@@ -26,7 +26,8 @@ struct CommonClock {
 /// Puts signals of several streams on the stamps of one of them. Signals of that stream keep their samples to the bit;
 /// those of the others are interpolated linearly between their two nearest samples in time. Stamps outside what every
 /// stream covers are left out, and where a stream has no samples for longer than kLongestBridge of its median
-/// intervals, its values are NaN: nothing is made up over a gap.
+/// intervals, its values are NaN: nothing is made up over a gap. Signals of the chosen stream alone stay as they are,
+/// whatever its stamps do.
 /// @fails  data: the stamps of a stream run backward or repeat; the streams do not overlap.
 [[nodiscard]] Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSignal> signals);
 

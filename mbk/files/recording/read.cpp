@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/files/archive/gzip.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/contents/memory.h"
 #include "mbk/files/contents/sha256.h"
@@ -24,11 +25,12 @@
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
 #include "mbk/files/recording/one_clock.h"
+#include "mbk/files/xdf/xdf.h"
 
 namespace mbk::recording {
 namespace {
 
-constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV and C3D are read";
+constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV, C3D and XDF are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -41,10 +43,21 @@ bool has_mat_header(std::string_view text) {
   return text.size() >= 128 && (text.substr(126, 2) == "IM" || text.substr(126, 2) == "MI");
 }
 
+/// XDF is the one format that programs write packed (.xdfz, .xdf.gz).
+Result<Contents> decode_gzip(std::shared_ptr<Buffer> file) {
+  const auto unpacked = gunzip(file->bytes());
+  if (!unpacked) return tl::unexpected(unpacked.error());
+  file.reset();
+  if (looks_like_xdf(unpacked->bytes())) return decode_xdf(unpacked->bytes());
+  return bad_data("it is packed with gzip and holds no XDF", "unpack it first, with gzip -d");
+}
+
 Result<Contents> decode(std::shared_ptr<Buffer> file) {
   const std::span<const std::byte> bytes = file->bytes();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (hdf5::looks_like_hdf5(bytes)) return decode_hdf5(bytes);
+  if (looks_like_xdf(bytes)) return decode_xdf(bytes);
+  if (looks_like_gzip(bytes)) return decode_gzip(std::move(file));
   if (text.starts_with("MATLAB 7.3")) {
     return bad_data("the MAT v7.3 header is not followed by HDF5 data",
                     "copy the file again from where it was recorded");
