@@ -13,6 +13,7 @@ target_include_directories(mbk_tomlplusplus SYSTEM INTERFACE ${MBK_TOMLPLUSPLUS_
 pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(LIBLZF REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+pkg_check_modules(PUGIXML REQUIRED IMPORTED_TARGET pugixml)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)
 find_package(urdfdom REQUIRED)

@@ -192,7 +192,7 @@ class Assembler {
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
     follow_metadata();
     extract();
-    if (clock_ != nullptr) {
+    if (clock_ != nullptr && recording_.time.size() == 0) {
       if (auto ok = settle_clock(); !ok) return tl::unexpected(ok.error());
     }
     if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
@@ -200,6 +200,8 @@ class Assembler {
   }
 
  private:
+  static bool is_time(const ChannelKind* kind) { return kind->name == "time"; }
+
   // ---- which signals ----
 
   Result<void> recognise() {
@@ -213,11 +215,14 @@ class Assembler {
       if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
     }
     const bool time = !signals_.empty();
-    return bad_data(fmt::format("{}; {}", time ? kOnlyTimeRecognised : kNothingRecognised, inventory(contents_)),
-                    !contents_.table ? "say which is which, as in --channels " + example_map()
-                    : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
-                        ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
-                        : "say which is which, as in --channels time=1,x=2,Fx=3");
+    return bad_data(
+        fmt::format("{}; {}", time ? kOnlyTimeRecognised : kNothingRecognised, inventory(contents_)),
+        !contents_.clocks.empty() && !contents_.arrays.empty()
+            ? fmt::format("say which is which, as in --channels x={},Fx=STREAM.LABEL", contents_.arrays.front().name)
+        : !contents_.table ? "say which is which, as in --channels " + example_map()
+        : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
+            ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
+            : "say which is which, as in --channels time=1,x=2,Fx=3");
   }
 
   /// What a map of the variables could look like, with names that there are: "\"time=NAME,x=pos[1],Fx=force[1]\"".
@@ -511,7 +516,6 @@ class Assembler {
 
   /// A map that does not name the time leaves it to its own name, or to row 1 of a logs matrix.
   Result<void> find_time() {
-    const auto is_time = [](const ChannelKind* kind) { return kind->name == "time"; };
     if (std::ranges::any_of(signals_, [&](const Signal& s) { return is_time(s.kind); })) return {};
     const ChannelKind* const time = kinds_called("time").front();
     const Line& first = signals_.front().line;
@@ -526,6 +530,7 @@ class Assembler {
     };
     std::vector<const Array*> called, last_part_called;
     for (const Array& array : contents_.arrays) {
+      if (array.clock >= 0) continue;  // the clock says it
       if (is_called_time(array, array.name)) called.push_back(&array);
       if (!contents_.table && is_called_time(array, leaf(array.name))) last_part_called.push_back(&array);
     }
@@ -763,7 +768,15 @@ class Assembler {
                                   "interpolated",
                                   fastest(used).name));
     }
-    return {};
+    return check_named_time(used);
+  }
+
+  /// A map may say that other stamps of the stream are its time, as those that were not corrected.
+  [[nodiscard]] Result<void> check_named_time(std::span<const Clock* const> used) const {
+    const bool named = std::ranges::any_of(signals_, [](const Signal& s) { return is_time(s.kind); });
+    if (!named || clock_ == nullptr || (used.size() == 1 && used.front() == clock_)) return {};
+    return bad_usage("time is named, and the channels come from streams with clocks of their own",
+                     "leave time out of --channels, and say with --clock whose time stamps the recording has");
   }
 
   static const Clock& fastest(std::span<const Clock* const> clocks) {

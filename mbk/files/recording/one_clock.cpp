@@ -69,6 +69,7 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
                                 signal.clock->name, signal.clock->time.size()),
                     "name a channel of a stream");
   }
+  // One stream is taken as it was recorded.
   if (std::ranges::all_of(signals, [&](const ClockedSignal& signal) { return signal.clock == &chosen; })) {
     return CommonClock{chosen.time, {}};
   }

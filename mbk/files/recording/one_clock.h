@@ -28,9 +28,8 @@ struct CommonClock {
 /// stream covers are left out, and where a stream has no samples for longer than kLongestBridge of its median
 /// intervals, its values are NaN: nothing is made up over a gap. Where all signals are of the chosen stream, its stamps
 /// are not touched, whatever they are.
-/// @fails  data: there are several streams, and the stamps of one run backward, repeat or are no numbers; the streams
-/// do
-///         not overlap; a signal has another number of samples than its clock has stamps.
+/// @fails  data: there are several streams, and the stamps of one run backward, repeat or are no numbers; the
+///         streams do not overlap; a signal has another number of samples than its clock has stamps.
 [[nodiscard]] Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSignal> signals);
 
 inline constexpr double kLongestBridge = 2.5;

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mbk/files/c3d/test_c3d.h"
 #include "mbk/files/contents/test_files.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/files/c3d/test_c3d.h"
 #include "mbk/files/recording/write.h"
 
 namespace mbk::recording {

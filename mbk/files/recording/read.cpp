@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/files/archive/gzip.h"
 #include "mbk/files/archive/zip_archive.h"
 #include "mbk/files/c3d/c3d.h"
 #include "mbk/files/contents/file_bytes.h"
@@ -30,13 +31,14 @@
 #include "mbk/files/tables/npy.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
+#include "mbk/files/xdf/xdf.h"
 
 namespace mbk::recording {
 
 namespace {
 
 constexpr std::string_view kFormats =
-    "MAT (v4 to v7.3), HDF5, CSV, C3D, NumPy and OpenSim files, KINARM exams and BIDS data sets are read";
+    "MAT (v4 to v7.3), HDF5, CSV, C3D, XDF, NumPy and OpenSim files, KINARM exams and BIDS data sets are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -76,10 +78,21 @@ Result<Contents> table_or_likely(Result<Contents> table, std::string_view text) 
   return likely ? not_read(*likely) : std::move(table);
 }
 
+/// XDF is the one format that programs write packed (.xdfz, .xdf.gz).
+Result<Contents> decode_gzip(std::shared_ptr<Buffer> file) {
+  const auto unpacked = gunzip(file->bytes());
+  if (!unpacked) return tl::unexpected(unpacked.error());
+  file.reset();
+  if (looks_like_xdf(unpacked->bytes())) return decode_xdf(unpacked->bytes());
+  return bad_data("it is packed with gzip and holds no XDF", "unpack it first, with gzip -d");
+}
+
 Result<Contents> decode(std::shared_ptr<Buffer> file) {
   const std::span<const std::byte> bytes = file->bytes();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (hdf5::looks_like_hdf5(bytes)) return decode_hdf5(bytes);
+  if (looks_like_xdf(bytes)) return decode_xdf(bytes);
+  if (looks_like_gzip(bytes)) return decode_gzip(std::move(file));
   if (text.starts_with("MATLAB 7.3")) {
     return bad_data("the MAT v7.3 header is not followed by HDF5 data",
                     "copy the file again from where it was recorded");

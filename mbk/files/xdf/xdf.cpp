@@ -1,0 +1,251 @@
+#include "mbk/files/xdf/xdf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mbk/files/xdf/xdf_chunks.h"
+#include "mbk/files/xdf/xdf_clocks.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::size_t kMaxPartsListed = 3;  ///< segments of a clock that are described one by one
+constexpr double kRatesDiffer = 0.1;        ///< relative, beyond which effective and nominal rate do not agree
+constexpr double kManySamples = 5.0;        ///< moved by that much, stamps are said to be doubtful
+constexpr double kMicroseconds = 1e6;
+constexpr double kMilliseconds = 1e3;
+
+/// Units as stream headers spell them out, and as mbk writes them.
+constexpr auto kSpelledUnits = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"meters", "m"},
+    {"metres", "m"},
+    {"centimeters", "cm"},
+    {"millimeters", "mm"},
+    {"micrometers", "um"},
+    {"radians", "rad"},
+    {"degrees", "deg"},
+    {"newtons", "N"},
+    {"newton", "N"},
+    {"newtonmeters", "N.m"},
+    {"seconds", "s"},
+    {"milliseconds", "ms"},
+    {"volts", "V"},
+    {"millivolts", "mV"},
+    {"microvolts", "uV"},
+    {"N·m", "N.m"},
+    {"µV", "uV"},
+    {"m/s²", "m/s2"},
+});
+
+std::string unit_as_written(const std::string& unit) {
+  const auto spelled = std::ranges::find(kSpelledUnits, unit, &std::pair<std::string_view, std::string_view>::first);
+  return spelled == kSpelledUnits.end() ? unit : std::string(spelled->second);
+}
+
+/// `name`, or with #2, #3, … where it is taken.
+std::string unique(const std::string& name, std::set<std::string>& taken) {
+  std::string found = name;
+  for (std::size_t n = 2; !taken.insert(found).second; ++n) found = fmt::format("{}#{}", name, n);
+  return found;
+}
+
+/// The number that a marker is; 0 where it is a word.
+double number_in(std::string_view text) {
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && stop == text.data() + text.size() && std::isfinite(value) ? value : 0.0;
+}
+
+class Decoder {
+ public:
+  explicit Decoder(XdfFile file) : file_(std::move(file)) {}
+
+  Result<Contents> run() {
+    contents_.format = "XDF";
+    contents_.notes = std::move(file_.notes);
+    if (!file_.recorded.empty()) contents_.metadata["start"] = file_.recorded;
+    std::set<std::string> names;
+    for (XdfStream& stream : file_.streams) {
+      stream.name = unique(stream.name.empty() ? fmt::format("stream_{}", stream.id) : stream.name, names);
+      take(stream);
+    }
+    std::ranges::stable_sort(contents_.events, {}, &Event::time);
+    if (contents_.arrays.empty() && contents_.events.empty()) {
+      return bad_data(file_.streams.empty() ? "no stream is in it" : "none of its streams has a sample",
+                      contents_.notes.empty() ? "nothing was recorded" : contents_.notes.front());
+    }
+    return std::move(contents_);
+  }
+
+ private:
+  void take(XdfStream& stream) {
+    const Index samples = stream.stamps.size();
+    std::vector<std::string> said;
+    const Vector raw = stream.stamps;
+    fill_missing_stamps(stream, said);
+    const Synchronised clock = synchronise(stream.stamps, stream.offsets, stream.total);
+    say_clock(stream, clock, said);
+    Vector time = clock.time;
+    double effective_hz = 0.0;
+    if (stream.nominal_hz > 0.0 && samples > 0) {
+      Dejittered even = dejitter(clock.time, stream.nominal_hz, clock.segments);
+      effective_hz = even.effective_hz;
+      if (stream.can_drop_samples) {
+        said.emplace_back("its stamps were not evened out, as it says that it can drop samples");
+      } else {
+        say_dejittered(stream, clock.time, even, said);
+        time = std::move(even.time);
+      }
+    }
+    contents_.notes.push_back(summary(stream, effective_hz));
+    for (const std::string& what : said) contents_.notes.push_back(fmt::format("'{}': {}", stream.name, what));
+    if (samples == 0) return;
+    if (stream.value == XdfValue::string) {
+      take_markers(stream, time);
+    } else {
+      take_numbers(stream, raw, std::move(time));
+    }
+  }
+
+  static void fill_missing_stamps(XdfStream& stream, std::vector<std::string>& said) {
+    const double step = stream.nominal_hz > 0.0 ? 1.0 / stream.nominal_hz : 0.0;
+    double last = 0.0;
+    Index missing = 0;
+    for (double& stamp : stream.stamps) {
+      if (std::isnan(stamp)) {
+        stamp = last + step;
+        ++missing;
+      }
+      last = stamp;
+    }
+    if (missing == 0) return;
+    said.push_back(fmt::format("{} of {} samples have no time stamp: {}", missing, stream.stamps.size(),
+                               step > 0.0 ? fmt::format("they follow the one before by {:.6g} ms", step * kMilliseconds)
+                                          : "they were given that of the one before"));
+  }
+
+  static void say_clock(const XdfStream& stream, const Synchronised& clock, std::vector<std::string>& said) {
+    if (clock.not_finite > 0)
+      said.push_back(fmt::format("{} clock offsets that are no times were ignored", clock.not_finite));
+    if (clock.last_was_corrupt) {
+      said.push_back(
+          fmt::format("the last of {} clock offsets is corrupt and was ignored: there are more samples than "
+                      "the footer counts, and it is far from the others",
+                      stream.offsets.size() - clock.not_finite));
+    }
+    if (stream.stamps.size() == 0) return;
+    if (clock.segments.empty()) {
+      said.emplace_back(
+          "there is no clock offset: its time is that of the sender's clock, which other streams need "
+          "not share");
+      return;
+    }
+    if (const std::size_t resets = clock.segments.size() - 1; resets > 0) {
+      said.push_back(fmt::format("the sender's clock was reset {}: each part was synchronised separately",
+                                 resets == 1 ? "once" : fmt::format("{} times", resets)));
+    }
+    for (std::size_t k = 0; k < std::min(clock.segments.size(), kMaxPartsListed); ++k) {
+      const ClockSegment& segment = clock.segments[k];
+      const std::string where =
+          clock.segments.size() == 1 ? "" : fmt::format(" of samples {} to {}", segment.first + 1, segment.last + 1);
+      said.push_back(fmt::format("time stamps{} were put on the recorder's clock: {:+.6f} s, drift {:+.3g} µs/s", where,
+                                 segment.offset, segment.slope * kMicroseconds));
+    }
+  }
+
+  static void say_dejittered(const XdfStream& stream, const Vector& before, const Dejittered& even,
+                             std::vector<std::string>& said) {
+    const std::size_t breaks = even.segments.size() - 1;
+    const double shift = even.largest_shift * kMilliseconds;
+    std::string moved = fmt::format("time stamps were evened out, which moved them by {}",
+                                    shift < 1e-3 ? "less than 0.001 ms" : fmt::format("{:.3g} ms at most", shift));
+    if (const double samples = even.largest_shift * stream.nominal_hz; samples > kManySamples) {
+      moved += fmt::format(
+          ", {:.0f} samples: where samples were lost, those behind them stand at wrong times; compare "
+          "with '{}.raw_time'",
+          samples, stream.name);
+    }
+    said.push_back(std::move(moved));
+    if (breaks == 0) return;
+    std::string what = fmt::format("{} break{} in its time", breaks, breaks == 1 ? "" : "s");
+    for (std::size_t k = 0; k < std::min(breaks, kMaxPartsListed); ++k) {
+      const Index last = even.segments[k].last;
+      what +=
+          fmt::format("{} {:.6g} s behind sample {}", k == 0 ? ":" : ",", before[last + 1] - before[last], last + 1);
+    }
+    if (breaks > kMaxPartsListed) what += ", …";
+    said.push_back(what + "; each part was evened out separately");
+  }
+
+  static std::string summary(const XdfStream& stream, double effective_hz) {
+    std::string text = fmt::format("stream '{}'{}: {} samples of {} {}", stream.name,
+                                   stream.type.empty() ? "" : fmt::format(" ({})", stream.type), stream.stamps.size(),
+                                   stream.channels.size(), stream.channels.size() == 1 ? "channel" : "channels");
+    if (stream.value == XdfValue::string) text += " of text";
+    if (stream.nominal_hz == 0.0) return text + ", irregular";
+    text += fmt::format(", nominal rate {:.6g} Hz", stream.nominal_hz);
+    if (effective_hz == 0.0) return text;
+    text += fmt::format(", effective {:.6g} Hz", effective_hz);
+    if (std::abs(effective_hz - stream.nominal_hz) > kRatesDiffer * stream.nominal_hz) {
+      text += "; they differ by more than 10 %: samples were lost, or the nominal rate is wrong";
+    }
+    return text;
+  }
+
+  void take_numbers(XdfStream& stream, const Vector& raw, Vector time) {
+    const int clock = static_cast<int>(contents_.clocks.size());
+    contents_.clocks.push_back({stream.name, std::move(time)});
+    std::set<std::string> labels{"raw_time"};
+    const auto add = [&](const std::string& label, const std::string& unit, Vector values) {
+      Array array{fmt::format("{}.{}", stream.name, label), SharedMatrix::of_column(std::move(values)), unit};
+      array.signal = true;
+      array.clock = clock;
+      contents_.arrays.push_back(std::move(array));
+    };
+    for (std::size_t c = 0; c < stream.channels.size(); ++c) {
+      const XdfChannel& channel = stream.channels[c];
+      const std::string label = channel.label.empty() ? fmt::format("channel_{}", c + 1) : channel.label;
+      add(unique(label, labels), unit_as_written(channel.unit), std::move(stream.values[c]));
+    }
+    add("raw_time", "s", raw);
+  }
+
+  /// A text is the name of an event; of several channels it is said which.
+  void take_markers(const XdfStream& stream, const Vector& time) {
+    const std::size_t channels = stream.channels.size();
+    std::size_t taken = 0;
+    for (std::size_t k = 0; k < stream.texts.size(); ++k) {
+      const std::string& text = stream.texts[k];
+      if (text.empty()) continue;
+      const std::string& label = stream.channels[k % channels].label;
+      std::string name = text;
+      if (channels > 1)
+        name = fmt::format("{}: {}", label.empty() ? fmt::format("channel_{}", k % channels + 1) : label, text);
+      contents_.events.push_back({time[static_cast<Index>(k / channels)], std::move(name), number_in(text)});
+      ++taken;
+    }
+    contents_.notes.push_back(fmt::format("the texts of '{}' are {} events", stream.name, taken));
+  }
+
+  XdfFile file_;
+  Contents contents_;
+};
+
+}  // namespace
+
+Result<Contents> decode_xdf(std::span<const std::byte> file) {
+  auto parsed = parse_xdf(file);
+  if (!parsed) return tl::unexpected(parsed.error());
+  return Decoder(std::move(*parsed)).run();
+}
+
+}  // namespace mbk::recording
