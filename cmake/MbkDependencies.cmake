@@ -12,7 +12,7 @@ add_library(mbk_tomlplusplus INTERFACE)
 target_include_directories(mbk_tomlplusplus SYSTEM INTERFACE ${MBK_TOMLPLUSPLUS_INCLUDE_DIR})
 pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(LIBLZF REQUIRED IMPORTED_TARGET liblzf)
-pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(PUGIXML REQUIRED IMPORTED_TARGET pugixml)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)
@@ -43,6 +43,7 @@ if(MBK_BUILD_TESTS)
   # Readers of their own, against which files that are written are held.
   pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
   pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+  pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
   # What documents are held to their schemas with (tests/support). Its CMake file names no target.
   find_path(RAPIDJSON_INCLUDE_DIR rapidjson/schema.h REQUIRED)
   # An engine of its own for tests/physics. Debian's mujocoConfig.cmake names a folder that its package does not have.

@@ -1,11 +1,12 @@
 #include "mbk/files/archive/zip_archive.h"
 
 #include <fmt/format.h>
-#include <zip.h>
+#include <unzip.h>
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "mbk/base/core/printable.h"
@@ -14,60 +15,103 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::string_view kAgain = "copy the file again from where it was recorded";
-
-zip_t* as_zip(void* archive) {
-  return static_cast<zip_t*>(archive);
-}
+constexpr unsigned long kEncrypted = 1;  // of the flags of a member
 
 tl::unexpected<Error> damaged(std::string_view what) {
-  return bad_data(fmt::format("the zip archive cannot be read: {}", what), std::string(kAgain));
+  return bad_data(fmt::format("the zip archive cannot be read: {}", what),
+                  "copy the file again from where it was recorded");
+}
+
+/// The archive, as minizip reads it: a place in bytes that stand in memory.
+struct Cursor {
+  std::span<const std::byte> file;
+  std::uint64_t at = 0;
+};
+
+Cursor& cursor(void* stream) {
+  return *static_cast<Cursor*>(stream);
+}
+
+uLong read_at(void* /*of*/, void* stream, void* out, uLong count) {
+  Cursor& from = cursor(stream);
+  const std::uint64_t left = from.at < from.file.size() ? from.file.size() - from.at : 0;
+  const std::uint64_t n = std::min<std::uint64_t>(count, left);
+  if (n > 0) std::memcpy(out, from.file.data() + from.at, n);
+  from.at += n;
+  return n;
+}
+
+long seek(void* /*of*/, void* stream, ZPOS64_T offset, int origin) {
+  Cursor& in = cursor(stream);
+  const std::uint64_t base = origin == ZLIB_FILEFUNC_SEEK_SET   ? 0
+                             : origin == ZLIB_FILEFUNC_SEEK_CUR ? in.at
+                                                                : in.file.size();
+  if (offset > in.file.size() || base > in.file.size() - offset) return -1;
+  in.at = base + offset;
+  return 0;
+}
+
+struct Close {
+  void operator()(void* archive) const { unzClose(archive); }
+};
+using Handle = std::unique_ptr<void, Close>;
+
+/// minizip's view of the bytes.   @param place  must outlive it
+Handle open_at(Cursor& place) {
+  zlib_filefunc64_def functions{};
+  functions.opaque = &place;
+  functions.zopen64_file = [](void* of, const void* /*name*/, int /*mode*/) { return of; };
+  functions.zread_file = read_at;
+  functions.ztell64_file = [](void* /*of*/, void* stream) -> ZPOS64_T { return cursor(stream).at; };
+  functions.zseek64_file = seek;
+  functions.zclose_file = [](void* /*of*/, void* /*stream*/) { return 0; };
+  functions.zerror_file = [](void* /*of*/, void* /*stream*/) { return 0; };
+  return Handle(unzOpen2_64(nullptr, &functions));
+}
+
+std::string quoted(std::string_view name) {
+  return fmt::format("'{}'", printable(std::string(name)));
 }
 
 }  // namespace
-
-void ZipArchive::Close::operator()(void* archive) const {
-  zip_discard(as_zip(archive));
-}
 
 bool ZipArchive::looks_like_zip(std::span<const std::byte> file) {
   return file.size() >= 22 && std::memcmp(file.data(), "PK\x03\x04", 4) == 0;
 }
 
 Result<ZipArchive> ZipArchive::open(std::span<const std::byte> file) {
-  zip_error_t error;
-  zip_error_init(&error);
-  zip_source_t* const source = zip_source_buffer_create(file.data(), file.size(), 0, &error);
-  zip_t* const opened = source != nullptr ? zip_open_from_source(source, ZIP_RDONLY, &error) : nullptr;
-  const std::string why = zip_error_strerror(&error);
-  zip_error_fini(&error);
-  if (opened == nullptr) {
-    if (source != nullptr) zip_source_free(source);
-    return damaged(why);
-  }
+  Cursor place{file};
+  const Handle opened = open_at(place);
+  if (!opened) return damaged("its directory is not there, as if it were cut short");
   ZipArchive archive;
-  archive.archive_.reset(opened);
+  archive.file_ = file;
+  const std::uint64_t room = largest_claim(file.size());
   std::uint64_t total = 0;
-  const zip_int64_t count = zip_get_num_entries(opened, 0);
-  for (zip_int64_t i = 0; i < count; ++i) {
-    zip_stat_t about;
-    if (zip_stat_index(opened, static_cast<zip_uint64_t>(i), 0, &about) != 0 || (about.valid & ZIP_STAT_NAME) == 0 ||
-        (about.valid & ZIP_STAT_SIZE) == 0) {
-      return damaged(zip_strerror(opened));
+  std::vector<Place> places;
+  std::string text(std::numeric_limits<std::uint16_t>::max() + 1, '\0');  // the longest name, and its end
+  int code = unzGoToFirstFile(opened.get());
+  for (; code == UNZ_OK; code = unzGoToNextFile(opened.get())) {
+    unz_file_info64 about{};
+    unz64_file_pos position{};
+    if (unzGetCurrentFileInfo64(opened.get(), &about, text.data(), text.size(), nullptr, 0, nullptr, 0) != UNZ_OK ||
+        unzGetFilePos64(opened.get(), &position) != UNZ_OK) {
+      return damaged("its directory is damaged");
     }
-    const std::uint64_t room = largest_claim(file.size());
-    if (about.size > room || total + about.size > room) {
-      return damaged(
-          fmt::format("'{}' says that it unpacks to {} bytes, which it cannot", printable(about.name), about.size));
+    std::string name(text.c_str());
+    const std::uint64_t size = about.uncompressed_size;
+    if (size > room || total + size > room) {
+      return damaged(fmt::format("{} says that it unpacks to {} bytes, which it cannot", quoted(name), size));
     }
-    total += about.size;
-    if ((about.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && about.encryption_method != ZIP_EM_NONE) {
-      return bad_data(fmt::format("'{}' in the zip archive is encrypted", printable(about.name)),
+    total += size;
+    if ((about.flag & kEncrypted) != 0) {
+      return bad_data(fmt::format("{} in the zip archive is encrypted", quoted(name)),
                       "unpack it with its password and pack it again without one");
     }
-    archive.members_.push_back({about.name, about.size});
+    places.push_back({archive.members_.size(), position.pos_in_zip_directory, position.num_of_file});
+    archive.members_.push_back({std::move(name), size});
   }
-  for (std::size_t k = 0; k < archive.members_.size(); ++k) archive.places_.try_emplace(archive.members_[k].name, k);
+  if (code != UNZ_END_OF_LIST_OF_FILE) return damaged("its directory is damaged");
+  for (const Place& one : places) archive.places_.try_emplace(archive.members_[one.member].name, one);
   return archive;
 }
 
@@ -84,31 +128,32 @@ Result<Buffer> ZipArchive::read_begin(std::string_view name, std::uint64_t count
 }
 
 Result<Buffer> ZipArchive::read(std::string_view name, std::uint64_t count, bool whole) const {
-  const auto place = places_.find(name);
-  if (place == places_.end()) return damaged(fmt::format("it holds no '{}'", printable(std::string(name))));
-  const ZipMember* const member = &members_[place->second];
-  const std::uint64_t size = std::min(member->size, count);
+  const auto found = places_.find(name);
+  if (found == places_.end()) return damaged(fmt::format("it holds no {}", quoted(name)));
+  const Place& place = found->second;
+  const std::uint64_t size = std::min(members_[place.member].size, count);
   if (auto ok = check_memory(size); !ok) return tl::unexpected(ok.error());
-  zip_t* const archive = as_zip(archive_.get());
-  const auto index = static_cast<zip_uint64_t>(place->second);
-  const auto close = [](zip_file_t* file) { zip_fclose(file); };
-  const std::unique_ptr<zip_file_t, decltype(close)> stream(zip_fopen_index(archive, index, 0), close);
-  if (!stream) return damaged(fmt::format("'{}': {}", printable(std::string(name)), zip_strerror(archive)));
+  Cursor at{file_};
+  const Handle archive = open_at(at);
+  const unz64_file_pos position{place.entry, place.of_number};
+  if (!archive || unzGoToFilePos64(archive.get(), &position) != UNZ_OK || unzOpenCurrentFile(archive.get()) != UNZ_OK) {
+    return damaged(fmt::format("{} is damaged, or packed in a way that is not known", quoted(name)));
+  }
   Buffer bytes(size);
   std::size_t got = 0;
   while (got < bytes.size) {
-    const zip_int64_t n = zip_fread(stream.get(), bytes.data.get() + got, bytes.size - got);
-    if (n <= 0) {
-      return damaged(fmt::format("'{}': {}", printable(std::string(name)),
-                                 n < 0 ? zip_file_strerror(stream.get()) : "it ends early"));
-    }
+    const auto want = static_cast<unsigned>(std::min<std::size_t>(bytes.size - got, std::size_t{1} << 30));
+    const int n = unzReadCurrentFile(archive.get(), bytes.data.get() + got, want);
+    if (n <= 0) return damaged(fmt::format("{} {}", quoted(name), n < 0 ? "is damaged" : "ends early"));
     got += static_cast<std::size_t>(n);
   }
   if (!whole) return bytes;
   std::byte beyond;
-  if (const zip_int64_t more = zip_fread(stream.get(), &beyond, 1); more != 0) {
-    return damaged(fmt::format("'{}': {}", printable(std::string(name)),
-                               more < 0 ? zip_file_strerror(stream.get()) : "it is longer than it says"));
+  if (unzReadCurrentFile(archive.get(), &beyond, 1) != 0) {
+    return damaged(fmt::format("{} is longer than it says", quoted(name)));
+  }
+  if (unzCloseCurrentFile(archive.get()) != UNZ_OK) {
+    return damaged(fmt::format("{} is damaged: its checksum is wrong", quoted(name)));
   }
   return bytes;
 }

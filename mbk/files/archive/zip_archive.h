@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,7 +19,7 @@ struct ZipMember {
   std::uint64_t size = 0;  ///< [bytes] that it says it has when it is unpacked
 };
 
-/// A zip archive that stands in memory. Nothing is unpacked but what is asked for.
+/// A zip archive that stands in memory. Nothing is unpacked but what is asked for, by several threads at once if need be.
 class ZipArchive {
  public:
   [[nodiscard]] static bool looks_like_zip(std::span<const std::byte> file);
@@ -44,12 +43,15 @@ class ZipArchive {
   /// @param count  of bytes, or all of them where it has fewer    @param whole  the end must be there, and right
   [[nodiscard]] Result<Buffer> read(std::string_view name, std::uint64_t count, bool whole) const;
 
-  struct Close {
-    void operator()(void* archive) const;
+  /// Where the directory of the archive says that a member stands.
+  struct Place {
+    std::size_t member;              ///< in members_
+    std::uint64_t entry, of_number;  ///< as minizip counts
   };
-  std::unique_ptr<void, Close> archive_;
+
+  std::span<const std::byte> file_;
   std::vector<ZipMember> members_;
-  std::map<std::string_view, std::size_t> places_;  ///< of members by their names; the first of a name counts
+  std::map<std::string_view, Place> places_;  ///< of members by their names; the first of a name counts
 };
 
 }  // namespace mbk::recording
