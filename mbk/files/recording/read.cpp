@@ -24,11 +24,13 @@
 #include "mbk/files/recording/mat_level4.h"
 #include "mbk/files/recording/mat_level5.h"
 #include "mbk/files/recording/one_clock.h"
+#include "mbk/files/ros/bag.h"
+#include "mbk/files/ros/mcap.h"
 
 namespace mbk::recording {
 namespace {
 
-constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV and C3D are read";
+constexpr std::string_view kFormats = "MAT (v4 to v7.3), HDF5, CSV, C3D, MCAP and ROS 1 bags are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -62,32 +64,39 @@ struct Decoded {
   SourceFile source;
 };
 
-/// A long table, read in passing; nothing where the file is something else.
-Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& file) {
+/// @param whole  of which all was read
+Result<std::optional<Decoded>> passed(const std::filesystem::path& file, FileInPassing& whole,
+                                      Result<Contents> contents) {
+  if (!contents) return tl::unexpected(contents.error());
+  SourceFile source{file.string(), contents->format, whole.sha256()};
+  return Decoded{std::move(*contents), std::move(source)};
+}
+
+/// A long table or a bag, read in passing; nothing where the file is something else.
+Result<std::optional<Decoded>> decode_in_passing(const std::filesystem::path& file) {
   constexpr std::size_t kLong = 4 * FileInPassing::kPiece;
   auto passing = FileInPassing::open(file);
   if (!passing) return tl::unexpected(passing.error());
-  if (passing->size() < kLong) return std::nullopt;
   if (auto ok = passing->read_on(); !ok) return tl::unexpected(ok.error());
   const std::string_view begin = passing->text();
   const auto bytes = std::as_bytes(std::span(begin));
+  if (looks_like_mcap(bytes)) return passed(file, *passing, decode_mcap(*passing));
+  if (looks_like_bag(bytes)) return passed(file, *passing, decode_bag(*passing));
+  if (passing->size() < kLong) return std::nullopt;
   if (!is_text(begin) || begin.starts_with("MATLAB ") || has_mat_header(begin) || looks_like_mat_level4(bytes)) {
     return std::nullopt;
   }
   // A number of the usual ten digits takes less memory than its text.
   if (auto ok = check_memory(passing->size()); !ok) return tl::unexpected(ok.error());
-  auto contents = decode_csv(*passing);
-  if (!contents) return tl::unexpected(contents.error());
-  SourceFile source{file.string(), contents->format, passing->sha256()};
-  return Decoded{std::move(*contents), std::move(source)};
+  return passed(file, *passing, decode_csv(*passing));
 }
 
 Result<Decoded> decode_file(const std::filesystem::path& file) {
-  auto table = decode_long_table(file);
-  if (!table) return tl::unexpected(table.error());
-  if (*table) {
-    take_annotations((*table)->contents);
-    return std::move(**table);
+  auto passing = decode_in_passing(file);
+  if (!passing) return tl::unexpected(passing.error());
+  if (*passing) {
+    take_annotations((*passing)->contents);
+    return std::move(**passing);
   }
   auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());

@@ -27,7 +27,8 @@ struct ReadOptions {
   std::string trial;     ///< which record of a file or folder that holds several (`list_trials`); "": its only one
 };
 
-/// Reads MAT (v4, v5, v6, v7, v7.3), HDF5 and CSV; the format is decided by the content, never by the name of the file.
+/// Reads MAT (v4, v5, v6, v7, v7.3), HDF5, CSV, C3D, MCAP and bags of ROS 1; the format is decided by the content,
+/// never by the name of the file.
 ///
 /// Without a channel map these are recognised: a 19-row `logs` matrix (or the only matrix of 19 rows), and columns or
 /// variables that carry the names of the channel table ("hand_x", "Fx", "hand_x_mm", "time [ms]"). With a map, a number
