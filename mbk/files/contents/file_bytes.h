@@ -72,6 +72,9 @@ class FileInPassing {
   Sha256 sum_;
 };
 
+/// The first bytes of a file, or as many as it has; none of what is no file, or cannot be read.
+[[nodiscard]] std::string begin_of(const std::filesystem::path& file, std::size_t count);
+
 /// The whole file.
 /// @fails  data: missing, a directory or device, not readable, empty, larger than kLargestFile.
 [[nodiscard]] Result<Buffer> read_file(const std::filesystem::path& file);

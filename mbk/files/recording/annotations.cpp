@@ -73,7 +73,7 @@ void take_annotations(Contents& contents) {
   contents.texts.clear();
 }
 
-Result<std::map<std::string, std::string>> metadata_to_write(const Recording& recording) {
+Result<std::map<std::string, std::string>> metadata_with_units(const Recording& recording) {
   std::map<std::string, std::string> metadata = recording.metadata;
   for (const Channel& channel : recording.channels) {
     const auto kinds = kinds_called(channel.name);
@@ -86,7 +86,13 @@ Result<std::map<std::string, std::string>> metadata_to_write(const Recording& re
                       "rename that entry");
     }
   }
-  for (const auto& [key, value] : metadata) {
+  return metadata;
+}
+
+Result<std::map<std::string, std::string>> metadata_to_write(const Recording& recording) {
+  auto metadata = metadata_with_units(recording);
+  if (!metadata) return metadata;
+  for (const auto& [key, value] : *metadata) {
     if (!is_matlab_name(key)) {
       return bad_data(fmt::format("metadata '{}' cannot be the name of a MATLAB field", printable(key)),
                       fmt::format("use a letter, then letters, digits and _, at most {}", kLongestName));

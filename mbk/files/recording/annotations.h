@@ -28,8 +28,12 @@ void take_annotations(Contents& contents);
 /// A letter, then letters, digits and _; 63 at most.
 [[nodiscard]] bool is_matlab_name(std::string_view name);
 
-/// What stands as `metadata` in a MAT file: that of the recording, and the units of channels.
-/// @fails  data: a key that cannot be the name of a MATLAB field; a unit that another entry contradicts.
+/// The metadata of a recording, and the units of channels.
+/// @fails  data: a unit that another entry contradicts.
+[[nodiscard]] Result<std::map<std::string, std::string>> metadata_with_units(const Recording& recording);
+
+/// What stands as `metadata` in a MAT file.
+/// @fails  as metadata_with_units; data: a key that cannot be the name of a MATLAB field.
 [[nodiscard]] Result<std::map<std::string, std::string>> metadata_to_write(const Recording& recording);
 
 }  // namespace mbk::recording

@@ -760,9 +760,10 @@ class Assembler {
                          all.empty() ? "leave --clock out" : fmt::format("there are {}", clock_list(all)));
       }
       clock_ = *named;
-    } else if (used.size() == 1) {
+    } else if (!used.empty() &&
+               std::ranges::all_of(used, [&](const Clock* clock) { return same_stamps(*clock, *used.front()); })) {
       clock_ = used.front();
-    } else if (used.size() > 1) {
+    } else if (!used.empty()) {
       return bad_data(fmt::format("the channels come from streams with clocks of their own: {}", clock_list(used)),
                       fmt::format("say whose time stamps the recording has, as in --clock '{}'; the others are "
                                   "interpolated",

@@ -56,6 +56,10 @@ Vector interpolated(const Vector& from, const Vector& values, const Eigen::Ref<c
 
 }  // namespace
 
+bool same_stamps(const Clock& a, const Clock& b) {
+  return &a == &b || (a.time.size() == b.time.size() && a.time == b.time);
+}
+
 double rate_of(const Clock& clock) {
   const double interval = median_interval(clock.time);
   return interval > 0.0 ? 1.0 / interval : 0.0;
@@ -70,13 +74,13 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
                     "name a channel of a stream");
   }
   // One stream is taken as it was recorded.
-  if (std::ranges::all_of(signals, [&](const ClockedSignal& signal) { return signal.clock == &chosen; })) {
+  if (std::ranges::all_of(signals, [&](const ClockedSignal& signal) { return same_stamps(*signal.clock, chosen); })) {
     return CommonClock{chosen.time, {}};
   }
   if (auto ok = check_rises(chosen); !ok) return tl::unexpected(ok.error());
   double begin = chosen.time[0], end = chosen.time[chosen.time.size() - 1];
   for (const ClockedSignal& signal : signals) {
-    if (signal.clock == &chosen) continue;
+    if (same_stamps(*signal.clock, chosen)) continue;
     const Vector& time = signal.clock->time;
     if (time.size() == 0) {
       return bad_data(fmt::format("'{}' has no samples", signal.clock->name), "name a channel of another stream");
@@ -96,7 +100,7 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
   CommonClock common{chosen.time.segment(first, count), {}};
   const double rate_hz = rate_of(chosen);
   for (const ClockedSignal& signal : signals) {
-    if (signal.clock == &chosen) {
+    if (same_stamps(*signal.clock, chosen)) {
       *signal.values = Vector(signal.values->segment(first, count));
       continue;
     }

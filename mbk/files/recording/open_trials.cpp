@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -89,16 +89,6 @@ class BidsTrials : public OpenTrials {
   std::vector<TrialName> names_;
 };
 
-/// Whether the file begins as a zip archive does. What is wrong with it is said where it is read.
-bool begins_as_zip(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return false;
-  std::vector<char> begin(64);
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return ZipArchive::looks_like_zip(std::as_bytes(std::span(begin).first(static_cast<std::size_t>(stream.gcount()))));
-}
-
 }  // namespace
 
 Result<std::shared_ptr<const OpenTrials>> open_as_trials(const std::filesystem::path& file) {
@@ -107,7 +97,8 @@ Result<std::shared_ptr<const OpenTrials>> open_as_trials(const std::filesystem::
     if (!runs) return tl::unexpected(runs.error());
     return std::make_shared<const BidsTrials>(std::move(*runs));
   }
-  if (!begins_as_zip(file)) return std::shared_ptr<const OpenTrials>();
+  const std::string begin = begin_of(file, 64);
+  if (!ZipArchive::looks_like_zip(std::as_bytes(std::span(begin)))) return std::shared_ptr<const OpenTrials>();
   auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
   const auto shared = std::make_shared<const Buffer>(std::move(*bytes));

@@ -28,6 +28,8 @@
 #include "mbk/files/recording/mat_level5.h"
 #include "mbk/files/recording/one_clock.h"
 #include "mbk/files/recording/open_trials.h"
+#include "mbk/files/ros/bag.h"
+#include "mbk/files/ros/mcap.h"
 #include "mbk/files/tables/npy.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
@@ -38,7 +40,8 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::string_view kFormats =
-    "MAT (v4 to v7.3), HDF5, CSV, C3D, XDF, NumPy and OpenSim files, KINARM exams and BIDS data sets are read";
+    "MAT (v4 to v7.3), HDF5, CSV, C3D, XDF, MCAP, ROS 1 bags, NumPy and OpenSim files, KINARM exams and BIDS data sets "
+    "are read";
 
 bool is_text(std::string_view bytes) {
   return std::ranges::none_of(bytes.substr(0, 65536), [](char c) {
@@ -108,13 +111,26 @@ Result<Contents> decode(std::shared_ptr<Buffer> file) {
                   fmt::format("{}; a program of its own (Qualisys QTM, Vicon Nexus, …) exports one of them", kFormats));
 }
 
-/// A long table, read in passing; nothing where the file is something else.
-Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& file) {
+/// @param whole  of which all was read
+Result<std::optional<Decoded>> passed(const std::filesystem::path& file, FileInPassing& whole,
+                                      Result<Contents> contents) {
+  if (!contents) return tl::unexpected(contents.error());
+  SourceFile source{file.string(), contents->format, whole.sha256()};
+  return Decoded{std::move(*contents), std::move(source)};
+}
+
+/// A long table or a bag, read in passing; nothing where the file is something else.
+Result<std::optional<Decoded>> decode_in_passing(const std::filesystem::path& file) {
   constexpr std::size_t kLong = 4 * FileInPassing::kPiece;
   auto passing = FileInPassing::open(file);
   if (!passing) return tl::unexpected(passing.error());
-  if (passing->size() < kLong) return std::nullopt;
+  const std::string first = begin_of(file, 64);
+  const bool mcap = looks_like_mcap(std::as_bytes(std::span(first)));
+  const bool bag = looks_like_bag(std::as_bytes(std::span(first)));
+  if (passing->size() < kLong && !mcap && !bag) return std::nullopt;
   if (auto ok = passing->read_on(); !ok) return tl::unexpected(ok.error());
+  if (mcap) return passed(file, *passing, decode_mcap(*passing));
+  if (bag) return passed(file, *passing, decode_bag(*passing));
   const std::string_view begin = passing->text();
   const auto bytes = std::as_bytes(std::span(begin));
   if (!is_text(begin) || begin.starts_with("MATLAB ") || has_mat_header(begin) || looks_like_mat_level4(bytes) ||
@@ -123,10 +139,7 @@ Result<std::optional<Decoded>> decode_long_table(const std::filesystem::path& fi
   }
   // A number of the usual ten digits takes less memory than its text.
   if (auto ok = check_memory(passing->size()); !ok) return tl::unexpected(ok.error());
-  auto contents = table_or_likely(decode_csv(*passing), begin);
-  if (!contents) return tl::unexpected(contents.error());
-  SourceFile source{file.string(), contents->format, passing->sha256()};
-  return Decoded{std::move(*contents), std::move(source)};
+  return passed(file, *passing, table_or_likely(decode_csv(*passing), begin));
 }
 
 /// @param needs_arm  an arm must be named where there are two
@@ -140,11 +153,11 @@ Result<Decoded> decode_file(const std::filesystem::path& file, const ReadOptions
   if (!options.arm.empty()) {
     return bad_usage(fmt::format("--side {}: the file tells no arms apart", options.arm), "leave --side out");
   }
-  auto table = decode_long_table(file);
-  if (!table) return tl::unexpected(table.error());
-  if (*table) {
-    take_annotations((*table)->contents);
-    return std::move(**table);
+  auto passing = decode_in_passing(file);
+  if (!passing) return tl::unexpected(passing.error());
+  if (*passing) {
+    take_annotations((*passing)->contents);
+    return std::move(**passing);
   }
   auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());

@@ -34,8 +34,8 @@ struct ReadOptions {
   std::shared_ptr<const OpenTrials> open;  ///< the file, as `open_trials` gave it; nullptr: it is opened anew
 };
 
-/// Reads MAT (v4, v5, v6, v7, v7.3), HDF5, CSV and other tables, C3D, XDF, NumPy, OpenSim, KINARM exams and BIDS data
-/// sets; the format is decided by the content, never by the name of the file.
+/// Reads MAT (v4, v5, v6, v7, v7.3), HDF5, CSV and other tables, C3D, XDF, MCAP, bags of ROS 1, NumPy, OpenSim, KINARM
+/// exams and BIDS data sets; the format is decided by the content, never by the name of the file.
 ///
 /// Without a channel map these are recognised: a 19-row `logs` matrix (or the only matrix of 19 rows), and columns or
 /// variables that carry the names of the channel table ("hand_x", "Fx", "hand_x_mm", "time [ms]"). With a map, a number

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/contents/contents.h"
+#include "mbk/files/contents/file_bytes.h"
+
+namespace mbk::recording {
+
+/// Whether the bytes begin as an MCAP file does.
+[[nodiscard]] bool looks_like_mcap(std::span<const std::byte> begin);
+
+/// Reads an MCAP file (mcap.dev/spec): every number of the messages of ROS 1, ROS 2 and JSON as an array
+/// "topic.field.path" with the clock of its topic. It is read from begin to end, whatever its index says. A file that
+/// was cut short is read as far as it goes, with a note.
+/// @fails  data: a checksum is wrong, a chunk cannot be unpacked, a record is not what it says.
+[[nodiscard]] Result<Contents> decode_mcap(std::span<const std::byte> file);
+
+/// The same while the file is read, of which a part is in memory; all of it is read.
+[[nodiscard]] Result<Contents> decode_mcap(FileInPassing& file);
+
+/// The name of the metadata record by which mbk knows its own files, and of the one that has their metadata.
+inline constexpr std::string_view kMcapLayoutRecord = "mbk.recording", kMcapMetadataRecord = "mbk.metadata";
+/// How an MCAP file begins and ends.
+inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
+
+/// The kinds of records.
+enum class McapRecord : std::uint8_t {
+  header = 0x01,
+  footer = 0x02,
+  schema = 0x03,
+  channel = 0x04,
+  message = 0x05,
+  chunk = 0x06,
+  message_index = 0x07,
+  chunk_index = 0x08,
+  statistics = 0x0B,
+  metadata = 0x0C,
+  metadata_index = 0x0D,
+  summary_offset = 0x0E,
+  data_end = 0x0F,
+};
+
+}  // namespace mbk::recording

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "mbk/base/core/printable.h"
+#include "mbk/files/ros/stream.h"
+
+namespace mbk::recording {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kDeepestObject = 16;
+constexpr std::size_t kLongestJson = std::size_t{1} << 20;
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+class StreamOfJson : public MessageStream {
+ public:
+  bool add(std::span<const std::byte> message, std::int64_t log_time) override {
+    if (message.size() > kLongestJson) return false;
+    const auto* const begin = reinterpret_cast<const char*>(message.data());
+    const Json object = Json::parse(begin, begin + message.size(), nullptr, false);
+    if (!object.is_object()) return false;
+    take_header(object);
+    for (const auto& [key, value] : object.items()) take(value, key, -1, "", 0);
+    log_times.push_back(log_time);
+    for (NumberColumn& column : columns) {
+      if (column.kept && column.numbers.size() < log_times.size()) leave_out(column);
+    }
+    return true;
+  }
+
+ private:
+  void take_header(const Json& object) {
+    const auto header = object.find("header");
+    if (header == object.end() || !header->is_object()) return;
+    if (const auto frame = header->find("frame_id"); frame != header->end() && frame->is_string()) {
+      if (frames.size() < kMostFrames) frames.insert(printable(frame->get<std::string>()));
+    }
+    const auto stamp = header->find("stamp");
+    if (stamp == header->end() || !stamp->is_object()) return;
+    const auto part = [&](std::initializer_list<const char*> names) -> std::optional<std::int64_t> {
+      for (const char* name : names) {
+        const auto found = stamp->find(name);
+        if (found != stamp->end() && found->is_number_integer()) return found->get<std::int64_t>();
+      }
+      return std::nullopt;
+    };
+    const auto seconds = part({"sec", "secs"}), nanoseconds = part({"nanosec", "nsec", "nsecs"});
+    constexpr std::int64_t kMostSeconds = std::numeric_limits<std::uint32_t>::max();
+    if (!seconds || !nanoseconds || std::abs(*seconds) > kMostSeconds || std::abs(*nanoseconds) > 4 * kSecond) return;
+    stamps.push_back(*seconds * kSecond + *nanoseconds);
+  }
+
+  void take(const Json& value, const std::string& path, int element, const std::string& array, int depth) {
+    if (value.is_number() || value.is_boolean() || value.is_null()) {
+      if (path.starts_with("header.stamp.")) return;
+      keep(value, path, element, array);
+    } else if (value.is_object() && depth < kDeepestObject) {
+      for (const auto& [key, inner] : value.items()) take(inner, path + "." + key, -1, "", depth + 1);
+    } else if (value.is_array() && depth < kDeepestObject) {
+      take_array(value, path, depth);
+    }
+  }
+
+  void take_array(const Json& value, const std::string& path, int depth) {
+    const std::string name = printable(path);
+    if (!log_times.empty() && !lengths_.contains(path)) {
+      if (changing.size() < kMostColumns) changing.insert(name);
+      return;
+    }
+    const auto [known, fresh] = lengths_.try_emplace(path, value.size());
+    if (fresh && value.size() > kLongestArray) bulky.insert(name);
+    if (bulky.contains(name) || changing.contains(name)) return;
+    if (known->second != value.size()) {
+      changing.insert(name);
+      for (NumberColumn& column : columns) {
+        if (column.path.starts_with(name + "[")) leave_out(column);
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      take(value[k], fmt::format("{}[{}]", path, k), static_cast<int>(k), path, depth + 1);
+    }
+  }
+
+  double number_of(const Json& value) {
+    constexpr std::int64_t kExact = std::int64_t{1} << 53;
+    if (value.is_null()) return kMissing;
+    if (value.is_boolean()) return static_cast<double>(value.get<bool>());
+    if (value.is_number_unsigned()) {
+      rounded = rounded || value.get<std::uint64_t>() > static_cast<std::uint64_t>(kExact);
+    } else if (value.is_number_integer()) {
+      rounded = rounded || value.get<std::int64_t>() < -kExact;
+    }
+    return value.get<double>();
+  }
+
+  void keep(const Json& value, const std::string& path, int element, const std::string& array) {
+    if (const auto found = by_path_.find(path); found != by_path_.end()) {
+      NumberColumn& column = columns[found->second];
+      if (column.kept && column.numbers.size() == log_times.size()) column.numbers.add(number_of(value));
+      return;
+    }
+    if (value.is_null()) return;
+    std::set<std::string>& why = log_times.empty() ? bulky : changing;
+    if (!log_times.empty() || columns.size() >= kMostColumns) {
+      if (why.size() < kMostColumns) why.insert(printable(array.empty() ? path : array));
+      return;
+    }
+    by_path_.emplace(path, columns.size());
+    columns.push_back({printable(path), element, printable(array), true, {}});
+    columns.back().numbers.add(number_of(value));
+  }
+
+  /// One that not every message has.
+  void leave_out(NumberColumn& column) {
+    changing.insert(column.array.empty() ? column.path : column.array);
+    column.kept = false;
+    column.numbers.clear();
+  }
+
+  std::map<std::string, std::size_t> by_path_, lengths_;
+};
+
+}  // namespace
+
+std::unique_ptr<MessageStream> stream_of_json() {
+  return std::make_unique<StreamOfJson>();
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,374 @@
+#include "mbk/files/ros/topics.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <utility>
+
+#include "mbk/base/core/printable.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr std::size_t kMostTopics = 4096, kMostArrays = 20000, kMostSets = 16, kMostListed = 12;
+constexpr std::int64_t kLatest = std::int64_t{1} << 62;
+constexpr std::int64_t kFirstDate = 631152000 * kSecond;  ///< 1990: clocks that count from elsewhere are before it
+constexpr std::int64_t kLongLag = 60 * kSecond;
+constexpr int kMostJoints = 8;
+
+std::string listed(std::vector<std::string> names) {
+  const std::size_t more = names.size() > kMostListed ? names.size() - kMostListed : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// The vector of a type of message whose x and y are channels.
+struct VectorMeaning {
+  std::string_view type, path, channel, unit;
+};
+
+constexpr auto kVectors = std::to_array<VectorMeaning>({
+    {"geometry_msgs/WrenchStamped", "wrench.force", "force", "N"},
+    {"geometry_msgs/Wrench", "force", "force", "N"},
+    {"geometry_msgs/PoseStamped", "pose.position", "hand", "m"},
+    {"geometry_msgs/Pose", "position", "hand", "m"},
+    {"geometry_msgs/PoseWithCovarianceStamped", "pose.pose.position", "hand", "m"},
+    {"geometry_msgs/PointStamped", "point", "hand", "m"},
+    {"geometry_msgs/AccelStamped", "accel.linear", "acceleration", "m/s2"},
+    {"geometry_msgs/Accel", "linear", "acceleration", "m/s2"},
+});
+
+/// What all of these types call x is no channel by that name alone.
+bool is_of_ros(std::string_view type) {
+  constexpr auto kPackages = std::to_array<std::string_view>(
+      {"geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/", "tf2_msgs/", "tf/", "trajectory_msgs/",
+       "control_msgs/", "visualization_msgs/", "diagnostic_msgs/", "foxglove."});
+  return std::ranges::any_of(kPackages, [&](std::string_view package) { return type.starts_with(package); });
+}
+
+struct Meaning {
+  std::string channel;  ///< "" where the type says nothing
+  std::string unit;
+};
+
+Meaning meaning_of(std::string_view type, const NumberColumn& column) {
+  for (const VectorMeaning& vector : kVectors) {
+    if (type != vector.type || !column.path.starts_with(vector.path)) continue;
+    const std::string_view rest = std::string_view(column.path).substr(vector.path.size());
+    if (rest == ".x" || rest == ".y") return {fmt::format("{}_{}", vector.channel, rest[1]), std::string(vector.unit)};
+    if (rest == ".z") return {"", std::string(vector.unit)};
+  }
+  if (type == kJointState && column.element >= 0 && column.element < kMostJoints) {
+    if (column.array == "position") return {fmt::format("joint_{}", column.element + 1), ""};
+    if (column.array == "effort") return {fmt::format("torque_{}", column.element + 1), ""};
+  }
+  return {};
+}
+
+/// [Hz], one over the median interval; 0 where there is none.
+double rate_of(const Vector& time) {
+  if (time.size() < 2) return 0.0;
+  std::vector<double> intervals(static_cast<std::size_t>(time.size() - 1));
+  for (Index k = 1; k < time.size(); ++k) intervals[static_cast<std::size_t>(k - 1)] = time[k] - time[k - 1];
+  const auto middle = intervals.begin() + std::ssize(intervals) / 2;
+  std::ranges::nth_element(intervals, middle);
+  return *middle > 0.0 ? 1.0 / *middle : 0.0;
+}
+
+/// Stamps that nobody set are no times.
+bool has_stamps(const MessageStream& messages) {
+  return messages.stamps.size() == messages.log_times.size() &&
+         std::ranges::any_of(messages.stamps, [](std::int64_t stamp) { return stamp != 0; });
+}
+
+const std::vector<std::int64_t>& times_of(const MessageStream& messages) {
+  return has_stamps(messages) ? messages.stamps : messages.log_times;
+}
+
+bool has_numbers(const MessageStream& messages) {
+  return !messages.log_times.empty() && std::ranges::any_of(messages.columns, &NumberColumn::kept);
+}
+
+std::string date_of(std::int64_t nanoseconds) {
+  const auto seconds = static_cast<std::time_t>(nanoseconds / kSecond);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:09}Z", fmt::gmtime(seconds), nanoseconds % kSecond);
+}
+
+std::string frames_of(const MessageStream& messages) {
+  std::vector<std::string> frames;
+  for (const std::string& frame : messages.frames) {
+    if (!frame.empty()) frames.push_back(fmt::format("'{}'", frame));
+  }
+  if (frames.empty()) return "whose frame the messages do not name";
+  return fmt::format("in its frame{} {}", frames.size() > 1 ? "s" : "", listed(std::move(frames)));
+}
+
+}  // namespace
+
+void Topics::add(std::uint32_t channel, const TopicDescription& description) {
+  if (channels_.contains(channel) || topics_.size() >= kMostTopics) return;
+  const auto same = [&](const Topic& topic) {
+    const TopicDescription& other = topic.description;
+    return other.topic == description.topic && other.type == description.type &&
+           other.encoding == description.encoding && other.definition == description.definition;
+  };
+  // Several programs may publish one topic.
+  const auto known = std::ranges::find_if(topics_, same);
+  channels_[channel] = static_cast<std::size_t>(known - topics_.begin());
+  if (known != topics_.end()) return;
+  Topic topic;
+  topic.description = description;
+  topic.name = printable(description.topic);
+  const auto namesakes =
+      std::ranges::count(topics_, description.topic, [](const Topic& other) { return other.description.topic; });
+  if (namesakes > 0) topic.name += fmt::format("#{}", namesakes + 1);
+  prepare(topic);
+  topics_.push_back(std::move(topic));
+}
+
+void Topics::prepare(Topic& topic) const {
+  const TopicDescription& said = topic.description;
+  if (said.encoding == "json") return;
+  const bool ros1 = said.encoding == "ros1" && said.schema_encoding == "ros1msg";
+  if (!ros1 && !(said.encoding == "cdr" && said.schema_encoding == "ros2msg")) {
+    topic.unread = fmt::format("its messages are '{}' described by '{}'", said.encoding, said.schema_encoding);
+    return;
+  }
+  auto definition = parse_definition(said.type, said.definition, ros1 ? Dialect::ros1 : Dialect::ros2);
+  if (!definition) {
+    topic.unread = fmt::format("the definition of {} is not understood: {}", said.type, definition.error().message);
+  } else if (definition->wide_texts) {
+    topic.unread = "it has wide strings, whose size in bytes differs from program to program";
+  } else {
+    topic.definition = std::make_shared<const MessageDefinition>(std::move(*definition));
+  }
+}
+
+bool Topics::wants(std::uint32_t channel) const {
+  const auto found = channels_.find(channel);
+  return found != channels_.end() && topics_[found->second].unread.empty();
+}
+
+void Topics::leave_out(std::uint32_t channel) {
+  if (const auto found = channels_.find(channel); found != channels_.end()) ++topics_[found->second].count;
+}
+
+Topics::Stream* Topics::stream_of(Topic& topic, std::span<const std::byte> message) {
+  std::string key;
+  if (topic.definition && topic.definition->messages.front().name == kJointState) {
+    auto names = joint_names(*topic.definition, message);
+    if (!names) return nullptr;
+    std::ranges::sort(*names);
+    for (const std::string& name : *names) key += name + '\0';
+  }
+  const auto known = std::ranges::find(topic.streams, key, &Stream::key);
+  if (known != topic.streams.end()) return &*known;
+  if (topic.streams.size() >= kMostSets) return nullptr;
+  std::string name = topic.name;
+  if (!topic.streams.empty()) name += fmt::format("/{}", topic.streams.size() + 1);
+  topic.streams.push_back(
+      {std::move(name), std::move(key), topic.definition ? stream_of_bytes(topic.definition) : stream_of_json()});
+  return &topic.streams.back();
+}
+
+void Topics::message(std::uint32_t channel, std::uint64_t log_time, std::span<const std::byte> message) {
+  Topic& topic = topics_[channels_.at(channel)];
+  ++topic.count;
+  if (!topic.unread.empty()) return;
+  if (topic.description.type == kEventType) {
+    if (auto event = event_of(message)) {
+      events_.push_back(std::move(*event));
+    } else {
+      topic.unread = fmt::format("message {} is not what the definition says", topic.count);
+    }
+    return;
+  }
+  Stream* const stream = stream_of(topic, message);
+  const auto time = static_cast<std::int64_t>(std::min<std::uint64_t>(log_time, kLatest));
+  if (stream != nullptr && stream->messages->add(message, time)) return;
+  topic.unread = fmt::format("message {} is not what the definition says", topic.count);
+  topic.streams.clear();
+}
+
+void Topics::note_topics(Contents& contents) const {
+  std::vector<std::string> read;
+  for (const Topic& topic : topics_) {
+    const std::string type = topic.description.type.empty() ? topic.description.encoding : topic.description.type;
+    std::string rates;
+    for (const Stream& stream : topic.streams) {
+      const auto clock = std::ranges::find(contents.clocks, stream.name, &Clock::name);
+      if (clock == contents.clocks.end()) continue;
+      rates += fmt::format("{}{:.4g} Hz", rates.empty() ? ", " : " and ", rate_of(clock->time));
+    }
+    read.push_back(
+        fmt::format("{} ({}, {} message{}{})", topic.name, type, topic.count, topic.count == 1 ? "" : "s", rates));
+  }
+  if (!read.empty()) contents.notes.push_back(printable(fmt::format("topics: {}", fmt::join(read, ", "))));
+  for (const Topic& topic : topics_) {
+    if (!topic.unread.empty()) {
+      contents.notes.push_back(printable(fmt::format("'{}' is not read: {}", topic.name, topic.unread)));
+    }
+  }
+}
+
+void Topics::explain(const Topic& topic, const Stream& stream, Contents& contents) const {
+  const MessageStream& messages = *stream.messages;
+  const std::string type = plain_type(topic.description.type);
+  const auto note = [&](std::string text) { contents.notes.push_back(printable(std::move(text))); };
+  for (const VectorMeaning& vector : kVectors) {
+    if (vector.type != type) continue;
+    note(fmt::format("{0}_x and {0}_y are {1}.x and .y of '{2}', {3}", vector.channel, vector.path, stream.name,
+                     frames_of(messages)));
+    if (vector.channel != "force") continue;
+    contents.notes.back() += printable(fmt::format(
+        ", with the sign that they have there; mbk means the force that the hand exerts on the robot, along the axes "
+        "of "
+        "the robot's base: where the sensor says the opposite, turn it with --channels Fx=-{0}.{1}.x,Fy=-{0}.{1}.y",
+        stream.name, vector.path));
+  }
+  if (type == kJointState) {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < messages.joints.size() && k < kMostJoints; ++k) {
+      names.push_back(fmt::format("{} {}", k + 1, messages.joints[k]));
+    }
+    note(fmt::format("joints and torques are position and effort of '{}', in the order of its first message{}{}",
+                     stream.name, names.empty() ? "" : ": ", listed(std::move(names))));
+  }
+  const auto list = [&](const std::set<std::string>& paths) {
+    std::vector<std::string> names;
+    for (const std::string& path : paths) names.push_back(fmt::format("{}.{}", stream.name, path));
+    return listed(std::move(names));
+  };
+  if (!messages.bulky.empty()) {
+    note(
+        fmt::format("left out, as arrays of more than {} numbers or {} bytes are, and more than {} numbers of one "
+                    "message: {}",
+                    kLongestArray, kLongestBytes, kMostColumns, list(messages.bulky)));
+  }
+  if (!messages.changing.empty()) {
+    note(fmt::format("left out, as not every message has them, or not as many of them: {}", list(messages.changing)));
+  }
+  if (messages.rounded) {
+    note(fmt::format("'{}' holds whole numbers above 2^53, which were rounded", stream.name));
+  }
+}
+
+void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, Contents& contents) {
+  MessageStream& messages = *stream.messages;
+  const std::vector<std::int64_t>& times = times_of(messages);
+  Vector time(std::ssize(times));
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    time[static_cast<Index>(k)] = static_cast<double>(times[k] - begin) / static_cast<double>(kSecond);
+  }
+  const auto clock = static_cast<int>(contents.clocks.size());
+  contents.clocks.push_back({stream.name, std::move(time)});
+  const std::string type = plain_type(topic.description.type);
+  for (NumberColumn& column : messages.columns) {
+    if (!column.kept) continue;
+    Meaning meaning = meaning_of(type, column);
+    Array array;
+    array.name = fmt::format("{}.{}", stream.name, column.path);
+    array.values = SharedMatrix::of_column(column.numbers.take());
+    array.unit = std::move(meaning.unit);
+    array.signal = true;
+    array.clock = clock;
+    // The name of a field says what it is where it stands by itself in a message of one's own.
+    const bool by_name = !is_of_ros(type) && column.path.size() > 2 && !column.path.starts_with("time") &&
+                         column.path.find_first_of(".[") == std::string::npos;
+    if (!meaning.channel.empty()) {
+      array.means = std::move(meaning.channel);
+    } else if (!by_name) {
+      array.means = array.name;
+    }
+    contents.arrays.push_back(std::move(array));
+  }
+}
+
+Contents Topics::contents(std::string format, bool exact_times) {
+  Contents contents;
+  contents.format = std::move(format);
+  std::vector<std::pair<Topic*, Stream*>> streams;
+  std::size_t arrays = 0;
+  for (Topic& topic : topics_) {
+    std::size_t of_topic = 0;
+    for (const Stream& stream : topic.streams) {
+      of_topic += static_cast<std::size_t>(std::ranges::count(stream.messages->columns, true, &NumberColumn::kept));
+    }
+    if (arrays + of_topic > kMostArrays) {
+      topic.unread = fmt::format("the file has more than {} numbers in its messages", kMostArrays);
+      topic.streams.clear();
+      continue;
+    }
+    arrays += of_topic;
+    for (Stream& stream : topic.streams) {
+      if (has_numbers(*stream.messages)) streams.emplace_back(&topic, &stream);
+    }
+  }
+
+  std::int64_t begin = kLatest;
+  for (const auto& [topic, stream] : streams) {
+    begin = std::min(begin, *std::ranges::min_element(times_of(*stream->messages)));
+  }
+  const auto own = std::ranges::find(streams, kChannelsType,
+                                     [](const auto& one) { return std::string_view(one.first->description.type); });
+  const bool exact = exact_times && own != streams.end() && std::ranges::all_of(streams, [&](const auto& one) {
+                       return one.second->messages->log_times == own->second->messages->log_times;
+                     });
+  std::optional<Vector> times;
+  if (exact) {
+    auto& columns = own->second->messages->columns;
+    const auto time = std::ranges::find(columns, "time", &NumberColumn::path);
+    if (time != columns.end() && time->kept) {
+      times = time->numbers.take();
+      time->kept = false;
+    }
+  }
+
+  std::vector<std::string> stamped, logged;
+  for (const auto& [topic, stream] : streams) {
+    const bool stamps = has_stamps(*stream->messages);
+    (stamps ? stamped : logged).push_back(fmt::format("'{}'", stream->name));
+    if (stamps && !exact) {
+      const std::int64_t lag = stream->messages->log_times.front() - stream->messages->stamps.front();
+      if (std::abs(lag) > kLongLag) {
+        contents.notes.push_back(printable(fmt::format(
+            "the stamps of '{}' are {:.6g} s {} the time when they were recorded: they come from another clock",
+            stream->name, static_cast<double>(std::abs(lag)) / static_cast<double>(kSecond),
+            lag > 0 ? "before" : "after")));
+      }
+    }
+    take(*topic, *stream, begin, contents);
+    if (times) contents.clocks.back().time = *times;
+    if (!times) explain(*topic, *stream, contents);
+    stream->messages->stamps.clear();
+    stream->messages->stamps.shrink_to_fit();
+  }
+  if (times) {
+    contents.events = std::move(events_);
+  } else if (!events_.empty()) {
+    contents.notes.push_back("its events are left out, as the times of its channels differ");
+  }
+  if (!streams.empty() && !times) {
+    std::string note = "times count from the first one";
+    if (begin >= kFirstDate) {
+      contents.metadata["start"] = date_of(begin);
+      note += fmt::format(", {}", contents.metadata["start"]);
+    }
+    if (!stamped.empty()) note += fmt::format("; they are those of header.stamp in {}", listed(std::move(stamped)));
+    if (!logged.empty()) {
+      note +=
+          fmt::format("; of {} those when they were recorded, as no message has a stamp", listed(std::move(logged)));
+    }
+    contents.notes.insert(contents.notes.begin(), printable(std::move(note)));
+  }
+  note_topics(contents);
+  topics_.clear();
+  channels_.clear();
+  return contents;
+}
+
+}  // namespace mbk::recording
