@@ -1,7 +1,7 @@
 #include "mbk/files/archive/zip_archive.h"
 
 #include <fmt/format.h>
-#include <unzip.h>
+#include <minizip/unzip.h>
 
 #include <algorithm>
 #include <cstring>
@@ -69,7 +69,7 @@ Handle open_at(Cursor& place) {
   return Handle(unzOpen2_64(nullptr, &functions));
 }
 
-std::string quoted(std::string_view name) {
+std::string in_quotes(std::string_view name) {
   return fmt::format("'{}'", printable(std::string(name)));
 }
 
@@ -100,11 +100,11 @@ Result<ZipArchive> ZipArchive::open(std::span<const std::byte> file) {
     std::string name(text.c_str());
     const std::uint64_t size = about.uncompressed_size;
     if (size > room || total + size > room) {
-      return damaged(fmt::format("{} says that it unpacks to {} bytes, which it cannot", quoted(name), size));
+      return damaged(fmt::format("{} says that it unpacks to {} bytes, which it cannot", in_quotes(name), size));
     }
     total += size;
     if ((about.flag & kEncrypted) != 0) {
-      return bad_data(fmt::format("{} in the zip archive is encrypted", quoted(name)),
+      return bad_data(fmt::format("{} in the zip archive is encrypted", in_quotes(name)),
                       "unpack it with its password and pack it again without one");
     }
     places.push_back({archive.members_.size(), position.pos_in_zip_directory, position.num_of_file});
@@ -129,7 +129,7 @@ Result<Buffer> ZipArchive::read_begin(std::string_view name, std::uint64_t count
 
 Result<Buffer> ZipArchive::read(std::string_view name, std::uint64_t count, bool whole) const {
   const auto found = places_.find(name);
-  if (found == places_.end()) return damaged(fmt::format("it holds no {}", quoted(name)));
+  if (found == places_.end()) return damaged(fmt::format("it holds no {}", in_quotes(name)));
   const Place& place = found->second;
   const std::uint64_t size = std::min(members_[place.member].size, count);
   if (auto ok = check_memory(size); !ok) return tl::unexpected(ok.error());
@@ -137,23 +137,23 @@ Result<Buffer> ZipArchive::read(std::string_view name, std::uint64_t count, bool
   const Handle archive = open_at(at);
   const unz64_file_pos position{place.entry, place.of_number};
   if (!archive || unzGoToFilePos64(archive.get(), &position) != UNZ_OK || unzOpenCurrentFile(archive.get()) != UNZ_OK) {
-    return damaged(fmt::format("{} is damaged, or packed in a way that is not known", quoted(name)));
+    return damaged(fmt::format("{} is damaged, or packed in a way that is not known", in_quotes(name)));
   }
   Buffer bytes(size);
   std::size_t got = 0;
   while (got < bytes.size) {
     const auto want = static_cast<unsigned>(std::min<std::size_t>(bytes.size - got, std::size_t{1} << 30));
     const int n = unzReadCurrentFile(archive.get(), bytes.data.get() + got, want);
-    if (n <= 0) return damaged(fmt::format("{} {}", quoted(name), n < 0 ? "is damaged" : "ends early"));
+    if (n <= 0) return damaged(fmt::format("{} {}", in_quotes(name), n < 0 ? "is damaged" : "ends early"));
     got += static_cast<std::size_t>(n);
   }
   if (!whole) return bytes;
   std::byte beyond;
   if (unzReadCurrentFile(archive.get(), &beyond, 1) != 0) {
-    return damaged(fmt::format("{} is longer than it says", quoted(name)));
+    return damaged(fmt::format("{} is longer than it says", in_quotes(name)));
   }
   if (unzCloseCurrentFile(archive.get()) != UNZ_OK) {
-    return damaged(fmt::format("{} is damaged: its checksum is wrong", quoted(name)));
+    return damaged(fmt::format("{} is damaged: its checksum is wrong", in_quotes(name)));
   }
   return bytes;
 }
