@@ -30,7 +30,7 @@ struct Datatype {
   bool big_endian = false;                ///< of numbers
   bool padded_with_blanks = false;        ///< of texts of fixed length
   std::string what;                       ///< of what is not read: "of an opaque type"
-  std::vector<Member> members = {};       ///< of a compound
+  std::vector<Member> members;            ///< of a compound
 };
 
 /// A value in an element of a compound type.

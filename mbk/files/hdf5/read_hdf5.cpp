@@ -56,7 +56,7 @@ class Tree {
     for (const Link& link : **links) {
       const std::string inner = path + "/" + link.name;
       if (place.groups.contains(link.name) || place.datasets.contains(link.name)) {
-        place.damage = fmt::format("'{}' is there twice", link.name);
+        place.damage = printable(fmt::format("'{}' is there twice", link.name));
         continue;
       }
       if (auto ok = object(address, link, inner, depth, place); !ok) return ok;
@@ -70,7 +70,7 @@ class Tree {
   Result<void> object(std::uint64_t parent, const Link& link, const std::string& path, int depth, Group& place) {
     if (auto ok = reading_.file.budget.object(path.size()); !ok) return tl::unexpected(ok.error().in(path));
     const auto leave = [&](std::string what, bool is_damaged = false) {
-      place.datasets[link.name].value.data = Unread{std::move(what), is_damaged};
+      place.datasets[link.name].value.data = Unread{printable(std::move(what)), is_damaged};
       return Result<void>();
     };
     if (link.kind == Link::Kind::external) {
@@ -94,7 +94,7 @@ class Tree {
     const auto [first, is_new] = paths_.try_emplace(address, path);
     Dataset& read = place.datasets[name];
     if (!is_new && read_again_ > reading_.file.bytes.size()) {
-      read.value.data = Unread{fmt::format("another name of '{}'", first->second)};
+      read.value.data = Unread{printable(fmt::format("another name of '{}'", first->second))};
       return {};
     }
     std::optional<Group> table;

@@ -43,8 +43,8 @@ struct CountedSource {
 [[nodiscard]] std::optional<CountedSource> counted_source(std::string_view source);
 
 /// Reads "x=2:mm,y=3,Fx=-10,time=clock:ms,tau1=current*35.15-0.2:N.m". Entries are
-/// CHANNEL=[-]SOURCE[*GAIN][+OFFSET|-OFFSET][:UNIT], where SOURCE is NUMBER, NAME, NAME[NUMBER] or one of these with
-/// @HZ behind it; names and aliases of the channel table.
+/// CHANNEL=[-]SOURCE[*GAIN][+OFFSET|-OFFSET][:UNIT], where SOURCE is a number, a name or
+/// NAME[NUMBER], with `NAME@HZ` decimated; names and aliases of the channel table.
 /// @fails  usage: empty; no "="; no source; a channel twice; an unknown channel (the nearest known one is named).
 ///         data: a unit that this channel cannot have (the possible ones are named). What stands behind the last colon
 /// and is no unit stays with the source, whose name may hold colons.
