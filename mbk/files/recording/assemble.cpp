@@ -798,7 +798,10 @@ class Assembler {
     recording_.time = std::move(common->time);
     recording_.time_origin = {"time", clock_->name, "s"};
     for (std::string& note : common->notes) recording_.notes.push_back(std::move(note));
-    std::erase_if(recording_.events, [](const Event& event) { return !std::isfinite(event.time); });
+    // Those that no stream was recorded at; a single clock leaves them as they are.
+    if (std::ranges::any_of(signals, [&](const auto& signal) { return !same_stamps(*signal.clock, *clock_); })) {
+      std::erase_if(recording_.events, [](const Event& event) { return !std::isfinite(event.time); });
+    }
     return {};
   }
 

@@ -20,7 +20,7 @@ namespace {
 
 // What follows a definition that names these types.
 constexpr std::string_view kLine = "================================================================================\n";
-constexpr std::string_view kHeaderText = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
+constexpr std::string_view kHeaderMessage = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 constexpr std::string_view kTimeText = "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 constexpr std::string_view kVectorText = "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n";
 
@@ -28,7 +28,7 @@ std::string wrench_definition() {
   return fmt::format(
       "std_msgs/Header header\nWrench wrench\n{0}MSG: geometry_msgs/Wrench\nVector3 force\nVector3 torque\n"
       "{0}{1}{0}{2}{0}{3}",
-      kLine, kVectorText, kHeaderText, kTimeText);
+      kLine, kVectorText, kHeaderMessage, kTimeText);
 }
 
 std::string pose_definition() {
@@ -36,13 +36,13 @@ std::string pose_definition() {
       "std_msgs/Header header\nPose pose\n{0}MSG: geometry_msgs/Pose\nPoint position\nQuaternion orientation\n"
       "{0}MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n"
       "{0}MSG: geometry_msgs/Quaternion\nfloat64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n{0}{1}{0}{2}",
-      kLine, kHeaderText, kTimeText);
+      kLine, kHeaderMessage, kTimeText);
 }
 
 std::string joints_definition() {
   return fmt::format(
       "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n{0}{1}{0}{2}",
-      kLine, kHeaderText, kTimeText);
+      kLine, kHeaderMessage, kTimeText);
 }
 
 bool is_field_name(std::string_view name) {
@@ -76,7 +76,7 @@ class McapEncoder {
   explicit McapEncoder(const Recording& recording) : recording_(recording), writer_(fmt::format("mbk {}", version())) {}
 
   Result<std::string> run() {
-    if (auto ok = settle_stamps(); !ok) return tl::unexpected(ok.error());
+    settle_stamps();
     if (auto ok = add_metadata(); !ok) return tl::unexpected(ok.error());
     sort_channels();
     if (auto ok = add_topics(); !ok) return tl::unexpected(ok.error());
@@ -88,34 +88,25 @@ class McapEncoder {
   }
 
  private:
-  /// Where time zero stands among the stamps.
-  Result<void> settle_stamps() {
-    constexpr double kLatestSecond = std::numeric_limits<std::int32_t>::max();
-    double first = 0.0, last = 0.0;
-    const auto add = [&](double time, std::string_view what) -> Result<void> {
-      first = std::min(first, time);
-      last = std::max(last, time);
-      if (std::isfinite(time) && std::abs(time) < kLatestSecond) return {};
-      return bad_data(fmt::format("{} at {} s: no stamp of ROS can hold that", what, time),
-                      "write it as HDF5, or without these samples");
-    };
-    for (const double time : recording_.time) {
-      if (auto ok = add(time, "a sample"); !ok) return ok;
-    }
-    for (const Event& event : recording_.events) {
-      if (auto ok = add(event.time, "an event"); !ok) return ok;
-    }
+  /// Where time zero stands among the stamps, of which none is negative.
+  void settle_stamps() {
     zero_ = start_of(recording_).value_or(0);
-    const std::int64_t before = -static_cast<std::int64_t>(std::floor(first)) * kSecond;
-    if (zero_ < before) zero_ = before;
-    if (static_cast<double>(zero_ / kSecond) + last >= kLatestSecond) {
-      return bad_data("its last time is later than a stamp of ROS can be", "write it as HDF5");
-    }
-    return {};
+    double first = 0.0;
+    const auto add = [&](double time) { first = is_stamp(time) ? std::min(first, time) : first; };
+    for (const double time : recording_.time) add(time);
+    for (const Event& event : recording_.events) add(event.time);
+    zero_ = std::max(zero_, -static_cast<std::int64_t>(std::floor(first)) * kSecond);
+  }
+
+  /// Whether a stamp, whose seconds have 31 bits, can hold it. What does not has that of time zero; its exact time
+  /// stands in the message.
+  [[nodiscard]] bool is_stamp(double time) const {
+    constexpr double kLatest = std::numeric_limits<std::int32_t>::max();
+    return std::abs(time) < kLatest && static_cast<double>(zero_ / kSecond) + time < kLatest;
   }
 
   [[nodiscard]] std::int64_t stamp_of(double time) const {
-    return zero_ + std::llround(time * static_cast<double>(kSecond));
+    return is_stamp(time) ? zero_ + std::llround(time * static_cast<double>(kSecond)) : zero_;
   }
 
   Result<void> add_metadata() {

@@ -27,8 +27,11 @@ struct Kind {
   Format format;
   const char* file;
 };
-constexpr std::array<Kind, 4> kKinds{
-    {{Format::mat5, "a.mat"}, {Format::mat73, "a73.mat"}, {Format::hdf5, "a.h5"}, {Format::csv, "a.csv"}}};
+constexpr std::array<Kind, 5> kKinds{{{Format::mat5, "a.mat"},
+                                      {Format::mat73, "a73.mat"},
+                                      {Format::hdf5, "a.h5"},
+                                      {Format::csv, "a.csv"},
+                                      {Format::mcap, "a.mcap"}}};
 
 /// Recordings of every kind that the channel table knows, with everything that their values may be.
 class RandomRecording {
@@ -219,20 +222,24 @@ TEST(Write, RefusesWhatIsNoRecording) {
     }
     return lines;
   };
-  const auto four = [](const std::string& line) { return line + "\n" + line + "\n" + line + "\n" + line + "\n"; };
-  EXPECT_EQ(said({}), four("a recording without samples is not written"));
+  const auto each = [](const std::string& line) {
+    std::string lines;
+    for (std::size_t k = 0; k < kKinds.size(); ++k) lines += line + "\n";
+    return lines;
+  };
+  EXPECT_EQ(said({}), each("a recording without samples is not written"));
   Recording recording = example();
   recording.channels.clear();
-  EXPECT_EQ(said(recording), four("a recording without channels is not written"));
+  EXPECT_EQ(said(recording), each("a recording without channels is not written"));
   recording = example();
   recording.channels.push_back(recording.channels.front());
-  EXPECT_EQ(said(recording), four("channel 'hand_x' is there twice"));
+  EXPECT_EQ(said(recording), each("channel 'hand_x' is there twice"));
   recording = example();
   recording.channels[1].values.resize(7);
-  EXPECT_EQ(said(recording), four("channel 'hand_y' has 7 samples, time has 200"));
+  EXPECT_EQ(said(recording), each("channel 'hand_y' has 7 samples, time has 200"));
   recording = example();
   recording.metadata["note"] = "two\nlines";
-  EXPECT_EQ(said(recording), four("metadata 'note' is not one line of UTF-8; write it without control characters"));
+  EXPECT_EQ(said(recording), each("metadata 'note' is not one line of UTF-8; write it without control characters"));
   recording = example();
   recording.events.front().name = "\xff";
   EXPECT_THAT(said(recording), HasSubstr("the event name '"));
@@ -247,7 +254,7 @@ TEST(Write, RefusesKeysThatAFormatCannotHold) {
     const auto ok = write(recording, folder / kind.file, kind.format, true);
     return ok ? "" : ok.error().line();
   };
-  const auto [mat, mat73, hdf5, csv] = kKinds;
+  const auto [mat, mat73, hdf5, csv, mcap] = kKinds;
   EXPECT_THAT(said(mat, "a b"), HasSubstr("'a b' cannot be the name of a MATLAB field"));
   EXPECT_THAT(said(mat73, "a b"), HasSubstr("'a b' cannot be the name of a MATLAB field"));
   EXPECT_EQ(said(hdf5, "a b/ü"), "");
@@ -256,13 +263,14 @@ TEST(Write, RefusesKeysThatAFormatCannotHold) {
   EXPECT_THAT(said(csv, "a b"), HasSubstr("'a b' cannot be written as a comment"));
   EXPECT_THAT(said(csv, "a:b"), HasSubstr("without spaces and colons"));
   EXPECT_EQ(said(csv, "größe"), "");
+  EXPECT_EQ(said(mcap, "a b/ü"), "");
 }
 
 TEST(Write, SaysWhichFramesAreLost) {
   Recording recording = example();
   recording.channels[2].frame = "tool";
   EXPECT_THAT(lost_in(recording, Format::hdf5), ElementsAre());
-  for (const Format format : {Format::mat5, Format::mat73, Format::csv}) {
+  for (const Format format : {Format::mat5, Format::mat73, Format::csv, Format::mcap}) {
     EXPECT_THAT(lost_in(recording, format), ElementsAre(StartsWith("the frame of force_x ('tool')")));
   }
 }
@@ -384,6 +392,7 @@ TEST(FormatOf, GoesByTheNameThatIsGivenThenByTheEndOfTheFile) {
   EXPECT_EQ(format_of("x.y/a.csv"), Format::csv);
   EXPECT_EQ(format_of("a.mat", "mat73"), Format::mat73);
   EXPECT_EQ(format_of("a", "csv"), Format::csv);
+  EXPECT_EQ(format_of("a.mcap"), Format::mcap);
   EXPECT_EQ(format_of("a.csv", "mat"), Format::mat5);
 }
 
@@ -393,9 +402,10 @@ TEST(FormatOf, RefusesWhatItDoesNotKnow) {
     EXPECT_TRUE(!format && format.error().kind == ErrorKind::usage);
     return format ? "" : format.error().line();
   };
-  EXPECT_EQ(said("a.xls", ""), "a.xls: '.xls' is not a format that is written; let it end with .h5, .mat or .csv");
-  EXPECT_EQ(said("a", ""), "a: the name does not say a format; let it end with .h5, .mat or .csv");
-  EXPECT_EQ(said("a.mat", "mat4"), "'mat4' is not a format that is written; choose mat5, mat73, hdf5 or csv");
+  EXPECT_EQ(said("a.xls", ""),
+            "a.xls: '.xls' is not a format that is written; let it end with .h5, .mat, .csv or .mcap");
+  EXPECT_EQ(said("a", ""), "a: the name does not say a format; let it end with .h5, .mat, .csv or .mcap");
+  EXPECT_EQ(said("a.mat", "mat4"), "'mat4' is not a format that is written; choose mat5, mat73, hdf5, csv or mcap");
 }
 
 }  // namespace write_test

@@ -63,7 +63,7 @@ class Pairs {
 class BagDecoder {
  public:
   /// @param size  of all bytes
-  BagDecoder(ForwardBytes& bytes, std::uint64_t size) : bytes_(bytes), size_(size) {}
+  BagDecoder(ForwardBytes& bytes, std::uint64_t size) : bytes_(bytes), size_(size), topics_(size) {}
 
   Result<Contents> run() {
     const auto magic = bytes_.take(kBagMagic.size());
@@ -182,8 +182,7 @@ class BagDecoder {
     if (!message) return tl::unexpected(message.error());
     if (message->size() < size) return odd("message");
     const std::uint64_t seconds = *time & 0xFFFFFFFFU, nanoseconds = *time >> 32;
-    topics_.message(*connection, seconds * kNanoseconds + nanoseconds, *message);
-    return {};
+    return topics_.message(*connection, seconds * kNanoseconds + nanoseconds, *message);
   }
 
   Result<void> take_chunk(const Pairs& pairs, std::uint32_t packed_size) {

@@ -81,7 +81,7 @@ struct Schema {
 class McapDecoder {
  public:
   /// @param size  of all bytes
-  McapDecoder(ForwardBytes& bytes, std::uint64_t size) : bytes_(bytes), size_(size) {}
+  McapDecoder(ForwardBytes& bytes, std::uint64_t size) : bytes_(bytes), size_(size), topics_(size) {}
 
   Result<Contents> run() {
     const auto magic = bytes_.take(kMcapMagic.size());
@@ -210,8 +210,7 @@ class McapDecoder {
     const auto message = from.take(static_cast<std::size_t>(length));
     if (!message) return tl::unexpected(message.error());
     if (message->size() < length) return odd("message");
-    topics_.message(channel, log_time, *message);
-    return {};
+    return topics_.message(channel, log_time, *message);
   }
 
   Result<void> take_chunk(std::uint64_t length) {

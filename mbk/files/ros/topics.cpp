@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/files/contents/memory.h"
+#include "mbk/files/ros/forward_bytes.h"
 
 namespace mbk::recording {
 namespace {
@@ -130,7 +132,7 @@ void Topics::add(std::uint32_t channel, const TopicDescription& description) {
   topics_.push_back(std::move(topic));
 }
 
-void Topics::prepare(Topic& topic) const {
+void Topics::prepare(Topic& topic) {
   const TopicDescription& said = topic.description;
   if (said.encoding == "json") return;
   const bool ros1 = said.encoding == "ros1" && said.schema_encoding == "ros1msg";
@@ -175,23 +177,40 @@ Topics::Stream* Topics::stream_of(Topic& topic, std::span<const std::byte> messa
   return &topic.streams.back();
 }
 
-void Topics::message(std::uint32_t channel, std::uint64_t log_time, std::span<const std::byte> message) {
+Result<void> Topics::message(std::uint32_t channel, std::uint64_t log_time, std::span<const std::byte> message) {
   Topic& topic = topics_[channels_.at(channel)];
   ++topic.count;
-  if (!topic.unread.empty()) return;
+  if (!topic.unread.empty()) return {};
+  std::size_t numbers = 2;  // its times
   if (topic.description.type == kEventType) {
-    if (auto event = event_of(message)) {
-      events_.push_back(std::move(*event));
+    auto event = event_of(message);
+    if (event) {
+      events_.push_back({event->time, printable(std::move(event->name)), event->value});
     } else {
       topic.unread = fmt::format("message {} is not what the definition says", topic.count);
     }
-    return;
+  } else {
+    Stream* const stream = stream_of(topic, message);
+    const auto time = static_cast<std::int64_t>(std::min<std::uint64_t>(log_time, kLatest));
+    if (stream != nullptr && stream->messages->add(message, time)) {
+      numbers += stream->messages->columns.size();
+    } else {
+      topic.unread = fmt::format("message {} is not what the definition says", topic.count);
+      topic.streams.clear();
+    }
   }
-  Stream* const stream = stream_of(topic, message);
-  const auto time = static_cast<std::int64_t>(std::min<std::uint64_t>(log_time, kLatest));
-  if (stream != nullptr && stream->messages->add(message, time)) return;
-  topic.unread = fmt::format("message {} is not what the definition says", topic.count);
-  topic.streams.clear();
+  return count(numbers);
+}
+
+Result<void> Topics::count(std::size_t numbers) {
+  constexpr std::uint64_t kOften = std::uint64_t{1} << 22;
+  if (numbers_ / kOften != (numbers_ + numbers) / kOften) {
+    if (auto ok = check_memory(2 * kOften * sizeof(double)); !ok) return ok;
+  }
+  numbers_ += numbers;
+  if (numbers_ <= most_numbers_) return {};
+  return bad_data(fmt::format("it claims {} numbers, more than a file of its size can hold", numbers_),
+                  std::string(kCopyAgain));
 }
 
 void Topics::note_topics(Contents& contents) const {
@@ -215,7 +234,7 @@ void Topics::note_topics(Contents& contents) const {
   }
 }
 
-void Topics::explain(const Topic& topic, const Stream& stream, Contents& contents) const {
+void Topics::explain(const Topic& topic, const Stream& stream, Contents& contents) {
   const MessageStream& messages = *stream.messages;
   const std::string type = plain_type(topic.description.type);
   const auto note = [&](std::string text) { contents.notes.push_back(printable(std::move(text))); };
@@ -257,7 +276,7 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
   }
 }
 
-void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, Contents& contents) {
+void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Contents& contents) {
   MessageStream& messages = *stream.messages;
   const std::vector<std::int64_t>& times = times_of(messages);
   Vector time(std::ssize(times));
@@ -279,6 +298,7 @@ void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, Contents& co
     // The name of a field says what it is where it stands by itself in a message of one's own.
     const bool by_name = !is_of_ros(type) && column.path.size() > 2 && !column.path.starts_with("time") &&
                          column.path.find_first_of(".[") == std::string::npos;
+    if (own && is_of_ros(type) && meaning.channel.empty()) continue;  // it only fills the message
     if (!meaning.channel.empty()) {
       array.means = std::move(meaning.channel);
     } else if (!by_name) {
@@ -341,7 +361,7 @@ Contents Topics::contents(std::string format, bool exact_times) {
             lag > 0 ? "before" : "after")));
       }
     }
-    take(*topic, *stream, begin, contents);
+    take(*topic, *stream, begin, times.has_value(), contents);
     if (times) contents.clocks.back().time = *times;
     if (!times) explain(*topic, *stream, contents);
     stream->messages->stamps.clear();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mbk/files/contents/contents.h"
+#include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/ros/stream.h"
 
 namespace mbk::recording {
@@ -29,6 +30,9 @@ struct TopicDescription {
 /// Gathers the numbers of all topics of a file.
 class Topics {
  public:
+  /// @param file_size  [bytes], which bounds how many numbers are believed
+  explicit Topics(std::uint64_t file_size) : most_numbers_(largest_claim(file_size) / (2 * sizeof(double))) {}
+
   /// A channel, by the number that the file has for it; one that is known already stays as it is.
   void add(std::uint32_t channel, const TopicDescription& description);
   [[nodiscard]] bool knows(std::uint32_t channel) const { return channels_.contains(channel); }
@@ -37,7 +41,8 @@ class Topics {
   /// A message that was left out counts.
   void leave_out(std::uint32_t channel);
   /// @param log_time  [ns] since 1970
-  void message(std::uint32_t channel, std::uint64_t log_time, std::span<const std::byte> message);
+  /// @fails  data: the file holds more numbers than one of its size can, or than there is memory for
+  [[nodiscard]] Result<void> message(std::uint32_t channel, std::uint64_t log_time, std::span<const std::byte> message);
 
   /// Arrays, clocks, events, and notes on what they are; afterwards nothing is here.
   /// @param format  "MCAP"    @param exact_times  the file is one of mbk's: times as the recording had them
@@ -60,15 +65,17 @@ class Topics {
     std::vector<Stream> streams;
   };
 
-  void prepare(Topic& topic) const;
-  Stream* stream_of(Topic& topic, std::span<const std::byte> message);
-  void take(Topic& topic, Stream& stream, std::int64_t begin, Contents& contents);
-  void explain(const Topic& topic, const Stream& stream, Contents& contents) const;
+  Result<void> count(std::size_t numbers);
+  static void prepare(Topic& topic);
+  static Stream* stream_of(Topic& topic, std::span<const std::byte> message);
+  static void take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Contents& contents);
+  static void explain(const Topic& topic, const Stream& stream, Contents& contents);
   void note_topics(Contents& contents) const;
 
   std::vector<Topic> topics_;
   std::map<std::uint32_t, std::size_t> channels_;  ///< → topics_
   std::vector<Event> events_;
+  std::uint64_t most_numbers_, numbers_ = 0;  ///< that are kept
 };
 
 }  // namespace mbk::recording

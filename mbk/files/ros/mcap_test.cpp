@@ -1,0 +1,298 @@
+#include "mbk/files/ros/mcap.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mbk/files/contents/test_files.h"
+#include "mbk/files/ros/bag.h"
+#include "mbk/files/ros/test_ros.h"
+
+namespace mbk::recording {
+namespace {
+
+namespace bag = test::bag;
+namespace mcap = test::mcap;
+using test::kLineOfTypes;
+using test::Message;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+Result<Contents> decoded(std::string_view file) {
+  const auto bytes = std::as_bytes(std::span(file));
+  return looks_like_bag(bytes) ? decode_bag(bytes) : decode_mcap(bytes);
+}
+
+std::string error_of(std::string_view file) {
+  const auto contents = decoded(file);
+  return contents ? std::string() : contents.error().line();
+}
+
+const Array* find(const Contents& contents, std::string_view name) {
+  const auto found = std::ranges::find(contents.arrays, name, &Array::name);
+  return found == contents.arrays.end() ? nullptr : &*found;
+}
+
+std::vector<double> numbers(const Contents& contents, std::string_view name) {
+  const Array* const array = find(contents, name);
+  if (array == nullptr) return {};
+  const auto values = array->values.reshaped();
+  return {values.begin(), values.end()};
+}
+
+const Vector& time_of(const Contents& contents, std::string_view name) {
+  return std::ranges::find(contents.clocks, name, &Clock::name)->time;
+}
+
+/// One topic of one type, with these messages, 1 ms after each other.
+std::string one_topic(std::string_view type, std::string_view definition, const std::vector<Message>& messages) {
+  std::string records = mcap::schema(1, type, definition) + mcap::channel(1, 1, "/topic");
+  std::uint64_t time = 2'000'000'000;
+  for (const Message& message : messages) records += mcap::message(1, time += 1'000'000, message.bytes());
+  return mcap::file(records);
+}
+
+void expect_wrench(const Contents& contents) {
+  ASSERT_EQ(contents.clocks.size(), 1U);
+  const Vector& time = time_of(contents, "/ft");
+  ASSERT_EQ(time.size(), 20);
+  EXPECT_EQ(time[0], 0.0);
+  EXPECT_EQ(time[19], 0.019);
+  const Array* const x = find(contents, "/ft.wrench.force.x");
+  ASSERT_NE(x, nullptr);
+  EXPECT_EQ(x->means, "force_x");
+  EXPECT_EQ(x->unit, "N");
+  EXPECT_EQ(x->clock, 0);
+  EXPECT_EQ(x->values(19, 0), 19.0);
+  EXPECT_EQ(numbers(contents, "/ft.wrench.force.y")[19], -9.5);
+  EXPECT_EQ(find(contents, "/ft.wrench.torque.x")->means, "/ft.wrench.torque.x");  // no channel by its last letter
+  EXPECT_EQ(contents.metadata.at("start"), "2023-11-14T22:13:20.000000000Z");
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("in its frame 'tool0', with the sign that they have there")));
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("20 messages, 1000 Hz")));
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("those of header.stamp in '/ft'")));
+}
+
+class EveryPacking : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryPacking, OfMcapIsRead) {
+  const auto contents = decoded(test::wrench_file(GetParam()));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->format, "MCAP");
+  expect_wrench(*contents);
+}
+INSTANTIATE_TEST_SUITE_P(Mcap, EveryPacking, testing::Values("", "zstd", "lz4"));
+
+class EveryPackingOfBags : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryPackingOfBags, IsRead) {
+  const auto contents = decoded(test::wrench_bag(GetParam()));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->format, "ROS 1 bag");
+  expect_wrench(*contents);
+  EXPECT_EQ(numbers(*contents, "/ft.header.seq")[3], 7.0);
+}
+INSTANTIATE_TEST_SUITE_P(Bag, EveryPackingOfBags, testing::Values("none", "bz2", "lz4"));
+
+TEST(Mcap, IsTheSameInPassing) {
+  const test::Folder folder;
+  // More than a piece of what is read at a time, most of it what is not kept.
+  std::string records =
+      mcap::schema(1, "geometry_msgs/msg/WrenchStamped", test::kWrench2) + mcap::channel(1, 1, "/ft") +
+      mcap::schema(2, "lab/msg/Picture", "uint32 width\nuint8[] data\n") + mcap::channel(2, 2, "/camera");
+  const std::string picture = Message::cdr().add(std::uint32_t{640}).text(std::string(1'000'000, 'p')).bytes();
+  for (int k = 0; k < 20; ++k) {
+    const auto nanoseconds = static_cast<std::uint32_t>(k * 1'000'000);
+    records +=
+        mcap::message(1, nanoseconds, test::wrench(Message::cdr(), 1'700'000'000, nanoseconds, k, -k / 2.0).bytes());
+    records += mcap::message(2, 1'700'000'000'000'000'000U + nanoseconds, picture);
+  }
+  for (const std::string_view packing : {"", "lz4"}) {
+    const auto path = folder.write("big.mcap", mcap::file(mcap::chunk(records, packing, mcap::crc(records))));
+    auto file = FileInPassing::open(path);
+    ASSERT_TRUE(file && file->read_on());
+    const auto contents = decode_mcap(*file);
+    ASSERT_TRUE(contents) << contents.error().line();
+    EXPECT_EQ(numbers(*contents, "/ft.wrench.force.x")[19], 19.0);
+    EXPECT_EQ(numbers(*contents, "/camera.width")[19], 640.0);
+    EXPECT_THAT(contents->notes, Contains(HasSubstr("/camera.data")));
+    const std::string bytes = test::bytes_of(path);
+    EXPECT_EQ(file->sha256(), sha256(std::as_bytes(std::span(bytes))));
+  }
+}
+
+TEST(Mcap, EveryTypeOfNumberInBothByteOrders) {
+  const std::string definition =
+      "bool a\nint8 b\nuint8 c\nint16 d\nuint16 e\nint32 f\nuint32 g\nint64 h\nuint64 i\nfloat32 j\nfloat64 k\n"
+      "builtin_interfaces/Duration l\nstring m\nfloat64[2] n\nuint8[] o\n";
+  for (const bool big_endian : {false, true}) {
+    Message message = Message::cdr(big_endian);
+    message.add(std::uint8_t{1}).add(std::int8_t{-2}).add(std::uint8_t{200}).add(std::int16_t{-300});
+    message.add(std::uint16_t{60000}).add(std::int32_t{-70000}).add(std::uint32_t{4000000000});
+    message.add(std::int64_t{-5000000000}).add(std::uint64_t{5000000001}).add(1.5F).add(-2.25);
+    message.add(std::int32_t{-1}).add(std::uint32_t{250000000}).text("abc").add(7.0).add(8.0).text("x");
+    const auto contents = decoded(one_topic("lab/msg/All", definition, {message, message}));
+    ASSERT_TRUE(contents) << contents.error().line();
+    const std::vector<std::pair<std::string, double>> expected = {
+        {"a", 1},      {"b", -2},    {"c", 200},    {"d", -300},   {"e", 60000},
+        {"f", -70000}, {"g", 4e9},   {"h", -5e9},   {"j", 1.5},    {"i", 5000000001.0},
+        {"k", -2.25},  {"l", -0.75}, {"n[0]", 7.0}, {"n[1]", 8.0}, {"o[0]", 'x'}};
+    for (const auto& [name, value] : expected) {
+      EXPECT_EQ(numbers(*contents, "/topic." + name), (std::vector<double>{value, value})) << name;
+    }
+  }
+}
+
+TEST(Mcap, JointsGoByTheirNamesInWhateverOrder) {
+  const auto state = [](std::vector<std::string> names, std::vector<double> position) {
+    Message message = Message::cdr();
+    message.header(100, 0, "").add(static_cast<std::uint32_t>(names.size()));
+    for (const std::string& name : names) message.text(name);
+    message.add(static_cast<std::uint32_t>(position.size()));
+    for (const double value : position) message.add(value);
+    return message.add(std::uint32_t{0}).add(std::uint32_t{0});
+  };
+  const auto contents = decoded(
+      one_topic("sensor_msgs/msg/JointState", test::kJoints2,
+                {state({"shoulder", "elbow"}, {1, 2}), state({"gripper"}, {9}), state({"elbow", "shoulder"}, {4, 3})}));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/topic.position.shoulder"), (std::vector<double>{1, 3}));
+  EXPECT_EQ(numbers(*contents, "/topic.position.elbow"), (std::vector<double>{2, 4}));
+  EXPECT_EQ(find(*contents, "/topic.position.elbow")->means, "joint_2");
+  EXPECT_EQ(numbers(*contents, "/topic/2.position.gripper"), (std::vector<double>{9}));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("in the order of its first message: 1 shoulder, 2 elbow")));
+}
+
+TEST(Mcap, AnArrayWhoseLengthChangesIsLeftOutAndSaid) {
+  const auto list = [](std::uint32_t count) {
+    Message message = Message::cdr().add(count);
+    for (std::uint32_t k = 0; k < count; ++k) message.add(1.0 + k);
+    return message.add(0.5);
+  };
+  const auto contents = decoded(one_topic("lab/msg/List", "float64[] values\nfloat64 rest", {list(2), list(3)}));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/topic.rest"), (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(find(*contents, "/topic.values[0]"), nullptr);
+  EXPECT_THAT(contents->notes,
+              Contains(HasSubstr("not every message has them, or not as many of them: /topic.values")));
+}
+
+TEST(Mcap, JsonIsRead) {
+  std::string records = mcap::channel(1, 0, "/js", "json");
+  records += mcap::message(1, 5'000'000'000, R"({"force_x": 1.5, "on": true, "deep": {"list": [1, 2]}, "late": 1})");
+  records += mcap::message(1, 5'500'000'000, R"({"force_x": null, "on": false, "deep": {"list": [3, 4]}})");
+  const auto contents = decoded(mcap::file(records));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/js.deep.list[1]"), (std::vector<double>{2, 4}));
+  EXPECT_EQ(numbers(*contents, "/js.on"), (std::vector<double>{1, 0}));
+  EXPECT_EQ(numbers(*contents, "/js.force_x")[0], 1.5);
+  EXPECT_TRUE(std::isnan(numbers(*contents, "/js.force_x")[1]));
+  EXPECT_EQ(find(*contents, "/js.late"), nullptr);
+  EXPECT_EQ(find(*contents, "/js.force_x")->means, "");
+  EXPECT_EQ(time_of(*contents, "/js")[1], 0.5);
+  EXPECT_FALSE(contents->metadata.contains("start"));  // nobody recorded in 1970
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("as no message has a stamp")));
+}
+
+TEST(Mcap, ChecksumsAreChecked) {
+  const std::string records = mcap::schema(1, "lab/msg/A", "float64 a") + mcap::channel(1, 1, "/a");
+  EXPECT_THAT(error_of(mcap::file(mcap::chunk(records, "zstd", 1234))),
+              HasSubstr("does not have the checksum that it says"));
+  EXPECT_EQ(error_of(mcap::file(mcap::chunk(records, "zstd", 0))), "");
+
+  std::string file = mcap::file(records);
+  const std::size_t end = file.find(mcap::record(15, test::raw(std::uint32_t{0})));
+  const auto with_sum = [&](std::uint32_t sum) {
+    std::string changed = file;
+    return changed.replace(end + 9, 4, test::raw(sum));
+  };
+  EXPECT_EQ(error_of(with_sum(mcap::crc(std::string_view(file).substr(0, end)))), "");
+  EXPECT_THAT(error_of(with_sum(1234)), HasSubstr("the data do not have the checksum"));
+}
+
+TEST(Mcap, WhatWasCutShortIsReadAsFarAsItGoes) {
+  for (const std::string& whole :
+       {one_topic("lab/msg/A", "float64 a", {Message::cdr().add(1.0), Message::cdr().add(2.0)}),
+        test::wrench_bag("none") + test::wrench_bag("none").substr(13)}) {
+    const auto contents = decoded(whole.substr(0, whole.size() - (whole.starts_with("#") ? 300 : 60)));
+    ASSERT_TRUE(contents) << contents.error().line();
+    EXPECT_FALSE(contents->arrays.empty());
+    EXPECT_THAT(contents->notes, Contains(HasSubstr("the file is cut short")));
+  }
+}
+
+TEST(Mcap, DamageIsAnErrorThatSaysWhatToDo) {
+  const std::string whole = test::wrench_file("zstd");
+  std::string damaged = whole;
+  for (std::size_t k = whole.find("zstd") + 20; k < whole.find("zstd") + 60; ++k) damaged[k] ^= 0x55;
+  EXPECT_THAT(error_of(damaged), HasSubstr("copy the file again"));
+  const std::string records = mcap::channel(1, 0, "/a", "json");
+  EXPECT_THAT(error_of(mcap::file(mcap::chunk(records + "abc", "lz4", 0))),
+              HasSubstr("a chunk record is not what it says"));
+  EXPECT_THAT(error_of(mcap::file(mcap::chunk(records, "brotli", 0))),
+              HasSubstr("packed by 'brotli', which is not read"));
+  EXPECT_THAT(error_of("#ROSBAG V1.2\nold"), HasSubstr("rosbag fix"));
+}
+
+TEST(Mcap, ATopicThatCannotBeReadIsSaid) {
+  std::string records = mcap::schema(1, "lab/msg/A", "float64 a") + mcap::channel(1, 1, "/short") +
+                        mcap::schema(2, "lab.A", "x", "protobuf") + mcap::channel(2, 2, "/other", "protobuf") +
+                        mcap::schema(3, "lab/msg/W", "wstring a") + mcap::channel(3, 3, "/wide") +
+                        mcap::schema(4, "lab/msg/B", "Nowhere a") + mcap::channel(4, 4, "/odd");
+  for (std::uint16_t id = 1; id <= 4; ++id) records += mcap::message(id, 10, Message::cdr().add(1.0F).bytes());
+  const auto contents = decoded(mcap::file(records));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_TRUE(contents->arrays.empty());
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/short' is not read: message 1 is not what the definition says")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/other' is not read: its messages are 'protobuf'")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/wide' is not read: it has wide strings")));
+  EXPECT_THAT(contents->notes,
+              Contains(HasSubstr("'/odd' is not read: the definition of lab/msg/B is not understood")));
+}
+
+TEST(Mcap, StampsThatNobodySetAreNoTimes) {
+  const auto contents =
+      decoded(one_topic("geometry_msgs/msg/WrenchStamped", test::kWrench2,
+                        {test::wrench(Message::cdr(), 0, 0, 1, 2), test::wrench(Message::cdr(), 0, 0, 1, 2)}));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(time_of(*contents, "/topic")[1], 0.001);
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("of '/topic' those when they were recorded")));
+}
+
+TEST(Mcap, AnotherClockIsSaid) {
+  const auto contents = decoded(one_topic("geometry_msgs/msg/WrenchStamped", test::kWrench2,
+                                          {test::wrench(Message::cdr(), 1'700'000'000, 0, 1, 2)}));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_THAT(contents->notes,
+              Contains(HasSubstr("after the time when they were recorded: they come from another clock")));
+}
+
+TEST(Mcap, ArraysOfNothingAreNoWork) {
+  // A thousand million elements of a type without fields, and of one that is within itself a thousand times.
+  const std::string definition = "Void[] nothing\nVoid[1000000000] more\nfloat64 a" + kLineOfTypes + "MSG: lab/Void\n";
+  std::string records = bag::connection(0, "/v", "lab/V", definition);
+  records += bag::message(0, 1, 0, Message::ros1().add(std::uint32_t{4000000000}).add(5.0).bytes());
+  const auto contents = decoded(bag::file(records));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/v.a"), (std::vector<double>{5.0}));
+}
+
+TEST(Mcap, ReadsRecordingsOfOthers) {
+  MBK_DATA_OR_SKIP(folder);
+  const std::string basic = test::bytes_of(folder / "mcap" / "cdr_test_0.mcap");
+  ASSERT_FALSE(basic.empty());
+  const auto contents = decoded(basic);
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/test_topic.int32_value").size(), 3U);
+  EXPECT_THAT(numbers(*contents, "/test_topic.int32_value"), Contains(123.0));
+  EXPECT_EQ(time_of(*contents, "/array_topic").size(), 4);
+  EXPECT_EQ(contents->metadata.at("start"), "2020-04-09T04:27:36.763032325Z");
+
+  const std::string talker = test::bytes_of(folder / "mcap" / "talker.mcap");
+  const auto three = decoded(talker);
+  ASSERT_TRUE(three) << three.error().line();
+  EXPECT_THAT(three->notes, Contains(HasSubstr("topics: ")));
+  EXPECT_THAT(three->notes, Not(Contains(HasSubstr("is not read"))));
+}
+
+}  // namespace
+}  // namespace mbk::recording
