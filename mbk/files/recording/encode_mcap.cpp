@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <optional>
 #include <span>
@@ -68,7 +69,9 @@ std::optional<std::int64_t> start_of(const Recording& recording) {
   date.tm_hour = static_cast<int>(number(11, 2));
   date.tm_min = static_cast<int>(number(14, 2));
   date.tm_sec = static_cast<int>(number(17, 2));
-  return std::int64_t{::timegm(&date)} * kSecond + number(20, 9);
+  const std::int64_t seconds{::timegm(&date)};
+  if (seconds < 0 || seconds > std::numeric_limits<std::int32_t>::max()) return std::nullopt;  // no stamp holds it
+  return seconds * kSecond + number(20, 9);
 }
 
 class McapEncoder {
