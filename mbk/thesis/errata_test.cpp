@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kExact = 1e-9;
 
-Exhibit made(const std::string& id) {
+Exhibit erratum_made(const std::string& id) {
   const auto source = read_source(source_text());
   EXPECT_TRUE(source) << source.error().line();
   ReproduceOptions options;
@@ -45,7 +45,7 @@ TEST(Errata, SayWhereWhatIsCorrectAndItsEffect) {
     const std::string number = "erratum-" + std::to_string(k);
     EXPECT_EQ(ids.contains(number), !withdrawn.contains(k)) << number;
     const std::string id = withdrawn.contains(k) ? "withdrawn-errata" : number;
-    const Exhibit exhibit = made(id);
+    const Exhibit exhibit = erratum_made(id);
     EXPECT_EQ(exhibit.kind, Exhibit::Kind::erratum);
     ASSERT_EQ(exhibit.text.size(), 5u) << id;
     for (std::size_t i = 0; const char* begin : {"Where: ", "Correct: ", "Evidence: ", "Effect: ", "Tests: "}) {
@@ -60,7 +60,7 @@ TEST(Errata, SayWhereWhatIsCorrectAndItsEffect) {
 }
 
 TEST(Errata, ExcessIsTheIndexOfTheRationalMatrix) {
-  const Exhibit exhibit = made("erratum-1");
+  const Exhibit exhibit = erratum_made("erratum-1");
   const ReproducedTable& rows = table(exhibit, "erratum-1");
   ASSERT_EQ(rows.rows.size(), 8u);
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
@@ -72,7 +72,7 @@ TEST(Errata, ExcessIsTheIndexOfTheRationalMatrix) {
 }
 
 TEST(Errata, BoundaryOfTheTheoremIsNotPassive) {
-  const Exhibit exhibit = made("erratum-2");
+  const Exhibit exhibit = erratum_made("erratum-2");
   const ReproducedTable& rows = table(exhibit, "erratum-2");
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(said(rows, i, 2), "passive");
@@ -82,7 +82,7 @@ TEST(Errata, BoundaryOfTheTheoremIsNotPassive) {
 }
 
 TEST(Errata, PolesOfTheImpedanceAreNotWhatTheTheoremAsks) {
-  const Exhibit exhibit = made("erratum-3");
+  const Exhibit exhibit = erratum_made("erratum-3");
   const ReproducedTable& rows = table(exhibit, "erratum-3");
   EXPECT_EQ(rows.title, "Z of P1: finite poles at 0; one at infinity");
   EXPECT_EQ(said(rows, 0, 3), "yes");
@@ -91,7 +91,7 @@ TEST(Errata, PolesOfTheImpedanceAreNotWhatTheTheoremAsks) {
 }
 
 TEST(Errata, AntisymmetryMakesTheArmActiveAtLowFrequencies) {
-  const Exhibit exhibit = made("erratum-4");
+  const Exhibit exhibit = erratum_made("erratum-4");
   const ReproducedTable& rows = table(exhibit, "erratum-4");
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     EXPECT_NEAR(number(rows, i, 0), number(rows, i, 1), kExact);
@@ -103,14 +103,14 @@ TEST(Errata, AntisymmetryMakesTheArmActiveAtLowFrequencies) {
 }
 
 TEST(Errata, PrintedHermitianPartIsNotHermitian) {
-  const Exhibit exhibit = made("erratum-5");
+  const Exhibit exhibit = erratum_made("erratum-5");
   EXPECT_GT(number(table(exhibit, "erratum-5"), 0, 0), 1.0);
   EXPECT_NEAR(number(table(exhibit, "erratum-5"), 1, 0), 0.0, kExact);
   EXPECT_LT(number(table(exhibit, "erratum-5 lemma"), 0, 0), 0.0);
 }
 
 TEST(Errata, EveryLargerShortageHoldsToo) {
-  const Exhibit exhibit = made("erratum-5");
+  const Exhibit exhibit = erratum_made("erratum-5");
   const ReproducedTable& rows = table(exhibit, "erratum-5 shortage");
   EXPECT_EQ(said(rows, 0, 1), "no");
   for (std::size_t i = 1; i < rows.rows.size(); ++i) EXPECT_EQ(said(rows, i, 1), "yes");
@@ -118,7 +118,7 @@ TEST(Errata, EveryLargerShortageHoldsToo) {
 }
 
 TEST(Errata, OrientationIsThatOfTheAxis) {
-  const Exhibit exhibit = made("erratum-6");
+  const Exhibit exhibit = erratum_made("erratum-6");
   const ReproducedTable& rows = table(exhibit, "erratum-6");
   EXPECT_NEAR(number(rows, 0, 1), 107.3, 0.05);
   EXPECT_NEAR(number(rows, 0, 0), 107.3 - 180.0, 0.05);
@@ -128,7 +128,7 @@ TEST(Errata, OrientationIsThatOfTheAxis) {
 }
 
 TEST(Errata, SchaferIsNearerToTheWeights) {
-  const Exhibit exhibit = made("erratum-7");
+  const Exhibit exhibit = erratum_made("erratum-7");
   const ReproducedTable& rows = table(exhibit, "erratum-7");
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     EXPECT_LT(std::abs(number(rows, i, 1) - number(rows, i, 2)), std::abs(number(rows, i, 0) - number(rows, i, 2)));
@@ -139,7 +139,7 @@ TEST(Errata, SchaferIsNearerToTheWeights) {
 }
 
 TEST(Errata, JacobianIsThatOfTheKinematics) {
-  const Exhibit exhibit = made("erratum-8");
+  const Exhibit exhibit = erratum_made("erratum-8");
   const ReproducedTable& rows = table(exhibit, "erratum-8");
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(number(rows, i, 0), number(rows, i, 1), kExact);
@@ -150,7 +150,7 @@ TEST(Errata, JacobianIsThatOfTheKinematics) {
 }
 
 TEST(Errata, CoriolisMatrixMakesInertiaRateSkew) {
-  const Exhibit exhibit = made("erratum-9");
+  const Exhibit exhibit = erratum_made("erratum-9");
   const ReproducedTable& rows = table(exhibit, "erratum-9");
   EXPECT_GT(std::abs(number(rows, 0, 1)), 0.01);
   EXPECT_GT(std::abs(number(rows, 0, 3)), 0.01);
@@ -160,7 +160,7 @@ TEST(Errata, CoriolisMatrixMakesInertiaRateSkew) {
 }
 
 TEST(Errata, StiffnessIsMinusTheGradient) {
-  const Exhibit exhibit = made("erratum-10");
+  const Exhibit exhibit = erratum_made("erratum-10");
   constexpr double kDifferences = 1e-6;  // relative, of central differences by a micrometre
   for (const char* id : {"erratum-10", "erratum-10 arm"}) {
     const ReproducedTable& rows = table(exhibit, id);
@@ -175,7 +175,7 @@ TEST(Errata, StiffnessIsMinusTheGradient) {
 }
 
 TEST(Errata, ImmittanceFormHidesAShortage) {
-  const Exhibit exhibit = made("erratum-11");
+  const Exhibit exhibit = erratum_made("erratum-11");
   EXPECT_EQ(said(table(exhibit, "erratum-11"), 0, 3), "stable");
   EXPECT_EQ(said(table(exhibit, "erratum-11"), 1, 3), "not stable");
   EXPECT_EQ(said(table(exhibit, "erratum-11 bound"), 0, 2), "no");
@@ -184,7 +184,7 @@ TEST(Errata, ImmittanceFormHidesAShortage) {
 }
 
 TEST(Errata, ErrorsAreTheoreticalLessIdentified) {
-  const Exhibit exhibit = made("erratum-12");
+  const Exhibit exhibit = erratum_made("erratum-12");
   const ReproducedTable& rows = table(exhibit, "erratum-12");
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     const std::string all = i < 2 ? "10" : "5";
@@ -194,21 +194,21 @@ TEST(Errata, ErrorsAreTheoreticalLessIdentified) {
 }
 
 TEST(Errata, ProgramLosesACentreAtEachEnd) {
-  const Exhibit exhibit = made("erratum-13");
+  const Exhibit exhibit = erratum_made("erratum-13");
   const ReproducedTable& rows = table(exhibit, "erratum-13");
   EXPECT_EQ(number(rows, 0, 0) - number(rows, 0, 1), 2.0);
   EXPECT_EQ(number(rows, 1, 1) - number(rows, 1, 0), 1.0);
 }
 
 TEST(Errata, FilteringBeforeTheCutSmears) {
-  const Exhibit exhibit = made("erratum-13");
+  const Exhibit exhibit = erratum_made("erratum-13");
   const ReproducedTable& rows = table(exhibit, "erratum-13 pulses");
   EXPECT_GT(number(rows, 1, 3), 1e-5);
   EXPECT_LT(number(rows, 2, 3), 0.1 * number(rows, 1, 3));
 }
 
 TEST(Errata, VafDoesNotSeeAnOffset) {
-  const Exhibit exhibit = made("erratum-14");
+  const Exhibit exhibit = erratum_made("erratum-14");
   const ReproducedTable& rows = table(exhibit, "erratum-14");
   EXPECT_NEAR(number(rows, 1, 0), 100.0, kExact);
   EXPECT_NEAR(number(rows, 1, 1), 10.0, kExact);
@@ -217,7 +217,7 @@ TEST(Errata, VafDoesNotSeeAnOffset) {
 }
 
 TEST(Errata, NetworksMeetTheTheoremAndAreNotStable) {
-  const Exhibit exhibit = made("erratum-17");
+  const Exhibit exhibit = erratum_made("erratum-17");
   const ReproducedTable& rows = table(exhibit, "erratum-17");
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_GE(number(rows, i, k), 0.0) << rows.rows[i].name;
@@ -227,7 +227,7 @@ TEST(Errata, NetworksMeetTheTheoremAndAreNotStable) {
 }
 
 TEST(Errata, PrintedSignsTurnEnergyAndForce) {
-  const Exhibit exhibit = made("erratum-18");
+  const Exhibit exhibit = erratum_made("erratum-18");
   const ReproducedTable& energy = table(exhibit, "erratum-18");
   EXPECT_LT(number(energy, 0, 0), 0.0);
   EXPECT_NEAR(number(energy, 0, 1), number(energy, 0, 2), kExact);
@@ -239,7 +239,7 @@ TEST(Errata, PrintedSignsTurnEnergyAndForce) {
 }
 
 TEST(Errata, FortyDegreesAreAPartOfTheWorkspace) {
-  const Exhibit exhibit = made("erratum-20");
+  const Exhibit exhibit = erratum_made("erratum-20");
   const ReproducedTable& rows = table(exhibit, "erratum-20");
   EXPECT_LT(number(rows, 1, 1), 25.0);
   EXPECT_NEAR(number(rows, 2, 1), 50.0, kExact);
@@ -250,13 +250,13 @@ TEST(Errata, FortyDegreesAreAPartOfTheWorkspace) {
 // (E.3) scales slope and intercept alike: exact at any lever arm where no force reads zero, and off by a constant where
 // it does not.
 TEST(WithdrawnErrata, ScaledForceIsExactWhereNoForceReadsZero) {
-  const Exhibit exhibit = made("withdrawn-errata");
+  const Exhibit exhibit = erratum_made("withdrawn-errata");
   const ReproducedTable& rows = table(exhibit, "withdrawn-errata 15");
   for (std::size_t i = 0; const double force : {0.0, 5.0, -5.0}) EXPECT_NEAR(number(rows, i++, 1), force, kExact);
 }
 
 TEST(WithdrawnErrata, ConverterRoundsToThePrintedNoise) {
-  const Exhibit exhibit = made("withdrawn-errata");
+  const Exhibit exhibit = erratum_made("withdrawn-errata");
   const ReproducedTable& rows = table(exhibit, "withdrawn-errata 15 noise");
   EXPECT_NEAR(number(rows, 0, 0), 0.0418, 5e-5);
   EXPECT_NEAR(number(rows, 1, 0), 0.0418 / std::sqrt(12.0), 5e-5);
@@ -265,7 +265,7 @@ TEST(WithdrawnErrata, ConverterRoundsToThePrintedNoise) {
 }
 
 TEST(WithdrawnErrata, FourPolesAndThreeZerosFollowAnImpedance) {
-  const Exhibit exhibit = made("withdrawn-errata");
+  const Exhibit exhibit = erratum_made("withdrawn-errata");
   const ReproducedTable& rows = table(exhibit, "withdrawn-errata 16");
   EXPECT_NEAR(number(rows, 0, 0), 6.0 * std::pow(10.0 / 1e3, 2), 1e-5) << "6 |s/p|² at 10 Hz, by expansion";
   EXPECT_LT(number(rows, 0, 0), 1e-3);
@@ -273,7 +273,7 @@ TEST(WithdrawnErrata, FourPolesAndThreeZerosFollowAnImpedance) {
 }
 
 TEST(WithdrawnErrata, RelativeDiscrepancyIsLargestForKxx) {
-  const Exhibit exhibit = made("withdrawn-errata");
+  const Exhibit exhibit = erratum_made("withdrawn-errata");
   const ReproducedTable& rows = table(exhibit, "withdrawn-errata 19");
   constexpr std::size_t kLeast = 0, kLargest = 1, kRelative = 3;
   for (const std::size_t other : {1u, 2u}) EXPECT_GT(number(rows, 0, kRelative), number(rows, other, kRelative));
