@@ -12,6 +12,8 @@ add_library(mbk_tomlplusplus INTERFACE)
 target_include_directories(mbk_tomlplusplus SYSTEM INTERFACE ${MBK_TOMLPLUSPLUS_INCLUDE_DIR})
 pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+# A study's database. Debian's package brings SQLiteCpp as a static library.
+find_package(SQLiteCpp 3.2 REQUIRED CONFIG)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)
 find_package(urdfdom REQUIRED)
