@@ -19,6 +19,8 @@ pkg_check_modules(PUGIXML REQUIRED IMPORTED_TARGET pugixml)
 pkg_check_modules(LIBZSTD REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(LIBLZ4 REQUIRED IMPORTED_TARGET liblz4)
 find_package(BZip2 REQUIRED)
+# A study's database. Debian's package brings SQLiteCpp as a static library.
+find_package(SQLiteCpp 3.2 REQUIRED CONFIG)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)
 find_package(urdfdom REQUIRED)

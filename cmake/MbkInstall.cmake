@@ -42,11 +42,15 @@ function(mbk_outside_libraries find_result files_result)
   set(lines "")
   set(files "")
   foreach(library IN LISTS libraries)
-    if(NOT library MATCHES "^([^:]+)::(.+)$")
+    if(library MATCHES "^([^:]+)::(.+)$")
+      set(package ${CMAKE_MATCH_1})
+      set(part ${CMAKE_MATCH_2})
+    elseif(${library}_CONFIG)  # a package whose only library has its name
+      set(package ${library})
+      set(part ${library})
+    else()
       message(FATAL_ERROR "${library}: a module may link only libraries that find_package names, as in zlib's ZLIB::ZLIB")
     endif()
-    set(package ${CMAKE_MATCH_1})
-    set(part ${CMAKE_MATCH_2})
     if(package STREQUAL PkgConfig)
       string(APPEND lines "find_dependency(PkgConfig)\npkg_check_modules(${part} QUIET IMPORTED_TARGET ${${part}_MODULE_NAME})\n"
              "if(NOT TARGET ${library})\n  set(mbk_FOUND FALSE)\n"

@@ -116,6 +116,7 @@ Commands all_commands(const std::string& typed) {
       {"teleop", add_teleop},
       {"sensor", add_sensor},
       {"robot", add_robot},
+      {"study", add_study},
       {"validate", add_validate},
       {"reproduce", add_reproduce},
       {"completion", add_completion},

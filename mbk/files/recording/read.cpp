@@ -76,7 +76,7 @@ Result<Contents> decode_zip(std::span<const std::byte> bytes) {
 
 /// What is no table may be text of another kind, of which that is to be said rather than where it breaks off.
 Result<Contents> table_or_likely(Result<Contents> table, std::string_view text) {
-  if (table) return table;
+  if (table && !text.starts_with("LabVIEW Measurement")) return table;  // whose header looks like one
   const auto likely = likely_format(std::as_bytes(std::span(text)));
   return likely ? not_read(*likely) : std::move(table);
 }

@@ -1,0 +1,237 @@
+#include "apps/mbk/study_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/robot_file.h"
+#include "apps/mbk/word_options.h"
+#include "mbk/base/core/version.h"
+#include "mbk/files/contents/sha256.h"
+#include "mbk/measure/preprocess/perturbation_only.h"
+#include "mbk/present/result/json.h"
+
+namespace mbk::app {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kHashPrefix = "sha256:";
+const std::vector<std::string>& options_with_files() {
+  static const std::vector<std::string> kNames = {"--robot", "--sensor"};
+  return kNames;
+}
+
+/// The names of all options of measuring.
+const std::vector<std::string>& measuring_names() {
+  static const std::vector<std::string> kNames = [] {
+    CLI::App probe;
+    MeasuringArguments arguments;
+    add_measuring_options(probe, arguments);
+    std::vector<std::string> names;
+    for (const CLI::Option* option : probe.get_options()) {
+      const std::string name = option->get_name();
+      if (name != "--help" && name != "--ranges" && name != "--threads") names.push_back(name);
+    }
+    return names;
+  }();
+  return kNames;
+}
+
+/// What the file of an option says, as far as a result depends on it.
+Result<std::string> hash_of_file(const std::string& option, const std::filesystem::path& file) {
+  auto sum = store::file_sha256(file);
+  if (!sum || option != "--robot" || file.extension() == ".json") return sum;
+  const auto robot = describe_robot(file);  // a description may name a URDF beside it
+  if (!robot) return tl::unexpected(robot.error());
+  const std::string text = *sum + robot->toml + '\0' + robot->urdf;
+  return recording::sha256(std::as_bytes(std::span(text)));
+}
+
+/// JSON without the blanks between its parts; every digit stays.
+std::string compact(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  bool within = false;
+  for (std::size_t k = 0; k < json.size(); ++k) {
+    const char c = json[k];
+    if (within && c == '\\') {
+      text += c;
+      text += json[++k];
+      continue;
+    }
+    if (c == '"') within = !within;
+    if (within || (c != ' ' && c != '\n')) text += c;
+  }
+  return text;
+}
+
+/// "inertia-not-positive, fit-poor"
+std::string codes_of(const std::vector<Warning>& warnings) {
+  std::vector<std::string_view> codes;
+  for (const Warning& warning : warnings) codes.push_back(word_of(warning.code));
+  return fmt::format("{}", fmt::join(codes, ", "));
+}
+
+Result<Recording> read_unit(const Measuring& measuring, const std::filesystem::path& file, std::int64_t part) {
+  ReadingArguments reading = measuring.arguments.reading;
+  reading.files = {file};
+  const auto reader = RecordingReader::of(reading, measuring.arguments.sensor);
+  if (!reader) return tl::unexpected(reader.error());
+  const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
+  if (which >= reader->count()) return bad_data(fmt::format("there is no record {} in it", part));
+  return reader->read_perturbation(which);
+}
+
+Result<Measurement> measured(const Measuring& measuring, Recording& recording, const store::Unit& unit) {
+  for (SourceFile& source : recording.sources) source.path = unit.file;  // a result does not say where the study stands
+  add_arm(measuring.arguments.analyse, recording);
+  return measurement::measure({&recording, 1}, measuring.options);
+}
+
+}  // namespace
+
+void add_study_option(CLI::App& command, StudyArguments& arguments) {
+  command.add_option("--study", arguments.folder, "the study; otherwise the one that the current folder is in")
+      ->type_name("FOLDER")
+      ->check(not_empty());
+}
+
+void add_choice_of_role(CLI::App& command, StudyArguments& arguments) {
+  add_choice(command, "--role", arguments.role, "who does this, as the log says it: a role, never a name (analyst)");
+}
+
+void add_study_and_role(CLI::App& command, StudyArguments& arguments) {
+  add_study_option(command, arguments);
+  add_choice_of_role(command, arguments);
+}
+
+Result<store::Store> open_study(const StudyArguments& arguments) {
+  if (arguments.folder) return store::Store::open(*arguments.folder);
+  const auto folder = store::find_study(".");
+  if (!folder) {
+    return bad_usage("there is no study in this folder, nor above it",
+                     "name one with --study FOLDER; 'mbk study init FOLDER' makes one");
+  }
+  return store::Store::open(*folder);
+}
+
+void add_measuring_options(CLI::App& command, MeasuringArguments& arguments) {
+  add_measure_options(command, arguments);
+  add_analyse_options(command, arguments.analyse);
+  for (const char* name : {"FILE", "--parts", "--trial", "--pool"}) {
+    command.remove_option(command.get_option(name));
+  }
+}
+
+GivenOptions given_options(const CLI::App& command) {
+  GivenOptions given;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::ranges::find(measuring_names(), name) == measuring_names().end()) continue;
+    given[name] = option->get_items_expected_max() == 0 ? std::vector<std::string>() : option->results();
+  }
+  return given;
+}
+
+std::string options_to_json(const GivenOptions& given) {
+  return Json(given).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<GivenOptions> options_from_json(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  GivenOptions given;
+  const auto wrong = [] { return bad_data("the stored options cannot be read", "restore the study from a backup"); };
+  if (!json.is_object()) return wrong();
+  for (const auto& [name, values] : json.items()) {
+    if (!values.is_array()) return wrong();
+    std::vector<std::string>& list = given[name];
+    for (const Json& value : values) {
+      if (!value.is_string()) return wrong();
+      list.push_back(value.get<std::string>());
+    }
+  }
+  return given;
+}
+
+std::string options_text(const GivenOptions& given) {
+  std::vector<std::string> words;
+  for (const auto& [name, values] : given) {
+    if (values.empty()) words.push_back(name);
+    for (const std::string& value : values) words.push_back(name + ' ' + value);
+  }
+  return printable(fmt::format("{}", fmt::join(words, " ")));
+}
+
+Result<std::shared_ptr<const Measuring>> measuring_of(const GivenOptions& given) {
+  auto measuring = std::make_shared<Measuring>();
+  CLI::App app;
+  add_measuring_options(app, measuring->arguments);
+  std::vector<std::string> words;  // the parser takes them from the end
+  for (const auto& [name, values] : given) {
+    if (values.empty()) words.push_back(name);
+    for (const std::string& value : values) words.push_back(name + '=' + value);
+  }
+  std::ranges::reverse(words);
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    return bad_usage(error.what(), "see 'mbk study measure --help'");
+  }
+  auto options = measurement_options(measuring->arguments, measuring->arguments.analyse);
+  if (!options) return tl::unexpected(options.error());
+  measuring->options = std::move(*options);
+  GivenOptions key = given;
+  for (const std::string& name : options_with_files()) {
+    const auto found = key.find(name);
+    if (found == key.end()) continue;
+    for (std::string& value : found->second) {
+      auto sum = hash_of_file(name, value);
+      if (!sum) return tl::unexpected(sum.error());
+      value = kHashPrefix + *sum;
+    }
+  }
+  measuring->key = options_to_json(key);
+  return std::shared_ptr<const Measuring>(std::move(measuring));
+}
+
+bool names_files(const GivenOptions& key) {
+  return std::ranges::any_of(options_with_files(), [&](const std::string& name) { return key.contains(name); });
+}
+
+Result<GivenOptions> default_options(const store::Store& study) {
+  const auto facts = study.facts();
+  if (!facts) return tl::unexpected(facts.error());
+  return options_from_json(facts->options);
+}
+
+Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::filesystem::path& folder,
+                                       const store::Unit& unit) {
+  const std::filesystem::path file = folder / unit.file;
+  const auto damaged = [&] {
+    return bad_data("its bytes are not those that were added", "restore it from a backup; 'mbk study check' names all",
+                    file.string());
+  };
+  auto recording = read_unit(measuring, file, unit.part);
+  if (!recording) {
+    const auto sum = store::file_sha256(file);
+    if (!sum) return tl::unexpected(sum.error());
+    if (*sum != unit.sha256) return damaged();
+    return store::UnitResult{"", false, recording.error().message};
+  }
+  if (recording->sources.size() != 1 || recording->sources.front().sha256 != unit.sha256) return damaged();
+  const auto found = measured(measuring, *recording, unit);
+  if (!found) return store::UnitResult{"", false, found.error().message};
+  const Identification& identification = found->identification;
+  return store::UnitResult{compact(result::to_json(*found)), identification.usable,
+                           identification.usable ? "" : codes_of(identification.warnings)};
+}
+
+std::string counted(std::int64_t n, const char* one, const char* more) {
+  return fmt::format("{} {}", n, n == 1 ? one : more);
+}
+
+}  // namespace mbk::app

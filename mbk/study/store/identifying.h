@@ -1,0 +1,13 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace mbk::store {
+
+/// The entries of a recording's metadata whose names say that they tell who the person is: names of people, dates of
+/// birth, numbers of patients, addresses. What a value says is not looked at: it cannot be decided.
+[[nodiscard]] std::vector<std::string> identifying_entries(const std::map<std::string, std::string>& metadata);
+
+}  // namespace mbk::store

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "mbk/study/store/store.h"
+
+namespace mbk::store {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array kAxes = {"x", "y"};
+
+/// The numbers of a document under their names.
+class OutcomeReader {
+ public:
+  explicit OutcomeReader(const Json& document) : document_(document) {}
+
+  std::vector<Outcome> read() {
+    const Json& axes = member(document_, "axes");
+    one_axis_ = axes.is_number_integer() && axes.get<int>() == 1;
+    for (const char* matrix : {"M", "B", "K"}) read_matrix(matrix);
+    read_vector("x0", member(member(document_, "model"), "x0"), member(member(document_, "standard_error"), "x0"),
+                unit_of("x0"));
+    read_vector("VAF", member(member(document_, "fit"), "VAF"), Json(), "%");
+    read_vector("RMSE", member(member(document_, "fit"), "RMSE"), Json(), unit_of("force"));
+    for (const char* quantity : {"inertia", "damping", "stiffness"}) read_ellipse(quantity);
+    for (const char* quantity : {"inertia", "stiffness"}) {
+      add(fmt::format("{}_zmean", quantity),
+          member(member(member(document_, "antisymmetry"), quantity), "zmean_percent"), Json(), "%");
+    }
+    const Json& passivity = member(document_, "passivity");
+    add("absorbed_energy", member(member(passivity, "trial"), "absorbed_J"), Json(), "J");
+    add("min_passivity_index", member(passivity, "min_index"), Json(), unit_of("B"));
+    add("excess_of_passivity", member(member(passivity, "eop"), "corrected"), Json(), unit_of("B"));
+    return std::move(outcomes_);
+  }
+
+ private:
+  static const Json& member(const Json& json, const char* name) {
+    static const Json kNothing;
+    const auto found = json.is_object() ? json.find(name) : json.end();
+    return json.is_object() && found != json.end() ? *found : kNothing;
+  }
+
+  static const Json& element(const Json& json, std::size_t at) {
+    static const Json kNothing;
+    return json.is_array() && at < json.size() ? json[at] : kNothing;
+  }
+
+  std::string unit_of(const char* name) const {
+    const Json& unit = member(member(document_, "units"), name);
+    return unit.is_string() ? unit.get<std::string>() : "";
+  }
+
+  /// What is undefined (null) or not finite is no number.
+  void add(std::string name, const Json& value, const Json& standard_error, std::string unit) {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) return;
+    Outcome outcome{std::move(name), value.get<double>(), std::nullopt, std::move(unit)};
+    if (standard_error.is_number() && std::isfinite(standard_error.get<double>())) {
+      outcome.standard_error = standard_error.get<double>();
+    }
+    outcomes_.push_back(std::move(outcome));
+  }
+
+  void read_matrix(const char* name) {
+    const Json& values = member(member(document_, "model"), name);
+    const Json& errors = member(member(document_, "standard_error"), name);
+    for (std::size_t i = 0; i < (one_axis_ ? 1U : kAxes.size()); ++i) {
+      for (std::size_t k = 0; k < (one_axis_ ? 1U : kAxes.size()); ++k) {
+        add(one_axis_ ? name : fmt::format("{}_{}{}", name, kAxes.at(i), kAxes.at(k)), element(element(values, i), k),
+            element(element(errors, i), k), unit_of(name));
+      }
+    }
+  }
+
+  void read_vector(const char* name, const Json& values, const Json& errors, const std::string& unit) {
+    for (std::size_t i = 0; i < (one_axis_ ? 1U : kAxes.size()); ++i) {
+      add(one_axis_ ? name : fmt::format("{}_{}", name, kAxes.at(i)), element(values, i), element(errors, i), unit);
+    }
+  }
+
+  void read_ellipse(const char* quantity) {
+    const Json& ellipse = member(member(document_, "ellipses"), quantity);
+    const std::string unit = unit_of(*quantity == 'i' ? "M" : *quantity == 'd' ? "B" : "K");
+    add(fmt::format("{}_area", quantity), member(ellipse, "area"), Json(),
+        unit.empty() ? "" : fmt::format("({})²", unit));
+    add(fmt::format("{}_shape", quantity), member(ellipse, "shape"), Json(), "");
+    add(fmt::format("{}_orientation", quantity), member(ellipse, "orientation_deg"), Json(), "°");
+  }
+
+  const Json& document_;
+  bool one_axis_ = false;
+  std::vector<Outcome> outcomes_;
+};
+
+}  // namespace
+
+Result<std::vector<Outcome>> outcomes_of(std::string_view document) {
+  const Json json = Json::parse(document, nullptr, false);
+  if (!json.is_object() || !json.contains("model")) {
+    return bad_data("is no result of 'mbk measure --json'", "schema mbk.result/2 is expected");
+  }
+  return OutcomeReader(json).read();
+}
+
+}  // namespace mbk::store

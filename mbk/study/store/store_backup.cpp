@@ -1,0 +1,95 @@
+#include <SQLiteCpp/Backup.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <set>
+#include <system_error>
+
+#include "mbk/study/store/store.h"
+#include "mbk/study/store/store_database.h"
+#include "mbk/study/store/store_files.h"
+
+namespace mbk::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes away with all that is in it unless it was renamed.
+struct TemporaryFolder {
+  fs::path path;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path.empty()) fs::remove_all(path, ignored);
+  }
+};
+
+Result<void> copy_database(const Database& from, const fs::path& to) {
+  const int descriptor = ::open((to / kDatabaseName).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (descriptor < 0) {
+    return bad_data("cannot be written: " + std::generic_category().message(errno), "check the folder", to.string());
+  }
+  ::close(descriptor);
+  SQLite::Database copy((to / kDatabaseName).string(), SQLite::OPEN_READWRITE);
+  copy.exec("PRAGMA synchronous = FULL");
+  auto source = SQLite::Database((from.folder / kDatabaseName).string(), SQLite::OPEN_READONLY, 30000);
+  SQLite::Backup backup(copy, source);
+  backup.executeStep(-1);
+  return {};
+}
+
+Result<void> copy_recording(const fs::path& from, const fs::path& to, bool link) {
+  if (link && ::link(from.c_str(), to.c_str()) == 0) return {};
+  auto copied = copy_hashed(from, to);
+  if (!copied) return tl::unexpected(copied.error());
+  return {};
+}
+
+}  // namespace
+
+Result<CheckReport> Store::backup(const fs::path& to, bool link) {
+  std::error_code code;
+  if (fs::exists(to, code)) {
+    return fail(ErrorKind::usage, "is there already", "name a folder that is not there yet", to.string());
+  }
+  auto lock = FolderLock::take(folder(), FolderLock::Kind::shared);  // nothing is forgotten meanwhile
+  if (!lock) return tl::unexpected(lock.error());
+  return guarded(folder(), [&]() -> Result<CheckReport> {
+    const fs::path parent = to.has_parent_path() ? to.parent_path() : fs::path(".");
+    TemporaryFolder temporary{parent / fmt::format(".{}.{}.part", to.filename().string(), ::getpid())};
+    fs::remove_all(temporary.path, code);
+    if (auto ok = make_folder(temporary.path); !ok) return tl::unexpected(ok.error());
+    if (auto ok = make_folder(temporary.path / kRecordingsName); !ok) return tl::unexpected(ok.error());
+    if (auto ok = copy_database(*database_, temporary.path); !ok) return tl::unexpected(ok.error());
+    CheckReport report;
+    {
+      auto copy = Store::open(temporary.path);
+      if (!copy) return tl::unexpected(copy.error());
+      const auto recordings = copy->recordings();
+      if (!recordings) return tl::unexpected(recordings.error());
+      std::set<std::string> names;
+      for (const StoredRecording& one : *recordings) names.insert(stored_name(one.sha256, one.extension));
+      for (const std::string& name : names) {
+        const fs::path target = temporary.path / name;
+        if (auto ok = make_folder(target.parent_path()); !ok) return tl::unexpected(ok.error());
+        if (auto ok = copy_recording(folder() / name, target, link); !ok) return tl::unexpected(ok.error());
+      }
+      for (const std::string& name : names) {
+        if (auto ok = flush_folder((temporary.path / name).parent_path()); !ok) return tl::unexpected(ok.error());
+      }
+      auto checked = copy->check(false, {});
+      if (!checked) return tl::unexpected(checked.error());
+      report = std::move(*checked);
+    }
+    if (!report.problems.empty()) {
+      return bad_data("the copy is not sound: " + report.problems.front(),
+                      "no backup was made; 'mbk study check' says what is wrong with the study", folder().string());
+    }
+    if (auto ok = rename_on_disk(temporary.path, parent / to.filename()); !ok) return tl::unexpected(ok.error());
+    temporary.path.clear();
+    return report;
+  });
+}
+
+}  // namespace mbk::store

@@ -1,0 +1,204 @@
+#include "mbk/study/store/store_database.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+#include <sys/random.h>
+
+#include <array>
+#include <chrono>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <span>
+
+#include "mbk/files/contents/sha256.h"
+
+namespace mbk::store {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kApplication = 0x6d626b73;  // "mbks"
+constexpr int kBusyMilliseconds = 30000;
+
+/// From the tables of version i to those of version i + 1; 0 is an empty database.
+constexpr std::array kMigrations = {
+    R"(
+CREATE TABLE fact(name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE recording(
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  sha256 TEXT NOT NULL, part INTEGER NOT NULL, extension TEXT NOT NULL, bytes INTEGER NOT NULL,
+  participant INTEGER NOT NULL CHECK (participant > 0), session INTEGER NOT NULL CHECK (session > 0),
+  trial INTEGER NOT NULL CHECK (trial > 0), condition TEXT NOT NULL, duration_s REAL NOT NULL, added TEXT NOT NULL,
+  origin_sha256 TEXT NOT NULL, excluded_why TEXT, salt TEXT NOT NULL,
+  UNIQUE (sha256, part)) STRICT;
+CREATE INDEX recording_origin ON recording(origin_sha256);
+CREATE INDEX recording_whose ON recording(participant, session, condition, trial);
+CREATE TABLE analysis(
+  number INTEGER PRIMARY KEY, options_sha256 TEXT NOT NULL, options TEXT NOT NULL, version TEXT NOT NULL,
+  UNIQUE (options_sha256, version)) STRICT;
+CREATE TABLE result(
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  recording INTEGER NOT NULL REFERENCES recording(number) ON DELETE CASCADE,
+  analysis INTEGER NOT NULL REFERENCES analysis(number),
+  usable INTEGER NOT NULL, failed INTEGER NOT NULL, reason TEXT NOT NULL,
+  UNIQUE (recording, analysis)) STRICT;
+CREATE INDEX result_analysis ON result(analysis, recording);
+CREATE TABLE document(
+  result INTEGER PRIMARY KEY REFERENCES result(number) ON DELETE CASCADE, text TEXT NOT NULL) STRICT;
+CREATE TABLE outcome(
+  result INTEGER NOT NULL REFERENCES result(number) ON DELETE CASCADE,
+  name TEXT NOT NULL, value REAL NOT NULL, standard_error REAL, unit TEXT NOT NULL,
+  PRIMARY KEY (result, name)) STRICT, WITHOUT ROWID;
+CREATE TABLE erasure(file TEXT PRIMARY KEY) STRICT, WITHOUT ROWID;
+CREATE TABLE log(
+  number INTEGER PRIMARY KEY, time TEXT NOT NULL, role TEXT NOT NULL, action TEXT NOT NULL,
+  recording INTEGER, analysis INTEGER, participant INTEGER, digest TEXT NOT NULL, why TEXT NOT NULL,
+  hash TEXT NOT NULL) STRICT;
+CREATE TRIGGER log_is_never_changed BEFORE UPDATE ON log BEGIN SELECT RAISE(ABORT, 'the log is append-only'); END;
+CREATE TRIGGER log_is_never_shortened BEFORE DELETE ON log BEGIN SELECT RAISE(ABORT, 'the log is append-only'); END;
+)"};
+
+int pragma_number(SQLite::Database& connection, const char* pragma) {
+  return connection.execAndGet(pragma).getInt();
+}
+
+std::string sum_of(const Json& json) {
+  return sha256_of(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Json or_null(const std::optional<std::int64_t>& number) {
+  return number ? Json(*number) : Json();
+}
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& in, int flags, const char* name)
+    : folder(in), connection((in / name).string(), flags, kBusyMilliseconds) {
+  connection.exec(
+      "PRAGMA trusted_schema = OFF;"
+      "PRAGMA foreign_keys = ON;"
+      "PRAGMA journal_mode = WAL;"
+      "PRAGMA synchronous = FULL;"
+      "PRAGMA secure_delete = ON;"
+      "PRAGMA temp_store = MEMORY;");
+}
+
+Error error_of(const SQLite::Exception& exception, const std::filesystem::path& folder) {
+  const std::string file = (folder / kDatabaseName).string();
+  const std::string said = exception.what();
+  switch (exception.getErrorCode()) {
+    case SQLITE_FULL:
+      return {ErrorKind::data, "the disk is full", "free space; nothing was stored by half", file};
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return {ErrorKind::data, "another process has been writing for half a minute", "try again when it is done", file};
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return {ErrorKind::data, printable("the database is damaged: " + said), "restore the folder from a backup", file};
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+      return {ErrorKind::data, printable("the database cannot be opened for writing: " + said),
+              "check the permissions of the folder, and the space on the disk", file};
+    default:
+      return {ErrorKind::data, printable("the database cannot be used: " + said),
+              "check the disk; 'mbk study check' says what is sound", file};
+  }
+}
+
+Result<void> migrate(SQLite::Database& connection, const std::filesystem::path& folder) {
+  const std::string file = (folder / kDatabaseName).string();
+  const int latest = static_cast<int>(kMigrations.size());
+  const auto version = [&] { return pragma_number(connection, "PRAGMA user_version"); };
+  if (version() == latest && pragma_number(connection, "PRAGMA application_id") == kApplication) return {};
+  WriteTransaction alone(connection);
+  const int found = version();
+  const int application = pragma_number(connection, "PRAGMA application_id");
+  if (application != kApplication && (application != 0 || found != 0)) {
+    return bad_data("is the database of another program", "name the folder of a study", file);
+  }
+  if (found > latest) {
+    return bad_data(fmt::format("was written by a newer mbk (tables of version {}, this one knows {})", found, latest),
+                    "use that one", file);
+  }
+  for (int i = found; i < latest; ++i) connection.exec(kMigrations.at(static_cast<std::size_t>(i)));
+  connection.exec(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", kApplication, latest));
+  alone.commit();
+  return {};
+}
+
+std::string sha256_of(const std::string& text) {
+  return recording::sha256(std::as_bytes(std::span(text)));
+}
+
+std::string utc_now() {
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+}
+
+std::string new_salt() {
+  std::array<unsigned char, 16> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != std::ssize(bytes)) {
+    std::random_device device;
+    for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(device());
+  }
+  std::string text;
+  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+std::string hash_of(const LogLine& line, const std::string& before) {
+  return sum_of(Json::array({"mbk.study.log/1", line.number, line.time, word_of(line.role), word_of(line.action),
+                             or_null(line.recording), or_null(line.analysis), or_null(line.participant), line.digest,
+                             line.why, before}));
+}
+
+void append_to_log(SQLite::Database& connection, LogLine line) {
+  std::string before;
+  line.number = 1;
+  if (auto last = query(connection, "SELECT number, hash FROM log ORDER BY number DESC LIMIT 1"); last.executeStep()) {
+    line.number = number_at(last, 0) + 1;
+    before = text_at(last, 1);
+  }
+  line.time = utc_now();
+  line.why = printable(line.why);
+  line.hash = hash_of(line, before);
+  execute(connection, "INSERT INTO log VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", line.number, line.time,
+          std::string(word_of(line.role)), std::string(word_of(line.action)), line.recording, line.analysis,
+          line.participant, line.digest, line.why, line.hash);
+}
+
+SaltedRecording recording_at(const SQLite::Statement& row) {
+  SaltedRecording one;
+  StoredRecording& r = one.recording;
+  r.number = number_at(row, 0);
+  r.sha256 = text_at(row, 1);
+  r.part = number_at(row, 2);
+  r.extension = text_at(row, 3);
+  r.bytes = number_at(row, 4);
+  r.participant = number_at(row, 5);
+  r.session = number_at(row, 6);
+  r.trial = number_at(row, 7);
+  r.condition = text_at(row, 8);
+  r.duration_s = row.getColumn(9).getDouble();
+  r.added = text_at(row, 10);
+  r.origin_sha256 = text_at(row, 11);
+  if (!row.getColumn(12).isNull()) r.excluded_why = text_at(row, 12);
+  one.salt = text_at(row, 13);
+  return one;
+}
+
+std::string digest_of(const SaltedRecording& salted) {
+  const StoredRecording& r = salted.recording;
+  return sum_of(Json::array({salted.salt, r.number, r.sha256, r.part, r.extension, r.bytes, r.participant, r.session,
+                             r.trial, r.condition, r.duration_s, r.added, r.origin_sha256}));
+}
+
+std::string digest_of(const std::string& salt, const std::string& options_sha256, const std::string& version,
+                      const UnitResult& result) {
+  return sum_of(Json::array({salt, options_sha256, version, result.usable, result.reason, result.document}));
+}
+
+}  // namespace mbk::store

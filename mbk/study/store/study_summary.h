@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "mbk/study/store/store_values.h"
+
+namespace mbk::store {
+
+/// One outcome under one condition, over participants: each counts once, with the mean of its results.
+struct OutcomeSummary {
+  std::string condition, outcome, unit;
+  std::int64_t results = 0, participants = 0;
+  double mean = 0.0;  ///< of the participants' means; of an orientation the mean axis
+  /// Of the participants' means; NaN where there is one participant. Of an orientation ½ √(−2 ln R), R the length of
+  /// the mean of (cos 2θ, sin 2θ).
+  double standard_deviation = std::numeric_limits<double>::quiet_NaN();
+  double minimum = 0.0, maximum = 0.0;  ///< of all results
+};
+
+/// By condition and outcome, each in the order in which the table has them.
+[[nodiscard]] std::vector<OutcomeSummary> summarise_outcomes(const ObservationTable& table);
+
+}  // namespace mbk::store

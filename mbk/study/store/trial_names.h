@@ -1,0 +1,68 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/study/store/store_values.h"
+
+/// Whose trial a file is, from its name, from a sheet, from what `mbk run` wrote into it.
+namespace mbk::store {
+
+/// What is known of a trial before all of it is.
+struct KnownFacts {
+  std::optional<std::int64_t> participant, session, trial;
+  std::optional<std::string> condition;
+
+  /// What is not known here is as there.
+  [[nodiscard]] KnownFacts or_else(const KnownFacts& other) const;
+
+  /// Session 1 and no condition where nobody says otherwise.   @fails  usage: the participant is not known.
+  [[nodiscard]] Result<TrialFacts> complete() const;
+};
+
+/// A pattern of file names: "p{participant}_s{session}_{condition}_{trial}.h5". {participant}, {session} and {trial}
+/// stand for digits, {condition} for letters, digits and -, `*` for anything; all else for itself.
+class NamePattern {
+ public:
+  /// @fails  usage: no {participant}, a placeholder that is none, or one twice.
+  [[nodiscard]] static Result<NamePattern> of(const std::string& pattern);
+
+  /// @fails  usage: the name is not of this pattern.
+  [[nodiscard]] Result<KnownFacts> match(const std::string& name) const;
+
+ private:
+  struct Piece {
+    std::string field;  ///< "participant", …, "*"; "" for text that stands for itself
+    std::string text;
+  };
+  [[nodiscard]] bool matches(std::string_view name, std::size_t piece, std::map<std::string, std::string>& found) const;
+  std::string pattern_;
+  std::vector<Piece> pieces_;
+};
+
+/// A row of a sheet: a file and whose trial it is.
+struct SheetRow {
+  std::filesystem::path file;
+  KnownFacts facts;
+};
+
+struct Sheet {
+  std::vector<SheetRow> rows;
+  std::vector<std::string> ignored;  ///< names of columns that are none of a study's
+};
+
+/// A CSV sheet with a line of names: file, participant, and where they are there session, condition, trial; separated
+/// by commas, semicolons or tabs. Other columns are ignored and nothing of them is kept.
+/// @param folder  to which the names of files are relative
+/// @fails  data: no such column, a row of another length, a number that is none; the row is named.
+[[nodiscard]] Result<Sheet> read_sheet(std::string_view text, const std::filesystem::path& folder);
+
+/// From the metadata of a recording: participant, session, condition, trial.
+[[nodiscard]] KnownFacts facts_of(const std::map<std::string, std::string>& metadata);
+
+}  // namespace mbk::store

@@ -1,0 +1,141 @@
+#include "mbk/study/store/trial_names.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mbk/study/store/identifying.h"
+#include "mbk/study/store/store.h"
+#include "mbk/study/store/study_summary.h"
+
+namespace mbk::store {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(APattern, TakesWhatItsPlaceholdersStandFor) {
+  const NamePattern pattern = NamePattern::of("p{participant}_s{session}_{condition}_{trial}*.mat").value();
+  const KnownFacts facts = pattern.match("p07_s2_eyes-closed_13_Jane Doe.mat").value();
+  EXPECT_EQ(facts.participant, 7);
+  EXPECT_EQ(facts.session, 2);
+  EXPECT_EQ(facts.condition, "eyes-closed");
+  EXPECT_EQ(facts.trial, 13);
+  for (const char* name : {"p07_s2_relaxed_13.h5", "pX_s2_relaxed_13.mat", "p07_s2__13.mat", "p0_s2_relaxed_1.mat",
+                           "p99999999999999999999_s2_relaxed_1.mat", ""}) {
+    EXPECT_FALSE(pattern.match(name)) << name;
+  }
+}
+
+TEST(APattern, IsTakenBackWhereItsLongestReadingDoesNotFit) {
+  const KnownFacts facts = NamePattern::of("*{participant}{condition}.h5")->match("x12ab.h5").value();
+  EXPECT_TRUE(facts.participant);
+  EXPECT_TRUE(facts.condition);
+}
+
+TEST(APattern, IsRefusedWhereItIsNone) {
+  for (const char* pattern : {"{name}.mat", "{participant}{participant}", "{session}.mat", "{participant"}) {
+    EXPECT_FALSE(NamePattern::of(pattern)) << pattern;
+  }
+}
+
+TEST(ASheet, SaysWhoseEachFileIs) {
+  const Sheet sheet = read_sheet(
+                          "\xef\xbb\xbf"
+                          "File;Participant;Condition;Name;Trial\r\n"
+                          "a.mat;7;\"relaxed; seated\";Jane;\r\n"
+                          "\"b \"\"2\"\".mat\";8;;Joe;3\r\n",
+                          "/data")
+                          .value();
+  ASSERT_EQ(sheet.rows.size(), 2U);
+  EXPECT_EQ(sheet.rows[0].file, "/data/a.mat");
+  EXPECT_EQ(sheet.rows[0].facts.participant, 7);
+  EXPECT_EQ(sheet.rows[0].facts.condition, "relaxed; seated");
+  EXPECT_FALSE(sheet.rows[0].facts.trial);
+  EXPECT_EQ(sheet.rows[1].file, "/data/b \"2\".mat");
+  EXPECT_EQ(sheet.rows[1].facts.trial, 3);
+  EXPECT_THAT(sheet.ignored, ElementsAre("name"));
+}
+
+TEST(ASheet, IsRefusedWithItsRow) {
+  EXPECT_THAT(read_sheet("file,participant\na.mat,seven\n", "").error().where, HasSubstr("row 2"));
+  EXPECT_THAT(read_sheet("file,participant\na.mat,1\nb.mat\n", "").error().where, HasSubstr("row 3"));
+  EXPECT_FALSE(read_sheet("file,subject\na.mat,1\n", ""));
+  EXPECT_FALSE(read_sheet("", ""));
+}
+
+TEST(FactsOfARecording, AreTakenFromItsMetadata) {
+  const KnownFacts facts =
+      facts_of({{"participant", "12"}, {"condition", "relaxed"}, {"trial", "hold still"}, {"session", "2"}});
+  EXPECT_EQ(facts.participant, 12);
+  EXPECT_EQ(facts.session, 2);
+  EXPECT_EQ(facts.condition, "relaxed");
+  EXPECT_FALSE(facts.trial) << "a name is no number";
+  EXPECT_FALSE(facts_of({}).complete());
+}
+
+TEST(MetadataThatIdentify, AreFoundByTheirNames) {
+  for (const char* key : {"name", "Name", "patient_name", "PatientName", "SUBJECT/NAME", "firstName", "last name",
+                          "Date of Birth", "birthdate", "DOB", "e-mail", "Subject ID", "patient", "operator_name"}) {
+    EXPECT_THAT(identifying_entries({{key, "x"}}), ElementsAre(key));
+  }
+  for (const char* key : {"participant", "condition", "trial_name", "robot_name", "name_of_robot", "rate_hz",
+                          "protocol", "truth_x0", "upper_arm_m", "software", "handedness"}) {
+    EXPECT_THAT(identifying_entries({{key, "x"}}), IsEmpty()) << key;
+  }
+  EXPECT_THAT(identifying_entries({{"name", ""}}), IsEmpty()) << "an empty entry says nothing";
+}
+
+TEST(Outcomes, AreTheNumbersOfAResult) {
+  const auto outcomes =
+      outcomes_of(
+          R"({"axes":2,"units":{"K":"N/m","M":"kg"},"model":{"M":[[1,2],[3,null]],"K":[[10,20],[30,40]]},
+          "standard_error":{"K":[[1,2],[3,4]]},"fit":{"VAF":[99,98]},
+          "ellipses":{"stiffness":{"area":5,"shape":2,"orientation_deg":170}},
+          "passivity":{"trial":{"absorbed_J":1.5}}})")
+          .value();
+  std::map<std::string, Outcome> by_name;
+  for (const Outcome& one : outcomes) by_name[one.name] = one;
+  EXPECT_EQ(by_name.at("K_yx").value, 30);
+  EXPECT_EQ(by_name.at("K_yx").standard_error, 3);
+  EXPECT_EQ(by_name.at("K_yx").unit, "N/m");
+  EXPECT_EQ(by_name.count("M_yy"), 0U) << "what is undefined is no number";
+  EXPECT_FALSE(by_name.at("M_xx").standard_error);
+  EXPECT_EQ(by_name.at("VAF_y").value, 98);
+  EXPECT_EQ(by_name.at("stiffness_orientation").unit, "°");
+  EXPECT_EQ(by_name.at("absorbed_energy").value, 1.5);
+  EXPECT_FALSE(outcomes_of("[]"));
+  EXPECT_FALSE(outcomes_of("{\"model\":"));
+}
+
+/// Observations of one outcome under one condition.
+ObservationTable table_of(const std::string& outcome, const std::vector<std::pair<int, double>>& values) {
+  ObservationTable table{{"relaxed"}, {outcome}, {"N/m"}, {}};
+  for (const auto& [participant, value] : values)
+    table.observations.push_back({.participant = participant, .value = value});
+  return table;
+}
+
+TEST(ASummary, CountsEachParticipantOnce) {
+  const auto summaries = summarise_outcomes(table_of("K", {{1, 100}, {1, 110}, {1, 120}, {2, 150}}));
+  ASSERT_EQ(summaries.size(), 1U);
+  EXPECT_DOUBLE_EQ(summaries[0].mean, 130.0);  // of 110 and 150
+  EXPECT_DOUBLE_EQ(summaries[0].standard_deviation, 20.0 * std::sqrt(2.0));
+  EXPECT_EQ(summaries[0].results, 4);
+  EXPECT_EQ(summaries[0].participants, 2);
+  EXPECT_EQ(summaries[0].minimum, 100);
+  EXPECT_EQ(summaries[0].maximum, 150);
+}
+
+TEST(ASummary, OfAnAxisKnowsThat179IsBeside1) {
+  const OutcomeSummary summary = summarise_outcomes(table_of("stiffness_orientation", {{1, 179}, {2, 3}}))[0];
+  EXPECT_NEAR(summary.mean, 1.0, 1e-9);
+  EXPECT_NEAR(summary.standard_deviation, 2.0, 1e-3);
+}
+
+TEST(ASummary, OfOneParticipantHasNoDeviation) {
+  EXPECT_TRUE(std::isnan(summarise_outcomes(table_of("K", {{1, 5}, {1, 7}}))[0].standard_deviation));
+}
+
+}  // namespace
+}  // namespace mbk::store

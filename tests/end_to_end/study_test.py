@@ -1,0 +1,385 @@
+#!/usr/bin/env python3
+"""mbk study: many people and trials in one folder, through the command alone.
+
+MBK_STUDY_KILLS says how many times a command is killed in mid-work (20).
+"""
+
+import csv
+import io
+import json
+import os
+import pathlib
+import random
+import resource
+import shutil
+import signal
+import sqlite3
+import subprocess
+import time
+
+import command
+from command import BAD_DATA, FINE, WRONG_USAGE, run
+
+KILLS = int(os.environ.get("MBK_STUDY_KILLS", "20"))
+
+
+def short_trial(folder, seed, name=None, **metadata):
+    """A recording of 12 s of a simulated participant, with these metadata beside its own, as CSV."""
+    name = name or f"trial_{seed}.csv"
+    whole = folder / f".{name}"
+    made = run("simulate", "relaxed_sinusoidal", "--seed", seed, "--quiet", "--out", whole.with_suffix(".csv"))
+    assert made.code == FINE, made
+    lines = whole.with_suffix(".csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    comments = [line for line in lines if line.startswith("#")]
+    rows = [line for line in lines if not line.startswith("#")]
+    comments += [f"# {key}: {value}\n" for key, value in metadata.items()]
+    (folder / name).write_text("".join(comments + rows[:12001]), encoding="utf-8")
+    whole.with_suffix(".csv").unlink()
+    return folder / name
+
+
+class StudyCase(command.Case):
+    trials = None
+
+    @classmethod
+    def setUpClass(cls):
+        if StudyCase.trials is None:
+            folder = command.folder_of_logs()
+            StudyCase.trials = [short_trial(folder, seed) for seed in range(1, 5)]
+
+    def setUp(self):
+        super().setUp()
+        self.study = self.folder / "study"
+        self.mbk("study", "init", self.study, "--title", "A study")
+
+    def do(self, name, *arguments, code=FINE, **options):
+        return self.mbk("study", name, *arguments, "--study", self.study, code=code, **options)
+
+    def listed(self):
+        return self.do("list", "--json").json
+
+    def checked(self, *options, code=FINE):
+        return self.do("check", "--json", *options, code=code).json
+
+
+class AStudy(StudyCase):
+    def test_goes_from_recordings_to_a_summary(self):
+        for participant, trial in zip((7, 7, 8), self.trials):
+            self.do("add", trial, "--participant", participant, "--session", 2, "--condition", "relaxed")
+        self.assertEqual([r["trial"] for r in self.listed()["recordings"]], [1, 2, 1])
+        ran = self.do("measure")
+        self.assertIn("3 measured: 3 usable", ran.out)
+        self.assertEqual(self.do("measure").out, "nothing new to measure\n")
+        summary = self.do("summary", "--json").json
+        self.assertEqual(summary["counts"]["usable"], 3)
+        outcome = {one["outcome"]: one for one in summary["outcomes"]}
+        each = [run("measure", trial, "--json").json["model"]["K"][0][0] for trial in self.trials[:3]]
+        self.assertAlmostEqual(outcome["K_xx"]["mean"], ((each[0] + each[1]) / 2 + each[2]) / 2, places=9)
+        self.assertEqual((outcome["K_xx"]["participants"], outcome["K_xx"]["results"]), (2, 3))
+        self.assertEqual((outcome["K_xx"]["minimum"], outcome["K_xx"]["maximum"]), (min(each), max(each)))
+        text = self.do("summary").out
+        self.assertIn("3 recordings of 2 participants: 3 usable", text)
+        self.assert_lines_fit(text)
+        check = self.checked()
+        self.assertEqual((check["repeated"], check["problems"], check["notes"]), (3, [], []))
+
+    def test_result_is_that_of_measure(self):
+        self.do("add", self.trials[0], "--participant", 1)
+        self.do("measure", "--quiet")
+        stored = self.do("show", 1, "--result").json
+        measured = run("measure", self.trials[0], "--json").json
+        self.assertRegex(stored["inputs"][0].pop("file"), r"^recordings/[0-9a-f]{2}/[0-9a-f]{64}\.csv$")
+        measured["inputs"][0].pop("file")
+        self.assertEqual(stored, measured)
+        out = self.folder / "result.json"
+        self.do("show", 1, "--result", "--out", out)
+        self.mbk("ellipse", out)
+
+    def test_is_found_from_within_its_folder(self):
+        inner = self.study / "recordings"
+        self.assertIn("0 recordings", self.mbk("study", "list", folder=inner).out)
+        self.refused(WRONG_USAGE, "study", "list", folder=self.folder, says="no study")
+
+    def test_measures_only_what_is_new_or_changed(self):
+        self.do("add", self.trials[0], "--participant", 1)
+        self.do("measure")
+        self.do("add", self.trials[1], "--participant", 2)
+        self.assertIn("1 measured", self.do("measure").out)
+        self.assertIn("2 measured", self.do("measure", "--cutoff", "4").out)
+        self.assertIn("nothing new", self.do("measure", "--cutoff", "4").out)
+        self.do("defaults", "--cutoff", "4")
+        self.assertIn("nothing new", self.do("measure").out, "the default is what was measured already")
+        listed = self.listed()
+        self.assertEqual([one["options"] for one in listed["analyses"]], [{}, {"--cutoff": ["4"]}])
+        first, second = (self.do("summary", "--json", "--analysis", n).json["outcomes"][0]["mean"] for n in (1, 2))
+        self.assertNotEqual(first, second)
+
+    def test_same_study_for_any_number_of_threads_and_any_order(self):
+        exports = []
+        for threads, trials in ((1, self.trials), (3, self.trials[::-1])):
+            study = self.folder / f"of_{threads}"
+            self.mbk("study", "init", study)
+            for trial in trials:
+                self.mbk("study", "add", trial, "--study", study, "--participant", self.trials.index(trial) + 1)
+            self.mbk("study", "measure", "--study", study, "--threads", threads)
+            with sqlite3.connect(study / "study.sqlite") as database:
+                exports.append(database.execute("SELECT sha256, text FROM document JOIN result ON result = result.number "
+                                                "JOIN recording ON recording = recording.number ORDER BY sha256").fetchall())
+        self.assertEqual(len(exports[0]), 4)
+        self.assertEqual(exports[0], exports[1])
+
+    def test_unusable_results_are_kept_and_do_not_count(self):
+        self.do("add", *self.trials[:2], "--participant", 1)
+        ran = self.do("measure", "--cutoff", "0.2", code=command.NOT_USABLE)
+        self.assertIn("0 usable, 2 not usable", ran.out)
+        listed = self.listed()["recordings"]
+        self.assertEqual({one["state"] for one in listed}, {"not-usable"})
+        self.assertTrue(all(one["reason"] for one in listed))
+        summary = self.do("summary", "--json").json
+        self.assertEqual((summary["counts"]["not_usable"], summary["outcomes"]), (2, []))
+
+    def test_exclusion_has_a_reason_and_can_be_taken_back(self):
+        self.do("add", *self.trials[:2], "--participant", 1)
+        self.do("measure")
+        self.refused(WRONG_USAGE, "study", "exclude", 1, "--study", self.study)
+        self.do("exclude", 1, "--why", "hand slipped")
+        self.assertIn("excluded: hand slipped", self.do("list").out)
+        self.assertEqual(self.do("summary", "--json").json["counts"]["excluded"], 1)
+        self.do("exclude", 1, "--undo", "--why", "it was trial 2")
+        self.assertEqual(self.do("summary", "--json").json["counts"]["usable"], 2)
+        self.assertEqual(self.checked("--quick")["problems"], [])
+
+    def test_exports(self):
+        self.do("add", self.trials[0], "--participant", 7, "--condition", "relaxed, seated")
+        self.do("add", self.trials[1], "--participant", 8, "--condition", "stiff_100%")
+        self.do("measure")
+        rows = list(csv.DictReader(io.StringIO(self.do("export").out)))
+        result = self.do("show", 1, "--result").json
+        k_xx = next(row for row in rows if row["participant"] == "7" and row["outcome"] == "K_xx")
+        self.assertEqual(float(k_xx["value"]), result["model"]["K"][0][0])
+        self.assertEqual(float(k_xx["standard_error"]), result["standard_error"]["K"][0][0])
+        self.assertEqual((k_xx["condition"], k_xx["state"], k_xx["unit"]), ("relaxed, seated", "usable", "N/m"))
+        document = self.do("export", "--format", "json").json
+        self.assertEqual(len(document["recordings"]), 2)
+        latex = self.do("export", "--format", "latex").out
+        self.assertIn(r"stiff\_100\%", latex)
+        self.assertEqual(latex.count("{"), latex.count("}"))
+
+    def test_forgets_a_participant(self):
+        self.do("add", *self.trials[:2], "--participant", 7, "--condition", "seldom-word")
+        self.do("add", self.trials[2], "--participant", 8)
+        self.do("measure")
+        hashes = [one["sha256"] for one in self.listed()["recordings"]]
+        self.do("forget", "--participant", 7, "--why", "consent withdrawn", "--role", "data-manager")
+        self.assertEqual([one["participant"] for one in self.listed()["recordings"]], [8])
+        left = b"".join(path.read_bytes() for path in self.study.rglob("*") if path.is_file())
+        for secret in (hashes[0].encode(), hashes[1].encode(), b"seldom-word"):
+            self.assertNotIn(secret, left)
+        self.assertIn("forget participant 7: consent withdrawn", self.do("log").out)
+        self.assertEqual(self.checked()["problems"], [])
+        self.refused(WRONG_USAGE, "study", "forget", "--participant", 7, "--why", "x", "--study", self.study)
+
+    def test_backup_can_be_used_in_its_place(self):
+        self.do("add", self.trials[0], "--participant", 7)
+        self.do("measure")
+        ran = self.do("backup", self.folder / "copy")
+        shutil.rmtree(self.study)
+        (self.folder / "copy").rename(self.study)
+        self.assertEqual(self.checked()["problems"], [])
+        self.assertIn(self.do("log", "--json").json["head"], ran.out)
+
+    def test_log_shows_a_change(self):
+        self.do("add", self.trials[0], "--participant", 7)
+        head = self.do("log", "--json").json["head"]
+        self.do("log", "--verify", "--head", head)
+        with sqlite3.connect(self.study / "study.sqlite") as database:
+            database.execute("DROP TRIGGER log_is_never_changed")
+            database.execute("UPDATE log SET why = 'nothing' WHERE number = 1")
+        self.assertIn("line 1", self.do("log", "--verify", code=BAD_DATA).out)
+        self.assertTrue(self.checked("--quick", code=BAD_DATA)["problems"])
+
+    def test_log_can_be_recomputed_by_others(self):
+        self.do("add", self.trials[0], "--participant", 7)
+        self.do("exclude", 1, "--why", "Größe")
+        import hashlib
+        before = ""
+        for line in self.do("log", "--json").json["lines"]:
+            text = json.dumps(["mbk.study.log/1", line["number"], line["time"], line["role"], line["action"],
+                               line.get("recording"), line.get("analysis"), line.get("participant"),
+                               line.get("digest", ""), line.get("why", ""), before],
+                              separators=(",", ":"), ensure_ascii=False)
+            before = hashlib.sha256(text.encode()).hexdigest()
+            self.assertEqual(line["hash"], before)
+
+    def test_check_finds_a_file_that_changed(self):
+        self.do("add", self.trials[0], "--participant", 7)
+        stored = next(self.study.glob("recordings/*/*.csv"))
+        stored.write_bytes(stored.read_bytes().replace(b"1", b"2", 1))
+        self.assertIn("not those that were added", self.do("check", code=BAD_DATA).out)
+        ran = self.do("measure", code=BAD_DATA)
+        self.assertIn("not those that were added", ran.err)
+        self.assertEqual(self.listed()["recordings"][0]["state"], "not-measured", "a damaged file has no result")
+
+
+class Importing(StudyCase):
+    def test_by_a_pattern(self):
+        names = ["p07_s1_relaxed_1_Jane.csv", "p07_s1_stiff_1_Jane.csv", "other.csv"]
+        files = [command.copy(trial, self.folder / name) for trial, name in zip(self.trials, names)]
+        ran = self.do("import", *files, "--pattern", "p{participant}_s{session}_{condition}_{trial}_*.csv",
+                      code=WRONG_USAGE)
+        self.assertIn("other.csv", ran.err)
+        self.assertEqual([(r["participant"], r["session"], r["condition"], r["trial"])
+                          for r in self.listed()["recordings"]], [(7, 1, "relaxed", 1), (7, 1, "stiff", 1)])
+        everything = b"".join(path.read_bytes() for path in self.study.rglob("*") if path.is_file())
+        self.assertNotIn(b"Jane", everything)
+
+    def test_by_a_sheet(self):
+        for k, trial in enumerate(self.trials[:2]):
+            command.copy(trial, self.folder / f"{k}.csv")
+        sheet = self.file("sheet.csv", "file,participant,condition,surname\n0.csv,3,relaxed,Doe\n1.csv,4,stiff,Roe\n")
+        ran = self.do("import", "--sheet", sheet)
+        self.assertIn("surname", ran.err)
+        self.assertEqual([(r["participant"], r["condition"]) for r in self.listed()["recordings"]],
+                         [(3, "relaxed"), (4, "stiff")])
+        self.refused(BAD_DATA, "study", "import", "--study", self.study, "--sheet",
+                     self.file("wrong.csv", "file,participant\n0.csv,Jane\n"), says=("row 2", "whole number"))
+
+    def test_of_mbk_run_by_what_it_wrote(self):
+        trial = short_trial(self.folder, 9, "run.csv", participant=12, condition="relaxed", withdrawn="no")
+        self.do("import", trial)
+        (one,) = self.listed()["recordings"]
+        self.assertEqual((one["participant"], one["condition"], one["session"]), (12, "relaxed", 1))
+        withdrawn = short_trial(self.folder, 9, "withdrawn.csv", participant=12, withdrawn="yes")
+        self.refused(BAD_DATA, "study", "import", withdrawn, "--study", self.study, says="withdrawn")
+        self.refused(WRONG_USAGE, "study", "add", self.trials[0], "--study", self.study, says="--participant")
+
+    def test_refuses_or_strips_what_may_identify_a_person(self):
+        named = short_trial(self.folder, 10, "named.csv", patient_name="Jane Doe", participant=5)
+        ran = self.refused(BAD_DATA, "study", "add", named, "--study", self.study, says=("patient_name", "--strip"))
+        self.assertIn("named.csv", ran.err)
+        self.assertNotIn("Jane", ran.err)
+        self.do("add", named, "--strip")
+        (one,) = self.listed()["recordings"]
+        self.assertNotEqual(one["sha256"], one["origin_sha256"])
+        everything = b"".join(path.read_bytes() for path in self.study.rglob("*") if path.is_file())
+        self.assertNotIn(b"Jane", everything)
+        self.assertIn("there already", self.do("add", named, "--strip").out)
+        self.do("measure")
+        stored, measured = self.do("show", 1, "--result").json, run("measure", named, "--json").json
+        self.assertEqual(stored["model"], measured["model"])
+        self.assertEqual(self.checked()["problems"], [])
+
+    def test_refuses_a_name_for_a_participant(self):
+        self.refused(WRONG_USAGE, "study", "add", self.trials[0], "--study", self.study, "--participant", "Jane",
+                     says="Jane")
+
+    def test_one_bad_file_costs_only_itself(self):
+        bad = self.file("bad.csv", "nothing of use")
+        ran = self.do("add", bad, self.trials[0], "--participant", 1, code=BAD_DATA)
+        self.assertIn("bad.csv", ran.err)
+        self.assertNotIn(".part", ran.err)
+        self.assertIn("recording 1", ran.out)
+        self.assertEqual(self.checked("--quick")["notes"], [])
+
+    def test_reads_as_the_defaults_say(self):
+        text = self.trials[0].read_text(encoding="utf-8")
+        head, _, body = text.partition("\ntime")
+        names, _, rows = ("time" + body).partition("\n")
+        unnamed = self.file("unnamed.csv", "\n".join([",".join(f"c{k}" for k in range(1, names.count(",") + 2)), rows]))
+        self.do("add", unnamed, "--participant", 1, code=BAD_DATA)
+        columns = [name.split(" ")[0].split("[")[0].strip() for name in names.split(",")]
+        wanted = {"time": "time", "hand_x": "x", "hand_y": "y", "force_x": "Fx", "force_y": "Fy", "reference_x": "xr",
+                  "reference_y": "yr"}
+        channels = ",".join(f"{wanted[name]}={columns.index(name) + 1}" for name in wanted)
+        self.do("defaults", "--channels", channels)
+        self.do("add", unnamed, "--participant", 1)
+        self.assertIn("1 usable", self.do("measure").out)
+
+
+class Interrupted(StudyCase):
+    """Killed at any moment: what was said to be stored is stored, and nothing is there by half."""
+
+    def killed(self, lot, longest, *arguments):
+        """Starts a command and kills it after some time.   @returns  what it had printed"""
+        process = subprocess.Popen([command.program("MBK"), "study", *map(str, arguments), "--study", self.study],
+                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        time.sleep(lot.uniform(0, longest))
+        process.send_signal(signal.SIGKILL)
+        return process.communicate()[0].decode()
+
+    def test_kill_in_mid_write(self):
+        lot = random.Random(1)
+        files = [self.file(f"{k}.csv", f"# copy: {k}\n" + self.trials[k % 4].read_text(encoding="utf-8"))
+                 for k in range(24)]
+        added, measured, forgotten = {}, set(), set()
+        for n in range(KILLS):
+            what = ("add", "measure", "forget", "add", "measure")[n % 5]
+            if what == "add":
+                some = lot.sample(range(24), 6)
+                said = self.killed(lot, 0.4, "add", *[files[k] for k in some], "--participant", 1 + n % 4)
+                for line in said.splitlines():
+                    number = int(line.split(":")[0].split()[1])
+                    added.setdefault(number, int(line.split("participant ")[1].split(",")[0]))
+            elif what == "measure":
+                self.killed(lot, 1.5, "measure", "--quiet")
+            else:
+                there = sorted({one["participant"] for one in self.listed()["recordings"]})
+                if there:
+                    participant = lot.choice(there)
+                    said = self.killed(lot, 0.15, "forget", "--participant", participant, "--why", "test")
+                    lines = self.do("log", "--json").json["lines"]
+                    if "forgotten" in said:
+                        self.assertIn("forget", {line["action"] for line in lines})
+            lines = self.do("log", "--json").json["lines"]
+            erased = {line["recording"] for line in lines if line["action"] == "erase"}
+            listed = {one["number"]: one for one in self.listed()["recordings"]}
+            for number, participant in added.items():  # what was said to be added is there, or forgotten
+                if number not in erased:
+                    self.assertIn(number, listed)
+                    self.assertEqual(listed[number]["participant"], participant)
+            now = {(line["recording"], line["analysis"]) for line in lines if line["action"] == "measure"}
+            self.assertLessEqual(measured, now)
+            measured = now
+            report = self.checked("--quick")
+            self.assertEqual(report["problems"], [], f"kill {n + 1}, {what}")
+            self.assertEqual(report["files"], len({one["sha256"] for one in listed.values()}))
+        self.do("check", "--remove-leftovers")
+        stored = {path.name for path in self.study.glob("recordings/*/*")}
+        self.assertEqual(stored, {one["sha256"] + ".csv" for one in self.listed()["recordings"]})
+        for k, file in enumerate(files):  # and all goes on as if nothing had been
+            run("study", "add", file, "--participant", 1 + k % 4, "--study", self.study)
+        self.do("measure")
+        self.assertEqual(self.checked()["problems"], [])
+        self.assertEqual({one["state"] for one in self.listed()["recordings"]}, {"usable"})
+
+    def test_two_at_once(self):
+        both = [subprocess.Popen([command.program("MBK"), "study", "add", *self.trials, "--participant", "1", "--study",
+                                  self.study], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) for _ in range(2)]
+        for process in both:
+            self.assertEqual(process.wait(), FINE, process.stderr.read())
+            process.stderr.close()
+        both = [subprocess.Popen([command.program("MBK"), "study", "measure", "--quiet", "--study", self.study],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(2)]
+        for process in both:
+            self.assertEqual(process.wait(), FINE)
+        report = self.checked()
+        self.assertEqual((report["recordings"], report["results"], report["problems"]), (4, 4, []))
+
+    def test_full_disk(self):
+        self.do("add", self.trials[0], "--participant", 1)
+        size = self.trials[1].stat().st_size
+
+        def limited():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size // 2, size // 2))
+
+        process = subprocess.run([command.program("MBK"), "study", "add", self.trials[1], "--participant", "2",
+                                  "--study", self.study], preexec_fn=limited, capture_output=True, text=True, check=False)
+        self.assertEqual(process.returncode, BAD_DATA, process.stderr)
+        self.assertIn("space", process.stderr)
+        report = self.checked("--quick")
+        self.assertEqual((report["recordings"], report["problems"], report["notes"]), (1, [], []))
+
+
+if __name__ == "__main__":
+    command.main()
