@@ -254,8 +254,8 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
     for (std::size_t k = 0; k < messages.joints.size() && k < kMostJoints; ++k) {
       names.push_back(fmt::format("{} {}", k + 1, messages.joints[k]));
     }
-    note(fmt::format("joints and torques are position and effort of '{}', in the order of its first message: {}{}",
-                     stream.name, names.empty() ? "" : ": ", listed(std::move(names))));
+    note(fmt::format("joints and torques are position and effort of '{}', in the order of its first message: {}",
+                     stream.name, listed(std::move(names))));
   }
   const auto list = [&](const std::set<std::string>& paths) {
     std::vector<std::string> names;
