@@ -91,8 +91,8 @@ std::string list_text(const StudyList& list) {
 }
 
 std::string outcome_line(const store::Outcome& one) {
-  const std::string error = one.standard_error ? fmt::format("± {:.3g}", *one.standard_error) : "";
-  return fmt::format("    {:<24} {:>12.6g} {:<12} {}\n", one.name, one.value, error, one.unit);
+  const std::string error = one.standard_error ? fmt::format("{:.3g}", *one.standard_error) : "";
+  return fmt::format("    {:<24} {:>12.6g} {:>15}  {}\n", one.name, one.value, error, one.unit);
 }
 
 std::string show_text(const store::ShownRecording& shown) {
@@ -112,6 +112,7 @@ std::string show_text(const store::ShownRecording& shown) {
                             : "  not usable: " + result.reason + "\n";
     // Of a model that is not usable no number is shown; --json holds them.
     if (!result.usable) continue;
+    text += fmt::format("    {:<24} {:>12} {:>15}\n", "outcome", "value", "standard error");
     for (const store::Outcome& one : outcomes) text += outcome_line(one);
   }
   return text;
@@ -130,16 +131,16 @@ std::string summary_text(const StudyList& list, const std::vector<OutcomeSummary
     if (condition == nullptr || *condition != one.condition) {
       condition = &one.condition;
       text += fmt::format("\n{}\n  {:<24} {:>10} {:>10} {:>10} {:>10}  {:<10} {}\n",
-                          one.condition.empty() ? "no condition" : one.condition, "outcome", "mean", "sd", "least",
-                          "most", "unit", "participants, results");
+                          one.condition.empty() ? "no condition" : one.condition, "outcome", "mean", "sd", "min", "max",
+                          "unit", "n");
     }
-    text += fmt::format("  {:<24} {:>10} {:>10} {:>10} {:>10}  {:<10} {}, {}\n", one.outcome, number_text(one.mean),
+    text += fmt::format("  {:<24} {:>10} {:>10} {:>10} {:>10}  {:<10} {} ({})\n", one.outcome, number_text(one.mean),
                         number_text(one.standard_deviation), number_text(one.minimum), number_text(one.maximum),
                         one.unit, one.participants, one.results);
   }
   return text +
-         "\nmean and sd over participants, each with the mean of their usable results; least and most of all\n"
-         "results. Orientations are axes: 179° and 1° are 2° apart.\n";
+         "\nn: participants (results). mean and sd over participants, each with the mean of their usable\n"
+         "results; min and max of all results. Orientations are axes: 179° and 1° are 2° apart.\n";
 }
 
 int write(const ListArguments& arguments, const std::string& text) {

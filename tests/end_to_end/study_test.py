@@ -130,7 +130,7 @@ class AStudy(StudyCase):
 
     def test_unusable_results_are_kept_and_do_not_count(self):
         self.do("add", *self.trials[:2], "--participant", 1)
-        ran = self.do("measure", "--cutoff", "0.2", code=command.NOT_USABLE)
+        ran = self.do("measure", "--channels", "x=hand_x_m,y=hand_y_m,Fx=-force_x_N,Fy=-force_y_N", code=command.NOT_USABLE)
         self.assertIn("0 usable, 2 not usable", ran.out)
         listed = self.listed()["recordings"]
         self.assertEqual({one["state"] for one in listed}, {"not-usable"})
@@ -283,11 +283,10 @@ class Importing(StudyCase):
 
     def test_reads_as_the_defaults_say(self):
         text = self.trials[0].read_text(encoding="utf-8")
-        head, _, body = text.partition("\ntime")
-        names, _, rows = ("time" + body).partition("\n")
+        names, _, rows = text[text.index("time_s,"):].partition("\n")
         unnamed = self.file("unnamed.csv", "\n".join([",".join(f"c{k}" for k in range(1, names.count(",") + 2)), rows]))
         self.do("add", unnamed, "--participant", 1, code=BAD_DATA)
-        columns = [name.split(" ")[0].split("[")[0].strip() for name in names.split(",")]
+        columns = [name.rpartition("_")[0] for name in names.split(",")]
         wanted = {"time": "time", "hand_x": "x", "hand_y": "y", "force_x": "Fx", "force_y": "Fy", "reference_x": "xr",
                   "reference_y": "yr"}
         channels = ",".join(f"{wanted[name]}={columns.index(name) + 1}" for name in wanted)

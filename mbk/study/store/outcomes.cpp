@@ -85,10 +85,14 @@ class OutcomeReader {
   void read_ellipse(const char* quantity) {
     const Json& ellipse = member(member(document_, "ellipses"), quantity);
     const std::string unit = unit_of(*quantity == 'i' ? "M" : *quantity == 'd' ? "B" : "K");
-    add(fmt::format("{}_area", quantity), member(ellipse, "area"), Json(),
-        unit.empty() ? "" : fmt::format("({})²", unit));
+    add(fmt::format("{}_area", quantity), member(ellipse, "area"), Json(), squared(unit));
     add(fmt::format("{}_shape", quantity), member(ellipse, "shape"), Json(), "");
     add(fmt::format("{}_orientation", quantity), member(ellipse, "orientation_deg"), Json(), "°");
+  }
+
+  static std::string squared(const std::string& unit) {
+    if (unit.find_first_of("/") == std::string::npos && unit.find("·") == std::string::npos) return unit + "²";
+    return fmt::format("({})²", unit);
   }
 
   const Json& document_;

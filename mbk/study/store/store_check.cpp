@@ -251,9 +251,9 @@ class Checker {
       if (!read) return false;
       expected = std::move(*read);
     }
-    std::ranges::sort(expected, {}, &Outcome::name);
-    auto rows = query(database_.connection,
-                      "SELECT name, value, standard_error, unit FROM outcome WHERE result = ? ORDER BY name", number);
+    auto rows =
+        query(database_.connection,
+              "SELECT name, value, standard_error, unit FROM outcome WHERE result = ? ORDER BY position", number);
     std::size_t k = 0;
     for (; rows.executeStep(); ++k) {
       if (k >= expected.size()) return false;

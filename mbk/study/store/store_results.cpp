@@ -59,9 +59,10 @@ bool save_one(SQLite::Database& connection, std::int64_t analysis, const std::st
   if (stored == 0) return false;
   const std::int64_t number = connection.getLastInsertRowid();
   if (!failed) execute(connection, "INSERT INTO document VALUES (?, ?)", number, result.document);
-  SQLite::Statement insert(connection, "INSERT INTO outcome VALUES (?, ?, ?, ?, ?)");
+  SQLite::Statement insert(connection, "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?)");
+  std::int64_t position = 0;
   for (const Outcome& outcome : outcomes) {
-    bind_all(insert, number, outcome.name, outcome.value, outcome.standard_error, outcome.unit);
+    bind_all(insert, number, position++, outcome.name, outcome.value, outcome.standard_error, outcome.unit);
     insert.exec();
     insert.reset();
   }
@@ -169,8 +170,9 @@ Result<std::vector<StoredResult>> Store::results_of(std::int64_t recording) cons
 Result<std::vector<Outcome>> Store::outcomes(std::int64_t result) const {
   return guarded(folder(), [&]() -> Result<std::vector<Outcome>> {
     std::vector<Outcome> all;
-    auto rows = query(database_->connection,
-                      "SELECT name, value, standard_error, unit FROM outcome WHERE result = ? ORDER BY name", result);
+    auto rows =
+        query(database_->connection,
+              "SELECT name, value, standard_error, unit FROM outcome WHERE result = ? ORDER BY position", result);
     while (rows.executeStep()) {
       Outcome outcome{text_at(rows, 0), rows.getColumn(1).getDouble(), std::nullopt, text_at(rows, 3)};
       if (!rows.getColumn(2).isNull()) outcome.standard_error = rows.getColumn(2).getDouble();
