@@ -18,10 +18,10 @@ RECORDING = """# mbk.recording/1
 # participant: P07
 # event 0.1003 1 onset
 # event 0.30000000000000004 -2.5 target left
-time_s,hand_x_m,hand_y_m,force_x_N,force_y_N,joint_1_rad,reference_x_N
-0.1,0.30000000000000004,1e-300,0.1,-0,1.5707963267948966,2
-0.2003,0.3,NaN,5e-324,1.7976931348623157e+308,0.1,2
-0.3,0.2,0.1,Inf,-Inf,0.2,3
+time_s,hand_x_m,hand_y_m,joint_1_rad,force_x_N,force_y_N,reference_x_N
+0.1,0.30000000000000004,1e-300,1.5707963267948966,0.1,-0,2
+0.2003,0.3,NaN,0.1,5e-324,1.7976931348623157e+308,2
+0.3,0.2,0.1,0.2,Inf,-Inf,3
 """
 
 
@@ -88,7 +88,7 @@ class Written(DataSet):
         self.assertEqual(channels[0][:5], ["name", "component", "type", "tracked_point", "units"])
         self.assertEqual([(row[0], row[2], row[4]) for row in channels[1:]],
                          [("time", "LATENCY", "s"), ("hand_x", "POS", "m"), ("hand_y", "POS", "m"),
-                          ("force_x", "MISC", "N"), ("force_y", "MISC", "N"), ("joint_1", "JNTANG", "rad"),
+                          ("joint_1", "JNTANG", "rad"), ("force_x", "MISC", "N"), ("force_y", "MISC", "N"),
                           ("reference_x", "MISC", "N")])
         motion = self.table(f"{stem}_motion.tsv")
         self.assertEqual((len(motion), motion[1][2]), (3, "n/a"))
@@ -116,7 +116,7 @@ class Written(DataSet):
         for name, text in before.items():
             if name not in ("participants.tsv", "sub-07/sub-07_scans.tsv"):
                 self.assertEqual(after[name], text)
-        self.refused(WRONG_USAGE, "convert", self.set, self.folder / "one.h5", says=["4 recordings", "--trial"])
+        self.refused(WRONG_USAGE, "convert", self.set, self.folder / "one.h5", says=["4 trials", "--trial"])
         ran = self.refused(WRONG_USAGE, "info", self.set, "--trial", "sub-09_task-reach",
                            says=["4 trials", "sub-07_task-reach_run-1 to sub-08_task-reach_run-1"])
         self.assertIn("'mbk info' lists them", ran.err)

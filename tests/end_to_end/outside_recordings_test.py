@@ -83,10 +83,10 @@ class RealFiles(Case):
                 self.assertLessEqual(ran.err.count("\n"), 1, ran)
                 self.assertEqual(bool(ran.out), ran.code == 0, ran)
 
-    def test_files_of_other_kinds_are_refused_in_one_line(self):
+    def test_streams_are_listed_with_what_was_corrected(self):
         for path in sorted(data_folder("xdf").glob("*.xdf")):
             with self.subTest(path.name):
-                self.bad_data(path, command="info")
+                self.assertIn("stream '", self.fine("info", path).out)
 
     def test_a_jittering_clock_and_its_gaps_are_reported(self):
         channels = ("--channels", "time=1,q1=2,q2=3")

@@ -130,7 +130,7 @@ class OneBadFile(Case):
         ran = self.check("--quiet", "--json")
         self.assertEqual([one["inputs"][0]["file"] for one in ran.json["results"]], [str(log) for log in logs(1, 2)])
         self.assertEqual([one["file"] for one in ran.json["failed"]],
-                         [f'{self.folder / "bad.csv"}, line 3, column 2', str(self.folder / "none.mat")])
+                         [f'{self.folder / "bad.csv"}, channel hand_x, line 3, column 2', str(self.folder / "none.mat")])
         self.assertTrue(all(one["message"] and one["try"] for one in ran.json["failed"]))
         self.assertEqual(ran.json["summary"]["trials"], 2)
         self.check("--quiet", command="identify")

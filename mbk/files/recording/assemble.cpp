@@ -438,11 +438,6 @@ class Assembler {
       const auto found = resolve(entry);
       if (!found) return tl::unexpected(found.error());
       const Line* const line = &found->line;
-      if (kind->name == "time" && line->array->clock >= 0) {
-        return bad_usage(
-            fmt::format("time cannot be '{}': the samples of each stream have the stamps of the file", entry.source),
-            "leave time out of --channels; --clock says whose stamps the recording has");
-      }
       Signal signal{kind,         *line,        nullptr,
                     entry.negate, entry.source, (entry.negate ? "-" : "") + entry.source,
                     found->gain,  found->offset};

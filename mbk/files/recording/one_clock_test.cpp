@@ -256,8 +256,12 @@ TEST(AssembleStreams, TakesNoChannelForTheTimeOfAStream) {
   const auto recording = assemble(contents, options);
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_NEAR(recording->time[0], 5.251, 1e-9);
-  options.channels = parse_channel_map("time=robot/time,Fx=robot/Fx").value();
+  options.channels = parse_channel_map("time=robot/time,Fx=robot/Fx,x=tracker/x").value();
   EXPECT_THAT(assemble(contents, options).error().line(), HasSubstr("leave time out of --channels"));
+  options.channels = parse_channel_map("time=robot/time,Fx=robot/Fx").value();  // as asked, of one stream
+  const auto named = assemble(contents, options);
+  ASSERT_TRUE(named) << named.error().line();
+  EXPECT_EQ(named->time, Vector::Zero(2000));
 }
 
 }  // namespace one_clock_test
