@@ -19,7 +19,8 @@ struct ZipMember {
   std::uint64_t size = 0;  ///< [bytes] that it says it has when it is unpacked
 };
 
-/// A zip archive that stands in memory. Nothing is unpacked but what is asked for, by several threads at once if need be.
+/// A zip archive that stands in memory. Nothing is unpacked but what is asked for, by several threads at once if need
+/// be.
 class ZipArchive {
  public:
   [[nodiscard]] static bool looks_like_zip(std::span<const std::byte> file);

@@ -36,8 +36,8 @@ struct Event {
 /// A file that a recording came from.
 struct SourceFile {
   std::string path;
-  std::string format;  ///< "MAT v7", "CSV", …
-  std::string sha256;  ///< 64 hexadecimal digits, of the file's bytes
+  std::string format;      ///< "MAT v7", "CSV", …
+  std::string sha256;      ///< 64 hexadecimal digits, of the file's bytes
   std::string trial = {};  ///< which of its records; "" where it holds one
 
   /// For people: "exam.kinarm, trial 3".

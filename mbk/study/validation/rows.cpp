@@ -33,8 +33,9 @@ std::pair<int, int> accepted_counts(Range expected, int trials) {
     return low;
   };
   const double least = expected.first / 100.0, most = expected.second / 100.0;
-  return {first_where([&](int count) { return least <= 0.0 || numeric::binomial_at_least(count, trials, least) <= kTail; }),
-          first_where([&](int count) { return most < 1.0 && numeric::binomial_at_most(count, trials, most) > kTail; }) - 1};
+  return {
+      first_where([&](int count) { return least <= 0.0 || numeric::binomial_at_least(count, trials, least) <= kTail; }),
+      first_where([&](int count) { return most < 1.0 && numeric::binomial_at_most(count, trials, most) > kTail; }) - 1};
 }
 
 int trials_in(int runs, const JudgedShare& judged) {
