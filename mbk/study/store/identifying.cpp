@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace mbk::store {
 namespace {
@@ -29,8 +30,8 @@ std::vector<std::string> words_of(const std::string& key) {
   return words;
 }
 
-template <std::size_t kSize>
-bool any_of(const std::vector<std::string>& words, const std::array<std::string_view, kSize>& among) {
+template <std::size_t Size>
+bool any_of(const std::vector<std::string>& words, const std::array<std::string_view, Size>& among) {
   return std::ranges::any_of(words,
                              [&](const std::string& word) { return std::ranges::find(among, word) != among.end(); });
 }
