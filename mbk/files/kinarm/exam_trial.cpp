@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace mbk::recording {
 namespace {
@@ -160,9 +161,10 @@ double median(std::vector<double> values) {
 
 /// How the recorded hand and that by the joints differ, in one axis.
 struct Difference {
-  double offset = 0, largest = 0;          ///< [m]: median, and the largest distance from it
-  double from = INFINITY, to = -INFINITY;  ///< [m]: the recorded motion
-  double size = 0;                         ///< [m]: the largest recorded number
+  double offset = 0, largest = 0;  ///< [m]: median, and the largest distance from it
+  double from = std::numeric_limits<double>::infinity(),
+         to = -std::numeric_limits<double>::infinity();  ///< [m]: the recorded motion
+  double size = 0;                                       ///< [m]: the largest recorded number
   bool any = false;
 };
 
@@ -188,7 +190,7 @@ Difference difference(const ExamSignal& recorded, const Vector& computed) {
 /// The lengths that fit the recorded hand best, wherever it counts from, and what they leave [m].
 struct FittedLengths {
   double link1 = 0, link2 = 0, pointer = 0;
-  double largest = INFINITY;  ///< [m] left in any sample
+  double largest = std::numeric_limits<double>::infinity();  ///< [m] left in any sample
 };
 
 /// Least squares of x = c_x + L1 c1 + L2 c2 − p s2, y = c_y + L1 s1 + L2 s2 + p c2 over c, L1, L2 and p.

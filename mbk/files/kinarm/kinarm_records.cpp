@@ -123,7 +123,7 @@ Result<KinarmHeader> read_kinarm_header(std::span<const std::byte> bytes) {
   const std::int32_t positions = cursor.whole("number of positions");
   header.events = cursor.whole("number of events");
   header.video_frames = cursor.whole("number of video frames");
-  header.rate_hz = cursor.real("rate");
+  header.rate_hz = static_cast<double>(cursor.real("rate"));
   static_cast<void>(cursor.text("name of the file"));  // may name a person
   if (!cursor.failed() && (header.frames < 0 || kinematics < 0 || positions < 0)) {
     cursor.refuse("a count is negative");
@@ -206,7 +206,7 @@ Result<std::vector<Event>> read_kinarm_events(std::span<const std::byte> bytes) 
   for (std::size_t k = 0; k < count && !cursor.failed(); ++k) {
     std::string label = cursor.text("label of an event");
     std::string description = cursor.text("description of an event");
-    const double time = cursor.real("time of an event");
+    const auto time = static_cast<double>(cursor.real("time of an event"));
     events.push_back({time, !label.empty()         ? std::move(label)
                             : !description.empty() ? std::move(description)
                                                    : "event"});
@@ -222,8 +222,8 @@ Result<Vector> read_kinarm_video_delays(std::span<const std::byte> bytes) {
   if (cursor.failed()) return cursor.failure();
   Vector delays(static_cast<Index>(count));
   for (double& delay : delays) {
-    const double sent = cursor.real("time of a video frame");
-    const double acknowledged = cursor.real("time of a video frame");
+    const auto sent = static_cast<double>(cursor.real("time of a video frame"));
+    const auto acknowledged = static_cast<double>(cursor.real("time of a video frame"));
     delay = acknowledged - sent;
   }
   return delays;
