@@ -245,8 +245,8 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
     if (vector.channel != "force") continue;
     contents.notes.back() += printable(fmt::format(
         ", with the sign that they have there; mbk means the force that the hand exerts on the robot, along the axes "
-        "of "
-        "the robot's base: where the sensor says the opposite, turn it with --channels Fx=-{0}.{1}.x,Fy=-{0}.{1}.y",
+        "of the robot's base: where the sensor says the opposite, turn it with --channels "
+        "Fx=-{0}.{1}.x,Fy=-{0}.{1}.y and name the other channels there too, as x=hand_x,y=hand_y",
         stream.name, vector.path));
   }
   if (type == kJointState) {
