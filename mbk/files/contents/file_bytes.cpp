@@ -98,16 +98,10 @@ void FreeBytes::operator()(std::byte* bytes) const {
 Buffer::Buffer(std::size_t n) : data(n >= std::size_t{1} << 20 ? mapped_bytes(n) : bytes_of_heap(n)), size(n) {}
 
 std::string begin_of(const std::filesystem::path& file, std::size_t count) {
-  std::error_code ignored;
-  std::string bytes;
-  if (!std::filesystem::is_regular_file(file, ignored)) return bytes;
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return bytes;
-  bytes.resize(count);
-  const ssize_t got = ::pread(descriptor, bytes.data(), count, 0);
-  ::close(descriptor);
-  bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-  return bytes;
+  const auto open = open_file(file);
+  if (!open) return {};
+  std::string bytes(std::min(count, open->size), '\0');
+  return read_bytes(open->descriptor.number, bytes.data(), bytes.size()) ? bytes : std::string();
 }
 
 Result<Buffer> read_file(const std::filesystem::path& file) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostFields = 10000;  ///< of all types of a definition together
 constexpr std::size_t kDeepestType = 32;    ///< types within types
-constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  ///< larger ones are not told apart
+constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  ///< larger ones count as this one
 
 struct Word {
   std::string_view name;
@@ -218,8 +218,8 @@ class Parser {
 
 }  // namespace
 
-std::uint64_t least_bytes(const MessageDefinition& definition, const MessageField& field) {
-  switch (field.type) {
+std::size_t number_size(FieldType type) {
+  switch (type) {
     case FieldType::boolean:
     case FieldType::int8:
     case FieldType::uint8:
@@ -230,19 +230,29 @@ std::uint64_t least_bytes(const MessageDefinition& definition, const MessageFiel
     case FieldType::int32:
     case FieldType::uint32:
     case FieldType::float32:
-    case FieldType::text:
-    case FieldType::wide_text:
       return 4;
     case FieldType::int64:
     case FieldType::uint64:
     case FieldType::float64:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+std::uint64_t least_bytes(const MessageDefinition& definition, const MessageField& field) {
+  switch (field.type) {
+    case FieldType::text:
+    case FieldType::wide_text:
+      return 4;
     case FieldType::time:
     case FieldType::duration:
       return 8;
     case FieldType::message:
-      break;
+      return definition.messages[static_cast<std::size_t>(field.message)].least_bytes;
+    default:
+      return number_size(field.type);
   }
-  return definition.messages[static_cast<std::size_t>(field.message)].least_bytes;
 }
 
 std::string plain_type(std::string_view type) {

@@ -57,6 +57,9 @@ struct MessageDefinition {
   bool wide_texts = false;            ///< some field is a wide text
 };
 
+/// Of a number in bytes; 0 where the type is no number.
+[[nodiscard]] std::size_t number_size(FieldType type);
+
 /// [bytes] of an element at least.
 [[nodiscard]] std::uint64_t least_bytes(const MessageDefinition& definition, const MessageField& field);
 

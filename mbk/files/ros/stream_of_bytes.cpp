@@ -80,28 +80,6 @@ class Cursor {
   bool cdr_, swapped_ = false, failed_ = false;
 };
 
-std::size_t number_size(FieldType type) {
-  switch (type) {
-    case FieldType::boolean:
-    case FieldType::int8:
-    case FieldType::uint8:
-      return 1;
-    case FieldType::int16:
-    case FieldType::uint16:
-      return 2;
-    case FieldType::int32:
-    case FieldType::uint32:
-    case FieldType::float32:
-      return 4;
-    case FieldType::int64:
-    case FieldType::uint64:
-    case FieldType::float64:
-      return 8;
-    default:
-      return 0;
-  }
-}
-
 /// Leaves out what fields hold.
 class Skipping {
  public:
