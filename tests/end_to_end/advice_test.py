@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """The advice of every warning, followed on the recording that raised it: the warning goes, or the truth is nearer."""
 
+import functools
 import json
 import math
 import pathlib
 import random
 import re
+import tempfile
+import unittest
 
 from command import Case, flat, main, run, write_csv
 from help_tree import every_command
@@ -34,27 +37,53 @@ def hint_of(ran, code):
     return next(warning["try"] for warning in ran.json["warnings"] if warning["code"] == code)
 
 
+@functools.lru_cache(maxsize=None)
+def shared_folder():
+    folder = tempfile.TemporaryDirectory(prefix="mbk-advice-")
+    unittest.addModuleCleanup(folder.cleanup)
+    return pathlib.Path(folder.name)
+
+
+@functools.lru_cache(maxsize=None)
+def scenario_text(name):
+    return run("simulate", "--show", name).out
+
+
+@functools.lru_cache(maxsize=None)
+def recording_of(name, text, seed, trial):
+    folder = pathlib.Path(tempfile.mkdtemp(dir=shared_folder()))
+    scenario = folder / f"{name}.toml"
+    scenario.write_text(text, encoding="utf-8")
+    ran = run("simulate", scenario, "--seed", seed, "--out", folder / f"{name}.h5", "--quiet",
+              *(("--trial", trial) if trial else ()))
+    if ran.code != 0:
+        raise AssertionError(ran)
+    return next(folder.glob(f"{name}*.h5"))
+
+
+@functools.lru_cache(maxsize=None)
+def columns_of(path):
+    table = path.parent / "table.csv"
+    if run("convert", path, table, "--overwrite").code != 0:
+        raise AssertionError(f"{path} is not converted")
+    lines = [line for line in table.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    rows = [list(map(float, line.split(","))) for line in lines[1:]]
+    return lines[0].split(","), [list(column) for column in zip(*rows)]
+
+
 class Advice(Case):
     def simulated(self, name, *changes, seed=1, trial=None):
-        """A ready scenario with lines replaced, as a recording."""
-        text = run("simulate", "--show", name).out
+        """A ready scenario with lines replaced, as a recording; simulated once."""
+        text = scenario_text(name)
         for pattern, line in changes:
             text, count = re.subn(pattern, line, text, count=1, flags=re.M)
             self.assertEqual(count, 1, f"{pattern} is not in {name}")
-        scenario = self.file(f"{name}.toml", text)
-        path = self.folder / f"{name}.h5"
-        ran = run("simulate", scenario, "--seed", seed, "--out", path, "--overwrite", "--quiet",
-                  *(("--trial", trial) if trial else ()))
-        self.assertEqual(ran.code, 0, ran)
-        return path if path.exists() else next(self.folder.glob(f"{name}_*.h5"))
+        return recording_of(name, text, seed, trial)
 
     def columns(self, path):
         """Names and columns of a recording, as a table."""
-        table = self.folder / "table.csv"
-        self.assertEqual(run("convert", path, table, "--overwrite").code, 0)
-        lines = [line for line in table.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
-        rows = [list(map(float, line.split(","))) for line in lines[1:]]
-        return lines[0].split(","), [list(column) for column in zip(*rows)]
+        names, columns = columns_of(path)
+        return names, list(columns)
 
     def with_columns(self, path, name, **changes):
         """The recording as a table in which columns are changed, each by a function of its values."""

@@ -39,8 +39,13 @@ process.on("exit", () => {
   endPrograms();
   rmSync(folder, { recursive: true, force: true });
 });
-export const pictures = join(process.cwd(), "screenshots");
+const pictures = join(process.cwd(), "screenshots");
 mkdirSync(pictures, { recursive: true });
+
+/** Where MBK_SCREENSHOTS is set, a picture of the page to be looked at, in build/test/web/screenshots. */
+export async function screenshot(page, name, options = {}) {
+  if (process.env.MBK_SCREENSHOTS) await page.screenshot({ path: join(pictures, `${name}.png`), ...options });
+}
 
 const program = (name) => process.env[name] ?? skip(`the environment does not name ${name}`);
 
@@ -223,6 +228,6 @@ export const violations = async (page) => {
 /** Screenshot at 1440 px and an A4 PDF, to be looked at. */
 export async function picture(page, name) {
   await scrollThrough(page);
-  await page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true });
+  await screenshot(page, name, { fullPage: true });
   return page.pdf({ path: join(pictures, `${name}.pdf`), preferCSSPageSize: true, printBackground: true });
 }

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, pictures, scrollThrough, start, startDouble, violations } from "./browser.mjs";
+import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, screenshot, scrollThrough, start, startDouble, violations } from "./browser.mjs";
 
 after(() => {
   endPrograms(); // of tests that failed
@@ -70,7 +70,6 @@ async function visit(address, options = {}) {
 }
 
 const mostTicks = 250; // from the trip to its message, on a machine that has a hundred other things to do; 5 where it has not
-const take = (page, name) => page.screenshot({ path: join(pictures, `${name}.png`) });
 const ended = async ({ close }, running) => {
   await close();
   return running.code;
@@ -82,7 +81,7 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   const { page, click, banner, perturbing, rests } = operator;
   await rests();
   assert.deepEqual(await violations(page), []);
-  await take(page, "console-ready");
+  await screenshot(page, "console-ready");
 
   await page.getByRole("button", { name: "Begin: relaxed" }).focus();
   await page.keyboard.press("Enter");
@@ -92,13 +91,13 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await page.waitForSelector(".cells", { timeout: 60_000 });
   await page.waitForFunction(() => document.querySelector(".tightening")?.textContent.includes("narrowed by"), undefined, { timeout: 60_000 });
   assert.deepEqual(await violations(page), []);
-  await take(page, "console-running");
+  await screenshot(page, "console-running");
 
   await page.getByRole("button", { name: "Begin the next: rigid" }).waitFor({ timeout: 60_000 });
   assert.match(await page.textContent(".estimate h2"), /whole perturbation, 14 s/);
   await click("Begin the next: rigid");
   await perturbing();
-  await take(page, "console-force");
+  await screenshot(page, "console-force");
   await click("End this trial early");
   await click("Repeat this trial");
   await banner("Running");
@@ -110,7 +109,7 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   const [report] = await Promise.all([page.context().waitForEvent("page"), page.getByRole("link", { name: "Open the report of relaxed" }).click()]);
   await report.waitForSelector("main section");
   assert.match(await report.textContent("main"), /stiffness/i);
-  await take(page, "console-over");
+  await screenshot(page, "console-over");
   assert.deepEqual(await violations(page), []);
   assert.deepEqual(operator.said, []);
   assert.deepEqual(operator.foreign(), []);
@@ -184,7 +183,7 @@ test("the stop button and the space bar trip the gate; a reset takes two steps",
   await page.getByRole("button", { name: "Reset …" }).waitFor();
   assert.match(await page.textContent(".banner"), /Stopped.*the operator stopped it/);
   assert.deepEqual(await violations(page), []);
-  await take(page, "console-stopped");
+  await screenshot(page, "console-stopped");
   await click("Reset …");
   await click("Confirm: cause cleared, participant OK; reset");
   await click("Repeat this trial");
@@ -228,7 +227,7 @@ test("a lost connection is said, and the page finds back to nothing that is not 
   assert.match(await page.textContent(".banner-words"), /cannot stop the robot/);
   assert.ok(await page.locator(".stop").isDisabled());
   assert.deepEqual(await violations(page), []);
-  await take(page, "console-lost");
+  await screenshot(page, "console-lost");
   await operator.close();
 });
 
@@ -253,7 +252,7 @@ test("a wrong token and a foreign page get nothing, and that is logged", async (
   assert.match(await stranger.page.textContent("main"), /not right/);
   await running.until(/refused: a wrong token/);
   await stranger.close();
-  const own = await open(join(pictures, "..", "report", "dist", "index.html"));
+  const own = await open(join(process.cwd(), "report", "dist", "index.html"));
   const opened = await own.page.evaluate((url) => new Promise((resolve) => {
     const socket = new WebSocket(url);
     socket.onopen = () => resolve(true);
@@ -295,8 +294,8 @@ test("the participant sees handle and target, mirrored and turned as the operato
   await operator.perturbing();
   await page.waitForFunction((first) => document.querySelector(".please-wait").textContent === "" && document.querySelector("canvas").dataset.handle !== first, before, { timeout: 60_000 });
   assert.deepEqual(await violations(page), []);
-  await take(page, "participant");
-  await take(mirrored.page, "participant-mirrored");
+  await screenshot(page, "participant");
+  await screenshot(mirrored.page, "participant-mirrored");
   await page.getByText("View").click();
   await page.getByLabel("mirrored, left and right").check();
   await page.getByLabel("turned by").selectOption("180");
@@ -348,12 +347,12 @@ test("motors that are not confirmed off are an alarm that cannot be missed, unti
   const [box, width] = [await alarm.boundingBox(), await page.evaluate(() => document.documentElement.clientWidth)];
   assert.ok(box.width > 0.95 * width && box.height > 100 && box.y >= 0 && box.y < 40, JSON.stringify([box, width]));
   assert.deepEqual(await violations(page), []);
-  await take(page, "console-alarm");
+  await screenshot(page, "console-alarm");
   await page.setViewportSize({ width: 700, height: 900 });
   await page.mouse.wheel(0, 3000);
   await page.waitForFunction(() => scrollY > 0);
   assert.ok(await alarm.isVisible() && (await alarm.boundingBox()).y >= 0, "it does not scroll away");
-  await take(page, "console-alarm-narrow");
+  await screenshot(page, "console-alarm-narrow");
   await page.setViewportSize({ width: 1920, height: 1080 });
   say({ confirmed_off: true });
   await has(".robot", "reports its motors off, confirmed after the stop");
@@ -384,7 +383,7 @@ test("a stop button that is pressed is shown while nothing runs, and the reset s
   const reset = page.getByRole("button", { name: "Reset …" });
   assert.ok(await reset.isDisabled());
   assert.deepEqual(await violations(page), []);
-  await take(page, "console-button-pressed");
+  await screenshot(page, "console-button-pressed");
   say({ stop_button: true, link: false });
   await has(".robot", "No states come from the robot");
   say({ stop_button: false });
@@ -427,7 +426,7 @@ test("a report that the console serves is drawn under the policy of its own scri
   await onPage(await operator.page.getByRole("link", { name: "Open the report" }).evaluate((link) => link.href), async (page) => {
     await scrollThrough(page);
     await page.locator("[_echarts_instance_] svg, [_echarts_instance_] canvas").first().waitFor(); // drawn by its script
-    await take(page, "console-report");
+    await screenshot(page, "console-report");
   });
   tell("quit");
   assert.equal(await ended(operator, { code }), 0);

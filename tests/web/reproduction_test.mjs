@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, mbk, numbers, onPage, open, picture, pictures, scrollThrough, violations } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, mbk, numbers, onPage, open, picture, screenshot, scrollThrough, violations } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -421,17 +421,17 @@ test("pictures to be looked at, and A4 pages on which nothing is too wide", asyn
   }
   await onPage(every, async (page) => {
     await scrollThrough(page);
-    await page.screenshot({ path: join(pictures, "reproduction-390.png"), fullPage: true });
+    await screenshot(page, "reproduction-390", { fullPage: true });
   }, { viewport: { width: 390, height: 844 } });
   await onPage(every, async (page) => {
     await page.locator('[id="figure-4.3"] .picture').first().click();
-    await page.screenshot({ path: join(pictures, "reproduction-enlarged.png") });
+    await screenshot(page, "reproduction-enlarged");
   });
   await onPage(real.file, async (page) => {
     await page.locator('[id="table-3.6"] td').nth(3).focus();
     await page.evaluate(() => (location.hash = "table-3.6"));
     await page.waitForFunction(() => document.activeElement?.id === "table-3.6");
     await page.waitForSelector('nav a[href="#table-3.6"][aria-current]');
-    await page.screenshot({ path: join(pictures, "reproduction-guide.png") });
+    await screenshot(page, "reproduction-guide");
   }, { viewport: { width: 1280, height: 1060 }, deviceScaleFactor: 1.5 });
 });
