@@ -273,8 +273,11 @@ TEST(MatrixSpread, TellsPeopleApartOnlyWhereTheyDiffer) {
     ASSERT_EQ(found.matrices.size(), 1U);
     EXPECT_EQ(found.matrices[0].within.count, 12 * 3);
     EXPECT_EQ(found.matrices[0].between.count, 12 * 11 / 2);
-    if (spread > 0.0) EXPECT_GT(found.matrices[0].closer, 0.9);
-    if (spread == 0.0) EXPECT_LT(found.matrices[0].closer, 0.6);
+    if (spread > 0.0) {
+      EXPECT_GT(found.matrices[0].closer, 0.9);
+    } else {
+      EXPECT_LT(found.matrices[0].closer, 0.6);
+    }
   }
 }
 
@@ -381,7 +384,7 @@ TEST(AComparison, SaysWhereItRestsOnOnePerson) {
   // Seven people change by one nearly alike, weakly; the eighth makes it significant.
   Results results({"K"}, {"relaxed", "tensed"});
   const double change[8] = {1.0, -0.6, 0.9, -0.5, 1.1, -0.4, 1.2, 1.15};
-  for (int i = 1; i <= 8; ++i) results.add(i, 1, {100.0 + i}, 0).add(i, 1, {100.6 + i + change[i - 1]}, 1);
+  for (int i = 1; i <= 8; ++i) results.add(i, 1, {100.0 + i}, 0).add(i, 1, {100.3 + i + change[i - 1]}, 1);
   const OutcomeComparison one =
       statistics_of(results, comparing(ComparedBy::condition)).comparison.value().outcomes.at(0);
   ASSERT_EQ(one.verdict, Verdict::differs);
