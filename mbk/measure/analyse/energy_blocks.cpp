@@ -49,14 +49,17 @@ std::vector<EnergySums> hull_from(const EnergyBlock& block, std::size_t vertex) 
   return hull;
 }
 
-/// Whether no sample of the block can reach λ, by bounds of its sums: −E₀ − E ≤ λ (S₀ + S) for each. What is that close
-/// to it that rounding decides is looked at.
+/// Whether no sample of the block reaches λ: −E₀ − E ≤ λ (S₀ + S) for each, and so for the vertex at which the hull's
+/// slope falls below λ. What is that close to it that rounding decides is looked at.
 bool stays_below(const EnergyBlock& block, const EnergySums& before, double largest) {
   if (std::isnan(largest)) return false;
-  const double s = before.squared_velocity + (largest >= 0.0 ? block.hull.front() : block.total).squared_velocity;
-  const double reached = -before.absorbed - block.least_absorbed, limit = largest * s;
+  const auto steeper = [&](double slope) { return slope > largest; };
+  const auto vertex = std::ranges::partition_point(block.slopes, steeper) - block.slopes.begin();
+  const EnergySums& farthest = block.hull[static_cast<std::size_t>(vertex)];
+  const double reached = -before.absorbed - farthest.absorbed;
+  const double limit = largest * (before.squared_velocity + farthest.squared_velocity);
   constexpr double kRounding = 1e-12;
-  const double size = std::abs(before.absorbed) + std::abs(block.least_absorbed) + std::abs(limit);
+  const double size = std::abs(before.absorbed) + std::abs(farthest.absorbed) + std::abs(limit);
   return reached < limit - kRounding * size;
 }
 
@@ -147,7 +150,10 @@ EnergyBlock energy_block(double duration, std::vector<EnergySums> sums) {
   block.next = next_vertices(sums);
   block.sums = std::move(sums);
   block.hull = hull_from(block, 0);
-  block.least_absorbed = std::ranges::min(block.hull, {}, &EnergySums::absorbed).absorbed;
+  for (std::size_t k = 1; k < block.hull.size(); ++k) {
+    const EnergySums &from = block.hull[k - 1], &to = block.hull[k];
+    block.slopes.push_back((from.absorbed - to.absorbed) / (to.squared_velocity - from.squared_velocity));
+  }
   return block;
 }
 

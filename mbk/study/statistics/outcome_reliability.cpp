@@ -87,6 +87,16 @@ reliability::Measurements measurements_of(const OutcomeRows& rows, bool weighted
   return m;
 }
 
+/// Whether the trials' own errors explain more than there is: then an error of measurement made of them would be one
+/// that nobody has seen.
+bool overstated(const reliability::MixedModel& weighted, reliability::Measurements m) {
+  if (weighted.residual.value > 0.0) return false;
+  m.known_variance.resize(0);
+  const auto plain = reliability::fit_mixed_model(m);
+  constexpr double kByMuch = 1.5;
+  return !plain || weighted.typical_known_variance > kByMuch * plain->residual.value;
+}
+
 MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Cell>& cells, int participants,
                                    std::vector<std::string>& notes) {
   MixedReliability result;
@@ -106,8 +116,15 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
     notes.push_back(
         fmt::format("trials are not weighted by their standard errors: there are more than {}", kMostWeighted));
   }
-  const reliability::Measurements m = measurements_of(rows, result.weighted);
-  const auto model = reliability::fit_mixed_model(m);
+  reliability::Measurements m = measurements_of(rows, result.weighted);
+  auto model = reliability::fit_mixed_model(m);
+  if (result.weighted && model && overstated(*model, m)) {
+    notes.emplace_back(
+        "trials are not weighted by their standard errors: these say more than what the trials differ by");
+    result.weighted = false;
+    m.known_variance.resize(0);
+    model = reliability::fit_mixed_model(m);
+  }
   if (!model) {
     notes.push_back("no mixed model: " + model.error().message);
     return result;

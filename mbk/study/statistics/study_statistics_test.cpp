@@ -218,6 +218,20 @@ TEST(Reliability, WeightsTrialsByTheirStandardErrors) {
   EXPECT_NEAR(weighted.known, (900.0 + 3.0) / 4.0, 1e-9);
 }
 
+TEST(Reliability, DoesNotBelieveStandardErrorsThatSayMoreThanThereIs) {
+  Results results({"K"});
+  const OutcomeColumns drawn_columns = drawn(10, 2, 3, 20, 0, 2).columns();
+  for (std::size_t k = 0; k < drawn_columns.trials.size(); ++k) {
+    const auto& trial = drawn_columns.trials[k];
+    results.add(static_cast<int>(trial.participant), static_cast<int>(trial.session),
+                {drawn_columns.outcomes[0].values[k]}, 0, 30.0);
+  }
+  const OutcomeReliability one = statistics_of(results).reliability[0];
+  EXPECT_FALSE(one.mixed_model.weighted);
+  EXPECT_LT(one.mixed_model.of_trials.at(0).sem_within, 4.0);
+  EXPECT_THAT(one.notes, testing::Contains(HasSubstr("not weighted")));
+}
+
 TEST(Orientation, IsTheSameHalfATurnFurther) {
   numeric::Random random(4);
   Results near({"stiffness_orientation"}), turned({"stiffness_orientation"});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 #include "mbk/study/statistics/outcome_rows.h"
 
@@ -13,8 +14,12 @@ namespace {
 
 constexpr std::size_t kWidth = 80;
 
+/// So many digits, and no exponent where the number can do without one.
 std::string digits(double value, int count = 3) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, count) : "–";
+  if (!std::isfinite(value)) return "–";
+  constexpr double kThousand = 1e3, kMillion = 1e6;
+  const double size = std::abs(value);
+  return size >= kThousand && size < kMillion ? fmt::format("{:.0f}", value) : fmt::format("{:.{}g}", value, count);
 }
 
 /// "0.91", and "1.00" for what is just below 1.
@@ -38,9 +43,10 @@ std::string shares(const Interval& interval) {
 /// "first" and what follows under each other, in lines that fit.
 std::string item(const std::string& first, const std::string& text) {
   std::string lines = first;
-  for (const char c : report::wrapped(text, kWidth - first.size())) {
+  const std::size_t indent = report::columns(first);
+  for (const char c : report::wrapped(text, kWidth - indent)) {
     lines += c;
-    if (c == '\n') lines.append(first.size(), ' ');
+    if (c == '\n') lines.append(indent, ' ');
   }
   return lines + "\n";
 }
@@ -129,8 +135,9 @@ std::string repeated_details(const Repeated& repeated) {
     text += "\n";
   }
   for (const reliability::MeasurementError& one : found.error) {
-    text += fmt::format("    {:<16} {} ({}), MDC {} ({})\n", fmt::format("SEM {}", word_of(one.form)), digits(one.sem),
-                        range(one.sem95), digits(one.mdc95), range(one.mdc95_interval));
+    text += item(fmt::format("    {:<16} ", fmt::format("SEM {}", word_of(one.form))),
+                 fmt::format("{} ({}), MDC {} ({})", digits(one.sem), range(one.sem95), digits(one.mdc95),
+                             range(one.mdc95_interval)));
   }
   return text;
 }
