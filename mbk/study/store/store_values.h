@@ -106,6 +106,8 @@ struct Outcome {
   double value = 0.0;
   std::optional<double> standard_error;
   std::string unit;  ///< "" for a ratio
+
+  [[nodiscard]] friend bool operator==(const Outcome&, const Outcome&) = default;
 };
 
 /// A result beside its numbers.
@@ -115,18 +117,24 @@ struct StoredResult {
   std::string reason;
 };
 
-/// A number of a usable result, with whose it is.
-struct Observation {
+/// Whose a usable result is.
+struct TrialRow {
   std::int64_t recording = 0, participant = 0, session = 0, trial = 0;
-  int condition = 0, outcome = 0;            ///< indices into the lists of ObservationTable
-  double value = 0.0, standard_error = 0.0;  ///< NaN: there is none
+  int condition = 0;  ///< index into OutcomeColumns::conditions
 };
 
-/// Every usable number of one analysis, in the order of the recordings' numbers: what statistics are computed from.
-struct ObservationTable {
-  std::vector<std::string> conditions;
-  std::vector<std::string> outcomes, units;  ///< as long as each other
-  std::vector<Observation> observations;
+/// One outcome of every trial.
+struct OutcomeColumn {
+  std::string name, unit;
+  std::vector<double> values;           ///< as long as OutcomeColumns::trials; NaN: the trial has none
+  std::vector<double> standard_errors;  ///< the same; NaN: it is not known. Empty: of no trial
+};
+
+/// Every usable number of one analysis, a column for each outcome: what statistics are computed from.
+struct OutcomeColumns {
+  std::vector<std::string> conditions;  ///< in the order of the recordings' numbers
+  std::vector<TrialRow> trials;         ///< by participant, session, trial and recording
+  std::vector<OutcomeColumn> outcomes;
 };
 
 /// A line of the log.

@@ -108,12 +108,14 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
   EXPECT_FALSE(outcomes_of("{\"model\":"));
 }
 
-/// Observations of one outcome under one condition.
-ObservationTable table_of(const std::string& outcome, const std::vector<std::pair<int, double>>& values) {
-  ObservationTable table{{"relaxed"}, {outcome}, {"N/m"}, {}};
-  for (const auto& [participant, value] : values)
-    table.observations.push_back({.participant = participant, .value = value});
-  return table;
+/// Results of one outcome under one condition.
+OutcomeColumns table_of(const std::string& outcome, const std::vector<std::pair<int, double>>& values) {
+  OutcomeColumns columns{{"relaxed"}, {}, {{outcome, "N/m", {}, {}}}};
+  for (const auto& [participant, value] : values) {
+    columns.trials.push_back({std::ssize(columns.trials), participant, 1, 1, 0});
+    columns.outcomes[0].values.push_back(value);
+  }
+  return columns;
 }
 
 TEST(ASummary, CountsEachParticipantOnce) {
