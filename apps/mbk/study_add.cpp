@@ -9,6 +9,7 @@
 #include "apps/mbk/progress.h"
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_options.h"
+#include "mbk/files/bids/read_run.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/study/store/identifying.h"
 #include "mbk/study/store/trial_names.h"
@@ -36,6 +37,7 @@ class Adder {
 
   /// @param facts  whose trial it is, as far as that was said
   Result<std::vector<AddedRecording>> add(const std::filesystem::path& file, const KnownFacts& facts) {
+    if (recording::may_be_bids(file)) return add_of_bids(file, facts);
     auto incoming = study_.bring_in(file);
     if (!incoming) return tl::unexpected(incoming.error());
     auto added = add(*incoming, facts);
@@ -118,27 +120,61 @@ class Adder {
       if (!recording) return tl::unexpected(recording.error());
       const auto trial = check(*recording, facts);
       if (!trial) return tl::unexpected(trial.error());
-      const auto entries = store::identifying_entries(recording->metadata);
-      for (const std::string& key : entries) recording->metadata.erase(key);
-      if (!arguments_.quiet) {
-        say("mbk: stored without: {}\n", fmt::format("{}", fmt::join(entries, ", ")));
-      }
-      // Beside the copy: what an interrupted process leaves there is tidied up.
-      const std::filesystem::path made =
-          incoming.path().parent_path() / (incoming.path().stem().string() + ".stripped.h5.part");
-      if (auto ok = recording::write(*recording, made, recording::Format::hdf5, true); !ok) {
-        return tl::unexpected(ok.error());
-      }
-      auto stripped = study_.bring_in(made, ".h5");
-      std::error_code ignored;
-      std::filesystem::remove(made, ignored);
-      if (!stripped) return tl::unexpected(stripped.error());
-      const store::NewRecording one{0, *trial, duration(*recording)};
-      auto added = study_.add(std::move(*stripped), {&one, 1}, incoming.sha256(), arguments_.study.role);
+      auto added = add_copy(incoming, std::move(*recording), *trial);
       if (!added) return added;
       all.insert(all.end(), added->begin(), added->end());
     }
     return all;
+  }
+
+  /// A recording of a BIDS data set is several files; it is stored as one, in HDF5, which loses no number.
+  Added add_of_bids(const std::filesystem::path& motion, const KnownFacts& facts) {
+    std::error_code code;
+    if (std::filesystem::is_directory(motion, code)) {
+      return fail(ErrorKind::usage, "is a folder", "'mbk study import' takes all recordings of a BIDS data set",
+                  motion.string());
+    }
+    ReadingArguments reading = measuring_->arguments.reading;
+    reading.files = {motion};
+    const auto reader = RecordingReader::of(reading, measuring_->arguments.sensor);
+    if (!reader) return tl::unexpected(reader.error());
+    auto recording = reader->read(0);
+    if (!recording) return tl::unexpected(recording.error());
+    KnownFacts known = facts;
+    const auto condition = recording->metadata.find("condition");  // in full; a name has only its letters and digits
+    if (facts.condition && condition != recording->metadata.end() &&
+        store::bids_label(condition->second) == *facts.condition) {
+      known.condition = condition->second;
+    }
+    const auto trial = check(*recording, known);
+    if (!trial) return tl::unexpected(trial.error().in(motion.string()));
+    auto incoming = study_.bring_in(motion);
+    if (!incoming) return tl::unexpected(incoming.error());
+    auto added = add_copy(*incoming, std::move(*recording), *trial);
+    if (!added) return tl::unexpected(named(added.error(), incoming->path(), motion));
+    return added;
+  }
+
+  /// Stores a recording as HDF5, without what may identify a person.
+  /// @param incoming  what it was read from
+  Added add_copy(const store::IncomingFile& incoming, Recording recording, const store::TrialFacts& trial) {
+    const auto entries = store::identifying_entries(recording.metadata);
+    for (const std::string& key : entries) recording.metadata.erase(key);
+    if (!entries.empty() && !arguments_.quiet) {
+      say("mbk: stored without: {}\n", fmt::format("{}", fmt::join(entries, ", ")));
+    }
+    // Beside the file that came in: what an interrupted process leaves there is tidied up.
+    const std::filesystem::path made =
+        incoming.path().parent_path() / (incoming.path().stem().string() + ".copy.h5.part");
+    if (auto ok = recording::write(recording, made, recording::Format::hdf5, true); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    auto copy = study_.bring_in(made, ".h5");
+    std::error_code ignored;
+    std::filesystem::remove(made, ignored);
+    if (!copy) return tl::unexpected(copy.error());
+    const store::NewRecording one{0, trial, duration(recording)};
+    return study_.add(std::move(*copy), {&one, 1}, incoming.sha256(), arguments_.study.role);
   }
 
   store::Store& study_;
@@ -188,6 +224,35 @@ int run_add(const AddArguments& arguments) {
   return add_all(arguments, rows);
 }
 
+bool alike(const KnownFacts& one, const KnownFacts& other) {
+  return one.participant == other.participant && one.session == other.session && one.condition == other.condition &&
+         one.trial == other.trial;
+}
+
+/// The recordings of a BIDS data set, by their names.
+Result<std::vector<store::SheetRow>> rows_of_bids(const std::filesystem::path& folder) {
+  const auto runs = recording::find_bids_runs(folder);
+  if (!runs) return tl::unexpected(runs.error());
+  if (runs->empty()) {
+    return fail(ErrorKind::data, "is a folder without a BIDS recording (…_motion.tsv)",
+                "name recordings, or the folder of a BIDS data set with motion data", folder.string());
+  }
+  std::vector<store::SheetRow> rows;
+  for (const recording::BidsRun& run : *runs) {
+    const auto facts = store::facts_of_bids(run.motion.stem().string());
+    if (!facts) return tl::unexpected(facts.error().in(run.motion.string()));
+    const auto twin = std::ranges::find_if(rows, [&](const auto& row) { return alike(row.facts, *facts); });
+    if (twin != rows.end()) {
+      return fail(ErrorKind::data,
+                  fmt::format("and {} are one trial, recorded by two tracking systems or twice",
+                              twin->file.filename().string()),
+                  "name the motion.tsv files that are to be imported", run.motion.string());
+    }
+    rows.push_back({run.motion, *facts});
+  }
+  return rows;
+}
+
 int run_import(const AddArguments& arguments) {
   std::vector<store::SheetRow> rows;
   int code = kFine;
@@ -215,6 +280,12 @@ int run_import(const AddArguments& arguments) {
       pattern = std::move(*made);
     }
     for (const std::filesystem::path& file : arguments.files) {
+      if (!pattern && recording::may_be_bids(file)) {
+        const auto found = rows_of_bids(file);
+        if (!found) return report_error(found.error());
+        rows.insert(rows.end(), found->begin(), found->end());
+        continue;
+      }
       KnownFacts facts;
       if (pattern) {
         auto found = pattern->match(file.filename().string());
@@ -288,7 +359,10 @@ Action add_study_import(CLI::App& group) {
       "  mbk study import data/*.mat --pattern 'p{participant}_s{session}_{condition}_*.mat'\n"
       "      {participant}, {session}, {trial}: digits; {condition}: letters, digits and -; * anything\n"
       "  mbk study import --sheet trials.csv\n"
-      "      columns file, participant and, where they are there, session, condition, trial\n\n"
+      "      columns file, participant and, where they are there, session, condition, trial\n"
+      "  mbk study import data_set\n"
+      "      a BIDS data set (Motion): sub-07_ses-2_task-relaxed_run-1 is participant 7, session 2, condition\n"
+      "      relaxed, trial 1\n\n"
       "What neither name, sheet nor options say is taken from the recording's metadata.");
   command->add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d");
   CLI::Option* const pattern =
