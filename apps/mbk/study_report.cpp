@@ -67,7 +67,8 @@ int run_report(const StudyReportArguments& arguments) {
   }
   const auto page = report::page(*document);
   if (!page) return report_error(page.error());
-  if (auto ok = recording::write_file(*to.file, to.overwrite, *page); !ok) return report_error(ok.error());
+  if (auto ok = recording::write_file(*to.file, to.overwrite, *page, Readers::owner); !ok)
+    return report_error(ok.error());
   return kFine;
 }
 

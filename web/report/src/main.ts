@@ -107,7 +107,7 @@ const reproduceSection = (command: string, software: string): HTMLElement =>
 const glossarySection = (terms: [string, string][]): HTMLElement =>
   h("section", { id: "glossary" }, heading(2, "Glossary"), facts(terms));
 
-function show(top: HTMLElement, nav: HTMLElement, sections: HTMLElement[], kind = ""): void {
+function show(top: HTMLElement, nav: HTMLElement | "", sections: HTMLElement[], kind = ""): void {
   document.getElementById("report")?.replaceWith(
     h("div", { class: kind ? `page ${kind}` : "page" }, top, nav, h("main", { id: "content", tabindex: -1 }, ...sections), foot()));
   openTargets();
@@ -131,7 +131,7 @@ function drawStudy(report: StudyReport): void {
 
 function drawParticipant(report: ParticipantReport): void {
   const sections = [...participantSections(report), reproduceSection(report.command, report.software)];
-  show(participantHead(report), contents(sections), sections, "of-study");
+  show(participantHead(report), "", sections, "of-study");
 }
 
 function draw(report: Report): void {

@@ -1,18 +1,18 @@
 // Outcomes of a study in words, and their numbers.
 import type { OutcomeCourses, SessionChange, Value } from "@mbk/shared/documents";
-import { decimalsFor, fixed, significant } from "@mbk/shared/format";
+import { fixed, significant } from "@mbk/shared/format";
 
 const quantities: Record<string, string> = { inertia: "inertia", damping: "damping", stiffness: "stiffness" };
 const symbols: Record<string, string> = { M: "inertia", B: "damping", K: "stiffness" };
-const parts: Record<string, string> = {
-  area: "area of the ellipse",
-  shape: "shape of the ellipse",
-  orientation: "orientation of the ellipse",
-  zmean: "antisymmetric part",
-  lambda_max: "largest eigenvalue",
-  lambda_min: "smallest eigenvalue",
-  symmetric_xy: "symmetric part of xy",
-  antisymmetric: "antisymmetric part of xy",
+const parts: Record<string, (quantity: string) => string> = {
+  area: (quantity) => `area of the ${quantity} ellipse`,
+  shape: (quantity) => `shape of the ${quantity} ellipse`,
+  orientation: (quantity) => `orientation of the ${quantity} ellipse`,
+  zmean: (quantity) => `antisymmetric share of ${quantity}`,
+  lambda_max: (quantity) => `largest ${quantity}`,
+  lambda_min: (quantity) => `smallest ${quantity}`,
+  symmetric_xy: (quantity) => `${quantity} xy, symmetric part`,
+  antisymmetric: (quantity) => `${quantity} xy, antisymmetric part`,
 };
 const others: Record<string, string> = {
   x0: "equilibrium",
@@ -29,14 +29,15 @@ const others: Record<string, string> = {
   excess_of_passivity: "excess of passivity",
 };
 
-/** "stiffness_area" → "stiffness, area of the ellipse" */
+/** "stiffness_area" → "area of the stiffness ellipse" */
 export function outcomeName(name: string): string {
   if (others[name]) return others[name];
   const [first = "", ...rest] = name.split("_");
-  const rest_ = rest.join("_");
-  if (quantities[first] && parts[rest_]) return `${first}, ${parts[rest_]}`;
+  const part = rest.join("_");
+  const of = quantities[first] ? parts[part] : undefined;
+  if (of) return of(first);
   if (symbols[first] && rest.length === 0) return symbols[first];
-  if (symbols[first] && /^[xy]{2}$/.test(rest_)) return `${symbols[first]} ${rest_}`;
+  if (symbols[first] && /^[xy]{2}$/.test(part)) return `${symbols[first]} ${part}`;
   return name.replaceAll("_", " ");
 }
 
@@ -49,6 +50,8 @@ const ranked = (name: string): number => {
   const part = ["area", "shape", "orientation"].indexOf(name.slice(name.indexOf("_") + 1));
   return part < 0 ? 60 + first : 3 * first + part;
 };
+/** An ellipse, or what stands for it where there is one axis. */
+export const isFirst = (name: string): boolean => ranked(name) < 30 || /^[MBK]$/.test(name);
 export const isMain = (name: string): boolean => ranked(name) < 60;
 export const inOutcomeOrder = <T>(all: T[], nameOf: (one: T) => string): T[] =>
   all.map((one, k) => ({ one, k })).sort((a, b) => ranked(nameOf(a.one)) - ranked(nameOf(b.one)) || a.k - b.k).map(({ one }) => one);
@@ -56,27 +59,34 @@ export const inOutcomeOrder = <T>(all: T[], nameOf: (one: T) => string): T[] =>
 export const conditionName = (condition: string): string => condition || "no condition";
 export const withUnit = (text: string, unit: string): string => (unit ? `${text}${unit === "°" ? "" : " "}${unit}` : text);
 
-/** So many decimals that a difference of this size shows in two digits; none where that is above 10. */
+/** So many decimals that a difference of this size shows in three digits. */
 export function decimalsOf(size: Value): number {
-  return size === null || !(Math.abs(size) > 0) ? 2 : Math.min(decimalsFor(Math.abs(size)), 4);
+  return size === null || !(Math.abs(size) > 0) ? 2 : Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(size))), 0), 6);
 }
 
-/** A number among others that span `spread`: three digits of it at least. */
-export function among(value: Value, spread: Value): string {
+/** "28 800": thousands apart, where there are many. */
+const grouped = (text: string): string => text.replace(/^([−+]?)(\d{5,})/, (_, sign: string, digits: string) => `${sign}${digits.replace(/\B(?=(\d{3})+$)/g, "\u202f")}`);
+
+/** A number of which differences of that size matter: no digits beyond the third of them. */
+export function among(value: Value, size: Value): string {
   if (value === null) return "–";
-  const decimals = decimalsOf(spread);
-  return Math.abs(value) >= 1e7 || (value !== 0 && Math.abs(value) < 1e-3) ? significant(value) : fixed(value, decimals);
+  if (Math.abs(value) >= 1e7 || (value !== 0 && Math.abs(value) < 1e-4)) return significant(value);
+  const decimals = decimalsOf(size);
+  const step = size === null || decimals > 0 || !(Math.abs(size) > 0) ? 1 : 10 ** Math.max(Math.floor(Math.log10(Math.abs(size))) - 2, 0);
+  return grouped(fixed(Math.round(value / step) * step === 0 || decimals > 0 ? value : Math.round(value / step) * step, decimals));
 }
 
-export const signed = (value: Value, decimals: number): string =>
-  value === null ? "–" : `${value > 0 ? "+" : ""}${fixed(value, decimals)}`;
+/** Three digits of the number itself. */
+export const plainly = (value: Value): string => among(value, value);
 
-/** "+42 %"; "" where a share means nothing. */
+export const signed = (value: Value, size = value): string => (value === null ? "–" : `${value > 0 ? "+" : ""}${among(value, size)}`);
+
+/** "+42 %"; "" where a share means nothing. */
 export function percentOf({ first, difference }: SessionChange, { axial, unit }: OutcomeCourses): string {
   if (axial || unit === "%" || first === null || difference === null || !(Math.abs(first) > 0)) return "";
   const percent = (100 * difference) / Math.abs(first);
   if (Math.abs(percent) > 999) return "";
-  return `${signed(percent, Math.abs(percent) < 9.5 ? 1 : 0)} %`;
+  return `${percent > 0 ? "+" : ""}${fixed(percent, Math.abs(percent) < 9.5 ? 1 : 0)} %`;
 }
 
 /** Ends of an axis and what is written on it. */
@@ -93,5 +103,5 @@ export function ticks(low: number, high: number, most: number): number[] {
 
 export const tickText = (value: number, step: number): string => {
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  return Math.abs(value) >= 1e5 || decimals > 4 ? significant(value, 3) : fixed(value, Math.min(decimals, 6));
+  return Math.abs(value) >= 1e7 || decimals > 4 ? significant(value, 3) : grouped(fixed(value, Math.min(decimals, 6)));
 };

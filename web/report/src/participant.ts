@@ -2,8 +2,8 @@
 // decided by mbk, in the report; here it is said in words, and never more than that.
 import type { OutcomeCourses, ParticipantReport, SessionChange } from "@mbk/shared/documents";
 import { facts, h, heading, table } from "@mbk/shared/dom";
-import { data, fixed, significant } from "@mbk/shared/format";
-import { decimalsOf, inOutcomeOrder, isMain, outcomeName, percentOf, signed, withUnit } from "./outcomes";
+import { data } from "@mbk/shared/format";
+import { among, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
 import { commonRange, courseLegend, coursePanel } from "./study_drawings";
 import { analysisText, conditionsOf, counted, downloads, ellipseFigure, leftOutTable, ofCondition, sessionsOf, titleOf, verdictWords } from "./study_parts";
 
@@ -17,16 +17,12 @@ export function participantHead(report: ParticipantReport): HTMLElement {
 
 const lastOf = ({ participants }: OutcomeCourses): SessionChange | undefined => participants[0]?.changes.at(-1);
 
-function number(value: number | null, unit: string, name: string): HTMLElement {
-  return data(value, withUnit(significant(value, 3), unit), name);
+/** Both numbers so that what matters of their difference can be seen. */
+function pair({ first, last, difference, mdc95 }: SessionChange): [string, string] {
+  const size = Math.max(Math.abs(difference ?? 0), mdc95 ?? 0);
+  return [among(first, size), among(last, size)];
 }
-
-/** Two numbers with so many decimals that their difference can be seen. */
-function pair(change: SessionChange): [string, string] {
-  const decimals = Math.max(0, Math.min(decimalsOf(change.difference), 6));
-  const shown = (value: number | null) => (value === null ? "–" : Math.abs(value) >= 1e7 ? significant(value) : fixed(value, decimals));
-  return [shown(change.first), shown(change.last)];
-}
+const moved = ({ difference, mdc95 }: SessionChange): string => signed(difference, Math.max(Math.abs(difference ?? 0), mdc95 ?? 0));
 
 /** What happened between the first session and the last, and whether that is more than error. */
 function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
@@ -39,41 +35,40 @@ function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
     const session = course?.sessions[0];
     return h("div", { class: "statement", "data-verdict": "none" }, lead,
       h("p", { class: "said" }, `There is one session${session ? ` (${session.session})` : ""} with a usable result: nothing can be compared yet.`),
-      session ? h("p", {}, `${name}: `, number(session.mean, one.unit, "only"), ".") : "");
+      session ? h("p", {}, `${name}: `, data(session.mean, withUnit(plainly(session.mean), one.unit), "only"), ".") : "");
   }
   const [first, last] = pair(change);
   const size = percentOf(change, one);
   const higher = (change.difference ?? 0) > 0;
-  const moved = one.axial
-    ? `turned by ${withUnit(fixed(Math.abs(change.difference ?? 0), decimalsOf(change.difference)), one.unit)}`
+  const movement = one.axial
+    ? `turned by ${withUnit(plainly(Math.abs(change.difference ?? 0)), one.unit)}`
     : `is ${size ? `${size.replace(/^[+−]/, "")} ` : ""}${higher ? "higher" : "lower"} than in session ${change.first_session}`;
   const same = change.difference === 0;
-  const mdc = withUnit(significant(change.mdc95), one.unit);
-  const [low, high] = change.mdc95_interval.map((value) => significant(value)) as [string, string];
+  const mdc = withUnit(plainly(change.mdc95), one.unit);
+  const [low, high] = change.mdc95_interval.map((value) => among(value, change.mdc95)) as [string, string];
   const verdicts: Record<SessionChange["verdict"], [string, string]> = {
     "beyond-error": [
-      `In session ${change.last_session} the ${name} ${moved}: more than measurement error explains.`,
-      `The minimal detectable change is ${mdc} (95 % interval ${low} to ${high}).`],
+      `In session ${change.last_session} the ${name} ${movement}: more than measurement error explains.`,
+      `The minimal detectable change is ${mdc} (95 % interval ${low} to ${high}).`],
     uncertain: [
-      `In session ${change.last_session} the ${name} ${moved}. It is not certain that this is more than measurement error.`,
-      `It is more than the minimal detectable change of ${mdc}, but that is itself only known to lie between ${low} and ${high} (95 %).`],
+      `In session ${change.last_session} the ${name} ${movement}. It is not certain that this is more than measurement error.`,
+      `It is more than the minimal detectable change of ${mdc}, but that is itself only known to lie between ${low} and ${high} (95 %).`],
     "within-error": [
       `Between session ${change.first_session} and session ${change.last_session} no change of the ${name} is shown.`,
-      `The difference is no more than the minimal detectable change of ${mdc} (95 % interval ${low} to ${high}), so it may be measurement error. That is no proof that nothing changed.`],
+      `The difference is no more than the minimal detectable change of ${mdc} (95 % interval ${low} to ${high}), so it may be measurement error. That is no proof that nothing changed.`],
     unknown: [
       same ? `In session ${change.last_session} the ${name} is what it was in session ${change.first_session}.`
-        : `In session ${change.last_session} the ${name} ${moved}. Whether that is more than measurement error is not known.`,
+        : `In session ${change.last_session} the ${name} ${movement}. Whether that is more than measurement error is not known.`,
       `The minimal detectable change is not known: ${one.why_unknown ?? "the difference is undefined"}.`],
   };
   const [said, why] = verdicts[change.verdict];
   return h("div", { class: "statement", "data-verdict": change.verdict, "data-condition": one.condition }, lead,
     h("p", { class: "said" }, said),
     h("p", {}, `Session ${change.first_session}: `, data(change.first, withUnit(first, one.unit), "first"), `; session ${change.last_session}: `, data(change.last, withUnit(last, one.unit), "last"),
-      "; difference ", data(change.difference, withUnit(signed(change.difference, decimalsOf(change.difference)), one.unit), "difference"), size ? ` (${size})` : "", ". ", why));
+      "; difference ", data(change.difference, withUnit(moved(change), one.unit), "difference"), size ? ` (${size})` : "", ". ", why));
 }
 
 function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLElement {
-  const range = commonRange(primary.flatMap(({ participants }) => participants));
   const all = sessionsOf(primary.flatMap(({ participants }) => participants));
   return h("figure", { class: "courses" },
     courseLegend(primary.some(({ why_unknown }) => !why_unknown)),
@@ -81,27 +76,27 @@ function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLEle
       const course = one.participants[0];
       if (!course) return "";
       return h("div", {}, h("p", { class: "panel-title" }, [ofCondition(one.condition, conditions), one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome)].filter(Boolean).join(": ")),
-        coursePanel(one, course, range, all, "large"));
+        coursePanel(one, course, commonRange([course]), all, "large"));
     })));
 }
 
 function changesTable(courses: OutcomeCourses[], condition: string, conditions: string[]): HTMLElement | undefined {
-  const rows = inOutcomeOrder(courses.filter((one) => one.condition === condition && isMain(one.outcome)), ({ outcome }) => outcome)
-    .filter(({ outcome }) => !/^[MBK]_[xy]{2}$/.test(outcome) || !courses.some((one) => one.outcome === "stiffness_area"))
+  const first = courses.some(({ outcome }) => isFirst(outcome)) ? isFirst : isMain;
+  const rows = inOutcomeOrder(courses.filter((one) => one.condition === condition && first(one.outcome)), ({ outcome }) => outcome)
     .flatMap((one) => {
       const change = lastOf(one);
       if (!change) return [];
       const [first, last] = pair(change);
       const said = verdictWords[change.verdict];
       return [[one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome), data(change.first, first), data(change.last, last),
-        h("span", {}, data(change.difference, signed(change.difference, decimalsOf(change.difference))), h("span", { class: "half" }, percentOf(change, one) ? ` (${percentOf(change, one)})` : "")),
-        change.mdc95 === null ? "not known" : h("span", { class: "number" }, data(change.mdc95, significant(change.mdc95)), h("span", { class: "half" }, ` [${significant(change.mdc95_interval[0])}, ${significant(change.mdc95_interval[1])}]`)),
+        h("span", { class: "number" }, data(change.difference, moved(change)), h("span", { class: "half" }, percentOf(change, one) ? ` (${percentOf(change, one)})` : "")),
+        change.mdc95 === null ? "not known" : h("span", { class: "number" }, data(change.mdc95, plainly(change.mdc95)), h("span", { class: "half" }, ` [${among(change.mdc95_interval[0] ?? null, change.mdc95)}, ${among(change.mdc95_interval[1] ?? null, change.mdc95)}]`)),
         h("span", { class: said.kind }, said.text)]];
     });
   if (rows.length === 0) return undefined;
   const change = courses.filter((one) => one.condition === condition).map(lastOf).find((one) => one !== undefined) as SessionChange;
   const name = ofCondition(condition, conditions);
-  return table(`${name ? `${name}: ` : ""}first and last session; MDC: minimal detectable change with its 95 % interval`, ["outcome", `session ${change.first_session}`, `session ${change.last_session}`, "change", "MDC", "what that means"], rows, "changes");
+  return table(`${name ? `${name}: ` : ""}first and last session; MDC: minimal detectable change with its 95 % interval`, ["outcome", `session\u00a0${change.first_session}`, `session\u00a0${change.last_session}`, "change", "MDC", "what that means"], rows, "changes");
 }
 
 function limits(report: ParticipantReport, shown: number): HTMLElement {
@@ -110,7 +105,7 @@ function limits(report: ParticipantReport, shown: number): HTMLElement {
     h("ul", { class: "limits" },
       h("li", {}, "Whether a change is good or bad, what caused it, and whether it matters to the person. It is no diagnosis, and mbk is no medical device."),
       h("li", {}, "“No change shown” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
-      shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page looks at ${shown}; a single one that stands out may be chance.`) : "",
+      shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page looks at ${shown}; a single one that stands out may be chance.`) : "",
       known.length > 0
         ? h("li", {}, `The minimal detectable change is that of this study: of ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more, in this apparatus and between its sessions. Where most of them really changed, it is too large; for other people or another apparatus it says nothing.`)
         : h("li", {}, "No minimal detectable change is known here, so that no difference on this page can be told from measurement error.")));
@@ -126,9 +121,9 @@ export function participantSections(report: ParticipantReport): HTMLElement[] {
   return [
     h("section", { id: "change" }, heading(2, "What changed since the first session"),
       ...(primary.length > 0 ? primary.map((one) => statement(one, conditions)) : [h("p", { class: "said" }, "There is no usable result of this participant: nothing can be said.")]),
-      primary.length > 0 ? courseFigures(primary, conditions) : ""),
-    ...(tables.length > 0 ? [h("section", { id: "outcomes" }, heading(2, "All outcomes"), ...tables)] : []),
+      primary.some(lastOf) ? courseFigures(primary.filter(lastOf), conditions) : ""),
     limits(report, shown),
+    ...(tables.length > 0 ? [h("section", { id: "outcomes" }, heading(2, "All outcomes"), ...tables)] : []),
     ...(ellipses ? [h("section", { id: "ellipses" }, heading(2, "Stiffness in all directions"), ellipses,
       h("p", { class: "reading" }, "The longer the ellipse in a direction, the more force it takes to move the hand that way."))] : []),
     h("section", { id: "recordings" }, heading(2, "What this rests on"),

@@ -1,8 +1,8 @@
 // The page of a study: a document of schema mbk.study_report/1, drawn. Every number in it was computed by mbk.
 import type { Course, OutcomeCourses, StudyReport, Value } from "@mbk/shared/documents";
 import { facts, h, heading, table } from "@mbk/shared/dom";
-import { data, decimalsFor, fixed, significant } from "@mbk/shared/format";
-import { among, conditionName, inOutcomeOrder, isMain, outcomeName, percentOf, signed, withUnit } from "./outcomes";
+import { data, fixed } from "@mbk/shared/format";
+import { among, conditionName, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
 import { commonRange, courseLegend, coursePanel, forest, type ForestRow } from "./study_drawings";
 import { analysisText, chooser, conditionsOf, counted, downloads, ellipseFigure, leftOutTable, ofCondition, recordingsTable, sessionsOf, titleOf } from "./study_parts";
 
@@ -33,7 +33,7 @@ const iccText = (value: Value, [low, high]: [Value, Value]): HTMLElement =>
   h("span", { class: "number" }, data(value, fixed(value, 2), "icc"), h("span", { class: "half" }, range(low, high, 2)));
 
 const sized = (value: Value, [low, high]: [Value, Value], name: string): HTMLElement =>
-  h("span", { class: "number" }, data(value, significant(value), name), h("span", { class: "half" }, low === null || high === null ? "" : ` [${significant(low)}, ${significant(high)}]`));
+  h("span", { class: "number" }, data(value, plainly(value), name), h("span", { class: "half" }, low === null || high === null ? "" : ` [${among(low, value)}, ${among(high, value)}]`));
 
 const icc = (one: Reliability) => one.between_sessions.icc.find(({ form, averaged }) => form === "agreement" && averaged === 1);
 const error = (one: Reliability) => one.between_sessions.error.find(({ form }) => form === "agreement");
@@ -59,10 +59,10 @@ function summarySection(report: StudyReport, conditions: string[]): HTMLElement 
     const share = sem && sem.mdc95 !== null && course.mean ? ` (${fixed((100 * sem.mdc95) / Math.abs(course.mean), 0)} % of the mean)` : "";
     return [h("div", { class: "card", "data-condition": condition },
       h("p", { class: "card-title" }, h("strong", {}, ofCondition(condition, conditions) || "All recordings"), h("span", {}, outcomeName(primary))),
-      h("p", { class: "headline" }, data(course.mean, withUnit(significant(course.mean), course.unit), "mean")),
-      h("p", {}, `Mean of ${counted(course.participants.length, "participant", "participants")}`, course.interval95[0] === null ? "" : `, 95 % interval${range(course.interval95[0] ?? null, course.interval95[1] ?? null, decimalsFor(course.mean === null ? null : Math.abs(course.mean) / 20))}`, "."),
+      h("p", { class: "headline" }, data(course.mean, withUnit(plainly(course.mean), course.unit), "mean")),
+      h("p", {}, `Mean of ${counted(course.participants.length, "participant", "participants")}`, course.interval95[0] === null ? "" : `, 95 % interval ${among(course.interval95[0] ?? null, course.mean)} to ${among(course.interval95[1] ?? null, course.mean)}`, "."),
       h("p", {}, "Between sessions: ", agreement ? h("span", {}, "ICC(A,1) ", iccText(agreement.value, agreement.interval95 as [Value, Value])) : `no reliability stated, ${one ? lack(one) : "nothing was measured"}`, "."),
-      h("p", {}, "Minimal detectable change: ", sem ? h("span", {}, data(sem.mdc95, withUnit(significant(sem.mdc95), course.unit), "mdc"), share) : "not known", "."))];
+      h("p", {}, "Minimal detectable change: ", sem ? h("span", {}, data(sem.mdc95, withUnit(plainly(sem.mdc95), course.unit), "mdc"), share) : "not known", "."))];
   });
   const nothing = summary.counts.recordings === 0 ? "The study has no recordings yet." : summary.counts.usable === 0 ? "No recording has a usable result that counts: there is nothing to sum up." : "";
   return h("section", { id: "summary" }, heading(2, "In short"),
@@ -72,8 +72,18 @@ function summarySection(report: StudyReport, conditions: string[]): HTMLElement 
 
 const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}`;
 
+/** What must be known beside the numbers; many are folded, but not on paper. */
+function noteList(notes: HTMLElement[]): HTMLElement | "" {
+  if (notes.length === 0) return "";
+  const list = h("ul", { class: "notes" }, ...notes);
+  return notes.length < 5 ? list : h("details", { class: "notes-block", "data-print": true }, h("summary", {}, `${notes.length} notes on these numbers`), list);
+}
+
+/** Which outcomes are shown at once. */
+const firstOf = ({ courses }: StudyReport) => (courses.some(({ outcome }) => isFirst(outcome)) ? isFirst : isMain);
+
 function reliabilityTable(report: StudyReport, condition: string, conditions: string[], main: boolean): HTMLElement | undefined {
-  const all = inOutcomeOrder(report.summary.reliability.filter((one) => one.condition === condition && isMain(one.outcome) === main), ({ outcome }) => outcome);
+  const all = inOutcomeOrder(report.summary.reliability.filter((one) => one.condition === condition && firstOf(report)(one.outcome) === main), ({ outcome }) => outcome);
   if (all.length === 0) return undefined;
   const rows = all.map((one) => {
     const [agreement, sem] = [icc(one), error(one)];
@@ -89,29 +99,28 @@ function reliabilityTable(report: StudyReport, condition: string, conditions: st
     ];
   });
   const name = ofCondition(condition, conditions);
-  return table(name || "Between sessions", ["outcome", "people × sessions", "mean", "ICC(A,1)", "SEM", "MDC (95 %)", "ICC, mixed model"], rows, "numbers reliability");
+  return table(name || "Between sessions", ["outcome", "people × sessions", "mean", "ICC(A,1)", "SEM", "MDC (95 %)", "ICC, mixed model"], rows, "numbers reliability");
 }
 
 function reliabilitySection(report: StudyReport, conditions: string[]): HTMLElement | undefined {
   const tables = conditions.flatMap((condition) => reliabilityTable(report, condition, conditions, true) ?? []);
   const others = conditions.flatMap((condition) => reliabilityTable(report, condition, conditions, false) ?? []);
-  const notes = new Map<string, string[]>();
-  for (const { outcome, condition, notes: said } of report.summary.reliability) {
-    for (const note of said) notes.set(note, [...(notes.get(note) ?? []), [outcomeName(outcome), ofCondition(condition, conditions)].filter(Boolean).join(", ")]);
-  }
+  const said = (first: boolean) => inOutcomeOrder(report.summary.reliability.filter(({ outcome }) => firstOf(report)(outcome) === first), ({ outcome }) => outcome)
+    .flatMap(({ outcome, condition, notes }) => notes.map((note) => h("li", {}, `${[outcomeName(outcome), ofCondition(condition, conditions)].filter(Boolean).join(", ")}: ${note.replace(/(^|[ [(])-(?=[\d.])/g, "$1−")}${/[.]$/.test(note) ? "" : "."}`)));
+  const [notes, more] = [said(true), said(false)];
   if (tables.length === 0) return undefined;
   return h("section", { id: "reliability" }, heading(2, "Reliability"), ...tables,
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
-      "ICC(A,1): share of the variance between single sessions that is between people, with what all people change by counted as error; 1 is perfect. SEM: standard error of measurement, the standard deviation of one person’s sessions (agreement). MDC: minimal detectable change, 1.96 √2 SEM; less than that between two sessions may be error. In brackets 95 % intervals. These are computed from the means of sessions, of people who have all the sessions that are compared; the mixed model takes every trial, and is of single trials."),
-    notes.size > 0 ? h("ul", { class: "notes" }, ...[...notes].map(([note, where]) => h("li", {}, `${where.length > 4 ? `${where.slice(0, 4).join("; ")} and ${where.length - 4} more` : where.join("; ")}: ${note}${/[.]$/.test(note) ? "" : "."}`))) : "",
-    others.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), ...others) : "");
+      "ICC(A,1): share of the variance between single sessions that is between people, with what all people change by counted as error; 1 is perfect. SEM: standard error of measurement, the standard deviation of one person’s sessions (agreement). MDC: minimal detectable change, 1.96 √2 SEM; less than that between two sessions may be error. In brackets 95 % intervals. These are computed from the means of sessions, of people who have all the sessions that are compared; the mixed model takes every trial, and is of single trials."),
+    noteList(notes),
+    others.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), ...others, noteList(more)) : "");
 }
 
 /** Decimals that tell people apart. */
 function spreadOf(courses: Course[]): Value {
   const means = courses.map(({ mean }) => mean).filter((v): v is number => v !== null);
   if (means.length < 2) return means[0] === undefined ? null : Math.abs(means[0]) / 10;
-  return (Math.max(...means) - Math.min(...means)) / 10 || Math.abs(means[0] ?? 0) / 10;
+  return means.reduce((a, b) => Math.max(a, b)) - means.reduce((a, b) => Math.min(a, b)) || Math.abs(means[0] ?? 0) / 10;
 }
 
 const intervalText = ([low, high]: Value[], spread: Value): string => (low === null || low === undefined || high === null || high === undefined ? "" : ` [${among(low, spread)}, ${among(high, spread)}]`);
@@ -133,7 +142,7 @@ function peopleForest(one: OutcomeCourses, conditions: string[]): HTMLElement {
 function participantsSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement {
   return h("section", { id: "participants" }, heading(2, "Participants"),
     h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, ...chosen.map((one) => peopleForest(one, conditions)))),
-      h("figcaption", {}, h("strong", {}, "How to read this. "), "Each square is the mean of one person’s sessions. Its line is the 95 % interval that the variances of the study give: between sessions and between trials, taken to be alike in all people. The diamond is the mean of all people with its 95 % interval.")));
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Each square is the mean of one person’s sessions. Its line is the 95 % interval that the variances of the study give: between sessions and between trials, taken to be alike in all people. The diamond is the mean of all people with its 95 % interval.")));
 }
 
 function coursesSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement | undefined {
@@ -147,7 +156,7 @@ function coursesSection({ courses, primary }: StudyReport, conditions: string[])
     return h("div", { class: "courses-block" }, name ? h("p", { class: "panel-title" }, name) : "",
       h("div", { class: "small-panels wide" }, ...several.map((course) => {
         const change = course.changes.at(-1);
-        const size = change ? percentOf(change, one) || withUnit(signed(change.difference, decimalsFor(change.difference === null ? null : Math.abs(change.difference))), one.unit) : "";
+        const size = change ? percentOf(change, one) || withUnit(signed(change.difference), one.unit) : "";
         return h("div", { class: "small-panel", "data-participant": course.participant, "data-verdict": change?.verdict },
           h("p", { class: "panel-name" }, `participant ${course.participant}`), coursePanel(one, course, range_, all, "small"),
           h("p", { class: "panel-note" }, change ? `${size} since session ${change.first_session}${change.verdict === "beyond-error" ? ": more than error" : change.verdict === "uncertain" ? ": uncertain" : ""}` : ""));
@@ -157,7 +166,7 @@ function coursesSection({ courses, primary }: StudyReport, conditions: string[])
   };
   return h("section", { id: "sessions" }, heading(2, "Each participant over the sessions"),
     h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, courseLegend(chosen.some(({ why_unknown }) => !why_unknown)), ...chosen.map(drawn))),
-      h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontally the sessions, vertically the outcome, on one scale for all. The band is what a person who did not change may differ by from their first session (95 %). Of so many people and sessions some leave the band by chance: 5 % of those who did not change, for each session. Where most people changed between sessions, the band holds that too, and is too wide.")));
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontally the sessions, vertically the outcome, on one scale for all. The band is the minimal detectable change around the first session: what a person who did not change stays within (95 %), by the variances of the mixed model and this person’s own numbers of trials. Of so many people and sessions some leave the band by chance: 5 % of those who did not change, for each session. Where most people changed between sessions, the band holds that too, and is too wide.")));
 }
 
 function ellipsesSection({ matrices }: StudyReport, conditions: string[]): HTMLElement | undefined {
@@ -190,7 +199,7 @@ function comparisonSection({ summary }: StudyReport): HTMLElement | undefined {
       table(`${name}; p by permutation, corrected for ${comparison.tests} tests (Holm)`, ["outcome", "people", "difference", "p", "p corrected", "what that means"],
         ordered.map((one) => [one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome),
           one.pairing === "paired" ? `${one.first_participants} paired` : `${one.first_participants}, ${one.second_participants}`,
-          one.interval95 ? sized(one.difference, one.interval95 as [Value, Value], "difference") : significant(one.difference),
+          one.interval95 ? sized(one.difference, one.interval95 as [Value, Value], "difference") : plainly(one.difference),
           pText(one.permutation.p), pText(one.p_holm), verdicts[one.verdict]]), "numbers comparison"));
   }), h("p", { class: "reading" }, "“No difference shown” is no proof that there is none."));
 }
@@ -226,7 +235,7 @@ export function studySections(report: StudyReport): HTMLElement[] {
 export const studyGlossary: [string, string][] = [
   ["ICC", "intraclass correlation: the share of all variance that is between people. Near 1 people can be told apart by one measurement; near 0 they cannot"],
   ["SEM", "standard error of measurement: what one person’s repeated measurements scatter by, one standard deviation"],
-  ["MDC", "minimal detectable change: the difference between two measurements of a person that 95 % of people who did not change stay below"],
+  ["MDC", "minimal detectable change: the difference between two measurements of a person that 95 % of people who did not change stay below"],
   ["Ellipse", "for each direction, how strongly the hand resists being moved that way. Area: how much altogether; shape: longest over shortest axis; orientation: of the long axis, counter-clockwise from x"],
   ["Usable", "mbk found nothing that forbids using the result"],
 ];

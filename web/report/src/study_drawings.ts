@@ -20,15 +20,18 @@ const known = (values: Value[]): number[] => values.filter((v): v is number => v
 /** Low and high end of what is drawn, with room at both. */
 function range(values: number[], room = 0.06): [number, number] {
   if (values.length === 0) return [0, 1];
-  const [low, high] = [Math.min(...values), Math.max(...values)];
+  let [low, high] = [Infinity, -Infinity];
+  for (const one of values) [low, high] = [Math.min(low, one), Math.max(high, one)];
   const extra = low < high ? room * (high - low) : Math.max(Math.abs(low) * 0.1, 1e-9);
   return [low - extra, high + extra];
 }
 
 /** Values with their intervals, one a row, over one axis; a diamond for all of them together. */
 export function forest(label: string, axisName: string, rows: ForestRow[], reference?: number): SVGSVGElement {
-  const [left, right, line, top] = [118, 480, 20, 8];
-  const width = 660;
+  const [line, top, width] = [20, 8, 660];
+  const room = (texts: string[]) => 6.9 * Math.max(...texts.map(({ length }) => length));
+  const left = Math.min(16 + room(rows.map(({ name }) => name)), 240);
+  const right = Math.max(width - 18 - room(rows.map(({ text }) => text)), left + 150);
   const height = top + rows.length * line + 46;
   const all = known(rows.flatMap(({ value, low, high }) => [value, low, high]));
   const [low, high] = range(reference === undefined ? all : [...all, reference], 0.03);
@@ -76,24 +79,27 @@ export function mark(x: number, y: number, kind: keyof typeof verdictMarks): SVG
   return svg("path", { d: `M ${x - 5.5} ${y} L ${x} ${y - 5.5} L ${x + 5.5} ${y} L ${x} ${y + 5.5} Z`, class: className });
 }
 
-/** All that the panels of an outcome span, so that they can be compared. */
+/** All that the panels of an outcome span, so that they can be compared; not below 0 where nothing measured is. */
 export function commonRange(courses: Course[]): [number, number] {
-  return range(known(courses.flatMap(({ sessions, changes }) => [
+  const [low, high] = range(known(courses.flatMap(({ sessions, changes }) => [
     ...sessions.map(({ mean }) => mean),
     ...changes.flatMap(({ first, mdc95 }) => (first === null || mdc95 === null ? [] : [first - mdc95, first + mdc95])),
   ])));
+  const positive = courses.every(({ sessions }) => sessions.every(({ mean }) => mean === null || mean >= 0));
+  return positive && low < 0 ? [0, high] : [low, high];
 }
 
 /** The sessions of one person, with what the first may differ by through error of measurement alone. */
 export function coursePanel(outcome: OutcomeCourses, course: Course, [low, high]: [number, number], all: number[], size: "small" | "large"): SVGSVGElement {
   const large = size === "large";
   const [width, height] = large ? [460, 250] : [190, 128];
-  const [left, right, top, bottom] = large ? [58, width - 14, 12, height - 42] : [42, width - 8, 8, height - 22];
-  const [first = 1, last = 1] = [all[0], all.at(-1)];
-  const x = (session: number) => (first === last ? (left + right) / 2 : left + 14 + ((session - first) / (last - first)) * (right - left - 28));
-  const y = (value: number) => bottom - ((value - low) / (high - low)) * (bottom - top);
   const marks = ticks(low, high, large ? 6 : 3);
   const step = marks.length > 1 ? (marks[1] as number) - (marks[0] as number) : 1;
+  const left = 12 + 7 * Math.max(...marks.map((at) => tickText(at, step).length));
+  const [right, top, bottom] = large ? [width - 14, 12, height - 42] : [width - 8, 8, height - 22];
+  const [first = 1, last = 1] = [all[0], all.at(-1)];
+  const x = (session: number) => (first === last ? (left + right) / 2 : left + 14 + ((session - first) / (last - first)) * (right - left - 28));
+  const y = (value: number) => bottom - ((Math.max(value, low) - low) / (high - low)) * (bottom - top);
   const verdicts = new Map(course.changes.map(({ last_session, verdict }) => [last_session, verdict]));
   const band = course.changes.filter(({ first: value, mdc95 }) => value !== null && mdc95 !== null);
   const drawn = course.sessions.filter((one): one is typeof one & { mean: number } => one.mean !== null);
@@ -126,10 +132,10 @@ export function courseLegend(withBand: boolean): HTMLElement {
   const entry = (drawing: SVGElement, text: string) =>
     h("li", {}, svg("svg", { width: 22, height: 14, "aria-hidden": "true", class: "course" }, drawing), text);
   return h("ul", { class: "legend" },
-    withBand && entry(svg("rect", { x: 0.5, y: 1.5, width: 21, height: 11, class: "band" }), "first session ± minimal detectable change (95 %)"),
+    withBand && entry(svg("rect", { x: 0.5, y: 1.5, width: 21, height: 11, class: "band" }), "first session ± minimal detectable change (95 %)"),
     entry(mark(11, 7, "first"), withBand ? "mean of a session" : "mean of a session; how much of a difference is error is not known"),
     withBand && entry(mark(11, 7, "uncertain"), "beyond the band, which is itself uncertain"),
-    withBand && entry(mark(11, 7, "beyond-error"), "more than measurement error (95 %)"));
+    withBand && entry(mark(11, 7, "beyond-error"), "more than measurement error (95 %)"));
 }
 
 interface Axes {
@@ -173,8 +179,8 @@ export function ellipsePanel(name: string, sessions: SessionMatrix[], largest: n
     svg("circle", { r: 2.6, class: "hand" }));
 }
 
-export function ellipseLegend(reference: string): HTMLElement {
+export function ellipseLegend(sessions: number, reference: string): HTMLElement {
   const entry = (kind: string, text: string) =>
     h("li", {}, svg("svg", { width: 24, height: 12, "aria-hidden": "true", class: "person-ellipses" }, svg("line", { x1: 0, x2: 24, y1: 6, y2: 6, class: kind })), text);
-  return h("ul", { class: "legend" }, entry("session first", "first session"), entry("session between", "between"), entry("session last", "last session"), entry("reference", reference));
+  return h("ul", { class: "legend" }, entry("session first", "first session"), sessions > 2 && entry("session between", "between"), sessions > 1 && entry("session last", "last session"), entry("reference", reference));
 }

@@ -122,13 +122,13 @@ export function ellipseFigure(matrices: SessionMatrix[], matrix: keyof typeof ma
   const reference = niceBelow(0.8 * largest);
   const panels = new Map<string, SessionMatrix[]>();
   for (const one of all) {
-    const key = `${one.participant} ${one.condition}`;
+    const key = JSON.stringify([one.participant, one.condition]);
     panels.set(key, [...(panels.get(key) ?? []), one]);
   }
   return h("figure", { class: "people-ellipses" },
     h("p", { class: "panel-title" }, matrixNames[matrix]),
-    ellipseLegend(`the same everywhere, ${withUnit(plain(reference), first.unit)}`),
-    h("div", { class: "small-panels" }, ...[...panels.values()].sort(([a], [b]) => (a?.participant ?? 0) - (b?.participant ?? 0)).map((sessions) => {
+    ellipseLegend(Math.max(...[...panels.values()].map(({ length }) => length)), `the same everywhere, ${withUnit(plain(reference), first.unit)}`),
+    h("div", { class: "small-panels" }, ...[...panels.values()].map((sessions) => {
       const { participant, condition } = sessions[0] as SessionMatrix;
       const name = nameOf(participant, condition);
       return h("div", { class: "small-panel" }, ellipsePanel(`${name}: ${matrixNames[matrix]}`, sessions, largest, reference),
