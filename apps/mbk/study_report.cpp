@@ -17,6 +17,7 @@ namespace {
 struct StudyReportArguments : AnalysisArguments {
   std::optional<std::int64_t> participant;
   std::string outcome, note;
+  ComparingArguments comparing;
 };
 
 /// What makes the page again, without the names of files, which may name people.
@@ -25,6 +26,9 @@ std::string command_of(const StudyReportArguments& arguments, const store::Study
   if (arguments.participant) text += fmt::format(" --participant {}", *arguments.participant);
   if (list.analysis) text += fmt::format(" --analysis {}", list.analysis->number);
   if (!arguments.outcome.empty()) text += " --outcome " + arguments.outcome;
+  if (!arguments.comparing.compare.empty()) text += " --compare";
+  for (const std::string& word : arguments.comparing.compare) text += " " + shell_word(word);
+  for (const std::string& group : arguments.comparing.groups) text += " --group " + shell_word(group);
   return text + (arguments.participant ? fmt::format(" --out participant_{}.html", *arguments.participant)
                                        : " --out study.html");
 }
@@ -38,7 +42,9 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
     columns = std::move(*found);
   }
   statistics::add_matrix_numbers(columns);
-  const auto statistics = statistics::study_statistics(columns, {});
+  const auto options = statistics_options(arguments.comparing);
+  if (!options) return tl::unexpected(options.error());
+  const auto statistics = statistics::study_statistics(columns, *options);
   if (!statistics) return tl::unexpected(statistics.error());
   const std::string summary =
       store::to_json(list, store::summarise_outcomes(columns), statistics::to_json(*statistics));
@@ -83,17 +89,19 @@ Action add_study_report(CLI::App& group) {
       "      reliability, participants, sessions, ellipses, what does not count and why\n"
       "  mbk study report --participant 7 --out participant_7.html\n"
       "      what changed since the first session, and whether it is more than the minimal detectable change\n"
-      "  mbk study report --outcome K_xx --out study.html\n\n"
+      "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"
       "A page is one file that needs no network; it prints on A4, and its data can be saved from it. It holds\n"
       "health data: pass it on as such. The page of a participant holds no numbers of other people.");
   add_study_option(*command, arguments->study);
   add_analysis_option(*command, *arguments);
-  command->add_option("--participant", arguments->participant, "a page of this one")
-      ->type_name("N")
-      ->check(whole_number(1, 999999999));
+  CLI::Option* const participant = command->add_option("--participant", arguments->participant, "a page of this one")
+                                       ->type_name("N")
+                                       ->check(whole_number(1, 999999999));
   command->add_option("--outcome", arguments->outcome, "is shown first (stiffness_area, or a stiffness)")
       ->type_name("NAME")
       ->check(not_empty());
+  add_comparing_options(*command, arguments->comparing);
+  command->get_option("--compare")->excludes(participant);
   command->add_option("--note", arguments->note, "a line below the title, such as a date; mbk adds none of its own")
       ->type_name("TEXT");
   add_output_options(*command, arguments->output, "mbk.study_report/1, mbk.participant_report/1");

@@ -1,3 +1,5 @@
+#include "mbk/study/store/study_summary.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,13 +12,14 @@
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_listing.h"
 #include "mbk/study/statistics/study_statistics.h"
+#include "mbk/study/statistics/study_statistics_text.h"
 
 namespace mbk::app {
 namespace {
 
 struct SummaryArguments : AnalysisArguments {
-  std::vector<std::string> outcomes, compare, groups;
-  statistics::StatisticsOptions options;
+  std::vector<std::string> outcomes;
+  ComparingArguments comparing;
 };
 
 /// "patients=1-10,12": a name and the numbers of its people.
@@ -51,9 +54,10 @@ Result<statistics::PeopleGroup> group_of(const std::string& text) {
   }
 }
 
-Result<statistics::StatisticsOptions> statistics_options(const SummaryArguments& arguments) {
-  statistics::StatisticsOptions options = arguments.options;
-  options.outcomes = arguments.outcomes;
+}  // namespace
+
+Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments) {
+  statistics::StatisticsOptions options;
   for (const std::string& text : arguments.groups) {
     auto group = group_of(text);
     if (!group) return tl::unexpected(group.error());
@@ -81,9 +85,26 @@ Result<statistics::StatisticsOptions> statistics_options(const SummaryArguments&
   return options;
 }
 
+void add_comparing_options(CLI::App& command, ComparingArguments& arguments) {
+  command.add_option("--compare", arguments.compare, "condition, group or session, and which of them (all)")
+      ->type_name("WHAT [NAME...]");
+  command.add_option("--group", arguments.groups, "who is in a group: patients=1-10,12")->type_name("NAME=N,...");
+}
+namespace {
+
+std::string summary_text(const store::StudyList& list, const std::vector<store::OutcomeSummary>& outcomes,
+                         const statistics::StudyStatistics& found, bool details) {
+  const std::string text = study_head_text(list);
+  if (!list.analysis) return text + "  nothing was measured: 'mbk study measure'\n";
+  if (outcomes.empty()) return text + "  no result is usable: 'mbk study list' says why\n";
+  return text + statistics::outcomes_text(outcomes) + statistics::reliability_text(found, details) +
+         statistics::comparison_text(found, details) + statistics::notes_text(found.notes);
+}
+
 int run_summary(const SummaryArguments& arguments) {
-  const auto options = statistics_options(arguments);
+  auto options = statistics_options(arguments.comparing);
   if (!options) return report_error(options.error());
+  options->outcomes = arguments.outcomes;
   std::optional<store::Store> study;
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
@@ -96,8 +117,14 @@ int run_summary(const SummaryArguments& arguments) {
   statistics::add_matrix_numbers(columns);
   const auto found = statistics::study_statistics(columns, *options);
   if (!found) return report_error(found.error());
+  if (!options->outcomes.empty()) {
+    std::erase_if(columns.outcomes, [&](const store::OutcomeColumn& column) {
+      return std::ranges::find(options->outcomes, column.name) == options->outcomes.end();
+    });
+  }
   const auto outcomes = store::summarise_outcomes(columns);
-  const std::string text = store::to_json(*list, outcomes, statistics::to_json(*found));
+  const std::string text = arguments.output.json ? store::to_json(*list, outcomes, statistics::to_json(*found))
+                                                 : summary_text(*list, outcomes, *found, !options->outcomes.empty());
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -110,15 +137,20 @@ Action add_study_summary(CLI::App& group) {
   command->footer(
       "Examples:\n"
       "  mbk study summary\n"
+      "  mbk study summary --outcome K_xx\n"
+      "      every form of ICC, limits of agreement, trials within a session, the mixed model\n"
+      "  mbk study summary --compare condition relaxed tensed\n"
+      "      in the same people where they have both, else between two sets of people\n"
+      "  mbk study summary --compare group --group patients=1-10 --group controls=11-20\n"
+      "  mbk study summary --compare session 1 2 --outcome K_xx K_yy\n"
+      "      p-values are adjusted for as many tests as there are: name the outcomes before you look\n"
       "  mbk study summary --json --out summary.json\n\n"
       "Only usable results of recordings that are not excluded count; how many do not is said.");
   add_study_option(*command, arguments->study);
   add_analysis_option(*command, *arguments);
   command->add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
       ->type_name("NAME...");
-  command->add_option("--compare", arguments->compare, "condition, group or session, and which of them (all)")
-      ->type_name("WHAT [NAME...]");
-  command->add_option("--group", arguments->groups, "who is in a group: patients=1-10,12")->type_name("NAME=N,...");
+  add_comparing_options(*command, arguments->comparing);
   add_output_options(*command, arguments->output, "mbk.study_summary/1");
   return [arguments] { return run_summary(*arguments); };
 }
