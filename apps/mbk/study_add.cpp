@@ -10,6 +10,9 @@
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_options.h"
 #include "mbk/files/bids/read_run.h"
+#include "mbk/files/c3d/c3d.h"
+#include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/kinarm/exam_parameters.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/study/store/identifying.h"
 #include "mbk/study/store/trial_names.h"
@@ -69,10 +72,13 @@ class Adder {
     for (int k = 0; k < reader->count(); ++k) {
       auto recording = reader->read(k);
       if (!recording) return tl::unexpected(recording.error());
-      auto trial = check(*recording, facts);
+      const std::vector<std::string> unseen = unseen_entries(incoming.path(), *recording);
+      auto trial = check(*recording, facts, unseen);
       if (!trial) return tl::unexpected(trial.error());
       recordings.push_back({reader->count() > 1 ? k + 1 : 0, *trial, duration(*recording)});
-      if (!store::identifying_entries(recording->metadata).empty()) return add_stripped(incoming, *reader, facts);
+      if (!unseen.empty() || !store::identifying_entries(recording->metadata).empty()) {
+        return add_stripped(incoming, *reader, facts, unseen);
+      }
     }
     const std::string sha256 = incoming.sha256();
     return study_.add(std::move(incoming), recordings, sha256, arguments_.study.role);
@@ -82,12 +88,25 @@ class Adder {
     return recording.samples() > 0 ? recording.time[recording.samples() - 1] - recording.time[0] : 0.0;
   }
 
-  Result<store::TrialFacts> check(const Recording& recording, const KnownFacts& facts) const {
+  /// What a file holds that its reader does not show, and that may say who the person is.
+  static std::vector<std::string> unseen_entries(const std::filesystem::path& file, const Recording& recording) {
+    const std::string format = recording.sources.empty() ? "" : recording.sources.front().format;
+    if (format.starts_with("KINARM")) return {"what the exam says of the person and its name"};
+    if (format != "C3D") return {};
+    const auto bytes = recording::read_file(file);
+    if (!bytes) return {};
+    const auto parameters = recording::decode_c3d_parameters(bytes->bytes());
+    return parameters ? recording::ExamParameters::of(*parameters).personal_texts() : std::vector<std::string>();
+  }
+
+  Result<store::TrialFacts> check(const Recording& recording, const KnownFacts& facts,
+                                  const std::vector<std::string>& unseen) const {
     const auto withdrawn = recording.metadata.find("withdrawn");
     if (withdrawn != recording.metadata.end() && withdrawn->second == "yes") {
       return bad_data("the person has withdrawn: these data must not be used", "remove the file");
     }
-    const auto identifying = store::identifying_entries(recording.metadata);
+    auto identifying = store::identifying_entries(recording.metadata);
+    identifying.insert(identifying.end(), unseen.begin(), unseen.end());
     if (!identifying.empty() && !arguments_.strip) {
       return bad_data(fmt::format("its metadata may identify a person: {}", fmt::join(identifying, ", ")),
                       "pass --strip to store a copy without these entries");
@@ -113,14 +132,15 @@ class Adder {
   }
 
   /// Each trial as a recording of its own, in HDF5, without what may identify a person.
-  Added add_stripped(const store::IncomingFile& incoming, const RecordingReader& reader, const KnownFacts& facts) {
+  Added add_stripped(const store::IncomingFile& incoming, const RecordingReader& reader, const KnownFacts& facts,
+                     const std::vector<std::string>& unseen) {
     std::vector<AddedRecording> all;
     for (int k = 0; k < reader.count(); ++k) {
       auto recording = reader.read(k);
       if (!recording) return tl::unexpected(recording.error());
-      const auto trial = check(*recording, facts);
+      const auto trial = check(*recording, facts, unseen);
       if (!trial) return tl::unexpected(trial.error());
-      auto added = add_copy(incoming, std::move(*recording), *trial);
+      auto added = add_copy(incoming, std::move(*recording), *trial, unseen);
       if (!added) return added;
       all.insert(all.end(), added->begin(), added->end());
     }
@@ -146,20 +166,22 @@ class Adder {
         store::bids_label(condition->second) == *facts.condition) {
       known.condition = condition->second;
     }
-    const auto trial = check(*recording, known);
+    const auto trial = check(*recording, known, {});
     if (!trial) return tl::unexpected(trial.error().in(motion.string()));
     auto incoming = study_.bring_in(motion);
     if (!incoming) return tl::unexpected(incoming.error());
-    auto added = add_copy(*incoming, std::move(*recording), *trial);
+    auto added = add_copy(*incoming, std::move(*recording), *trial, {});
     if (!added) return tl::unexpected(named(added.error(), incoming->path(), motion));
     return added;
   }
 
   /// Stores a recording as HDF5, without what may identify a person.
-  /// @param incoming  what it was read from
-  Added add_copy(const store::IncomingFile& incoming, Recording recording, const store::TrialFacts& trial) {
-    const auto entries = store::identifying_entries(recording.metadata);
+  /// @param incoming  what it was read from    @param unseen  what stays in that, and not in the recording
+  Added add_copy(const store::IncomingFile& incoming, Recording recording, const store::TrialFacts& trial,
+                 const std::vector<std::string>& unseen) {
+    auto entries = store::identifying_entries(recording.metadata);
     for (const std::string& key : entries) recording.metadata.erase(key);
+    entries.insert(entries.end(), unseen.begin(), unseen.end());
     if (!entries.empty() && !arguments_.quiet) {
       say("mbk: stored without: {}\n", fmt::format("{}", fmt::join(entries, ", ")));
     }
@@ -169,7 +191,7 @@ class Adder {
     if (auto ok = recording::write(recording, made, recording::Format::hdf5, true); !ok) {
       return tl::unexpected(ok.error());
     }
-    auto copy = study_.bring_in(made, ".h5");
+    auto copy = study_.bring_in(made, kCopyExtension);
     std::error_code ignored;
     std::filesystem::remove(made, ignored);
     if (!copy) return tl::unexpected(copy.error());

@@ -77,15 +77,10 @@ class NewFolder {
   fs::path target_, path_;
 };
 
-Result<Recording> read_stored(const store::Store& study, const Measuring& measuring, const store::StoredRecording& r) {
+Result<Recording> read_unchanged(const store::Store& study, const Measuring& measuring,
+                                 const store::StoredRecording& r) {
   const fs::path file = study.folder() / store::stored_name(r.sha256, r.extension);
-  ReadingArguments reading = measuring.arguments.reading;
-  reading.files = {file};
-  const auto reader = RecordingReader::of(reading, measuring.arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
-  const int which = r.part == 0 ? 0 : static_cast<int>(r.part) - 1;
-  if (which >= reader->count()) return bad_data(fmt::format("there is no record {} in it", r.part), "", file.string());
-  auto recording = reader->read(which);
+  auto recording = read_stored(measuring, file, r.part, Reading::whole);
   if (!recording) return recording;
   if (recording->sources.size() != 1 || recording->sources.front().sha256 != r.sha256) {
     return bad_data("its bytes are not those that were added", "restore it from a backup; 'mbk study check' names all",
@@ -123,7 +118,7 @@ int export_bids(const store::Store& study, const store::StudyList& list, const f
       excluded.push_back(r.number);
       continue;
     }
-    auto recording = read_stored(study, **measuring, r);
+    auto recording = read_unchanged(study, **measuring, r);
     if (!recording) {
       code = std::max(code, report_error(recording.error()));
       continue;
