@@ -444,7 +444,7 @@ class Study(Measured):
         """What of a study can be listed, sorted; and what is wrong with it."""
         ran = run(["study", "check", "--study", "s", "--json", "--quick"], folder)
         if ran.code != FINE:
-            return [], f"check: exit {ran.code}: {(ran.out + ran.err)[-300:]}"
+            return [], f"check: exit {ran.code}: {' '.join((ran.out + ran.err).split())[-300:]}"
         left = [path for path in (folder / "s").rglob("*.part*")]
         if left:
             return [], f"left half-written after check: {left}"

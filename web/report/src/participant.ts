@@ -120,7 +120,7 @@ export function participantSections(report: ParticipantReport): HTMLElement[] {
   const ellipses = ellipseFigure(report.matrices, "K", (_, condition) => ofCondition(condition, conditions) || "stiffness");
   return [
     h("section", { id: "change" }, heading(2, "What changed since the first session"),
-      ...(primary.length > 0 ? primary.map((one) => statement(one, conditions)) : [h("p", { class: "said" }, "There is no usable result of this participant: nothing can be said.")]),
+      ...(primary.length > 0 ? primary.map((one) => statement(one, conditions)) : [h("p", { class: "said" }, report.courses.length > 0 ? `There is no result of the ${outcomeName(report.primary)} of this participant.` : "There is no usable result of this participant: nothing can be said.")]),
       primary.some(lastOf) ? courseFigures(primary.filter(lastOf), conditions) : ""),
     limits(report, shown),
     ...(tables.length > 0 ? [h("section", { id: "outcomes" }, heading(2, "All outcomes"), ...tables)] : []),
