@@ -43,6 +43,39 @@ std::map<std::int64_t, SessionValues> values_of(const store::OutcomeColumns& col
   return people;
 }
 
+/// Sets what may be said of a change.
+void judge(Change& change, const Course& course, const DetectableChange& error) {
+  const auto results = [&](std::int64_t session) {
+    return std::ranges::find(course.sessions, session, &SessionMean::session)->results;
+  };
+  if (error.known()) {
+    change.mdc = error.between(results(change.first_session), results(change.last_session));
+    change.mdc95 = {error.lower_factor * change.mdc, error.upper_factor * change.mdc};
+  }
+  change.verdict = verdict_of(change.difference, change.mdc, change.mdc95);
+}
+
+/// The minimal detectable change by everyone else.
+DetectableChange without(std::int64_t participant, const store::OutcomeColumns& columns,
+                         const store::OutcomeColumn& column, const std::string& condition) {
+  store::OutcomeColumns others{{condition}, {}, {{column.name, column.unit, {}, {}}}};
+  store::OutcomeColumn& kept = others.outcomes.front();
+  for (std::size_t k = 0; k < columns.trials.size(); ++k) {
+    store::TrialRow trial = columns.trials[k];
+    if (trial.participant == participant ||
+        columns.conditions[static_cast<std::size_t>(trial.condition)] != condition) {
+      continue;
+    }
+    trial.condition = 0;
+    others.trials.push_back(trial);
+    kept.values.push_back(column.values[k]);
+    if (!column.standard_errors.empty()) kept.standard_errors.push_back(column.standard_errors[k]);
+  }
+  const auto found = statistics::study_statistics(others, {.outcomes = {column.name}});
+  if (!found || found->reliability.empty()) return {.why_unknown = "nothing is left without this person"};
+  return detectable_change(found->reliability.front());
+}
+
 Course course_of(std::int64_t participant, const SessionValues& values, bool axial, const DetectableChange& error) {
   Course course{.participant = participant};
   for (const auto& [session, results] : values) {
@@ -64,11 +97,7 @@ Course course_of(std::int64_t participant, const SessionValues& values, bool axi
                   .first = first.mean,
                   .last = one.mean,
                   .difference = difference_of(one.mean, first.mean, axial)};
-    if (error.known()) {
-      change.mdc = error.between(first.results, one.results);
-      change.mdc95 = {error.lower_factor * change.mdc, error.upper_factor * change.mdc};
-    }
-    change.verdict = verdict_of(change.difference, change.mdc, change.mdc95);
+    judge(change, course, error);
     course.changes.push_back(change);
   }
   const auto count = static_cast<double>(course.sessions.size());
@@ -158,7 +187,18 @@ std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns, const 
     const DetectableChange error = detectable_change(reliability);
     one.why_unknown = error.why_unknown;
     for (const auto& [number, values] : values_of(columns, *column, one.condition, participant)) {
-      one.courses.push_back(course_of(number, values, one.axial, error));
+      Course course = course_of(number, values, one.axial, error);
+      const bool stands_out = std::ranges::any_of(
+          course.changes, [](const Change& change) { return std::abs(change.difference) > change.mdc; });
+      const DetectableChange others =
+          stands_out ? without(number, columns, *column, one.condition) : DetectableChange();
+      if (stands_out && others.known()) {
+        for (Change& change : course.changes) {
+          judge(change, course, others);
+          change.by_others = true;
+        }
+      }
+      one.courses.push_back(std::move(course));
     }
     if (!participant) set_mean(one);
     if (!one.courses.empty()) all.push_back(std::move(one));

@@ -44,6 +44,7 @@ struct Change {
   double difference = kNaN;       ///< last − first
   double mdc = kNaN;              ///< minimal detectable change (95 %) between means of so many results; NaN: unknown
   Interval mdc95 = {kNaN, kNaN};  ///< how well that is known
+  bool by_others = false;         ///< by the variances of all other people, since it is more than by those of all
   ChangeVerdict verdict = ChangeVerdict::unknown;
 };
 
@@ -85,7 +86,9 @@ struct DetectableChange {
 /// What a difference is by that.
 [[nodiscard]] ChangeVerdict verdict_of(double difference, double mdc, const Interval& mdc95);
 
-/// Of every outcome and condition that the statistics tell of.
+/// Of every outcome and condition that the statistics tell of. Whoever differs by more than the minimal detectable
+/// change of all people is judged by that of all others, where that is known: one large change among few people would
+/// otherwise hide itself.
 /// @param participant  only that one's courses; the minimal detectable change is still that of all people
 [[nodiscard]] std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns,
                                                   const statistics::StudyStatistics& statistics,

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "mbk/study/longitudinal/study_report.h"
 
@@ -55,6 +57,41 @@ TEST(Courses, ChangeBeyondErrorIsToldFromOneThatIsNot) {
     EXPECT_GT(change.mdc95.second, change.mdc);
     EXPECT_LT(one.interval95.first, one.mean);
   }
+}
+
+TEST(Courses, LargeChangeAmongFewPeopleDoesNotHideItself) {
+  const auto columns = study_of(6, 2, 2, "K_xx", [](int p, int s, int t) {
+    return 100.0 + 10.0 * p + scatter(p, s, t) + (p == 3 && s == 2 ? 80.0 : 0.0);
+  });
+  const auto all = courses_of(columns);
+  for (const Course& one : all.at(0).courses) {
+    const Change& change = one.changes.at(0);
+    EXPECT_EQ(change.by_others, one.participant == 3) << one.participant;
+    EXPECT_EQ(change.verdict, one.participant == 3 ? ChangeVerdict::beyond_error : ChangeVerdict::within_error);
+  }
+  EXPECT_LT(all[0].courses[2].changes[0].mdc, 0.5 * all[0].courses[0].changes[0].mdc);
+}
+
+TEST(Courses, WhoDidNotChangeIsSeldomSaidToHave) {
+  constexpr int kStudies = 150, kPeople = 8;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  int beyond = 0, more = 0;
+  for (int k = 0; k < kStudies; ++k) {
+    std::map<std::pair<int, int>, double> drawn;
+    const auto all = courses_of(study_of(kPeople, 2, 2, "K_xx", [&](int p, int s, int) {
+      if (!drawn.contains({p, 0})) drawn[{p, 0}] = 30.0 * normal(random);
+      if (!drawn.contains({p, s})) drawn[{p, s}] = 10.0 * normal(random);
+      return 200.0 + drawn[{p, 0}] + drawn[{p, s}] + 5.0 * normal(random);
+    }));
+    for (const Course& one : all.at(0).courses) {
+      beyond += one.changes.at(0).verdict == ChangeVerdict::beyond_error ? 1 : 0;
+      more += std::abs(one.changes[0].difference) > one.changes[0].mdc ? 1 : 0;
+    }
+  }
+  EXPECT_LT(beyond, 0.025 * kStudies * kPeople);
+  EXPECT_GT(more, beyond);
+  EXPECT_LT(more, 0.1 * kStudies * kPeople);
 }
 
 TEST(Courses, DetectableChangeFollowsFromVariances) {

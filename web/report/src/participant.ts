@@ -46,13 +46,14 @@ function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
   const same = change.difference === 0;
   const mdc = withUnit(plainly(change.mdc95), one.unit);
   const [low, high] = change.mdc95_interval.map((value) => among(value, change.mdc95)) as [string, string];
+  const whose = change.by_others ? "; by all other people of the study" : "";
   const verdicts: Record<SessionChange["verdict"], [string, string]> = {
     "beyond-error": [
       `In session ${change.last_session} the ${name} ${movement}: more than measurement error explains.`,
-      `The minimal detectable change is ${mdc} (95 % interval ${low} to ${high}).`],
+      `The minimal detectable change is ${mdc} (95 % interval ${low} to ${high}${whose}).`],
     uncertain: [
       `In session ${change.last_session} the ${name} ${movement}. It is not certain that this is more than measurement error.`,
-      `It is more than the minimal detectable change of ${mdc}, but that is itself only known to lie between ${low} and ${high} (95 %).`],
+      `It is more than the minimal detectable change of ${mdc}, but that is itself only known to lie between ${low} and ${high} (95 %${whose}).`],
     "within-error": [
       `Between session ${change.first_session} and session ${change.last_session} no change of the ${name} is shown.`,
       `The difference is no more than the minimal detectable change of ${mdc} (95 % interval ${low} to ${high}), so it may be measurement error. That is no proof that nothing changed.`],
@@ -107,7 +108,7 @@ function limits(report: ParticipantReport, shown: number): HTMLElement {
       h("li", {}, "“No change shown” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
       shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page looks at ${shown}; a single one that stands out may be chance.`) : "",
       known.length > 0
-        ? h("li", {}, `The minimal detectable change is that of this study: of ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more, in this apparatus and between its sessions. Where most of them really changed, it is too large; for other people or another apparatus it says nothing.`)
+        ? h("li", {}, `The minimal detectable change is that of this study: of ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more, in this apparatus and between its sessions. Whoever stands out is judged by all others. Where most people really changed, it is too large; for other people or another apparatus it says nothing.`)
         : h("li", {}, "No minimal detectable change is known here, so that no difference on this page can be told from measurement error.")));
 }
 
