@@ -385,7 +385,7 @@ Result<CheckReport> Store::check(bool remove_leftovers, const std::function<void
     CheckReport report;
     Checker checker(*database_, report);
     {
-      const SQLite::Transaction snapshot(database_->connection, SQLite::TransactionBehavior::DEFERRED);
+      const WriteTransaction snapshot(database_->connection, "BEGIN DEFERRED");  // which only reads
       checker.check_database();
       checker.check_log();
       checker.check_recordings();

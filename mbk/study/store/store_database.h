@@ -95,8 +95,9 @@ inline std::optional<std::int64_t> optional_number_at(const SQLite::Statement& r
 /// there is no memory left, in which SQLite::Transaction would end the program.
 class WriteTransaction {
  public:
-  explicit WriteTransaction(SQLite::Database& connection) : connection_(connection) {
-    connection_.exec("BEGIN IMMEDIATE");
+  explicit WriteTransaction(SQLite::Database& connection, const char* begin = "BEGIN IMMEDIATE")
+      : connection_(connection) {
+    connection_.exec(begin);
   }
   WriteTransaction(const WriteTransaction&) = delete;
   WriteTransaction& operator=(const WriteTransaction&) = delete;

@@ -210,7 +210,7 @@ function limitsSection(): HTMLElement {
   return h("section", { id: "limits" }, heading(2, "What these numbers do not say"),
     h("ul", { class: "limits" },
       h("li", {}, "Reliability and minimal detectable change are those of these people, this apparatus and these sessions. They say nothing of others."),
-      h("li", {}, "A change that is more than measurement error need not matter, and has no cause here."),
+      h("li", {}, "A change beyond the error of measurement need not matter, and has no cause here."),
       h("li", {}, "Results that are not usable and excluded recordings do not count; they are listed below with their reasons.")));
 }
 
