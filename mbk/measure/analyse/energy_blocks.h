@@ -20,6 +20,7 @@ struct EnergyBlock {
   double duration = 0;            ///< [s]
   EnergySums total;               ///< at its end
   std::vector<EnergySums> hull;   ///< those of the samples that the upper hull of them all touches, the first included
+  std::vector<double> slopes;     ///< −dE/dS from each vertex of the hull to the next; they fall
   std::vector<EnergySums> sums;   ///< after each interval; S never falls. Empty where `again` makes them.
   std::vector<std::size_t> next;  ///< for each of `sums` the next at which λ can be larger; the last vertex has its own
   std::function<std::vector<EnergySums>()> again;  ///< makes `sums`; asked for where a bootstrap cuts the block in two

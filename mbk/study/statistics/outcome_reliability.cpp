@@ -87,6 +87,16 @@ reliability::Measurements measurements_of(const OutcomeRows& rows, bool weighted
   return m;
 }
 
+/// Whether the trials' own errors explain more than there is: then an error of measurement made of them would be one
+/// that nobody has seen.
+bool overstated(const reliability::MixedModel& weighted, reliability::Measurements m) {
+  if (weighted.residual.value > 0.0) return false;
+  m.known_variance.resize(0);
+  const auto plain = reliability::fit_mixed_model(m);
+  constexpr double kByMuch = 1.5;
+  return !plain || weighted.typical_known_variance > kByMuch * plain->residual.value;
+}
+
 MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Cell>& cells, int participants,
                                    std::vector<std::string>& notes) {
   MixedReliability result;
@@ -106,8 +116,15 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
     notes.push_back(
         fmt::format("trials are not weighted by their standard errors: there are more than {}", kMostWeighted));
   }
-  const reliability::Measurements m = measurements_of(rows, result.weighted);
-  const auto model = reliability::fit_mixed_model(m);
+  reliability::Measurements m = measurements_of(rows, result.weighted);
+  auto model = reliability::fit_mixed_model(m);
+  if (result.weighted && model && overstated(*model, m)) {
+    notes.emplace_back(
+        "trials are not weighted by their standard errors: these say more than what the trials differ by");
+    result.weighted = false;
+    m.known_variance.resize(0);
+    model = reliability::fit_mixed_model(m);
+  }
   if (!model) {
     notes.push_back("no mixed model: " + model.error().message);
     return result;
@@ -152,6 +169,9 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
   result.agreement = agreements(result.between_sessions);
   result.influence = influence_on_icc(result.between_sessions);
   result.within_session = repeated(trials_of_one_session(rows, cells, result.session));
+  if (result.session == 0 && result.participants >= reliability::kMinPeople) {
+    result.within_session.support = Support::too_few_sessions;
+  }
   result.mixed_model = mixed_reliability(rows, cells, result.participants, result.notes);
 
   const Repeated& sessions = result.between_sessions;
@@ -161,10 +181,12 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
   }
   if (result.influence) {
     const auto [low, high] = sessions.test_retest.agreement_by_large_samples95;
-    const double without = result.influence->without;
+    // Below 0 the interval ends, and one ICC says what another does.
+    const double without = std::max(0.0, result.influence->without);
     if (without < low || without > high) {
       result.notes.push_back(fmt::format("participant {} decides: without them ICC(A,1) is {:.2f}, not {:.2f}",
-                                         result.influence->participant, without, sessions.test_retest.icc[1].value));
+                                         result.influence->participant, result.influence->without,
+                                         sessions.test_retest.icc[1].value));
     }
   }
   return result;

@@ -218,6 +218,20 @@ TEST(Reliability, WeightsTrialsByTheirStandardErrors) {
   EXPECT_NEAR(weighted.known, (900.0 + 3.0) / 4.0, 1e-9);
 }
 
+TEST(Reliability, DoesNotBelieveStandardErrorsThatSayMoreThanThereIs) {
+  Results results({"K"});
+  const OutcomeColumns drawn_columns = drawn(10, 2, 3, 20, 0, 2).columns();
+  for (std::size_t k = 0; k < drawn_columns.trials.size(); ++k) {
+    const auto& trial = drawn_columns.trials[k];
+    results.add(static_cast<int>(trial.participant), static_cast<int>(trial.session),
+                {drawn_columns.outcomes[0].values[k]}, 0, 30.0);
+  }
+  const OutcomeReliability one = statistics_of(results).reliability[0];
+  EXPECT_FALSE(one.mixed_model.weighted);
+  EXPECT_LT(one.mixed_model.of_trials.at(0).sem_within, 4.0);
+  EXPECT_THAT(one.notes, testing::Contains(HasSubstr("not weighted")));
+}
+
 TEST(Orientation, IsTheSameHalfATurnFurther) {
   numeric::Random random(4);
   Results near({"stiffness_orientation"}), turned({"stiffness_orientation"});
@@ -273,8 +287,11 @@ TEST(MatrixSpread, TellsPeopleApartOnlyWhereTheyDiffer) {
     ASSERT_EQ(found.matrices.size(), 1U);
     EXPECT_EQ(found.matrices[0].within.count, 12 * 3);
     EXPECT_EQ(found.matrices[0].between.count, 12 * 11 / 2);
-    if (spread > 0.0) EXPECT_GT(found.matrices[0].closer, 0.9);
-    if (spread == 0.0) EXPECT_LT(found.matrices[0].closer, 0.6);
+    if (spread > 0.0) {
+      EXPECT_GT(found.matrices[0].closer, 0.9);
+    } else {
+      EXPECT_LT(found.matrices[0].closer, 0.6);
+    }
   }
 }
 
@@ -381,7 +398,7 @@ TEST(AComparison, SaysWhereItRestsOnOnePerson) {
   // Seven people change by one nearly alike, weakly; the eighth makes it significant.
   Results results({"K"}, {"relaxed", "tensed"});
   const double change[8] = {1.0, -0.6, 0.9, -0.5, 1.1, -0.4, 1.2, 1.15};
-  for (int i = 1; i <= 8; ++i) results.add(i, 1, {100.0 + i}, 0).add(i, 1, {100.6 + i + change[i - 1]}, 1);
+  for (int i = 1; i <= 8; ++i) results.add(i, 1, {100.0 + i}, 0).add(i, 1, {100.3 + i + change[i - 1]}, 1);
   const OutcomeComparison one =
       statistics_of(results, comparing(ComparedBy::condition)).comparison.value().outcomes.at(0);
   ASSERT_EQ(one.verdict, Verdict::differs);

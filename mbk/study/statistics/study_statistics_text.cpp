@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 #include "mbk/study/statistics/outcome_rows.h"
 
@@ -13,8 +14,12 @@ namespace {
 
 constexpr std::size_t kWidth = 80;
 
+/// So many digits, and no exponent where the number can do without one.
 std::string digits(double value, int count = 3) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, count) : "–";
+  if (!std::isfinite(value)) return "–";
+  constexpr double kThousand = 1e3, kMillion = 1e6;
+  const double size = std::abs(value);
+  return size >= kThousand && size < kMillion ? fmt::format("{:.0f}", value) : fmt::format("{:.{}g}", value, count);
 }
 
 /// "0.91", and "1.00" for what is just below 1.
@@ -38,9 +43,10 @@ std::string shares(const Interval& interval) {
 /// "first" and what follows under each other, in lines that fit.
 std::string item(const std::string& first, const std::string& text) {
   std::string lines = first;
-  for (const char c : report::wrapped(text, kWidth - first.size())) {
+  const std::size_t indent = report::columns(first);
+  for (const char c : report::wrapped(text, kWidth - indent)) {
     lines += c;
-    if (c == '\n') lines.append(first.size(), ' ');
+    if (c == '\n') lines.append(indent, ' ');
   }
   return lines + "\n";
 }
@@ -129,8 +135,9 @@ std::string repeated_details(const Repeated& repeated) {
     text += "\n";
   }
   for (const reliability::MeasurementError& one : found.error) {
-    text += fmt::format("    {:<16} {} ({}), MDC {} ({})\n", fmt::format("SEM {}", word_of(one.form)), digits(one.sem),
-                        range(one.sem95), digits(one.mdc95), range(one.mdc95_interval));
+    text += item(fmt::format("    {:<16} ", fmt::format("SEM {}", word_of(one.form))),
+                 fmt::format("{} ({}), MDC {} ({})", digits(one.sem), range(one.sem95), digits(one.mdc95),
+                             range(one.mdc95_interval)));
   }
   return text;
 }
@@ -199,15 +206,20 @@ std::string details_of(const OutcomeReliability& one) {
 
 std::string matrices_text(const std::vector<MatrixSpread>& matrices) {
   std::string rows;
+  int left_out = 0;
   for (const MatrixSpread& one : matrices) {
     if (one.support != Support::enough) continue;
     const auto quartiles = [](const Quartiles& q) {
       return fmt::format("{} ({} to {})", digits(q.median), digits(q.lower), digits(q.upper));
     };
+    left_out += one.left_out;
     rows += fmt::format("  {:<20} {:<2} {:>22} {:>22} {:>8}\n", condition_title(one.condition), one.matrix,
                         quartiles(one.within), quartiles(one.between), share(one.closer));
   }
   if (rows.empty()) return "";
+  if (left_out > 0) {
+    rows += item("  ", fmt::format("without {} sessions whose mean matrix is not positive definite", left_out));
+  }
   return fmt::format("\nimpedance width between whole matrices: median (quartiles)\n  {:<23} {:>22} {:>22} {:>8}\n",
                      "condition, matrix", "sessions of a person", "people", "closer") +
          rows +
@@ -222,12 +234,11 @@ std::string people_text(const reliability::Difference& difference) {
 }
 
 std::string comparison_line(const OutcomeComparison& one) {
-  const std::string name = fmt::format("  {:<23} {:>7} ", one.outcome, people_text(one.difference));
+  const std::string name = fmt::format("  {:<23} {:>6} ", one.outcome, people_text(one.difference));
   if (one.verdict == Verdict::no_variation) return name + "no variation that could be compared\n";
   if (one.difference.support != Support::enough) return name + "too few people\n";
-  return name + fmt::format("{:>8} {:>18} {:>5} {:>6} {:>6}{}\n", digits(one.difference.value),
-                            range(one.difference.interval95), digits(one.difference.effect.g, 2),
-                            p_text(one.difference.p), p_text(one.p_holm),
+  return name + fmt::format("{:>9} {:>20} {:>5} {:>6}{}\n", digits(one.difference.value),
+                            range(one.difference.interval95), digits(one.difference.effect.g, 2), p_text(one.p_holm),
                             one.verdict == Verdict::differs          ? " *"
                             : one.verdict == Verdict::too_few_people ? " ?"
                                                                      : "");
@@ -239,9 +250,10 @@ std::string comparison_details(const OutcomeComparison& one) {
   text += item("      ", fmt::format("means {} and {}; g {} ({}), d {}", digits(one.first_mean, 4),
                                      digits(one.second_mean, 4), digits(one.difference.effect.g),
                                      range(one.difference.effect.interval95), digits(one.difference.effect.d)));
-  text += item("      ", fmt::format("permutation p {} ({} arrangements{}); Benjamini–Hochberg p {}",
-                                     p_text(one.permutation.p), one.permutation.arrangements,
-                                     one.permutation.exact ? ", all" : " drawn", p_text(one.p_benjamini_hochberg)));
+  text +=
+      item("      ", fmt::format("p {}, Benjamini–Hochberg {}; permutation p {} ({} {} arrangements)",
+                                 p_text(one.difference.p), p_text(one.p_benjamini_hochberg), p_text(one.permutation.p),
+                                 one.permutation.exact ? "all" : "drawn", one.permutation.arrangements));
   if (one.mixed_model) {
     text += item("      ",
                  fmt::format("mixed model of {} people{}: {} ({}), p {}", one.mixed_model->participants,
@@ -302,10 +314,10 @@ std::string comparison_text(const StudyStatistics& statistics, bool details) {
     if (before == nullptr || before->condition != one.condition || before->first != one.first ||
         before->second != one.second) {
       const std::string what(word_of(comparison.by));
-      text += fmt::format("\n{} {} − {}{}\n  {:<23} {:>7} {:>8} {:>18} {:>5} {:>6} {:>6}\n", what,
-                          condition_title(one.second), condition_title(one.first),
-                          one.condition.empty() ? "" : ", " + one.condition, "outcome", "n", "mean", "95 %", "g", "p",
-                          "Holm");
+      text +=
+          fmt::format("\n{} {} − {}{}\n  {:<23} {:>6} {:>9} {:>20} {:>5} {:>6}\n", what, condition_title(one.second),
+                      condition_title(one.first), one.condition.empty() ? "" : ", " + one.condition, "outcome", "n",
+                      "change", "95 %", "g", "p");
     }
     before = &one;
     text += comparison_line(one);
@@ -316,10 +328,10 @@ std::string comparison_text(const StudyStatistics& statistics, bool details) {
   const bool few = std::ranges::any_of(
       comparison.outcomes, [](const OutcomeComparison& one) { return one.verdict == Verdict::too_few_people; });
   text += fmt::format(
-      "\nn: people, each with the mean of their results (one number: pairs). 95 %: of\n"
-      "the difference; g: Hedges; p: Student's t of pairs, else Welch's; Holm: p\n"
-      "adjusted for all {} tests. * differs (Holm ≤ 0.05). Without *, a difference was\n"
-      "not shown, which does not show that there is none.\n",
+      "\nn: people, each with the mean of their results (one number: pairs). g: Hedges.\n"
+      "p: Student's t of pairs, else Welch's, adjusted for all {} tests (Holm). * p is\n"
+      "at most 0.05. Without *, a difference was not shown, which does not show that\n"
+      "there is none. --outcome NAME shows permutation test and mixed model.\n",
       comparison.tests);
   if (few) text += "? too few people: whatever they did, no permutation of them could reach 0.05.\n";
   return text;

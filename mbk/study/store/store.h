@@ -141,8 +141,6 @@ class Store {
   [[nodiscard]] Result<std::string> document(const Unit& unit, std::int64_t analysis) const;
 
   /// Of usable results of recordings that are not excluded.
-  [[nodiscard]] Result<ObservationTable> observations(std::int64_t analysis) const;
-  /// The same as columns.
   [[nodiscard]] Result<OutcomeColumns> columns(std::int64_t analysis) const;
 
   /// Erases a participant's recordings and results, and keeps the fact in the log.

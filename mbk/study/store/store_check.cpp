@@ -252,21 +252,7 @@ class Checker {
       if (!read) return false;
       expected = std::move(*read);
     }
-    auto rows =
-        query(database_.connection,
-              "SELECT name, value, standard_error, unit FROM outcome WHERE result = ? ORDER BY position", number);
-    std::size_t k = 0;
-    for (; rows.executeStep(); ++k) {
-      if (k >= expected.size()) return false;
-      const Outcome& one = expected[k];
-      const bool has_error = !rows.getColumn(2).isNull();
-      if (text_at(rows, 0) != one.name || rows.getColumn(1).getDouble() != one.value || text_at(rows, 3) != one.unit ||
-          has_error != one.standard_error.has_value() ||
-          (has_error && rows.getColumn(2).getDouble() != *one.standard_error)) {
-        return false;
-      }
-    }
-    return k == expected.size();
+    return unpacked_outcomes(database_.connection, number) == expected;
   }
 
   void problem(std::string sentence) { report_.problems.push_back(printable(std::move(sentence))); }

@@ -58,6 +58,14 @@ CREATE TABLE log(
   hash TEXT NOT NULL) STRICT;
 CREATE TRIGGER log_is_never_changed BEFORE UPDATE ON log BEGIN SELECT RAISE(ABORT, 'the log is append-only'); END;
 CREATE TRIGGER log_is_never_shortened BEFORE DELETE ON log BEGIN SELECT RAISE(ABORT, 'the log is append-only'); END;
+)",
+    // the numbers of a result in one row: a summary reads millions of them
+    R"(
+CREATE TABLE layout(number INTEGER PRIMARY KEY, names TEXT NOT NULL UNIQUE) STRICT;
+CREATE TABLE packed(
+  result INTEGER PRIMARY KEY REFERENCES result(number) ON DELETE CASCADE,
+  layout INTEGER NOT NULL REFERENCES layout(number), numbers BLOB NOT NULL) STRICT;
+DROP TABLE outcome;
 )"};
 
 int pragma_number(SQLite::Database& connection, const char* pragma) {
@@ -124,6 +132,9 @@ Result<void> migrate(SQLite::Database& connection, const std::filesystem::path& 
                     "use that one", file);
   }
   for (int i = found; i < latest; ++i) connection.exec(kMigrations.at(static_cast<std::size_t>(i)));
+  if (found == 1) {
+    if (auto ok = pack_all_outcomes(connection); !ok) return tl::unexpected(ok.error().in(file));
+  }
   connection.exec(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", kApplication, latest));
   alone.commit();
   return {};

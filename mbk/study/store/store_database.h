@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/study/store/store_values.h"
@@ -174,6 +175,16 @@ inline constexpr const char* kRecordingColumns =
 [[nodiscard]] std::string digest_of(const SaltedRecording& recording);
 [[nodiscard]] std::string digest_of(const std::string& salt, const std::string& options_sha256,
                                     const std::string& version, const UnitResult& result);
+
+/// Stores the numbers of a result in one row: their names and units are those of a layout, the row has the values and
+/// then the standard errors (NaN: none), 8 bytes each, little-endian.
+void pack_outcomes(SQLite::Database& connection, std::int64_t result, const std::vector<Outcome>& outcomes);
+
+/// Packs those of every document.   @fails  data: a document that is none
+[[nodiscard]] Result<void> pack_all_outcomes(SQLite::Database& connection);
+
+/// The numbers of a result; nothing where there are none, or what is there is no layout and its numbers.
+[[nodiscard]] std::vector<Outcome> unpacked_outcomes(const SQLite::Database& connection, std::int64_t result);
 
 /// Removes the files of forgotten recordings that are still there, however the process ended that forgot them.
 /// Under a lock that keeps others from adding.   @returns  how many

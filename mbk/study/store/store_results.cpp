@@ -8,7 +8,6 @@
 #include "mbk/study/store/store.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"
-#include "mbk/study/store/study_summary.h"
 
 namespace mbk::store {
 namespace {
@@ -60,13 +59,7 @@ bool save_one(SQLite::Database& connection, std::int64_t analysis, const std::st
   if (stored == 0) return false;
   const std::int64_t number = connection.getLastInsertRowid();
   if (!failed) execute(connection, "INSERT INTO document VALUES (?, ?)", number, result.document);
-  SQLite::Statement insert(connection, "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?)");
-  std::int64_t position = 0;
-  for (const Outcome& outcome : outcomes) {
-    bind_all(insert, number, position++, outcome.name, outcome.value, outcome.standard_error, outcome.unit);
-    insert.exec();
-    insert.reset();
-  }
+  if (!outcomes.empty()) pack_outcomes(connection, number, outcomes);
   LogLine line{.role = role, .action = LoggedAction::measure};
   line.recording = recording;
   line.analysis = analysis;
@@ -169,18 +162,8 @@ Result<std::vector<StoredResult>> Store::results_of(std::int64_t recording) cons
 }
 
 Result<std::vector<Outcome>> Store::outcomes(std::int64_t result) const {
-  return guarded(folder(), [&]() -> Result<std::vector<Outcome>> {
-    std::vector<Outcome> all;
-    auto rows =
-        query(database_->connection,
-              "SELECT name, value, standard_error, unit FROM outcome WHERE result = ? ORDER BY position", result);
-    while (rows.executeStep()) {
-      Outcome outcome{text_at(rows, 0), rows.getColumn(1).getDouble(), std::nullopt, text_at(rows, 3)};
-      if (!rows.getColumn(2).isNull()) outcome.standard_error = rows.getColumn(2).getDouble();
-      all.push_back(std::move(outcome));
-    }
-    return all;
-  });
+  return guarded(folder(),
+                 [&]() -> Result<std::vector<Outcome>> { return unpacked_outcomes(database_->connection, result); });
 }
 
 Result<std::string> Store::document(std::int64_t result) const {
@@ -199,52 +182,6 @@ Result<std::string> Store::document(const Unit& unit, std::int64_t analysis) con
                      unit.sha256, unit.part, analysis);
     return row.executeStep() ? text_at(row, 0) : std::string();
   });
-}
-
-Result<ObservationTable> Store::observations(std::int64_t analysis) const {
-  return guarded(folder(), [&]() -> Result<ObservationTable> {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    ObservationTable table;
-    std::map<std::string, int, std::less<>> conditions, outcomes;
-    const auto index_of = [](auto& known, std::vector<std::string>& names, const char* name) {
-      auto found = known.find(std::string_view(name));
-      if (found == known.end()) {
-        found = known.emplace(name, static_cast<int>(names.size())).first;
-        names.emplace_back(name);
-      }
-      return found->second;
-    };
-    auto results = query(database_->connection,
-                         "SELECT result.number, recording.number, participant, session, trial, condition FROM result "
-                         "JOIN recording ON recording.number = recording WHERE analysis = ? AND usable = 1 AND "
-                         "excluded_why IS NULL ORDER BY recording.number",
-                         analysis);
-    SQLite::Statement numbers(database_->connection,
-                              "SELECT name, value, standard_error, unit FROM outcome WHERE result = ?");
-    while (results.executeStep()) {
-      Observation one{.recording = number_at(results, 1),
-                      .participant = number_at(results, 2),
-                      .session = number_at(results, 3),
-                      .trial = number_at(results, 4)};
-      one.condition = index_of(conditions, table.conditions, results.getColumn(5).getText());
-      numbers.reset();
-      numbers.bind(1, number_at(results, 0));
-      while (numbers.executeStep()) {
-        one.outcome = index_of(outcomes, table.outcomes, numbers.getColumn(0).getText());
-        if (table.units.size() < table.outcomes.size()) table.units.emplace_back(numbers.getColumn(3).getText());
-        one.value = numbers.getColumn(1).getDouble();
-        one.standard_error = numbers.getColumn(2).isNull() ? kNone : numbers.getColumn(2).getDouble();
-        table.observations.push_back(one);
-      }
-    }
-    return table;
-  });
-}
-
-Result<OutcomeColumns> Store::columns(std::int64_t analysis) const {
-  const auto table = observations(analysis);
-  if (!table) return tl::unexpected(table.error());
-  return columns_of(*table);
 }
 
 }  // namespace mbk::store

@@ -159,12 +159,8 @@ TEST(AStudy, ObservesOnlyWhatIsUsableAndNotExcluded) {
   std::vector<UnitResult> results = {a_result(100), a_result(200, false), a_result(300)};
   ASSERT_TRUE(study.save("{}", "1.0", units, results, Role::analyst));
   const auto stiffness = [&] {
-    std::vector<double> values;
-    const ObservationTable table = study.observations(1).value();
-    for (const Observation& one : table.observations) {
-      if (table.outcomes[static_cast<std::size_t>(one.outcome)] == "K") values.push_back(one.value);
-    }
-    return values;
+    const OutcomeColumns columns = study.columns(1).value();
+    return std::ranges::find(columns.outcomes, "K", &OutcomeColumn::name)->values;
   };
   EXPECT_THAT(stiffness(), testing::UnorderedElementsAre(100, 300));
   const std::int64_t first = study.recordings_of(units[0].sha256)->front().number;
@@ -175,6 +171,55 @@ TEST(AStudy, ObservesOnlyWhatIsUsableAndNotExcluded) {
   ASSERT_TRUE(study.include(first, "it was another", Role::analyst));
   EXPECT_THAT(stiffness(), SizeIs(2));
   EXPECT_THAT(checked(study).problems, IsEmpty());
+}
+
+TEST(AStudy, GivesItsNumbersByParticipantAndSession) {
+  const TestFolder folder;
+  Store study = new_study(folder / "study");
+  ASSERT_TRUE(add(study, folder.file("a", "a"), {8, 1, "tensed", {}}));
+  ASSERT_TRUE(add(study, folder.file("b", "b"), {7, 2, "relaxed", {}}));
+  ASSERT_TRUE(add(study, folder.file("c", "c"), {7, 1, "tensed", {}}));
+  ASSERT_TRUE(measure(study));
+  const OutcomeColumns columns = study.columns(1).value();
+  EXPECT_THAT(columns.conditions, testing::ElementsAre("tensed", "relaxed")) << "as the recordings came";
+  std::vector<std::int64_t> recordings;
+  for (const TrialRow& trial : columns.trials) recordings.push_back(trial.recording);
+  EXPECT_THAT(recordings, testing::ElementsAre(3, 2, 1));
+  for (const OutcomeColumn& column : columns.outcomes) {
+    ASSERT_EQ(column.values.size(), 3U);
+    for (std::size_t k = 0; k < recordings.size(); ++k) {
+      const auto result = study.results_of(recordings[k]).value().at(0).number;
+      const auto stored = study.outcomes(result).value();
+      const auto found = std::ranges::find(stored, column.name, &Outcome::name);
+      ASSERT_NE(found, stored.end());
+      EXPECT_EQ(column.values[k], found->value);
+      EXPECT_EQ(column.unit, found->unit);
+      if (found->standard_error) EXPECT_EQ(column.standard_errors.at(k), *found->standard_error);
+    }
+  }
+}
+
+TEST(AStudyOfTheTablesBefore, HasItsNumbersPacked) {
+  const TestFolder folder;
+  {
+    Store study = new_study(folder / "study");
+    ASSERT_TRUE(add(study, folder.file("a", "a"), of(1)));
+    ASSERT_TRUE(measure(study));
+  }
+  {
+    SQLite::Database database((folder / "study" / "study.sqlite").string(), SQLite::OPEN_READWRITE);
+    database.exec(
+        "DROP TABLE packed; DROP TABLE layout; CREATE TABLE outcome(result INTEGER NOT NULL, position INTEGER NOT "
+        "NULL, "
+        "name TEXT NOT NULL, value REAL NOT NULL, standard_error REAL, unit TEXT NOT NULL, PRIMARY KEY (result, "
+        "position)) STRICT, WITHOUT ROWID; INSERT INTO outcome VALUES (1, 0, 'K', 100, 3, 'N/m'); "
+        "PRAGMA user_version = 1");
+  }
+  auto study = Store::open(folder / "study");
+  ASSERT_TRUE(study) << study.error().line();
+  EXPECT_EQ(study->columns(1).value().trials.size(), 1U);
+  EXPECT_FALSE(study->outcomes(1).value().empty());
+  EXPECT_THAT(checked(*study).problems, IsEmpty());
 }
 
 TEST(AForgottenParticipant, LeavesOnlyTheFact) {
@@ -255,8 +300,11 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Usable", "UPDATE result SET usable = 0 WHERE recording = 1", "not what the log says was measured"},
         Change{"Document", "UPDATE document SET text = replace(text, '1.5', '1.6')",
                "not what the log says was measured"},
-        Change{"Number", "UPDATE outcome SET value = value + 1 WHERE name = 'K'", "are not those of its result"},
-        Change{"MissingNumber", "DELETE FROM outcome WHERE name = 'K'", "are not those of its result"},
+        Change{"Number", "UPDATE packed SET numbers = zeroblob(length(numbers))", "are not those of its result"},
+        Change{"NumberCutOff", "UPDATE packed SET numbers = substr(numbers, 1, 16)", "are not those of its result"},
+        Change{"MissingNumbers", "DELETE FROM packed", "are not those of its result"},
+        Change{"NameOfNumber", "UPDATE layout SET names = replace(names, '\"K\"', '\"k\"')",
+               "are not those of its result"},
         Change{"Options", "UPDATE analysis SET options = '{\"--cutoff\":[\"5\"]}'",
                "not what the log says was measured"},
         Change{"Defaults", "UPDATE fact SET value = '[]' WHERE name = 'options'", "default options"},

@@ -106,6 +106,8 @@ struct Outcome {
   double value = 0.0;
   std::optional<double> standard_error;
   std::string unit;  ///< "" for a ratio
+
+  [[nodiscard]] friend bool operator==(const Outcome&, const Outcome&) = default;
 };
 
 /// A result beside its numbers.
@@ -113,20 +115,6 @@ struct StoredResult {
   std::int64_t number = 0, recording = 0, analysis = 0;
   bool usable = false, failed = false;  ///< failed: there is no document
   std::string reason;
-};
-
-/// A number of a usable result, with whose it is.
-struct Observation {
-  std::int64_t recording = 0, participant = 0, session = 0, trial = 0;
-  int condition = 0, outcome = 0;            ///< indices into the lists of ObservationTable
-  double value = 0.0, standard_error = 0.0;  ///< NaN: there is none
-};
-
-/// Every usable number of one analysis, in the order of the recordings' numbers: what statistics are computed from.
-struct ObservationTable {
-  std::vector<std::string> conditions;
-  std::vector<std::string> outcomes, units;  ///< as long as each other
-  std::vector<Observation> observations;
 };
 
 /// Whose a usable result is.

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
-#include <tuple>
-#include <unordered_map>
 
 namespace mbk::store {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// What is summed up of one participant's results.
 struct Sums {
@@ -102,39 +98,6 @@ std::vector<OutcomeSummary> summarise_outcomes(const OutcomeColumns& columns) {
     }
   }
   return summaries;
-}
-
-OutcomeColumns columns_of(const ObservationTable& table) {
-  OutcomeColumns columns;
-  columns.conditions = table.conditions;
-  std::unordered_map<std::int64_t, std::size_t> row_of;
-  for (const Observation& one : table.observations) {
-    if (!row_of.emplace(one.recording, row_of.size()).second) continue;
-    columns.trials.push_back({one.recording, one.participant, one.session, one.trial, one.condition});
-  }
-  std::vector<std::size_t> order(columns.trials.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) {
-    const TrialRow& row = columns.trials[k];
-    return std::tuple(row.participant, row.session, row.trial, row.recording);
-  });
-  std::vector<TrialRow> sorted;
-  for (const std::size_t k : order) sorted.push_back(columns.trials[k]);
-  columns.trials = std::move(sorted);
-  for (std::size_t k = 0; k < columns.trials.size(); ++k) row_of[columns.trials[k].recording] = k;
-  for (std::size_t k = 0; k < table.outcomes.size(); ++k) {
-    columns.outcomes.push_back(
-        {table.outcomes[k], table.units[k], std::vector<double>(columns.trials.size(), kNone), {}});
-  }
-  for (const Observation& one : table.observations) {
-    OutcomeColumn& column = columns.outcomes[static_cast<std::size_t>(one.outcome)];
-    const std::size_t row = row_of[one.recording];
-    column.values[row] = one.value;
-    if (std::isnan(one.standard_error)) continue;
-    column.standard_errors.resize(columns.trials.size(), kNone);
-    column.standard_errors[row] = one.standard_error;
-  }
-  return columns;
 }
 
 }  // namespace mbk::store

@@ -27,7 +27,4 @@ struct OutcomeSummary {
 /// Whether an outcome is an angle of an axis [°], which is the same 180° further.
 [[nodiscard]] bool is_orientation(std::string_view outcome);
 
-/// The same numbers, a column for each outcome.
-[[nodiscard]] OutcomeColumns columns_of(const ObservationTable& table);
-
 }  // namespace mbk::store

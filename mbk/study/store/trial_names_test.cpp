@@ -110,12 +110,12 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
 
 /// Results of one outcome under one condition.
 OutcomeColumns table_of(const std::string& outcome, const std::vector<std::pair<int, double>>& values) {
-  ObservationTable table{{"relaxed"}, {outcome}, {"N/m"}, {}};
+  OutcomeColumns columns{{"relaxed"}, {}, {{outcome, "N/m", {}, {}}}};
   for (const auto& [participant, value] : values) {
-    table.observations.push_back(
-        {.recording = std::ssize(table.observations), .participant = participant, .value = value});
+    columns.trials.push_back({std::ssize(columns.trials), participant, 1, 1, 0});
+    columns.outcomes[0].values.push_back(value);
   }
-  return columns_of(table);
+  return columns;
 }
 
 TEST(ASummary, CountsEachParticipantOnce) {
