@@ -72,7 +72,7 @@ function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
 function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLElement {
   const all = sessionsOf(primary.flatMap(({ participants }) => participants));
   return h("figure", { class: "courses" },
-    courseLegend(primary.some(({ why_unknown }) => !why_unknown)),
+    courseLegend(primary),
     h("div", { class: "large-panels" }, ...primary.map((one) => {
       const course = one.participants[0];
       if (!course) return "";

@@ -165,7 +165,7 @@ function coursesSection({ courses, primary }: StudyReport, conditions: string[])
       one.why_unknown ? h("p", { class: "reading", "data-name": "mdc-unknown" }, `The minimal detectable change is not known: ${one.why_unknown}. No difference here can be told from measurement error.`) : "");
   };
   return h("section", { id: "sessions" }, heading(2, "Each participant over the sessions"),
-    h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, courseLegend(chosen.some(({ why_unknown }) => !why_unknown)), ...chosen.map(drawn))),
+    h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, courseLegend(chosen), ...chosen.map(drawn))),
       h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontally the sessions, vertically the outcome, on one scale for all. The band is the minimal detectable change around the first session: what a person who did not change stays within (95 %), by the variances of the mixed model and this person’s own numbers of trials; of whoever stands out, by the variances of all others. Of so many people and sessions some leave the band by chance: 5 % of those who did not change, for each session. Where most people changed between sessions, the band holds that too, and is too wide.")));
 }
 

@@ -128,14 +128,16 @@ function described({ outcome, unit }: OutcomeCourses, { participant, sessions, c
   return `Participant ${participant}, ${outcome.replaceAll("_", " ")}. ${values.join("; ")}.${last ? ` Minimal detectable change: ${last.mdc95 === null ? "unknown" : withUnit(significant(last.mdc95), unit)}.` : ""}`;
 }
 
-export function courseLegend(withBand: boolean): HTMLElement {
+export function courseLegend(outcomes: OutcomeCourses[]): HTMLElement {
+  const withBand = outcomes.some(({ why_unknown }) => !why_unknown);
+  const said = new Set(outcomes.flatMap(({ participants }) => participants.flatMap(({ changes }) => changes.map(({ verdict }) => verdict))));
   const entry = (drawing: SVGElement, text: string) =>
     h("li", {}, svg("svg", { width: 22, height: 14, "aria-hidden": "true", class: "course" }, drawing), text);
   return h("ul", { class: "legend" },
     withBand && entry(svg("rect", { x: 0.5, y: 1.5, width: 21, height: 11, class: "band" }), "first session ± minimal detectable change (95 %)"),
     entry(mark(11, 7, "first"), withBand ? "mean of a session" : "mean of a session; how much of a difference is error is not known"),
-    withBand && entry(mark(11, 7, "uncertain"), "beyond the band, which is itself uncertain"),
-    withBand && entry(mark(11, 7, "beyond-error"), "more than measurement error (95 %)"));
+    said.has("uncertain") && entry(mark(11, 7, "uncertain"), "beyond the band, which is itself uncertain"),
+    said.has("beyond-error") && entry(mark(11, 7, "beyond-error"), "more than measurement error (95 %)"));
 }
 
 interface Axes {
