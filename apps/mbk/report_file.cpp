@@ -8,9 +8,6 @@
 #include "mbk/present/report/html.h"
 
 namespace mbk::app {
-namespace {
-
-/// What a shell takes as one word, as it is or quoted.
 std::string shell_word(const std::string& word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
@@ -18,8 +15,6 @@ std::string shell_word(const std::string& word) {
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
-
-}  // namespace
 
 std::string command_line(int argc, char** argv) {
   std::string line = "mbk";

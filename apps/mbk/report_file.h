@@ -15,6 +15,9 @@
 
 namespace mbk::app {
 
+/// What a shell takes as one word, as it is or quoted.
+[[nodiscard]] std::string shell_word(const std::string& word);
+
 /// What a report says of a recording that was measured.
 /// @param identification  of that recording, or of several pooled    @param which  of its recordings this is
 [[nodiscard]] result::RecordingFacts facts_of(const Recording& recording, const Identification& identification,

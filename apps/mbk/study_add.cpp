@@ -9,6 +9,10 @@
 #include "apps/mbk/progress.h"
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_options.h"
+#include "mbk/files/bids/read_run.h"
+#include "mbk/files/c3d/c3d.h"
+#include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/kinarm/exam_parameters.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/study/store/identifying.h"
 #include "mbk/study/store/trial_names.h"
@@ -36,6 +40,7 @@ class Adder {
 
   /// @param facts  whose trial it is, as far as that was said
   Result<std::vector<AddedRecording>> add(const std::filesystem::path& file, const KnownFacts& facts) {
+    if (recording::may_be_bids(file)) return add_of_bids(file, facts);
     auto incoming = study_.bring_in(file);
     if (!incoming) return tl::unexpected(incoming.error());
     auto added = add(*incoming, facts);
@@ -67,10 +72,13 @@ class Adder {
     for (int k = 0; k < reader->count(); ++k) {
       auto recording = reader->read(k);
       if (!recording) return tl::unexpected(recording.error());
-      auto trial = check(*recording, facts);
+      const std::vector<std::string> unseen = unseen_entries(incoming.path(), *recording);
+      auto trial = check(*recording, facts, unseen);
       if (!trial) return tl::unexpected(trial.error());
       recordings.push_back({reader->count() > 1 ? k + 1 : 0, *trial, duration(*recording)});
-      if (!store::identifying_entries(recording->metadata).empty()) return add_stripped(incoming, *reader, facts);
+      if (!unseen.empty() || !store::identifying_entries(recording->metadata).empty()) {
+        return add_stripped(incoming, *reader, facts, unseen);
+      }
     }
     const std::string sha256 = incoming.sha256();
     return study_.add(std::move(incoming), recordings, sha256, arguments_.study.role);
@@ -80,12 +88,25 @@ class Adder {
     return recording.samples() > 0 ? recording.time[recording.samples() - 1] - recording.time[0] : 0.0;
   }
 
-  Result<store::TrialFacts> check(const Recording& recording, const KnownFacts& facts) const {
+  /// What a file holds that its reader does not show, and that may say who the person is.
+  static std::vector<std::string> unseen_entries(const std::filesystem::path& file, const Recording& recording) {
+    const std::string format = recording.sources.empty() ? "" : recording.sources.front().format;
+    if (format.starts_with("KINARM")) return {"what the exam says of the person and its name"};
+    if (format != "C3D") return {};
+    const auto bytes = recording::read_file(file);
+    if (!bytes) return {};
+    const auto parameters = recording::decode_c3d_parameters(bytes->bytes());
+    return parameters ? recording::ExamParameters::of(*parameters).personal_texts() : std::vector<std::string>();
+  }
+
+  Result<store::TrialFacts> check(const Recording& recording, const KnownFacts& facts,
+                                  const std::vector<std::string>& unseen) const {
     const auto withdrawn = recording.metadata.find("withdrawn");
     if (withdrawn != recording.metadata.end() && withdrawn->second == "yes") {
       return bad_data("the person has withdrawn: these data must not be used", "remove the file");
     }
-    const auto identifying = store::identifying_entries(recording.metadata);
+    auto identifying = store::identifying_entries(recording.metadata);
+    identifying.insert(identifying.end(), unseen.begin(), unseen.end());
     if (!identifying.empty() && !arguments_.strip) {
       return bad_data(fmt::format("its metadata may identify a person: {}", fmt::join(identifying, ", ")),
                       "pass --strip to store a copy without these entries");
@@ -111,34 +132,71 @@ class Adder {
   }
 
   /// Each trial as a recording of its own, in HDF5, without what may identify a person.
-  Added add_stripped(const store::IncomingFile& incoming, const RecordingReader& reader, const KnownFacts& facts) {
+  Added add_stripped(const store::IncomingFile& incoming, const RecordingReader& reader, const KnownFacts& facts,
+                     const std::vector<std::string>& unseen) {
     std::vector<AddedRecording> all;
     for (int k = 0; k < reader.count(); ++k) {
       auto recording = reader.read(k);
       if (!recording) return tl::unexpected(recording.error());
-      const auto trial = check(*recording, facts);
+      const auto trial = check(*recording, facts, unseen);
       if (!trial) return tl::unexpected(trial.error());
-      const auto entries = store::identifying_entries(recording->metadata);
-      for (const std::string& key : entries) recording->metadata.erase(key);
-      if (!arguments_.quiet) {
-        say("mbk: stored without: {}\n", fmt::format("{}", fmt::join(entries, ", ")));
-      }
-      // Beside the copy: what an interrupted process leaves there is tidied up.
-      const std::filesystem::path made =
-          incoming.path().parent_path() / (incoming.path().stem().string() + ".stripped.h5.part");
-      if (auto ok = recording::write(*recording, made, recording::Format::hdf5, true); !ok) {
-        return tl::unexpected(ok.error());
-      }
-      auto stripped = study_.bring_in(made, ".h5");
-      std::error_code ignored;
-      std::filesystem::remove(made, ignored);
-      if (!stripped) return tl::unexpected(stripped.error());
-      const store::NewRecording one{0, *trial, duration(*recording)};
-      auto added = study_.add(std::move(*stripped), {&one, 1}, incoming.sha256(), arguments_.study.role);
+      auto added = add_copy(incoming, std::move(*recording), *trial, unseen);
       if (!added) return added;
       all.insert(all.end(), added->begin(), added->end());
     }
     return all;
+  }
+
+  /// A recording of a BIDS data set is several files; it is stored as one, in HDF5, which loses no number.
+  Added add_of_bids(const std::filesystem::path& motion, const KnownFacts& facts) {
+    std::error_code code;
+    if (std::filesystem::is_directory(motion, code)) {
+      return fail(ErrorKind::usage, "is a folder", "'mbk study import' takes all recordings of a BIDS data set",
+                  motion.string());
+    }
+    ReadingArguments reading = measuring_->arguments.reading;
+    reading.files = {motion};
+    const auto reader = RecordingReader::of(reading, measuring_->arguments.sensor);
+    if (!reader) return tl::unexpected(reader.error());
+    auto recording = reader->read(0);
+    if (!recording) return tl::unexpected(recording.error());
+    KnownFacts known = facts;
+    const auto condition = recording->metadata.find("condition");  // in full; a name has only its letters and digits
+    if (facts.condition && condition != recording->metadata.end() &&
+        store::bids_label(condition->second) == *facts.condition) {
+      known.condition = condition->second;
+    }
+    const auto trial = check(*recording, known, {});
+    if (!trial) return tl::unexpected(trial.error().in(motion.string()));
+    auto incoming = study_.bring_in(motion);
+    if (!incoming) return tl::unexpected(incoming.error());
+    auto added = add_copy(*incoming, std::move(*recording), *trial, {});
+    if (!added) return tl::unexpected(named(added.error(), incoming->path(), motion));
+    return added;
+  }
+
+  /// Stores a recording as HDF5, without what may identify a person.
+  /// @param incoming  what it was read from    @param unseen  what stays in that, and not in the recording
+  Added add_copy(const store::IncomingFile& incoming, Recording recording, const store::TrialFacts& trial,
+                 const std::vector<std::string>& unseen) {
+    auto entries = store::identifying_entries(recording.metadata);
+    for (const std::string& key : entries) recording.metadata.erase(key);
+    entries.insert(entries.end(), unseen.begin(), unseen.end());
+    if (!entries.empty() && !arguments_.quiet) {
+      say("mbk: stored without: {}\n", fmt::format("{}", fmt::join(entries, ", ")));
+    }
+    // Beside the file that came in: what an interrupted process leaves there is tidied up.
+    const std::filesystem::path made =
+        incoming.path().parent_path() / (incoming.path().stem().string() + ".copy.h5.part");
+    if (auto ok = recording::write(recording, made, recording::Format::hdf5, true); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    auto copy = study_.bring_in(made, kCopyExtension);
+    std::error_code ignored;
+    std::filesystem::remove(made, ignored);
+    if (!copy) return tl::unexpected(copy.error());
+    const store::NewRecording one{0, trial, duration(recording)};
+    return study_.add(std::move(*copy), {&one, 1}, incoming.sha256(), arguments_.study.role);
   }
 
   store::Store& study_;
@@ -188,6 +246,35 @@ int run_add(const AddArguments& arguments) {
   return add_all(arguments, rows);
 }
 
+bool alike(const KnownFacts& one, const KnownFacts& other) {
+  return one.participant == other.participant && one.session == other.session && one.condition == other.condition &&
+         one.trial == other.trial;
+}
+
+/// The recordings of a BIDS data set, by their names.
+Result<std::vector<store::SheetRow>> rows_of_bids(const std::filesystem::path& folder) {
+  const auto runs = recording::find_bids_runs(folder);
+  if (!runs) return tl::unexpected(runs.error());
+  if (runs->empty()) {
+    return fail(ErrorKind::data, "is a folder without a BIDS recording (…_motion.tsv)",
+                "name recordings, or the folder of a BIDS data set with motion data", folder.string());
+  }
+  std::vector<store::SheetRow> rows;
+  for (const recording::BidsRun& run : *runs) {
+    const auto facts = store::facts_of_bids(run.motion.stem().string());
+    if (!facts) return tl::unexpected(facts.error().in(run.motion.string()));
+    const auto twin = std::ranges::find_if(rows, [&](const auto& row) { return alike(row.facts, *facts); });
+    if (twin != rows.end()) {
+      return fail(ErrorKind::data,
+                  fmt::format("and {} are one trial, recorded by two tracking systems or twice",
+                              twin->file.filename().string()),
+                  "name the motion.tsv files that are to be imported", run.motion.string());
+    }
+    rows.push_back({run.motion, *facts});
+  }
+  return rows;
+}
+
 int run_import(const AddArguments& arguments) {
   std::vector<store::SheetRow> rows;
   int code = kFine;
@@ -215,6 +302,12 @@ int run_import(const AddArguments& arguments) {
       pattern = std::move(*made);
     }
     for (const std::filesystem::path& file : arguments.files) {
+      if (!pattern && recording::may_be_bids(file)) {
+        const auto found = rows_of_bids(file);
+        if (!found) return report_error(found.error());
+        rows.insert(rows.end(), found->begin(), found->end());
+        continue;
+      }
       KnownFacts facts;
       if (pattern) {
         auto found = pattern->match(file.filename().string());
@@ -288,7 +381,10 @@ Action add_study_import(CLI::App& group) {
       "  mbk study import data/*.mat --pattern 'p{participant}_s{session}_{condition}_*.mat'\n"
       "      {participant}, {session}, {trial}: digits; {condition}: letters, digits and -; * anything\n"
       "  mbk study import --sheet trials.csv\n"
-      "      columns file, participant and, where they are there, session, condition, trial\n\n"
+      "      columns file, participant and, where they are there, session, condition, trial\n"
+      "  mbk study import data_set\n"
+      "      a BIDS data set (Motion): sub-07_ses-2_task-relaxed_run-1 is participant 7, session 2, condition\n"
+      "      relaxed, trial 1\n\n"
       "What neither name, sheet nor options say is taken from the recording's metadata.");
   command->add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d");
   CLI::Option* const pattern =

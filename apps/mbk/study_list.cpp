@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/study_bids.h"
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_listing.h"
 #include "apps/mbk/study_options.h"
@@ -31,6 +32,7 @@ struct ListArguments : AnalysisArguments {
   std::int64_t recording = 0;
   bool document = false;
   ExportFormat format = ExportFormat::csv;
+  std::optional<std::filesystem::path> bids;
 };
 
 std::string analysis_line(const store::Analysis& analysis) {
@@ -142,6 +144,7 @@ int run_export(const ListArguments& arguments) {
   std::optional<store::Store> study;
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
+  if (arguments.bids) return export_bids(*study, *list, *arguments.bids, false);
   Result<std::string> text = std::string();
   if (arguments.format == ExportFormat::latex) {
     const auto outcomes = summarised(*study, *list);
@@ -222,12 +225,24 @@ Action add_study_export(CLI::App& group) {
       "      one row for each number: participant, session, condition, trial, outcome, value, standard_error\n"
       "  mbk study export --format json --out study.json\n"
       "  mbk study export --format latex\n"
-      "      a table of means and standard deviations by condition\n\n"
+      "      a table of means and standard deviations by condition\n"
+      "  mbk study export --bids data_set\n"
+      "      the recordings as a BIDS data set (Motion), but for excluded ones; condition is the task, trial the "
+      "run\n\n"
       "Results that are not usable and excluded recordings are in it with their state: select state == 'usable'.");
   add_study_option(*command, arguments->study);
   add_analysis_option(*command, *arguments);
-  add_choice(*command, "--format", arguments->format, "csv: a tidy table; json: schema mbk.study_export/1 (csv)");
+  CLI::Option* const format =
+      add_choice(*command, "--format", arguments->format, "csv: a tidy table; json: schema mbk.study_export/1 (csv)");
   arguments->output.to.add_options(*command);
+  command
+      ->add_option(
+          "--bids", arguments->bids,
+          "instead of numbers the recordings, in a new folder as BIDS Motion; forces are channels of type MISC")
+      ->type_name("FOLDER")
+      ->check(not_empty())
+      ->excludes(format)
+      ->excludes(command->get_option("--out"));
   return [arguments] { return run_export(*arguments); };
 }
 

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/mbk/study_options.h"
+#include "mbk/study/statistics/study_statistics.h"
 #include "mbk/study/store/study_list.h"
 
 /// What the commands share that show a study under one analysis.
@@ -16,6 +18,17 @@ struct AnalysisArguments {
   OutputArguments output;
   std::optional<std::int64_t> analysis;
 };
+
+/// What is compared with what.
+struct ComparingArguments {
+  std::vector<std::string> compare, groups;
+};
+
+/// Adds --compare and --group.
+void add_comparing_options(CLI::App& command, ComparingArguments& arguments);
+
+/// @fails  usage: no such comparison; a group that is none, or that nothing compares.
+[[nodiscard]] Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments);
 
 /// Adds --analysis.
 void add_analysis_option(CLI::App& command, AnalysisArguments& arguments);

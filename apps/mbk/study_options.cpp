@@ -96,16 +96,6 @@ std::string codes_of(const std::vector<Warning>& warnings) {
   return fmt::format("{}", fmt::join(codes, ", "));
 }
 
-Result<Recording> read_unit(const Measuring& measuring, const std::filesystem::path& file, std::int64_t part) {
-  ReadingArguments reading = measuring.arguments.reading;
-  reading.files = {file};
-  const auto reader = RecordingReader::of(reading, measuring.arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
-  const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
-  if (which >= reader->count()) return bad_data(fmt::format("there is no record {} in it", part));
-  return reader->read_perturbation(which);
-}
-
 Result<Measurement> measured(const Measuring& measuring, Recording& recording, const store::Unit& unit) {
   for (SourceFile& source : recording.sources) source.path = unit.file;  // a result does not say where the study stands
   add_arm(measuring.arguments.analyse, recording);
@@ -228,6 +218,25 @@ Result<GivenOptions> default_options(const store::Store& study) {
   return options_from_json(facts->options);
 }
 
+Result<Recording> read_stored(const Measuring& measuring, const std::filesystem::path& file, std::int64_t part,
+                              Reading what) {
+  ReadingArguments reading = measuring.arguments.reading;
+  if (file.filename().string().ends_with(kCopyExtension)) {  // maps and rates were applied when it was made
+    const ReadingArguments plain;
+    reading.channels = plain.channels;
+    reading.variable = plain.variable;
+    reading.clock = plain.clock;
+    reading.arm = plain.arm;
+    reading.rate_hz = plain.rate_hz;
+  }
+  reading.files = {file};
+  const auto reader = RecordingReader::of(reading, measuring.arguments.sensor);
+  if (!reader) return tl::unexpected(reader.error());
+  const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
+  if (which >= reader->count()) return bad_data(fmt::format("there is no record {} in it", part), "", file.string());
+  return what == Reading::perturbation ? reader->read_perturbation(which) : reader->read(which);
+}
+
 Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::filesystem::path& folder,
                                        const store::Unit& unit) {
   const std::filesystem::path file = folder / unit.file;
@@ -235,12 +244,18 @@ Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::fi
     return bad_data("its bytes are not those that were added", "restore it from a backup; 'mbk study check' names all",
                     file.string());
   };
-  auto recording = read_unit(measuring, file, unit.part);
+  auto recording = read_stored(measuring, file, unit.part, Reading::perturbation);
   if (!recording) {
     const auto sum = store::file_sha256(file);
     if (!sum) return tl::unexpected(sum.error());
     if (*sum != unit.sha256) return damaged();
-    return store::UnitResult{"", false, recording.error().message};
+    // What is wrong with a recording is a result; that the disk failed for a moment is none.
+    auto again = read_stored(measuring, file, unit.part, Reading::perturbation);
+    if (!again && again.error().message == recording.error().message) {
+      return store::UnitResult{"", false, recording.error().message};
+    }
+    if (!again) return tl::unexpected(again.error());
+    recording = std::move(again);
   }
   if (recording->sources.size() != 1 || recording->sources.front().sha256 != unit.sha256) return damaged();
   const auto found = measured(measuring, *recording, unit);

@@ -68,6 +68,16 @@ struct Measuring {
 /// The options that a study stores.
 [[nodiscard]] Result<GivenOptions> default_options(const store::Store& study);
 
+/// The end of the name of a copy in HDF5 that 'add' made of a file.
+inline constexpr const char* kCopyExtension = ".read.h5";
+
+enum class Reading { whole, perturbation };
+
+/// A recording of a study. Options that say how a file is read do not hold for copies, in which they were applied.
+/// @param part  as store::Unit has it    @fails  as RecordingReader::read
+[[nodiscard]] Result<Recording> read_stored(const Measuring& measuring, const std::filesystem::path& file,
+                                            std::int64_t part, Reading what);
+
 /// The result of a unit; it depends on the unit, the options and the version alone, and may be asked for from several
 /// threads at once.
 /// @fails  data: the file is gone or is no longer what was added. What is wrong with a recording itself is a result.

@@ -18,8 +18,8 @@ namespace mbk::app {
 namespace {
 
 struct SummaryArguments : AnalysisArguments {
-  std::vector<std::string> outcomes, compare, groups;
-  statistics::StatisticsOptions options;
+  std::vector<std::string> outcomes;
+  ComparingArguments comparing;
 };
 
 /// "patients=1-10,12": a name and the numbers of its people.
@@ -54,9 +54,10 @@ Result<statistics::PeopleGroup> group_of(const std::string& text) {
   }
 }
 
-Result<statistics::StatisticsOptions> statistics_options(const SummaryArguments& arguments) {
-  statistics::StatisticsOptions options = arguments.options;
-  options.outcomes = arguments.outcomes;
+}  // namespace
+
+Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments) {
+  statistics::StatisticsOptions options;
   for (const std::string& text : arguments.groups) {
     auto group = group_of(text);
     if (!group) return tl::unexpected(group.error());
@@ -84,6 +85,13 @@ Result<statistics::StatisticsOptions> statistics_options(const SummaryArguments&
   return options;
 }
 
+void add_comparing_options(CLI::App& command, ComparingArguments& arguments) {
+  command.add_option("--compare", arguments.compare, "condition, group or session, and which of them (all)")
+      ->type_name("WHAT [NAME...]");
+  command.add_option("--group", arguments.groups, "who is in a group: patients=1-10,12")->type_name("NAME=N,...");
+}
+namespace {
+
 std::string summary_text(const store::StudyList& list, const std::vector<store::OutcomeSummary>& outcomes,
                          const statistics::StudyStatistics& found, bool details) {
   const std::string text = study_head_text(list);
@@ -94,8 +102,9 @@ std::string summary_text(const store::StudyList& list, const std::vector<store::
 }
 
 int run_summary(const SummaryArguments& arguments) {
-  const auto options = statistics_options(arguments);
+  auto options = statistics_options(arguments.comparing);
   if (!options) return report_error(options.error());
+  options->outcomes = arguments.outcomes;
   std::optional<store::Store> study;
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
@@ -141,9 +150,7 @@ Action add_study_summary(CLI::App& group) {
   add_analysis_option(*command, *arguments);
   command->add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
       ->type_name("NAME...");
-  command->add_option("--compare", arguments->compare, "condition, group or session, and which of them (all)")
-      ->type_name("WHAT [NAME...]");
-  command->add_option("--group", arguments->groups, "who is in a group: patients=1-10,12")->type_name("NAME=N,...");
+  add_comparing_options(*command, arguments->comparing);
   add_output_options(*command, arguments->output, "mbk.study_summary/1");
   return [arguments] { return run_summary(*arguments); };
 }

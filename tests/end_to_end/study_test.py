@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
@@ -19,6 +20,7 @@ import subprocess
 import time
 
 import command
+import schemas
 from command import BAD_DATA, FINE, WRONG_USAGE, run
 
 KILLS = int(os.environ.get("MBK_STUDY_KILLS", "20"))
@@ -294,6 +296,120 @@ class Importing(StudyCase):
         self.do("defaults", "--channels", channels)
         self.do("add", unnamed, "--participant", 1)
         self.assertIn("1 usable", self.do("measure").out)
+
+
+class DataSets(StudyCase):
+    def exported(self):
+        for trial, condition in zip(self.trials, ("relaxed", "stiff_100%", "stiff 100", "")):
+            extra = ("--condition", condition) if condition else ()
+            self.do("add", trial, "--participant", 7, "--session", 2, *extra)
+        data_set = self.folder / "data_set"
+        self.assertIn("4 recordings", self.do("export", "--bids", data_set).out)
+        return data_set
+
+    def test_come_back_as_they_were(self):
+        data_set = self.exported()
+        self.do("measure")
+        self.assertEqual(len(list(data_set.rglob("*_motion.tsv"))), 4)
+        channels = next(data_set.rglob("*_channels.tsv")).read_text(encoding="utf-8")
+        self.assertRegex(channels, r"force_x\t.*\tMISC\t")
+        other = self.folder / "other"
+        self.mbk("study", "init", other)
+        self.mbk("study", "import", data_set, "--study", other)
+        self.mbk("study", "measure", "--study", other)
+
+        def facts(study):
+            listed = self.mbk("study", "list", "--json", "--study", study).json["recordings"]
+            return {(r["participant"], r["session"], r["condition"], r["trial"], r["state"]) for r in listed}
+
+        def numbers(study):
+            rows = csv.DictReader(io.StringIO(self.mbk("study", "export", "--study", study).out))
+            return {(row["condition"], row["outcome"]): row["value"] for row in rows}
+
+        self.assertEqual(facts(other), facts(self.study))
+        self.assertEqual(numbers(other), numbers(self.study))
+        again = self.mbk("study", "import", data_set, "--study", other)
+        self.assertEqual(again.out.count("there already"), 4)
+
+    def test_leave_out_what_is_excluded_and_are_not_written_over(self):
+        data_set = self.exported()
+        self.refused(WRONG_USAGE, "study", "export", "--bids", data_set, "--study", self.study, says="there already")
+        self.do("exclude", 2, "--why", "hand slipped")
+        ran = self.do("export", "--bids", self.folder / "second")
+        self.assertIn("3 recordings", ran.out)
+        self.assertIn("excluded: 2", ran.err)
+        self.assertEqual([path for path in self.folder.iterdir() if ".part" in path.name], [])
+        self.refused(WRONG_USAGE, "study", "export", "--bids", self.folder / "third", "--format", "json", "--study",
+                     self.study)
+
+    def test_names_of_people_are_refused(self):
+        data_set = self.exported()
+        session = data_set / "sub-07"
+        (data_set / "sub-jane").mkdir()
+        for path in session.rglob("*relaxed*run-1_*"):
+            shutil.copy(path, data_set / "sub-jane" / path.name.replace("sub-07", "sub-jane"))
+        before = len(self.listed()["recordings"])
+        self.refused(WRONG_USAGE, "study", "import", data_set, "--study", self.study, says=("sub-jane", "--sheet"))
+        self.assertEqual(len(self.listed()["recordings"]), before)
+        self.refused(BAD_DATA, "study", "import", self.study, "--study", self.study, says="without a BIDS recording")
+
+
+class Pages(StudyCase):
+    """What a page holds; how it looks is tested in a browser (tests/web/study_test.mjs)."""
+
+    def setUp(self):
+        super().setUp()
+        if "without its pages" in run("study", "report", "--out", self.folder / "x.html", "--study", self.study).err:
+            self.skipTest("this mbk was built without its pages")
+
+    def document(self, *options):
+        out = self.folder / "page.html"
+        self.do("report", "--out", out, "--overwrite", *options)
+        self.assertEqual(out.stat().st_mode & 0o777, 0o600, "health data are for their owner")
+        text = out.read_text(encoding="utf-8")
+        data = re.search(r'<script type="application/json" id="report-data">(.*?)</script>', text, re.S).group(1)
+        document = json.loads(data)
+        schemas.check(document)
+        return document
+
+    def test_hold_what_the_study_says(self):
+        self.do("add", *self.trials[:2], "--participant", 7)
+        self.do("add", self.trials[2], "--participant", 7, "--session", 2)
+        self.do("add", self.trials[3], "--participant", 8)
+        self.do("measure")
+        self.do("exclude", 2, "--why", "</script><b>slipped")
+        document = self.document()
+        self.assertEqual(document["summary"], self.do("summary", "--json").json)
+        self.assertEqual(document["recordings"], self.listed()["recordings"])
+        own = self.document("--participant", 7, "--note", "Ward 3")
+        self.assertEqual((own["participant"], own["note"], own["study_participants"]), (7, "Ward 3", 2))
+        self.assertEqual({one["participant"] for one in own["recordings"]}, {7})
+        self.assertNotIn(str(self.folder), json.dumps(own) + json.dumps(document), "a path may name a person")
+        area = next(one for one in own["courses"] if one["outcome"] == "stiffness_area")
+        change = area["participants"][0]["changes"][0]
+        self.assertEqual((change["verdict"], change["mdc95"]), ("unknown", None))
+        self.assertIn("only 1 person has two sessions", area["why_unknown"])
+
+    def test_of_nothing(self):
+        document = self.document()
+        self.assertEqual((document["recordings"], document["courses"], document["primary"]), ([], [], ""))
+        self.do("add", self.trials[0], "--participant", 1)
+        self.assertEqual(self.document()["summary"]["counts"]["not_measured"], 1)
+        self.assertEqual(self.document("--participant", 1)["courses"], [])
+
+    def test_are_refused(self):
+        page = self.file("page.html", "mine")
+        self.refused(WRONG_USAGE, "study", "report", "--study", self.study, says="--out")
+        self.refused(WRONG_USAGE, "study", "report", "--study", self.study, "--out", page, says="--overwrite")
+        self.assertEqual(page.read_text(encoding="utf-8"), "mine")
+        other = self.folder / "other.html"
+        self.refused(WRONG_USAGE, "study", "report", "--study", self.study, "--participant", 3, "--out", other,
+                     says="no participant 3")
+        self.refused(WRONG_USAGE, "study", "report", "--study", self.study, "--outcome", "none", "--out", other,
+                     says="no outcome")
+        for number in ("0", "-1", "1.5", "7a", "99999999999999999999"):
+            self.refused(WRONG_USAGE, "study", "report", "--study", self.study, f"--participant={number}", "--out", other)
+        self.assertFalse(other.exists())
 
 
 class Interrupted(StudyCase):

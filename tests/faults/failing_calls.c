@@ -91,7 +91,8 @@ enum { KINDS_OF_CALLS = sizeof kCalls / sizeof *kCalls };
 
 /// What was done to a file; `length` bytes follow, of data or of names.
 struct record {
-  char kind;  // O opened, W written, T truncated, A space reserved, B sync begins, E sync ended, R renamed, U removed
+  char kind;  // O opened, W written, T truncated, A space reserved, B sync begins, E sync ended, R renamed, U removed,
+              // M folder made
   char unused[3];
   uint32_t flags;  // of open; of fallocate
   uint64_t inode, offset, length;
@@ -154,6 +155,14 @@ static void note(char kind, int descriptor, uint32_t flags, uint64_t offset, con
   }
   write_all(&record, sizeof record);
   write_all(data, length);
+}
+
+static void note_folder(const char* path) {
+  struct stat status;
+  if (failing_calls_raw(SYS_stat, (long)path, (long)&status, 0, 0, 0, 0) != 0) return;
+  const struct record record = {'M', "", 0, status.st_ino, 0, strlen(path)};
+  write_all(&record, sizeof record);
+  write_all(path, record.length);
 }
 
 static void note_two(const char* first, const char* second) {
@@ -223,6 +232,9 @@ static long traced(long number, const greg_t* r) {
       case SYS_renameat:
       case SYS_renameat2:
         note_two((const char*)b, (const char*)d);
+        break;
+      case SYS_mkdir:
+        note_folder((const char*)a);
         break;
       case SYS_unlink:
         note('U', -1, 0, 0, (const char*)a, strlen((const char*)a));

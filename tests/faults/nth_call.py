@@ -20,6 +20,7 @@ import multiprocessing
 import os
 import pathlib
 import random
+import shutil
 import struct
 import sys
 import tempfile
@@ -119,9 +120,7 @@ def main():
             task = tasks[kind.name] = kind(folder)
             (folder / "reference").mkdir()
             counted[kind.name] = task.refer(folder / "reference").calls
-            for path in (folder / "reference").iterdir():
-                path.unlink()
-            (folder / "reference").rmdir()
+            shutil.rmtree(folder / "reference")
             for one in faults_of(task, arguments.group or programs.GROUPS):
                 first = (1 - arguments.last) * counted[kind.name][one[0].group] if one else 0
                 lists.append([(kind.name, fault) for fault in one
@@ -153,9 +152,9 @@ def main():
                     if problem:
                         wrong.append((name, fault, problem))
                         print(f"{name}, {fault}: {problem}\n    exit {code}; {said}", flush=True)
-    print("command     group     calls    runs with a failed call")
+    print("command       group     calls    runs with a failed call")
     for (name, group), number in sorted(runs.items()):
-        print(f"{name:<10}  {group:<8}{counted[name][group]:>7}{failed[name, group]:>8}")
+        print(f"{name:<14}{group:<8}{counted[name][group]:>7}{failed[name, group]:>8}")
     print(f"{sum(runs.values())} runs in {time.monotonic() - begin:.0f} s, a call failed in {sum(failed.values())}; "
           f"{len(wrong)} wrong")
     for problem, number in collections.Counter(problem for *_, problem in wrong).most_common():

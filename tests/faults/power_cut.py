@@ -18,6 +18,7 @@ import math
 import os
 import pathlib
 import random
+import shutil
 import struct
 import sys
 import tempfile
@@ -94,22 +95,24 @@ class File:
 
 
 class Disk:
-    """A folder as the events of a trace leave it."""
+    """A folder, and those in it, as the events of a trace leave them."""
 
     def __init__(self, before, root):
-        """@param before  contents by name and inode   @param root  of the folder: its path and inode"""
-        self.folder, self.inode = root
-        self.files = {inode: File(data) for inode, data in before.values()}
-        self.names = {name: self.files[inode] for name, (inode, _) in before.items()}  # on the disk
+        """@param before  by its name what was there: inode and contents, None of a folder   @param root  path, inode"""
+        self.folder, inode = root
+        self.folders = {inode: "."}  # by inode
+        self.folders |= {inode: name for name, (inode, data) in before.items() if data is None}
+        self.files = {inode: File(data) for inode, data in before.values() if data is not None}
+        self.names = {name: self.files.get(inode) for name, (inode, _) in before.items()}  # on the disk; None: a folder
         self.now = dict(self.names)
-        self.pending, self.syncing = [], []
+        self.pending, self.syncing = [], collections.defaultdict(list)
 
     def name(self, path):
         path = path.decode()
         if os.path.isabs(path):
             path = os.path.relpath(path, self.folder)
         path = os.path.normpath(path)
-        return None if path.startswith("..") or "/" in path or path == "." else path
+        return None if path.startswith("..") or path == "." else path
 
     @staticmethod
     def link(names, operation):
@@ -127,6 +130,12 @@ class Disk:
         self.pending.append(operation)
         self.link(self.now, operation)
 
+    @staticmethod
+    def where(operation):
+        """The folder whose sync makes it last."""
+        kind, first, second = operation
+        return os.path.dirname(second[0] if kind == "rename" else first) or "."
+
     def take(self, event):
         kind, flags, inode, offset, data = event
         if kind == "O":
@@ -136,21 +145,26 @@ class Disk:
                 self.change(("create", name, self.files[inode]))
             elif name in self.now and flags & os.O_TRUNC:
                 self.files[inode].pending.append(("T", 0))
+        elif kind == "M":
+            if self.name(data) is not None:
+                self.folders[inode] = self.name(data)
+                self.change(("create", self.name(data), None))
         elif kind == "R":
             first, second = map(self.name, data.split(b"\0"))
             self.change(("rename", first, (second, self.now[first])))
         elif kind == "U":
             if self.name(data) in self.now:
                 self.change(("remove", self.name(data), None))
-        elif inode == self.inode:
+        elif inode in self.folders:
+            folder = self.folders[inode]
             if kind == "B":
-                self.syncing.append(len(self.pending))
+                self.syncing[folder].append([one for one in self.pending if self.where(one) == folder])
             elif kind == "E":
-                done = self.syncing.pop(0) if self.syncing else 0
-                for operation in self.pending[:done]:
-                    self.link(self.names, operation)
-                self.pending = self.pending[done:]
-                self.syncing = [max(0, mark - done) for mark in self.syncing]
+                done = self.syncing[folder].pop(0) if self.syncing[folder] else []
+                for operation in done:
+                    if any(one is operation for one in self.pending):
+                        self.link(self.names, operation)
+                        self.pending = [one for one in self.pending if one is not operation]
         elif inode in self.files:
             file = self.files[inode]
             if kind == "W":
@@ -162,19 +176,33 @@ class Disk:
             elif kind == "E":
                 file.end_sync()
 
+    @staticmethod
+    def reached(names, of_file):
+        """Contents of the files that a path leads to; None of folders."""
+        def leads(name):
+            parent = os.path.dirname(name)
+            return not parent or (parent in names and names[parent] is None and leads(parent))
+        return {name: None if file is None else of_file(file) for name, file in names.items() if leads(name)}
+
     def synced(self):
         """What is surely on the disk."""
-        return {name: bytes(file.durable) for name, file in self.names.items()}
+        return self.reached(self.names, lambda file: bytes(file.durable))
 
     def after_the_cut(self, lot):
         names = dict(self.names)
         for operation in self.pending:
             if lot.random() < 0.5:
                 self.link(names, operation)
-        contents = {}
-        for name, file in names.items():
-            contents[name] = file.after_the_cut(lot)
-        return contents
+        return self.reached(names, lambda file: file.after_the_cut(lot))
+
+
+def put(folder, contents):
+    """Writes what is left of a disk."""
+    for name, data in sorted(contents.items()):
+        if data is None:
+            (folder / name).mkdir(mode=0o700)
+        else:
+            (folder / name).write_bytes(data)
 
 
 def events_of(file):
@@ -193,7 +221,7 @@ class Traced:
         self.task = task
         (folder / "reference").mkdir()
         task.refer(folder / "reference")
-        self.truth = programs.rows(folder / "reference" / "x.h5", folder) if task.name != "convert" else None
+        self.truth = programs.rows(folder / "reference" / "x.h5", folder) if task.name in ("session", "recover") else None
         self.counted = {}  # rows in what was surely there
 
     def trace(self, folder):
@@ -202,9 +230,9 @@ class Traced:
             run = pathlib.Path(run)
             file = folder / "trace"
             file.unlink(missing_ok=True)
-            for path in self.task.inputs.iterdir():
-                (run / path.name).write_bytes(path.read_bytes())
-            before = {path.name: (path.stat().st_ino, path.read_bytes()) for path in run.iterdir()}
+            shutil.copytree(self.task.inputs, run, dirs_exist_ok=True)
+            before = {str(path.relative_to(run)): (path.stat().st_ino, None if path.is_dir() else path.read_bytes())
+                      for path in run.rglob("*")}
             root = (str(run), run.stat().st_ino)
             ran = self.task.perform(run, Fault(), {"MBK_FAULT_TRACE": str(file)})
             if ran.code != FINE:
@@ -217,8 +245,7 @@ class Traced:
         """What commands make of a disk: rows of the recording and of the journal, or why there are none."""
         with tempfile.TemporaryDirectory(prefix="mbk-cut-") as folder:
             folder = pathlib.Path(folder)
-            for name, data in contents.items():
-                (folder / name).write_bytes(data)
+            put(folder, contents)
             recording = journal = None
             problem = ""
             if "x.h5" in contents:
@@ -280,24 +307,57 @@ class Traced:
         return ""
 
 
+class TracedStudy(Traced):
+    """A command of mbk study."""
+
+    def state(self, contents):
+        """What the study is on that disk, and what is wrong with it."""
+        with tempfile.TemporaryDirectory(prefix="mbk-cut-") as folder:
+            folder = pathlib.Path(folder)
+            put(folder, contents)
+            return self.task.state(folder)
+
+    def judge(self, disk, contents):
+        state, problem = self.state(contents)
+        if problem:
+            return problem
+        surely = disk.synced()
+        key = tuple(sorted((name, hash(data)) for name, data in surely.items()))
+        if key not in self.counted:
+            there, problem = self.state(surely)
+            if problem:
+                return f"of what was synced: {problem}"
+            self.counted[key] = self.task.progress(there)
+        if self.task.progress(state) < self.counted[key]:
+            return "what had been stored is no longer there"
+        return ""
+
+
+def traced(kind, folder):
+    return (TracedStudy if issubclass(kind, programs.Study) else Traced)(kind(folder), folder)
+
+
+KINDS = (programs.Session, programs.Recover, programs.Convert, programs.StudyAdd, programs.StudyMeasure,
+         programs.StudyForget)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cuts", type=int, help="of each command, however long that takes")
     parser.add_argument("--seconds", type=float, default=20, help="without --cuts: as many as fit in (20)")
-    parser.add_argument("--command", action="append", choices=("session", "recover", "convert"))
+    parser.add_argument("--command", action="append", choices=[kind.name for kind in KINDS])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--forget-syncs", action="store_true",
                         help="a test of this program: as if mbk had not waited for the disk, which has to be noticed")
     arguments = parser.parse_args()
     lot, begin = random.Random(arguments.seed), time.monotonic()
     tried, wrong, synced = collections.Counter(), [], collections.Counter()
-    kinds = [kind for kind in (programs.Session, programs.Recover, programs.Convert)
-             if kind.name in (arguments.command or ("session", "recover", "convert"))]
+    kinds = [kind for kind in KINDS if not arguments.command or kind.name in arguments.command]
     for kind in kinds:
         with tempfile.TemporaryDirectory(prefix="mbk-power-") as folder:
             folder = pathlib.Path(folder)
-            traced = Traced(kind(folder), folder)
-            before, root, events = traced.trace(folder)
+            looked_at = traced(kind, folder)
+            before, root, events = looked_at.trace(folder)
             if arguments.forget_syncs:
                 events = [event for event in events if event[0] not in "BE"]
             until = time.monotonic() + arguments.seconds / len(kinds)
@@ -307,7 +367,7 @@ def main():
                 disk = Disk(before, root)
                 for event in events[:moment]:
                     disk.take(event)
-                problem = traced.judge(disk, disk.after_the_cut(lot))
+                problem = looked_at.judge(disk, disk.after_the_cut(lot))
                 tried[kind.name] += 1
                 if problem:
                     wrong.append(problem)
@@ -315,7 +375,7 @@ def main():
                     print(f"{kind.name}, cut {tried[kind.name]}, after {moment} of {len(events)} events: {problem}",
                           flush=True)
     for name, number in tried.items():
-        print(f"{name:<10}{number:>6} power cuts, among {synced[name]} syncs")
+        print(f"{name:<14}{number:>6} power cuts, among {synced[name]} syncs")
     for problem, number in collections.Counter(wrong).most_common(5):
         print(f"{number:>6} × {problem}")
     print(f"{sum(tried.values())} power cuts in {time.monotonic() - begin:.0f} s; {len(wrong)} wrong")

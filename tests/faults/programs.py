@@ -5,6 +5,7 @@ The programs are named by the environment, as CTest sets it: MBK, and FAILING_CA
 
 import csv
 import dataclasses
+import json
 import os
 import pathlib
 import re
@@ -421,4 +422,104 @@ class Recover(Task):
         return name == "x.h5.journal" and name not in left and left.get("x.h5") == self.whole["x.h5"]
 
 
-TASKS = (Session, Recover, Convert, Report, Json, Simulate)
+class Study(Measured):
+    """Begins with a study of two recordings, of participants 7 and 8."""
+
+    def prepare(self):
+        (self.inputs / "scenario.toml").write_text(SCENARIO.format(seconds=6))
+        for seed in (1, 2, 3):
+            self.done("simulate", "scenario.toml", "--seed", seed, "--out", f"x{seed}.h5", "--quiet")
+        self.done("study", "init", "s")
+        self.done("study", "add", "x1.h5", "--study", "s", "--participant", 7, "--quiet")
+        self.done("study", "add", "x2.h5", "--study", "s", "--participant", 8, "--quiet")
+        self.before = self.state(self.inputs)[0]
+
+    def done(self, *arguments):
+        ran = run(list(map(str, arguments)), self.inputs)
+        if ran.code != FINE:
+            raise AssertionError(f"{arguments}: exit {ran.code}: {ran.err}")
+
+    @staticmethod
+    def state(folder):
+        """What of a study can be listed, sorted; and what is wrong with it."""
+        ran = run(["study", "check", "--study", "s", "--json", "--quick"], folder)
+        if ran.code != FINE:
+            return [], f"check: exit {ran.code}: {' '.join((ran.out + ran.err).split())[-300:]}"
+        left = [path for path in (folder / "s").rglob("*.part*")]
+        if left:
+            return [], f"left half-written after check: {left}"
+        ran = run(["study", "list", "--study", "s", "--json"], folder)
+        if ran.code != FINE:
+            return [], f"list: exit {ran.code}: {ran.err[-300:]}"
+        return sorted((one["participant"], one["sha256"], one["state"], one.get("reason", ""))
+                      for one in json.loads(ran.out)["recordings"]), ""
+
+    def take_reference(self, folder):
+        self.after, problem = self.state(folder)
+        if problem or self.after == self.before:
+            raise AssertionError(f"{self.name} without a fault: {problem or 'nothing was done'}")
+
+    @staticmethod
+    def progress(state):
+        """How far the command has come; only whole steps are steps."""
+        raise NotImplementedError
+
+    def judge_files(self, ran, folder, fault):
+        for name, before in contents(self.inputs).items():
+            if contents(folder).get(name) != before:
+                return f"{name}, which it reads, is no longer there or another"
+        state, problem = self.state(folder)
+        if problem:
+            return problem
+        if ran.code == FINE and state != self.after:
+            return f"exit 0, and the study is {state}"
+        if self.progress(state) < 0:
+            return f"the study is neither as it was nor as it should be: {state}"
+        return ""
+
+
+class StudyAdd(Study):
+    name = "study_add"
+    arguments = ("study", "add", "x3.h5", "--study", "s", "--participant", "9", "--quiet")
+
+    def progress(self, state):
+        return (self.before, self.after).index(state) if state in (self.before, self.after) else -1
+
+
+class StudyMeasure(Study):
+    name = "study_measure"
+    arguments = ("study", "measure", "--study", "s", "--threads", "1", "--quiet")
+
+    def progress(self, state):
+        """Results that are stored; each recording is as it was or as it is to be."""
+        if len(state) != len(self.before):
+            return -1
+        steps = [(one in self.before, one in self.after) for one in state]
+        return sum(after for _, after in steps) if all(map(any, steps)) else -1
+
+
+class StudyForget(Study):
+    name = "study_forget"
+    arguments = ("study", "forget", "--study", "s", "--participant", "7", "--why", "consent withdrawn")
+
+    def prepare(self):
+        super().prepare()
+        self.done("study", "measure", "--study", "s", "--threads", 1, "--quiet")
+        self.before = self.state(self.inputs)[0]
+
+    def progress(self, state):
+        return (self.before, self.after).index(state) if state in (self.before, self.after) else -1
+
+    def judge_files(self, ran, folder, fault):
+        problem = super().judge_files(ran, folder, fault)
+        if problem or ran.code != FINE:
+            return problem
+        for _, hash_of_file, *_ in [one for one in self.before if one not in self.after]:
+            left = [path.name for path in (folder / "s").rglob("*") if path.is_file() and
+                    (hash_of_file in path.name or hash_of_file.encode() in path.read_bytes())]
+            if left:
+                return f"exit 0, and what was to be forgotten stands in {left}"
+        return ""
+
+
+TASKS = (Session, Recover, Convert, Report, Json, Simulate, StudyAdd, StudyMeasure, StudyForget)

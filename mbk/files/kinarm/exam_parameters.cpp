@@ -139,6 +139,18 @@ std::string ExamParameters::text(std::string_view group, std::string_view name) 
   return value == nullptr || value->texts.empty() ? std::string() : value->texts.front();
 }
 
+std::vector<std::string> ExamParameters::personal_texts() const {
+  std::vector<std::string> found;
+  for (const auto& [group, values] : groups_) {
+    for (const auto& [name, value] : values) {
+      const bool says = std::ranges::any_of(
+          value.texts, [](const std::string& text) { return text.find_first_not_of(" \t") != std::string::npos; });
+      if (value.is_text && says && is_personal(group, name)) found.push_back(group + ":" + name);
+    }
+  }
+  return found;
+}
+
 void ExamParameters::describe(std::map<std::string, std::string>& metadata, std::vector<std::string>& notes) const {
   std::vector<std::string> stays, long_ones;
   for (const auto& [group, values] : groups_) {

@@ -38,6 +38,9 @@ class ExamParameters {
   /// The first text; "" where there is none.
   [[nodiscard]] std::string text(std::string_view group, std::string_view name) const;
 
+  /// Texts that may say who the person is, as GROUP:NAME; those that are empty are not among them.
+  [[nodiscard]] std::vector<std::string> personal_texts() const;
+
   /// Puts everything that cannot say who the person is into `metadata`, as GROUP_NAME, and names what stays in the file
   /// in a note. Numbers are taken unless group or name speak of a person; texts only from groups that describe robot,
   /// task and trial, since anything can stand in a text.

@@ -206,7 +206,8 @@ class Checker {
       if (entry.is_directory(code)) continue;
       const fs::path name = entry.path().lexically_relative(database_.folder);
       if (known.contains(name.generic_string())) continue;
-      const std::string stem = entry.path().stem().string();
+      const std::string file = entry.path().filename().string();
+      const std::string stem = file.substr(0, file.find('.'));
       const bool ours = stem.size() == 64 && stem.find_first_not_of("0123456789abcdef") == std::string::npos;
       (is_temporary(entry.path()) ? half : ours ? whole : foreign).push_back(entry.path());
     }
@@ -370,7 +371,7 @@ Result<CheckReport> Store::check(bool remove_leftovers, const std::function<void
     CheckReport report;
     Checker checker(*database_, report);
     {
-      const SQLite::Transaction snapshot(database_->connection, SQLite::TransactionBehavior::DEFERRED);
+      const WriteTransaction snapshot(database_->connection, "BEGIN DEFERRED");  // which only reads
       checker.check_database();
       checker.check_log();
       checker.check_recordings();

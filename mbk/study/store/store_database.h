@@ -1,6 +1,7 @@
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -91,15 +92,27 @@ inline std::optional<std::int64_t> optional_number_at(const SQLite::Statement& r
   return row.getColumn(column).isNull() ? std::nullopt : std::optional(number_at(row, column));
 }
 
-/// A transaction that keeps others from writing from its begin on.
+/// A transaction that keeps others from writing from its begin on. What is not committed is taken back, also where
+/// there is no memory left, in which SQLite::Transaction would end the program.
 class WriteTransaction {
  public:
-  explicit WriteTransaction(SQLite::Database& connection)
-      : transaction_(connection, SQLite::TransactionBehavior::IMMEDIATE) {}
-  void commit() { transaction_.commit(); }
+  explicit WriteTransaction(SQLite::Database& connection, const char* begin = "BEGIN IMMEDIATE")
+      : connection_(connection) {
+    connection_.exec(begin);
+  }
+  WriteTransaction(const WriteTransaction&) = delete;
+  WriteTransaction& operator=(const WriteTransaction&) = delete;
+  ~WriteTransaction() {
+    if (!committed_) sqlite3_exec(connection_.getHandle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  }
+  void commit() {
+    connection_.exec("COMMIT");
+    committed_ = true;
+  }
 
  private:
-  SQLite::Transaction transaction_;
+  SQLite::Database& connection_;
+  bool committed_ = false;
 };
 
 /// Brings the tables to those of this version, from nothing or from those of an older one.

@@ -102,8 +102,8 @@ Result<void> make_folder(const fs::path& folder) {
   if (::mkdir(folder.c_str(), 0700) != 0) {
     const int code = errno;
     std::error_code ignored;
-    if (code == EEXIST && fs::is_directory(folder, ignored)) return {};
-    return cannot("the folder cannot be made", folder, code);
+    if (code != EEXIST || !fs::is_directory(folder, ignored)) return cannot("the folder cannot be made", folder, code);
+    // Whoever made it may not have waited for the disk yet, or failed to.
   }
   return flush_folder(folder.has_parent_path() ? folder.parent_path() : fs::path("."));
 }

@@ -213,6 +213,41 @@ Result<Sheet> read_sheet(std::string_view text, const std::filesystem::path& fol
   return sheet;
 }
 
+std::string bids_label(std::string_view condition) {
+  constexpr std::string_view kUnnamed = "unnamed", kOther = "other";
+  std::string label;
+  for (const char c : condition) {
+    if (is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) label += c;
+  }
+  if (label.empty()) label = condition.empty() ? kUnnamed : kOther;
+  return label;
+}
+
+Result<KnownFacts> facts_of_bids(std::string_view name) {
+  KnownFacts facts;
+  std::string task, acquisition;
+  for (std::string_view rest = name; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('_'), rest.size());
+    const std::string_view part = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::size_t dash = std::min(part.find('-'), part.size());
+    const std::string_view entity = part.substr(0, dash);
+    const std::string_view label = part.substr(std::min(dash + 1, part.size()));
+    if (entity == "task") task = label;
+    if (entity == "acq") acquisition = label;
+    if (entity != "sub" && entity != "ses" && entity != "run") continue;
+    const auto number = whole_number(label);
+    if (!number) {
+      return bad_usage(fmt::format("the label {}-{} is no number, and may be a name", entity, label),
+                       "import its motion.tsv by a sheet (--sheet) that says participant, session and trial");
+    }
+    (entity == "sub" ? facts.participant : entity == "ses" ? facts.session : facts.trial) = number;
+  }
+  if (!acquisition.empty()) task += '-' + acquisition;
+  if (!task.empty()) facts.condition = task == bids_label("") ? "" : task;
+  return facts;
+}
+
 KnownFacts facts_of(const std::map<std::string, std::string>& metadata) {
   KnownFacts facts;
   for (const std::string_view field : kFields) {

@@ -62,6 +62,14 @@ struct Sheet {
 /// @fails  data: no such column, a row of another length, a number that is none; the row is named.
 [[nodiscard]] Result<Sheet> read_sheet(std::string_view text, const std::filesystem::path& folder);
 
+/// From the name of a recording in a BIDS data set, "sub-07_ses-2_task-reach_acq-fast_run-1": participant 7, session 2,
+/// condition "reach-fast", trial 1.
+/// @fails  usage: the participant or session has a label that is not a number, and may be a name.
+[[nodiscard]] Result<KnownFacts> facts_of_bids(std::string_view name);
+
+/// Letters and digits of a condition, as BIDS wants them in a name: "stiff_100%" → "stiff100". "" → "unnamed".
+[[nodiscard]] std::string bids_label(std::string_view condition);
+
 /// From the metadata of a recording: participant, session, condition, trial.
 [[nodiscard]] KnownFacts facts_of(const std::map<std::string, std::string>& metadata);
 

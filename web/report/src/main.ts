@@ -4,7 +4,7 @@ import apacheNotice from "echarts/NOTICE?raw";
 import d3 from "echarts/licenses/LICENSE-d3?raw";
 import tslib from "tslib/CopyrightNotice.txt?raw";
 import zrender from "zrender/LICENSE?raw";
-import type { ExplorationReport, TransferFunctionReport } from "@mbk/shared/documents";
+import type { ExplorationReport, ParticipantReport, StudyReport, TransferFunctionReport } from "@mbk/shared/documents";
 import { facts, h, heading, type HeadingLevel } from "@mbk/shared/dom";
 import type { Trial } from "@mbk/shared/result";
 import { followPageAndPrinter } from "./charts";
@@ -15,8 +15,10 @@ import { explorationHead, explorationSections } from "./exploration";
 import { forceFieldSection } from "./force_field";
 import { methodsSection } from "./methods";
 import { inOrder, nameOf, overviewSection } from "./overview";
+import { participantHead, participantSections } from "./participant";
 import { passivityDetails, passivitySection } from "./passivity";
 import { ellipsesSection, identityFacts, modelSection, provenanceSection, simulatedNote } from "./sections";
+import { studyGlossary, studyHead, studySections } from "./study";
 import { summarySection, verdict, warningsSection } from "./summary";
 import { transferFunctionHead, transferFunctionSections } from "./transfer_function";
 import { explorationGlossary, glossary, transferFunctionGlossary } from "./words";
@@ -105,9 +107,9 @@ const reproduceSection = (command: string, software: string): HTMLElement =>
 const glossarySection = (terms: [string, string][]): HTMLElement =>
   h("section", { id: "glossary" }, heading(2, "Glossary"), facts(terms));
 
-function show(top: HTMLElement, nav: HTMLElement, sections: HTMLElement[]): void {
+function show(top: HTMLElement, nav: HTMLElement | "", sections: HTMLElement[], kind = ""): void {
   document.getElementById("report")?.replaceWith(
-    h("div", { class: "page" }, top, nav, h("main", { id: "content", tabindex: -1 }, ...sections), foot()));
+    h("div", { class: kind ? `page ${kind}` : "page" }, top, nav, h("main", { id: "content", tabindex: -1 }, ...sections), foot()));
   openTargets();
   followPageAndPrinter();
 }
@@ -120,6 +122,16 @@ function drawTransferFunction(report: TransferFunctionReport): void {
 function drawExploration(report: ExplorationReport): void {
   const sections = [...explorationSections(report), reproduceSection(report.command, report.software), glossarySection(explorationGlossary)];
   show(explorationHead(report), contents(sections), sections);
+}
+
+function drawStudy(report: StudyReport): void {
+  const sections = [...studySections(report), reproduceSection(report.command, report.software), glossarySection(studyGlossary)];
+  show(studyHead(report), contents(sections), sections, "of-study");
+}
+
+function drawParticipant(report: ParticipantReport): void {
+  const sections = [...participantSections(report), reproduceSection(report.command, report.software)];
+  show(participantHead(report), "", sections, "of-study");
 }
 
 function draw(report: Report): void {
@@ -138,6 +150,8 @@ try {
   const json = JSON.parse(document.getElementById("report-data")?.textContent ?? "");
   if (json.schema === "mbk.tf_report/1") drawTransferFunction(json);
   else if (json.schema === "mbk.explore_report/1") drawExploration(json);
+  else if (json.schema === "mbk.study_report/1") drawStudy(json);
+  else if (json.schema === "mbk.participant_report/1") drawParticipant(json);
   else draw(readReport(json));
 } catch (error) {
   document.getElementById("report")?.replaceWith(

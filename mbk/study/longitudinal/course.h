@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/nan.h"
+#include "mbk/base/core/words.h"
+#include "mbk/study/reliability/support.h"
+#include "mbk/study/statistics/study_statistics.h"
+#include "mbk/study/store/store_values.h"
+
+/// How outcomes of each person develop over sessions, and what of that is more than error of measurement.
+namespace mbk::longitudinal {
+
+using reliability::Interval;
+
+/// What may be said of a change of one person between two sessions.
+enum class ChangeVerdict {
+  beyond_error,  ///< more than even the upper end of the interval of the minimal detectable change
+  uncertain,     ///< more than the minimal detectable change, and less than that end
+  within_error,  ///< no more than the minimal detectable change: no change is shown
+  unknown,       ///< the minimal detectable change is not known
+};
+
+[[nodiscard]] constexpr auto word_table(ChangeVerdict) {
+  using enum ChangeVerdict;
+  return std::to_array<Word<ChangeVerdict>>(
+      {{beyond_error, "beyond-error"}, {uncertain, "uncertain"}, {within_error, "within-error"}, {unknown, "unknown"}});
+}
+
+/// The results of one person in one session.
+struct SessionMean {
+  std::int64_t session = 0;
+  int results = 0;
+  double mean = kNaN;  ///< of the results; of an orientation the mean axis, within 90° of that of the first session
+};
+
+/// What a session differs by from an earlier one.
+struct Change {
+  std::int64_t first_session = 0, last_session = 0;
+  double first = kNaN, last = kNaN;
+  double difference = kNaN;       ///< last − first
+  double mdc = kNaN;              ///< minimal detectable change (95 %) between means of so many results; NaN: unknown
+  Interval mdc95 = {kNaN, kNaN};  ///< how well that is known
+  bool by_others = false;         ///< by the variances of all other people, since it is more than by those of all
+  ChangeVerdict verdict = ChangeVerdict::unknown;
+};
+
+/// One outcome of one person under one condition.
+struct Course {
+  std::int64_t participant = 0;
+  std::vector<SessionMean> sessions;   ///< by their numbers
+  std::vector<Change> changes;         ///< each later session against the first
+  double mean = kNaN;                  ///< of the sessions' means
+  Interval interval95 = {kNaN, kNaN};  ///< of that, by the variances of all people; NaN: unknown
+};
+
+/// One outcome under one condition.
+struct OutcomeCourses {
+  std::string condition, outcome, unit;
+  bool axial = false;                  ///< an orientation
+  int repeated_participants = 0;       ///< who have two sessions or more
+  std::string why_unknown;             ///< why no minimal detectable change is known, as a clause; "" where it is
+  double mean = kNaN;                  ///< of the people's means
+  Interval interval95 = {kNaN, kNaN};  ///< of that, by Student's t; NaN: fewer than two people, or an orientation
+  std::vector<Course> courses;         ///< by participants
+};
+
+/// The minimal detectable change between the means of so many results in two sessions,
+///   1.96 √(2 σ_s² + (σ_e² + v̄)(1/m₁ + 1/m₂)),
+/// with the variances of the mixed model. It is unknown where fewer than kMinPeople people have two sessions: the
+/// variances of too few people, or of trials of one session alone, say nothing of what a person changes by.
+struct DetectableChange {
+  std::string why_unknown;                    ///< a clause; "": it is known
+  double session = 0, trial = 0;              ///< σ_s², σ_e² + v̄ [unit²]
+  double lower_factor = 1, upper_factor = 1;  ///< ends of its 95 % interval, as factors
+
+  [[nodiscard]] bool known() const { return why_unknown.empty(); }
+  [[nodiscard]] double between(int first_results, int second_results) const;
+};
+
+[[nodiscard]] DetectableChange detectable_change(const statistics::OutcomeReliability& reliability);
+
+/// What a difference is by that.
+[[nodiscard]] ChangeVerdict verdict_of(double difference, double mdc, const Interval& mdc95);
+
+/// Of every outcome and condition that the statistics tell of. Whoever differs by more than the minimal detectable
+/// change of all people is judged by that of all others, where that is known: one large change among few people would
+/// otherwise hide itself.
+/// @param participant  only that one's courses; the minimal detectable change is still that of all people
+[[nodiscard]] std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns,
+                                                  const statistics::StudyStatistics& statistics,
+                                                  std::optional<std::int64_t> participant = {});
+
+}  // namespace mbk::longitudinal

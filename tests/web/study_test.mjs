@@ -1,0 +1,176 @@
+// The pages of mbk study report in a browser: what they say is what the document holds, a change is claimed only where its
+// minimal detectable change is known and exceeded, and they are quiet, offline, accessible and printable.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { changed, closeBrowser, documentOf, folder, mbk, onPage, picture, scrollThrough, violations } from "./browser.mjs";
+
+after(closeBrowser);
+
+const hostile = "<img src=x onerror=\"document.title='owned'\"> & Größe";
+
+function run(...args) {
+  const ran = mbk(...args.map(String));
+  if (ran.code !== 0) throw new Error(`${args.join(" ")}: ${ran.err}`);
+  return ran.out;
+}
+
+const base = run("simulate", "--show", "relaxed_sinusoidal").replace("duration_s = 62.1", "duration_s = 22.1");
+const arm = (name, factor) => writeFileSync(join(folder, name), base.replace(/\[participant\]\n(?:(?!\n\[)[^])*\n/,
+  `[participant]\nkind = "linear"\nmass_kg = [[1.1, -0.2], [-0.2, 0.9]]\ndamping_Ns_per_m = [[9, -3], [-3, 14]]\nstiffness_N_per_m = [[${90 * factor}, ${-35 * factor}], [${-45 * factor}, ${240 * factor}]]\n`));
+
+/** A study of so many people in two sessions; the third came back with an arm twice as stiff. */
+function study(name, people) {
+  run("study", "init", name, "--title", hostile);
+  for (let p = 1; p <= people; ++p) {
+    for (const session of [1, 2]) {
+      arm("arm.toml", (1 + 0.1 * p) * (p === 3 && session === 2 ? 2 : 1));
+      run("simulate", "arm.toml", "--seed", 10 * p + session, "--quiet", "--out", "trial.h5", "--overwrite");
+      run("study", "add", "trial.h5", "--participant", p, "--session", session, "--condition", "relaxed", "--study", name, "--quiet");
+    }
+  }
+  arm("arm.toml", 1);
+  run("simulate", "arm.toml", "--quiet", "--out", "trial.h5", "--overwrite");
+  run("study", "add", "trial.h5", "--participant", 1, "--session", 2, "--condition", "relaxed", "--study", name, "--quiet");
+  run("study", "measure", "--study", name, "--quiet");
+  run("study", "exclude", 2 * people + 1, "--why", hostile, "--study", name);
+}
+
+function page(name, file, ...args) {
+  run("study", "report", "--study", name, "--out", `${file}.html`, ...args);
+  return join(folder, `${file}.html`);
+}
+
+study("six", 6);
+study("two", 3);
+const whole = page("six", "study");
+const stiffer = page("six", "stiffer", "--participant", 3);
+const same = page("six", "same", "--participant", 2);
+const few = page("two", "few");
+const fewStiffer = page("two", "few-stiffer", "--participant", 3);
+run("study", "init", "nothing");
+const nothing = page("nothing", "nothing");
+
+const claims = /more than measurement error/;
+
+test("a change beyond the minimal detectable change is said once, in words, and another is not", async () => {
+  await onPage(stiffer, async (tab) => {
+    const said = await tab.textContent(".said");
+    assert.match(said, /In session 2 the area of the stiffness ellipse is [\d\u202f]+\u00a0% higher than in session 1: more than measurement error explains\./);
+    const { courses } = documentOf(stiffer);
+    const { changes } = courses.find(({ outcome }) => outcome === "stiffness_area").participants[0];
+    assert.equal(changes[0].verdict, "beyond-error");
+    assert.ok(changes[0].difference > changes[0].mdc95_interval[1]);
+    assert.equal(Number(await tab.getAttribute('.statement data[data-name="difference"]', "value")), changes[0].difference);
+    assert.match(await tab.textContent("#limits"), /good or bad/);
+  });
+  await onPage(same, async (tab) => {
+    assert.match(await tab.textContent(".said"), /no change of the area of the stiffness ellipse is shown/);
+    assert.match(await tab.textContent(".statement"), /no proof that nothing changed/);
+    assert.doesNotMatch(await tab.textContent("#change"), claims);
+  });
+});
+
+test("where too few people came again nothing is claimed, however large the difference", async () => {
+  await onPage(fewStiffer, async (tab) => {
+    assert.match(await tab.textContent(".said"), /higher than in session 1\. Whether that is more than measurement error is not known\./);
+    assert.match(await tab.textContent(".statement"), /only 3 people have two sessions or more, and 5 are needed/);
+    assert.doesNotMatch(await tab.textContent("#change"), /: more than measurement error/);
+    assert.doesNotMatch((await tab.textContent("main")).replace(/Whether that is more than measurement error is not known/g, ""), claims);
+    assert.equal(await tab.locator("#change .band, #change .beyond-error, #change .uncertain").count(), 0);
+  });
+  await onPage(few, async (tab) => {
+    assert.equal(await tab.locator("#sessions .band, #sessions .beyond-error").count(), 0);
+    assert.match(await tab.textContent('#sessions [data-name="mdc-unknown"]'), /not known: only 3 people/);
+    assert.match(await tab.textContent("#summary"), /no reliability stated, too few people: 3/);
+    assert.doesNotMatch(await tab.textContent("main"), claims);
+  });
+});
+
+test("an uncertain minimal detectable change makes no sure claim", () => {
+  const file = changed(stiffer, "uncertain", ({ courses }) => {
+    for (const { participants } of courses) for (const { changes } of participants) for (const one of changes) one.verdict = "uncertain";
+  });
+  return onPage(file, async (tab) => {
+    assert.match(await tab.textContent(".said"), /It is not certain that this is more than measurement error\./);
+    assert.doesNotMatch(await tab.textContent("#change .said"), /explains/);
+  });
+});
+
+test("the page of the study shows every participant, and what does not count with its reason as text", () => onPage(whole, async (tab) => {
+  await scrollThrough(tab);
+  assert.equal(await tab.textContent("h1"), hostile);
+  assert.notEqual(await tab.title(), "owned");
+  assert.equal(await tab.locator("#participants svg.forest rect.value").count(), 6);
+  assert.equal(await tab.locator("#sessions svg.course.small").count(), 6);
+  assert.equal(await tab.locator('#sessions [data-verdict="beyond-error"]').getAttribute("data-participant"), "3");
+  const rows = await tab.$$eval("#left-out tbody tr", (all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  assert.deepEqual(rows, [["13", "1", "2", "relaxed", "2", "excluded", hostile]]);
+  const { summary } = documentOf(whole);
+  const area = summary.reliability.find(({ outcome }) => outcome === "stiffness_area");
+  const icc = area.between_sessions.icc.find(({ form, averaged }) => form === "agreement" && averaged === 1);
+  assert.equal(Number(await tab.getAttribute('#reliability tbody tr data[data-name="icc"]', "value")), icc.value);
+  assert.equal(Number(await tab.getAttribute('#reliability tbody tr data[data-name="mdc"]', "value")), area.between_sessions.error[0].mdc95);
+}));
+
+test("another outcome can be chosen by keyboard", () => onPage(whole, async (tab) => {
+  const select = tab.locator("#sessions select");
+  await select.selectOption("K_xx");
+  assert.match(await tab.textContent("#sessions .chosen"), /stiffness xx \[N\/m\]/);
+  assert.equal(await tab.locator("#sessions svg.course.small").count(), 6);
+}));
+
+test("the data can be saved, and a spreadsheet takes none of it for a formula", () => onPage(whole, async (tab) => {
+  const saved = async (name) => {
+    const [file] = await Promise.all([tab.waitForEvent("download"), tab.getByRole("button", { name }).click()]);
+    return readFileSync(await file.path(), "utf8");
+  };
+  const csv = (await saved("Save results (CSV)")).trim().split("\n");
+  const { outcomes, results } = documentOf(whole);
+  assert.equal(csv.length - 1, results.reduce((sum, { values }) => sum + values.filter((value) => value !== null).length, 0));
+  const row = csv.find((line) => line.startsWith("2,1,relaxed,1,") && line.includes(",K_xx,")).split(",");
+  const column = outcomes.findIndex(({ name }) => name === "K_xx");
+  assert.equal(Number(row[6]), results.find(({ recording }) => recording === Number(row[4])).values[column]);
+  assert.deepEqual(JSON.parse(await saved("Save everything (JSON)")), documentOf(whole));
+  assert.match(await saved("Save sessions and changes (CSV)"), /beyond-error/);
+}));
+
+test("the page of a participant holds nothing of others", () => {
+  const json = documentOf(same);
+  assert.deepEqual(new Set(json.recordings.map(({ participant }) => participant)), new Set([2]));
+  assert.equal(json.results.length, 2);
+  for (const { participants } of json.courses) assert.deepEqual(participants.map(({ participant }) => participant), [2]);
+});
+
+test("a study without recordings says so", () => onPage(nothing, async (tab) => {
+  assert.match(await tab.textContent("#summary"), /no recordings yet/);
+  assert.doesNotMatch(await tab.textContent("main"), /NaN|null|undefined|Infinity|\[object/);
+}));
+
+const files = { whole, stiffer, same, few, "few-stiffer": fewStiffer, nothing };
+for (const [name, file] of Object.entries(files)) {
+  test(`axe finds no violation, nothing is undefined or too wide: ${name}`, () => onPage(file, async (tab) => {
+    await scrollThrough(tab);
+    await tab.$$eval("details", (all) => all.forEach((one) => (one.open = true)));
+    assert.deepEqual(await violations(tab), []);
+    assert.doesNotMatch(await tab.textContent("main"), /NaN|Infinity|\[object|undefined/);
+    for (const width of [1280, 900, 390]) {
+      await tab.setViewportSize({ width, height: 900 });
+      assert.ok((await tab.evaluate(() => document.documentElement.scrollWidth - innerWidth)) <= 0, `${width} px`);
+    }
+  }));
+}
+
+test("pictures, and A4 pages: that of a participant is short", async () => {
+  for (const [name, most] of [["whole", 8], ["stiffer", 3], ["few", 8]]) {
+    await onPage(files[name], async (tab) => {
+      const pages = (await picture(tab, `study-${name}`)).toString("latin1").match(/\/Type \/Page\b/g).length;
+      assert.ok(pages <= most, `${name}: ${pages} pages`);
+      await tab.emulateMedia({ media: "print" });
+      await tab.setViewportSize({ width: 673, height: 900 });
+      const wide = await tab.$$eval("main svg, main table", (all) => all.filter((one) => one.getBoundingClientRect().right > 674).map((one) => one.getAttribute("class")));
+      assert.deepEqual(wide, [], name);
+    });
+  }
+});

@@ -1,0 +1,136 @@
+// The page of one participant, which a clinician reads in a minute. Whether a change is more than measurement error was
+// decided by mbk, in the report; here it is said in words, and never more than that.
+import type { OutcomeCourses, ParticipantReport, SessionChange } from "@mbk/shared/documents";
+import { facts, h, heading, table } from "@mbk/shared/dom";
+import { data } from "@mbk/shared/format";
+import { among, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
+import { commonRange, courseLegend, coursePanel } from "./study_drawings";
+import { analysisText, conditionsOf, counted, downloads, ellipseFigure, leftOutTable, ofCondition, sessionsOf, titleOf, verdictWords } from "./study_parts";
+
+export function participantHead(report: ParticipantReport): HTMLElement {
+  document.title = `Participant ${report.participant} – ${titleOf(report.title)}`;
+  return h("header", { class: "page-head" },
+    h("p", { class: "kicker study-title" }, titleOf(report.title)),
+    h("h1", {}, `Participant ${report.participant}`),
+    report.note ? h("p", { class: "note" }, report.note) : "");
+}
+
+const lastOf = ({ participants }: OutcomeCourses): SessionChange | undefined => participants[0]?.changes.at(-1);
+
+/** Both numbers so that what matters of their difference can be seen. */
+function pair({ first, last, difference, mdc95 }: SessionChange): [string, string] {
+  const size = Math.max(Math.abs(difference ?? 0), mdc95 ?? 0);
+  return [among(first, size), among(last, size)];
+}
+const moved = ({ difference, mdc95 }: SessionChange): string => signed(difference, Math.max(Math.abs(difference ?? 0), mdc95 ?? 0));
+
+/** What happened between the first session and the last, and whether that is more than error. */
+function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
+  const course = one.participants[0];
+  const change = lastOf(one);
+  const condition = ofCondition(one.condition, conditions);
+  const name = outcomeName(one.outcome);
+  const lead = condition ? h("span", { class: "condition" }, condition) : "";
+  if (!course || !change) {
+    const session = course?.sessions[0];
+    return h("div", { class: "statement", "data-verdict": "none" }, lead,
+      h("p", { class: "said" }, `There is one session${session ? ` (${session.session})` : ""} with a usable result: nothing can be compared yet.`),
+      session ? h("p", {}, `${name}: `, data(session.mean, withUnit(plainly(session.mean), one.unit), "only"), ".") : "");
+  }
+  const [first, last] = pair(change);
+  const size = percentOf(change, one);
+  const higher = (change.difference ?? 0) > 0;
+  const movement = one.axial
+    ? `turned by ${withUnit(plainly(Math.abs(change.difference ?? 0)), one.unit)}`
+    : `is ${size ? `${size.replace(/^[+−]/, "")} ` : ""}${higher ? "higher" : "lower"} than in session ${change.first_session}`;
+  const same = change.difference === 0;
+  const mdc = withUnit(plainly(change.mdc95), one.unit);
+  const [low, high] = change.mdc95_interval.map((value) => among(value, change.mdc95)) as [string, string];
+  const whose = change.by_others ? "; by all other people of the study" : "";
+  const verdicts: Record<SessionChange["verdict"], [string, string]> = {
+    "beyond-error": [
+      `In session ${change.last_session} the ${name} ${movement}: more than measurement error explains.`,
+      `The minimal detectable change is ${mdc} (95 % interval ${low} to ${high}${whose}).`],
+    uncertain: [
+      `In session ${change.last_session} the ${name} ${movement}. It is not certain that this is more than measurement error.`,
+      `It is more than the minimal detectable change of ${mdc}, but that is itself only known to lie between ${low} and ${high} (95 %${whose}).`],
+    "within-error": [
+      `Between session ${change.first_session} and session ${change.last_session} no change of the ${name} is shown.`,
+      `The difference is no more than the minimal detectable change of ${mdc} (95 % interval ${low} to ${high}), so it may be measurement error. That is no proof that nothing changed.`],
+    unknown: [
+      same ? `In session ${change.last_session} the ${name} is what it was in session ${change.first_session}.`
+        : `In session ${change.last_session} the ${name} ${movement}. Whether that is more than measurement error is not known.`,
+      `The minimal detectable change is not known: ${one.why_unknown ?? "the difference is undefined"}.`],
+  };
+  const [said, why] = verdicts[change.verdict];
+  return h("div", { class: "statement", "data-verdict": change.verdict, "data-condition": one.condition }, lead,
+    h("p", { class: "said" }, said),
+    h("p", {}, `Session ${change.first_session}: `, data(change.first, withUnit(first, one.unit), "first"), `; session ${change.last_session}: `, data(change.last, withUnit(last, one.unit), "last"),
+      "; difference ", data(change.difference, withUnit(moved(change), one.unit), "difference"), size ? ` (${size})` : "", ". ", why));
+}
+
+function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLElement {
+  const all = sessionsOf(primary.flatMap(({ participants }) => participants));
+  return h("figure", { class: "courses" },
+    courseLegend(primary),
+    h("div", { class: "large-panels" }, ...primary.map((one) => {
+      const course = one.participants[0];
+      if (!course) return "";
+      return h("div", {}, h("p", { class: "panel-title" }, [ofCondition(one.condition, conditions), one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome)].filter(Boolean).join(": ")),
+        coursePanel(one, course, commonRange([course]), all, "large"));
+    })));
+}
+
+function changesTable(courses: OutcomeCourses[], condition: string, conditions: string[]): HTMLElement | undefined {
+  const first = courses.some(({ outcome }) => isFirst(outcome)) ? isFirst : isMain;
+  const rows = inOutcomeOrder(courses.filter((one) => one.condition === condition && first(one.outcome)), ({ outcome }) => outcome)
+    .flatMap((one) => {
+      const change = lastOf(one);
+      if (!change) return [];
+      const [first, last] = pair(change);
+      const said = verdictWords[change.verdict];
+      return [[one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome), data(change.first, first), data(change.last, last),
+        h("span", { class: "number" }, data(change.difference, moved(change)), h("span", { class: "half" }, percentOf(change, one) ? ` (${percentOf(change, one)})` : "")),
+        change.mdc95 === null ? "not known" : h("span", { class: "number" }, data(change.mdc95, plainly(change.mdc95)), h("span", { class: "half" }, ` [${among(change.mdc95_interval[0] ?? null, change.mdc95)}, ${among(change.mdc95_interval[1] ?? null, change.mdc95)}]`)),
+        h("span", { class: said.kind }, said.text)]];
+    });
+  if (rows.length === 0) return undefined;
+  const change = courses.filter((one) => one.condition === condition).map(lastOf).find((one) => one !== undefined) as SessionChange;
+  const name = ofCondition(condition, conditions);
+  return table(`${name ? `${name}: ` : ""}first and last session; MDC: minimal detectable change with its 95 % interval`, ["outcome", `session\u00a0${change.first_session}`, `session\u00a0${change.last_session}`, "change", "MDC", "what that means"], rows, "changes");
+}
+
+function limits(report: ParticipantReport, shown: number): HTMLElement {
+  const known = report.courses.filter(({ why_unknown }) => !why_unknown);
+  return h("section", { id: "limits" }, heading(2, "What this page does not say"),
+    h("ul", { class: "limits" },
+      h("li", {}, "Whether a change is good or bad, what caused it, and whether it matters to the person. It is no diagnosis, and mbk is no medical device."),
+      h("li", {}, "“No change shown” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
+      shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page looks at ${shown}; a single one that stands out may be chance.`) : "",
+      known.length > 0
+        ? h("li", {}, `The minimal detectable change is that of this study: of ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more, in this apparatus and between its sessions. Whoever stands out is judged by all others. Where most people really changed, it is too large; for other people or another apparatus it says nothing.`)
+        : h("li", {}, "No minimal detectable change is known here, so that no difference on this page can be told from measurement error.")));
+}
+
+export function participantSections(report: ParticipantReport): HTMLElement[] {
+  const conditions = conditionsOf(report.courses);
+  const primary = report.courses.filter(({ outcome }) => outcome === report.primary);
+  const tables = conditions.flatMap((condition) => changesTable(report.courses, condition, conditions) ?? []);
+  const shown = tables.reduce((sum, one) => sum + one.querySelectorAll("tbody tr").length, 0);
+  const usable = report.recordings.filter(({ state }) => state === "usable").length;
+  const ellipses = ellipseFigure(report.matrices, "K", (_, condition) => ofCondition(condition, conditions) || "stiffness");
+  return [
+    h("section", { id: "change" }, heading(2, "What changed since the first session"),
+      ...(primary.length > 0 ? primary.map((one) => statement(one, conditions)) : [h("p", { class: "said" }, report.courses.length > 0 ? `There is no result of the ${outcomeName(report.primary)} of this participant.` : "There is no usable result of this participant: nothing can be said.")]),
+      primary.some(lastOf) ? courseFigures(primary.filter(lastOf), conditions) : ""),
+    limits(report, shown),
+    ...(tables.length > 0 ? [h("section", { id: "outcomes" }, heading(2, "All outcomes"), ...tables)] : []),
+    ...(ellipses ? [h("section", { id: "ellipses" }, heading(2, "Stiffness in all directions"), ellipses,
+      h("p", { class: "reading" }, "The longer the ellipse in a direction, the more force it takes to move the hand that way."))] : []),
+    h("section", { id: "recordings" }, heading(2, "What this rests on"),
+      facts([["Recordings", `${report.recordings.length}, of which ${usable} usable`], ["Sessions", [...new Set(report.recordings.map(({ session }) => session))].sort((a, b) => a - b).join(", ")],
+        ["Study", counted(report.study_participants, "participant", "participants")], ["Measured by", analysisText(report.analysis)]]),
+      leftOutTable(report.recordings, false),
+      downloads(report, `participant_${report.participant}`)),
+  ];
+}

@@ -1,0 +1,241 @@
+// The page of a study: a document of schema mbk.study_report/1, drawn. Every number in it was computed by mbk.
+import type { Course, OutcomeCourses, StudyReport, Value } from "@mbk/shared/documents";
+import { facts, h, heading, table } from "@mbk/shared/dom";
+import { data, fixed } from "@mbk/shared/format";
+import { among, conditionName, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
+import { commonRange, courseLegend, coursePanel, forest, type ForestRow } from "./study_drawings";
+import { analysisText, chooser, conditionsOf, counted, downloads, ellipseFigure, leftOutTable, ofCondition, recordingsTable, sessionsOf, titleOf } from "./study_parts";
+
+type Summary = StudyReport["summary"];
+type Reliability = Summary["reliability"][number];
+type Comparison = NonNullable<Summary["comparison"]>["outcomes"][number];
+
+export function studyHead({ summary, note }: StudyReport): HTMLElement {
+  const { counts } = summary;
+  document.title = `${titleOf(summary.title)} – study`;
+  const left = [`${counts.usable} usable`, ...([["not_usable", "not usable"], ["failed", "could not be measured"], ["not_measured", "not measured"], ["excluded", "excluded"]] as const)
+    .flatMap(([key, words]) => (counts[key] > 0 ? [`${counts[key]} ${words}`] : []))];
+  return h("header", { class: "page-head" },
+    h("p", { class: "kicker" }, "Study"),
+    h("h1", { class: "study-title" }, titleOf(summary.title)),
+    note ? h("p", { class: "note" }, note) : "",
+    facts([
+      ["Participants", String(counts.participants)],
+      ["Recordings", `${counts.recordings}: ${left.join(", ")}`],
+      ["Measured by", analysisText(summary.analysis)],
+    ]));
+}
+
+const range = (low: Value, high: Value, decimals: number): string => (low === null || high === null ? "" : ` [${fixed(low, decimals)}, ${fixed(high, decimals)}]`);
+
+/** "0.87 [0.61, 0.97]" */
+const iccText = (value: Value, [low, high]: [Value, Value]): HTMLElement =>
+  h("span", { class: "number" }, data(value, fixed(value, 2), "icc"), h("span", { class: "half" }, range(low, high, 2)));
+
+const sized = (value: Value, [low, high]: [Value, Value], name: string): HTMLElement =>
+  h("span", { class: "number" }, data(value, plainly(value), name), h("span", { class: "half" }, low === null || high === null ? "" : ` [${among(low, value)}, ${among(high, value)}]`));
+
+const icc = (one: Reliability) => one.between_sessions.icc.find(({ form, averaged }) => form === "agreement" && averaged === 1);
+const error = (one: Reliability) => one.between_sessions.error.find(({ form }) => form === "agreement");
+
+/** Why nothing is said of it. */
+function lack({ repeated_participants, between_sessions }: Reliability): string {
+  if (between_sessions.support === "too few people") return `too few people: ${repeated_participants} with two sessions or more`;
+  return between_sessions.support;
+}
+
+function meanOf(courses: OutcomeCourses[], condition: string, outcome: string): HTMLElement | string {
+  const one = courses.find((c) => c.condition === condition && c.outcome === outcome);
+  return one ? sized(one.mean, one.interval95 as [Value, Value], "mean") : "–";
+}
+
+function summarySection(report: StudyReport, conditions: string[]): HTMLElement {
+  const { summary, primary, courses } = report;
+  const cards = conditions.flatMap((condition) => {
+    const course = courses.find((one) => one.condition === condition && one.outcome === primary);
+    const one = summary.reliability.find((r) => r.condition === condition && r.outcome === primary);
+    if (!course) return [];
+    const [agreement, sem] = one ? [icc(one), error(one)] : [];
+    const share = sem && sem.mdc95 !== null && course.mean ? ` (${fixed((100 * sem.mdc95) / Math.abs(course.mean), 0)} % of the mean)` : "";
+    return [h("div", { class: "card", "data-condition": condition },
+      h("p", { class: "card-title" }, h("strong", {}, ofCondition(condition, conditions) || "All recordings"), h("span", {}, outcomeName(primary))),
+      h("p", { class: "headline" }, data(course.mean, withUnit(plainly(course.mean), course.unit), "mean")),
+      h("p", {}, `Mean of ${counted(course.participants.length, "participant", "participants")}`, course.interval95[0] === null ? "" : `, 95 % interval ${among(course.interval95[0] ?? null, course.mean)} to ${among(course.interval95[1] ?? null, course.mean)}`, "."),
+      h("p", {}, "Between sessions: ", agreement ? h("span", {}, "ICC(A,1) ", iccText(agreement.value, agreement.interval95 as [Value, Value])) : `no reliability stated, ${one ? lack(one) : "nothing was measured"}`, "."),
+      h("p", {}, "Minimal detectable change: ", sem ? h("span", {}, data(sem.mdc95, withUnit(plainly(sem.mdc95), course.unit), "mdc"), share) : "not known", "."))];
+  });
+  const nothing = summary.counts.recordings === 0 ? "The study has no recordings yet." : summary.counts.usable === 0 ? "No recording has a usable result that counts: there is nothing to sum up." : "";
+  return h("section", { id: "summary" }, heading(2, "In short"),
+    nothing ? h("p", { class: "said" }, nothing) : h("div", { class: "cards" }, ...cards),
+    ...(summary.notes ?? []).map((note) => h("p", { class: "note", "data-name": "note" }, sentence(note))));
+}
+
+const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}`;
+
+/** What must be known beside the numbers; many are folded, but not on paper. */
+function noteList(notes: HTMLElement[]): HTMLElement | "" {
+  if (notes.length === 0) return "";
+  const list = h("ul", { class: "notes" }, ...notes);
+  return notes.length < 5 ? list : h("details", { class: "notes-block", "data-print": true }, h("summary", {}, `${notes.length} notes on these numbers`), list);
+}
+
+/** Which outcomes are shown at once. */
+const firstOf = ({ courses }: StudyReport) => (courses.some(({ outcome }) => isFirst(outcome)) ? isFirst : isMain);
+
+function reliabilityTable(report: StudyReport, condition: string, conditions: string[], main: boolean): HTMLElement | undefined {
+  const all = inOutcomeOrder(report.summary.reliability.filter((one) => one.condition === condition && firstOf(report)(one.outcome) === main), ({ outcome }) => outcome);
+  if (all.length === 0) return undefined;
+  const rows = all.map((one) => {
+    const [agreement, sem] = [icc(one), error(one)];
+    const model = one.mixed_model.of_trials[0];
+    return [
+      one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome),
+      agreement ? `${one.between_sessions.participants} × ${one.between_sessions.sessions.length}` : `${one.participants}`,
+      meanOf(report.courses, condition, one.outcome),
+      agreement ? iccText(agreement.value, agreement.interval95 as [Value, Value]) : lack(one),
+      sem ? sized(sem.sem, sem.sem95 as [Value, Value], "sem") : "–",
+      sem ? sized(sem.mdc95, sem.mdc95_interval as [Value, Value], "mdc") : "–",
+      model && one.mixed_model.support === "enough" ? iccText(model.icc, model.icc95 as [Value, Value]) : "–",
+    ];
+  });
+  const name = ofCondition(condition, conditions);
+  return table(name || "Between sessions", ["outcome", "people × sessions", "mean", "ICC(A,1)", "SEM", "MDC (95 %)", "ICC, mixed model"], rows, "numbers reliability");
+}
+
+function reliabilitySection(report: StudyReport, conditions: string[]): HTMLElement | undefined {
+  const tables = conditions.flatMap((condition) => reliabilityTable(report, condition, conditions, true) ?? []);
+  const others = conditions.flatMap((condition) => reliabilityTable(report, condition, conditions, false) ?? []);
+  const said = (first: boolean) => inOutcomeOrder(report.summary.reliability.filter(({ outcome }) => firstOf(report)(outcome) === first), ({ outcome }) => outcome)
+    .flatMap(({ outcome, condition, notes }) => notes.map((note) => h("li", {}, `${[outcomeName(outcome), ofCondition(condition, conditions)].filter(Boolean).join(", ")}: ${note.replace(/(^|[ [(])-(?=[\d.])/g, "$1−")}${/[.]$/.test(note) ? "" : "."}`)));
+  const [notes, more] = [said(true), said(false)];
+  if (tables.length === 0) return undefined;
+  return h("section", { id: "reliability" }, heading(2, "Reliability"), ...tables,
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
+      "ICC(A,1): share of the variance between single sessions that is between people, with what all people change by counted as error; 1 is perfect. SEM: standard error of measurement, the standard deviation of one person’s sessions (agreement). MDC: minimal detectable change, 1.96 √2 SEM; less than that between two sessions may be error. In brackets 95 % intervals. These are computed from the means of sessions, of people who have all the sessions that are compared; the mixed model takes every trial, and is of single trials."),
+    noteList(notes),
+    others.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), ...others, noteList(more)) : "");
+}
+
+/** Decimals that tell people apart. */
+function spreadOf(courses: Course[]): Value {
+  const means = courses.map(({ mean }) => mean).filter((v): v is number => v !== null);
+  if (means.length < 2) return means[0] === undefined ? null : Math.abs(means[0]) / 10;
+  return means.reduce((a, b) => Math.max(a, b)) - means.reduce((a, b) => Math.min(a, b)) || Math.abs(means[0] ?? 0) / 10;
+}
+
+const intervalText = ([low, high]: Value[], spread: Value): string => (low === null || low === undefined || high === null || high === undefined ? "" : ` [${among(low, spread)}, ${among(high, spread)}]`);
+
+function peopleForest(one: OutcomeCourses, conditions: string[]): HTMLElement {
+  const spread = spreadOf(one.participants);
+  const rows: ForestRow[] = one.participants.map(({ participant, mean, interval95 }) => ({
+    name: `participant ${participant}`, value: mean, low: interval95[0] ?? null, high: interval95[1] ?? null, text: `${among(mean, spread)}${intervalText(interval95, spread)}` }));
+  if (one.participants.length > 1) {
+    rows.push({ name: "mean of all", value: one.mean, low: one.interval95[0] ?? null, high: one.interval95[1] ?? null, text: `${among(one.mean, spread)}${intervalText(one.interval95, spread)}`, whole: true });
+  }
+  const name = ofCondition(one.condition, conditions);
+  const axis = one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome);
+  return h("div", { class: "forest-block" }, name ? h("p", { class: "panel-title" }, name) : "",
+    forest(`${axis}${name ? `, ${name}` : ""}: ${rows.map(({ name: who, text }) => `${who} ${text}`).join("; ")}`, axis, rows),
+    one.why_unknown ? h("p", { class: "reading" }, `People have no intervals: ${one.why_unknown}.`) : "");
+}
+
+function participantsSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement {
+  return h("section", { id: "participants" }, heading(2, "Participants"),
+    h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, ...chosen.map((one) => peopleForest(one, conditions)))),
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Each square is the mean of one person’s sessions. Its line is the 95 % interval that the variances of the study give: between sessions and between trials, taken to be alike in all people. The diamond is the mean of all people with its 95 % interval.")));
+}
+
+function coursesSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement | undefined {
+  if (!courses.some(({ participants }) => participants.some(({ sessions }) => sessions.length > 1))) return undefined;
+  const drawn = (one: OutcomeCourses) => {
+    const several = one.participants.filter(({ sessions }) => sessions.length > 1);
+    const range_ = commonRange(several);
+    const all = sessionsOf(several);
+    const alone = one.participants.length - several.length;
+    const name = ofCondition(one.condition, conditions);
+    return h("div", { class: "courses-block" }, name ? h("p", { class: "panel-title" }, name) : "",
+      h("div", { class: "small-panels wide" }, ...several.map((course) => {
+        const change = course.changes.at(-1);
+        const size = change ? percentOf(change, one) || withUnit(signed(change.difference), one.unit) : "";
+        return h("div", { class: "small-panel", "data-participant": course.participant, "data-verdict": change?.verdict },
+          h("p", { class: "panel-name" }, `participant ${course.participant}`), coursePanel(one, course, range_, all, "small"),
+          h("p", { class: "panel-note" }, change ? `${size} since session ${change.first_session}${change.verdict === "beyond-error" ? ": more than error" : change.verdict === "uncertain" ? ": uncertain" : ""}` : ""));
+      })),
+      alone > 0 ? h("p", { class: "reading" }, `${counted(alone, "participant has", "participants have")} one session, and ${alone === 1 ? "is" : "are"} not drawn.`) : "",
+      one.why_unknown ? h("p", { class: "reading", "data-name": "mdc-unknown" }, `The minimal detectable change is not known: ${one.why_unknown}. No difference here can be told from measurement error.`) : "");
+  };
+  return h("section", { id: "sessions" }, heading(2, "Each participant over the sessions"),
+    h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, courseLegend(chosen), ...chosen.map(drawn))),
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontally the sessions, vertically the outcome, on one scale for all. The band is the minimal detectable change around the first session: what a person who did not change stays within (95 %), by the variances of the mixed model and this person’s own numbers of trials; of whoever stands out, by the variances of all others. Of so many people and sessions some leave the band by chance: 5 % of those who did not change, for each session. Where most people changed between sessions, the band holds that too, and is too wide.")));
+}
+
+function ellipsesSection({ matrices }: StudyReport, conditions: string[]): HTMLElement | undefined {
+  const name = (participant: number, condition: string) => [`participant ${participant}`, ofCondition(condition, conditions)].filter(Boolean).join(", ");
+  const [first, ...more] = (["K", "B", "M"] as const).flatMap((matrix) => ellipseFigure(matrices, matrix, name) ?? []);
+  if (!first) return undefined;
+  return h("section", { id: "ellipses" }, heading(2, "Ellipses"), first,
+    ...(more.length > 0 ? [h("details", { class: "data-table" }, h("summary", {}, "Damping and inertia"), ...more)] : []),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "Each ellipse is of the mean matrix of a session, all at one scale. The longer it is in a direction, the more force it takes to move the hand that way."));
+}
+
+const pText = (value: Value): string => (value === null ? "–" : value < 0.001 ? "< 0.001" : fixed(value, 3));
+
+function comparisonSection({ summary }: StudyReport): HTMLElement | undefined {
+  const { comparison } = summary;
+  if (!comparison) return undefined;
+  const verdicts: Record<Comparison["verdict"], string> = { differs: "differs", "not shown": "no difference shown", "too few people": "too few people", "no variation": "no variation" };
+  const blocks = new Map<string, Comparison[]>();
+  for (const one of comparison.outcomes) {
+    const key = [one.condition ? `${one.condition}: ` : "", `${conditionName(one.second)} against ${conditionName(one.first)}`].join("");
+    blocks.set(key, [...(blocks.get(key) ?? []), one]);
+  }
+  return h("section", { id: "comparison" }, heading(2, `Differences between ${comparison.by}s`), ...[...blocks].map(([name, all]) => {
+    const ordered = inOutcomeOrder(all, ({ outcome }) => outcome);
+    const drawn = ordered.filter(({ effect, outcome }) => effect && isMain(outcome));
+    return h("div", {}, h("p", { class: "panel-title" }, name),
+      drawn.length > 0 ? forest(`Effect sizes of ${name}: ${drawn.map((one) => `${outcomeName(one.outcome)} ${fixed(one.effect?.g ?? null, 2)}`).join("; ")}`, "standardised difference g (Hedges)",
+        drawn.map((one) => ({ name: shortName(one.outcome), value: one.effect?.g ?? null, low: one.effect?.interval95[0] ?? null, high: one.effect?.interval95[1] ?? null,
+          text: `${fixed(one.effect?.g ?? null, 2)}${range(one.effect?.interval95[0] ?? null, one.effect?.interval95[1] ?? null, 2)}` })), 0) : "",
+      table(`${name}; p by permutation, corrected for ${comparison.tests} tests (Holm)`, ["outcome", "people", "difference", "p", "p corrected", "what that means"],
+        ordered.map((one) => [one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome),
+          one.pairing === "paired" ? `${one.first_participants} paired` : `${one.first_participants}, ${one.second_participants}`,
+          one.interval95 ? sized(one.difference, one.interval95 as [Value, Value], "difference") : plainly(one.difference),
+          pText(one.permutation.p), pText(one.p_holm), verdicts[one.verdict]]), "numbers comparison"));
+  }), h("p", { class: "reading" }, "“No difference shown” is no proof that there is none."));
+}
+
+const shortName = (outcome: string): string => outcomeName(outcome).replace(" of the ellipse", "");
+
+function limitsSection(): HTMLElement {
+  return h("section", { id: "limits" }, heading(2, "What these numbers do not say"),
+    h("ul", { class: "limits" },
+      h("li", {}, "Reliability and minimal detectable change are those of these people, this apparatus and these sessions. They say nothing of others."),
+      h("li", {}, "A change beyond the error of measurement need not matter, and has no cause here."),
+      h("li", {}, "Results that are not usable and excluded recordings do not count; they are listed below with their reasons.")));
+}
+
+export function studySections(report: StudyReport): HTMLElement[] {
+  const conditions = conditionsOf(report.courses);
+  const drawn = report.courses.length > 0;
+  const sections = [
+    summarySection(report, conditions),
+    drawn && reliabilitySection(report, conditions),
+    comparisonSection(report),
+    drawn && participantsSection(report, conditions),
+    drawn && coursesSection(report, conditions),
+    ellipsesSection(report, conditions),
+    limitsSection(),
+    h("section", { id: "left-out" }, heading(2, "Recordings that do not count"), report.recordings.length > 0 ? leftOutTable(report.recordings, true) : h("p", {}, "There are no recordings.")),
+    h("section", { id: "data" }, heading(2, "Data"), downloads(report, "study"),
+      report.recordings.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Every recording"), recordingsTable(report.recordings)) : ""),
+  ];
+  return sections.filter((section): section is HTMLElement => section instanceof HTMLElement);
+}
+
+export const studyGlossary: [string, string][] = [
+  ["ICC", "intraclass correlation: the share of all variance that is between people. Near 1 people can be told apart by one measurement; near 0 they cannot"],
+  ["SEM", "standard error of measurement: what one person’s repeated measurements scatter by, one standard deviation"],
+  ["MDC", "minimal detectable change: the difference between two measurements of a person that 95 % of people who did not change stay below"],
+  ["Ellipse", "for each direction, how strongly the hand resists being moved that way. Area: how much altogether; shape: longest over shortest axis; orientation: of the long axis, counter-clockwise from x"],
+  ["Usable", "mbk found nothing that forbids using the result"],
+];
