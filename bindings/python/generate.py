@@ -59,7 +59,7 @@ def type_of(option):
         elif part in NUMBERS:
             kinds.append(NUMBERS[part])
         elif option["files"] or option["folders"]:
-            kinds.append("str | PathLike[str]")
+            kinds.append("str | PathLike[str]" + (" | Document | Recording" if is_read(option) else ""))
         elif re.search(r"[,:\[]", part):
             kinds.append("str | Sequence[float]")
         else:
@@ -67,6 +67,16 @@ def type_of(option):
     kinds = list(dict.fromkeys(kind for one in kinds for kind in one.split(" | ")))
     one = " | ".join(kinds)
     return f"{one} | Sequence[{one}]" if option["repeats"] else one
+
+
+def is_read(option):
+    """Whether it names a file that is read, so that what is in memory may stand there."""
+    return option["value"] in ("FILE", "FILE.json", "RESULT.json") and option["names"][-1] not in ("--out", "--report")
+
+
+def is_for_text(option):
+    """Whether it says where the text goes that would stand on standard output."""
+    return option["names"][-1] == "--out" and "instead of standard output" in option["description"]
 
 
 def separator_of(option):
@@ -101,19 +111,21 @@ class Command:
         self.footer = json_command["footer"]
         names = [option["names"][-1] for option in json_command["options"]]
         self.json = "--json" in names
-        self.options = [option for option in json_command["options"] if self.is_kept(option, names)]
+        self.all_options = json_command["options"]
+        self.options = [option for option in self.all_options if self.is_kept(option)]
         self.arguments = json_command["arguments"]
 
-    def is_kept(self, option, names):
+    def is_kept(self, option):
         name = option["names"][-1]
         if name in ONLY_COMMAND_LINE:
             return False
-        if not self.json or name == "--out" and option["value"] != "FILE":
+        if not self.json:
             return True
         # A document is saved by its own method; --overwrite then speaks of what else is written.
         if name == "--out":
-            return False
-        return name != "--overwrite" or any(one in names for one in ("--report", "--charts"))
+            return not is_for_text(option)
+        others = [one for one in self.all_options if one["names"][-1] in ("--report", "--charts", "--out")]
+        return name != "--overwrite" or not all(map(is_for_text, others))
 
     @property
     def result(self):
@@ -220,8 +232,9 @@ from pathlib import Path
 from typing import Literal
 
 from mbk import _calling
+from mbk._calling import Source
 from mbk._documents import {classes}
-from mbk._recording import Recording, Source
+from mbk._recording import Recording
 
 __all__ = {names}
 
@@ -247,7 +260,7 @@ def main():
         classes = sorted({part for command in commands for part in command.result.split(" | ")} - {"str", "Path", "Recording", "list[Recording]"})
         text = HEADER.format(
             title="The commands of mbk as functions." if module == "_functions" else sentence(groups[module]),
-            command="" if module == "_functions" else module, classes=", ".join(classes) or "Document",
+            command="" if module == "_functions" else module, classes=", ".join(sorted({*classes, "Document"})),
             names=[command.name for command in commands])
         text = text.replace("mbk  --help", "mbk --help")
         text += "\n\n".join(command.text() for command in commands)

@@ -15,6 +15,10 @@ M ẍ + B ẋ + K (x − x₀) = −F. Units are SI and radians.
 
 from __future__ import annotations
 
+from mbk import _libraries
+
+_libraries.load()
+
 from mbk import _mbk, robot, sensor, springs, study
 from mbk._documents import (
     Comparison,
@@ -49,6 +53,8 @@ from mbk._functions import (
     movement,
     passivity,
     read,
+    recover,
+    reproduce,
     simulate,
     teleop,
     transfer_function,
@@ -65,5 +71,5 @@ __all__ = [
     "Movement", "NotUsableError", "Part", "Passivity", "Recording", "Result", "Results", "RobotDynamics", "Springs",
     "StudyList", "StudySummary", "Teleoperation", "TransferFunction", "UsageError", "Validation", "VirtualForce",
     "compare", "convert", "ellipse", "explore", "identify", "info", "live", "load", "measure", "movement", "passivity",
-    "read", "robot", "sensor", "simulate", "springs", "study", "teleop", "tf", "transfer_function", "validate",
+    "read", "recover", "reproduce", "robot", "sensor", "simulate", "springs", "study", "teleop", "tf", "transfer_function", "validate",
 ]

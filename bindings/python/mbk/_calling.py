@@ -10,14 +10,20 @@ import re
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
 from mbk import _documents, _errors, _mbk
-from mbk._recording import Recording, Source
+from mbk._recording import Recording
 
-__all__ = ["Source", "run", "convert", "simulate", "read"]
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+# What a function takes in place of the name of a file.
+Source = Union[str, "os.PathLike[str]", Recording, _documents.Document, Mapping[str, Any], "pandas.DataFrame",
+               "xarray.Dataset"]
 
 
 class _Given:
@@ -89,8 +95,8 @@ def _answer(command: str, given: _Given, options: dict[str, Any], level: int) ->
         raise _errors.of(error) from None
     for code, text in answer.warnings:
         warnings.warn(_errors.MbkWarning(code, text), stacklevel=level)
-    for error in answer.errors:
-        warnings.warn(_errors.MbkWarning("failed", str(error)), stacklevel=level)
+    for failed in answer.errors:
+        warnings.warn(_errors.MbkWarning("failed", str(failed)), stacklevel=level)
     return answer
 
 

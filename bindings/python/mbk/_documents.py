@@ -41,8 +41,8 @@ class _Field:
             target, _, pointer = node["$ref"].partition("#")
             file = target or file
             node = _schema(file)
-            for step in filter(None, pointer.split("/")):
-                node = node[step]
+            for step in pointer.split("/"):
+                node = node[step] if step else node
         self.node, self.file = node, file
         self.description: str = description or node.get("description", "")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -250,9 +250,6 @@ class Recording:
         return (f"<p><strong>Recording</strong>: {html.escape(head)}</p><table><thead><tr><th>channel</th><th>lowest</th>"
                 f"<th>highest</th><th>unit</th></tr></thead><tbody>{body}</tbody></table>")
 
-
-# Below Recording, of which it speaks.
-Source = Union[str, "PathLike[str]", Recording, Mapping[str, Any], "pandas.DataFrame", "xarray.Dataset"]
 
 
 def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:

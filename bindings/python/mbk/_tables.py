@@ -140,9 +140,11 @@ def coefficients(found: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def frequency_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
-    rows = []
+    rows: list[dict[str, Any]] = []
     response = found.get("frequency_response")
-    for one in response["responses"] if response else ():
+    if response is None:
+        return rows
+    for one in response["responses"]:
         for k, frequency in enumerate(response["frequency_hz"]):
             rows.append({
                 "input": one["input"], "output": one["output"], "frequency_hz": frequency,
