@@ -7,6 +7,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/study_commands.h"
+#include "apps/mbk/study_listing.h"
 #include "apps/mbk/study_options.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/present/report/text.h"
@@ -26,20 +27,11 @@ constexpr auto word_table(ExportFormat) {
   return std::to_array<Word<ExportFormat>>({{csv, "csv"}, {json, "json"}, {latex, "latex"}});
 }
 
-struct ListArguments {
-  StudyArguments study;
-  OutputArguments output;
-  std::optional<std::int64_t> analysis;
+struct ListArguments : AnalysisArguments {
   std::int64_t recording = 0;
   bool document = false;
   ExportFormat format = ExportFormat::csv;
 };
-
-void add_analysis_option(CLI::App& command, ListArguments& arguments) {
-  command.add_option("--analysis", arguments.analysis, "by its number (the one of the newest result)")
-      ->type_name("N")
-      ->check(whole_number(1, 999999999));
-}
 
 std::string analysis_line(const store::Analysis& analysis) {
   const auto options = options_from_json(analysis.options);
@@ -63,18 +55,8 @@ std::string counts_text(const StudyList& list) {
   return text + "\n";
 }
 
-std::string head_text(const StudyList& list) {
-  std::string text = list.facts.title.empty() ? "" : list.facts.title + "\n";
-  text += counts_text(list);
-  for (const store::Analysis& one : list.analyses) {
-    text += (list.analysis && one.number == list.analysis->number && list.analyses.size() > 1 ? "* " : "  ") +
-            analysis_line(one);
-  }
-  return text;
-}
-
 std::string list_text(const StudyList& list) {
-  std::string text = head_text(list);
+  std::string text = study_head_text(list);
   if (list.recordings.empty()) return text + "  'mbk study add' and 'mbk study import' bring recordings in\n";
   std::size_t width = 9;
   for (const ListedRecording& one : list.recordings) width = std::max(width, one.recording.condition.size());
@@ -118,54 +100,21 @@ std::string show_text(const store::ShownRecording& shown) {
   return text;
 }
 
-std::string number_text(double value) {
-  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "–";
-}
-
-std::string summary_text(const StudyList& list, const std::vector<OutcomeSummary>& outcomes) {
-  std::string text = head_text(list);
-  if (!list.analysis) return text + "  nothing was measured: 'mbk study measure'\n";
-  if (outcomes.empty()) return text + "  no result is usable: 'mbk study list' says why\n";
-  const std::string* condition = nullptr;
-  for (const OutcomeSummary& one : outcomes) {
-    if (condition == nullptr || *condition != one.condition) {
-      condition = &one.condition;
-      text += fmt::format("\n{}\n  {:<24} {:>10} {:>10} {:>10} {:>10}  {:<10} {}\n",
-                          one.condition.empty() ? "no condition" : one.condition, "outcome", "mean", "sd", "min", "max",
-                          "unit", "n");
-    }
-    text += fmt::format("  {:<24} {:>10} {:>10} {:>10} {:>10}  {:<10} {} ({})\n", one.outcome, number_text(one.mean),
-                        number_text(one.standard_deviation), number_text(one.minimum), number_text(one.maximum),
-                        one.unit, one.participants, one.results);
-  }
-  return text +
-         "\nn: participants (results). mean and sd over participants, each with the mean of their usable\n"
-         "results; min and max of all results. Orientations are axes: 179° and 1° are 2° apart.\n";
-}
-
 int write(const ListArguments& arguments, const std::string& text) {
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
-Result<StudyList> listed(const ListArguments& arguments, std::optional<store::Store>& study) {
-  if (auto ok = check_files({}, arguments.output.to); !ok) return tl::unexpected(ok.error());
-  auto opened = open_study(arguments.study);
-  if (!opened) return tl::unexpected(opened.error());
-  study.emplace(std::move(*opened));
-  return store::list_study(*study, arguments.analysis);
-}
-
 Result<std::vector<OutcomeSummary>> summarised(const store::Store& study, const StudyList& list) {
   if (!list.analysis) return std::vector<OutcomeSummary>();
-  const auto table = study.observations(list.analysis->number);
-  if (!table) return tl::unexpected(table.error());
-  return store::summarise_outcomes(*table);
+  const auto columns = study.columns(list.analysis->number);
+  if (!columns) return tl::unexpected(columns.error());
+  return store::summarise_outcomes(*columns);
 }
 
 int run_list(const ListArguments& arguments) {
   std::optional<store::Store> study;
-  const auto list = listed(arguments, study);
+  const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
   return write(arguments, arguments.output.json ? store::to_json(*list) : list_text(*list));
 }
@@ -189,18 +138,9 @@ int run_show(const ListArguments& arguments) {
                        "'mbk study measure' makes one; 'mbk study list' shows the state", ""});
 }
 
-int run_summary(const ListArguments& arguments) {
-  std::optional<store::Store> study;
-  const auto list = listed(arguments, study);
-  if (!list) return report_error(list.error());
-  const auto outcomes = summarised(*study, *list);
-  if (!outcomes) return report_error(outcomes.error());
-  return write(arguments, arguments.output.json ? store::to_json(*list, *outcomes) : summary_text(*list, *outcomes));
-}
-
 int run_export(const ListArguments& arguments) {
   std::optional<store::Store> study;
-  const auto list = listed(arguments, study);
+  const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
   Result<std::string> text = std::string();
   if (arguments.format == ExportFormat::latex) {
@@ -215,6 +155,30 @@ int run_export(const ListArguments& arguments) {
 }
 
 }  // namespace
+
+void add_analysis_option(CLI::App& command, AnalysisArguments& arguments) {
+  command.add_option("--analysis", arguments.analysis, "by its number (the one of the newest result)")
+      ->type_name("N")
+      ->check(whole_number(1, 999999999));
+}
+
+std::string study_head_text(const StudyList& list) {
+  std::string text = list.facts.title.empty() ? "" : list.facts.title + "\n";
+  text += counts_text(list);
+  for (const store::Analysis& one : list.analyses) {
+    text += (list.analysis && one.number == list.analysis->number && list.analyses.size() > 1 ? "* " : "  ") +
+            analysis_line(one);
+  }
+  return text;
+}
+
+Result<StudyList> listed_study(const AnalysisArguments& arguments, std::optional<store::Store>& study) {
+  if (auto ok = check_files({}, arguments.output.to); !ok) return tl::unexpected(ok.error());
+  auto opened = open_study(arguments.study);
+  if (!opened) return tl::unexpected(opened.error());
+  study.emplace(std::move(*opened));
+  return store::list_study(*study, arguments.analysis);
+}
 
 Action add_study_list(CLI::App& group) {
   auto arguments = std::make_shared<ListArguments>();
@@ -247,20 +211,6 @@ Action add_study_show(CLI::App& group) {
   add_analysis_option(*command, *arguments);
   add_output_options(*command, arguments->output, "mbk.study_show/1");
   return [arguments] { return run_show(*arguments); };
-}
-
-Action add_study_summary(CLI::App& group) {
-  auto arguments = std::make_shared<ListArguments>();
-  CLI::App* command = add_command(group, "summary", "each outcome by condition, over participants");
-  command->footer(
-      "Examples:\n"
-      "  mbk study summary\n"
-      "  mbk study summary --json --out summary.json\n\n"
-      "Only usable results of recordings that are not excluded count; how many do not is said.");
-  add_study_option(*command, arguments->study);
-  add_analysis_option(*command, *arguments);
-  add_output_options(*command, arguments->output, "mbk.study_summary/1");
-  return [arguments] { return run_summary(*arguments); };
 }
 
 Action add_study_export(CLI::App& group) {

@@ -188,6 +188,12 @@ Result<Difference> difference(const Vector& first, const Vector& second, Pairing
   return result;
 }
 
+double difference_p(const Vector& first, const Vector& second, Pairing pairing) {
+  if (first.size() < 2 || second.size() < 2) return kNaN;
+  const StudentT student = pairing == Pairing::paired ? of_differences(second - first) : welch(first, second);
+  return student.standard_error > 0.0 ? student_two_sided(student.t(), student.degrees) : kNaN;
+}
+
 Result<Permutation> permutation_test(const Vector& first, const Vector& second, Pairing pairing,
                                      const PermutationOptions& options) {
   if (options.draws < 1 || options.max_exact < 1) {

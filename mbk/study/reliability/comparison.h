@@ -46,6 +46,9 @@ struct Difference {
 /// @fails  data: a value is not finite; paired samples differ in length.
 [[nodiscard]] Result<Difference> difference(const Vector& first, const Vector& second, Pairing pairing);
 
+/// The p of difference() alone, for samples of finite values; NaN where there is none.
+[[nodiscard]] double difference_p(const Vector& first, const Vector& second, Pairing pairing);
+
 struct PermutationOptions {
   int max_exact = 20'000;  ///< up to so many arrangements all are looked at
   int draws = 9'999;       ///< else so many are drawn

@@ -436,10 +436,11 @@ std::vector<Index> sorted_rows(const Measurements& m) {
   for (Index i = 0; i < m.values.size(); ++i) {
     if (!std::isnan(m.values[i])) rows.push_back(i);
   }
-  std::ranges::stable_sort(rows, {}, [&](Index i) {
+  const auto whose = [&](Index i) {
     const auto k = static_cast<std::size_t>(i);
     return std::pair(m.participants[k], m.sessions[k]);
-  });
+  };
+  if (!std::ranges::is_sorted(rows, {}, whose)) std::ranges::stable_sort(rows, {}, whose);
   return rows;
 }
 

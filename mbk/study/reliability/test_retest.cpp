@@ -60,7 +60,7 @@ double satterthwaite(const MeanSquares& squares, double a, double b) {
 Icc icc_of_agreement(const MeanSquares& squares) {
   const double n = squares.people, k = squares.sessions;
   const double MSB = squares.between_people, MSJ = squares.between_sessions, MSE = squares.residual;
-  Icc icc{IccForm::agreement, 1, (MSB - MSE) / (MSB + (k - 1.0) * MSE + k * (MSJ - MSE) / n), {1.0, 1.0}};
+  Icc icc{IccForm::agreement, 1, icc_of(IccForm::agreement, squares), {1.0, 1.0}};
   if (icc.value >= 1.0) return icc;
   const double odds = std::max(icc.value, 0.0) / (1.0 - std::max(icc.value, 0.0));
   const double v = satterthwaite(squares, k * odds / n, 1.0 + k * odds * (n - 1.0) / n);
@@ -150,6 +150,14 @@ MeasurementError error_of(IccForm form, double variance, double degrees) {
 }
 
 }  // namespace
+
+double icc_of(IccForm form, const MeanSquares& squares) {
+  const double n = squares.people, k = squares.sessions;
+  const double MSB = squares.between_people, MSJ = squares.between_sessions, MSE = squares.residual;
+  if (form == IccForm::one_way) return icc_of_ratio(ratio_of(MSB, squares.within_people), k);
+  if (form == IccForm::consistency) return icc_of_ratio(ratio_of(MSB, MSE), k);
+  return (MSB - MSE) / (MSB + (k - 1.0) * MSE + k * (MSJ - MSE) / n);
+}
 
 Result<MeanSquares> mean_squares(const Matrix& scores) {
   if (scores.rows() < 2 || scores.cols() < 2) {

@@ -64,6 +64,9 @@ struct TestRetest {
 /// @param scores  n×k, a person in each row    @fails  data: fewer than 2×2; a value is not finite.
 [[nodiscard]] Result<MeanSquares> mean_squares(const Matrix& scores);
 
+/// The intraclass correlation of one measurement; its formulas stand at test_retest().
+[[nodiscard]] double icc_of(IccForm form, const MeanSquares& squares);
+
 /// Intraclass correlations after Shrout & Fleiss (1979) and McGraw & Wong (1996), tables 4, 7 and 8,
 ///   ICC(1) = (MSB − MSW)/(MSB + (k−1) MSW)
 ///   ICC(A,1) = (MSB − MSE)/(MSB + (k−1) MSE + k (MSJ − MSE)/n)

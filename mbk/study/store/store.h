@@ -142,6 +142,8 @@ class Store {
 
   /// Of usable results of recordings that are not excluded.
   [[nodiscard]] Result<ObservationTable> observations(std::int64_t analysis) const;
+  /// The same as columns.
+  [[nodiscard]] Result<OutcomeColumns> columns(std::int64_t analysis) const;
 
   /// Erases a participant's recordings and results, and keeps the fact in the log.
   /// @fails  usage: there is no such participant; the reason is empty.

@@ -8,6 +8,7 @@
 #include "mbk/study/store/store.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"
+#include "mbk/study/store/study_summary.h"
 
 namespace mbk::store {
 namespace {
@@ -238,6 +239,12 @@ Result<ObservationTable> Store::observations(std::int64_t analysis) const {
     }
     return table;
   });
+}
+
+Result<OutcomeColumns> Store::columns(std::int64_t analysis) const {
+  const auto table = observations(analysis);
+  if (!table) return tl::unexpected(table.error());
+  return columns_of(*table);
 }
 
 }  // namespace mbk::store

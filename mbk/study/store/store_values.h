@@ -129,6 +129,26 @@ struct ObservationTable {
   std::vector<Observation> observations;
 };
 
+/// Whose a usable result is.
+struct TrialRow {
+  std::int64_t recording = 0, participant = 0, session = 0, trial = 0;
+  int condition = 0;  ///< index into OutcomeColumns::conditions
+};
+
+/// One outcome of every trial.
+struct OutcomeColumn {
+  std::string name, unit;
+  std::vector<double> values;           ///< as long as OutcomeColumns::trials; NaN: the trial has none
+  std::vector<double> standard_errors;  ///< the same; NaN: it is not known. Empty: of no trial
+};
+
+/// Every usable number of one analysis, a column for each outcome: what statistics are computed from.
+struct OutcomeColumns {
+  std::vector<std::string> conditions;  ///< in the order of the recordings' numbers
+  std::vector<TrialRow> trials;         ///< by participant, session, trial and recording
+  std::vector<OutcomeColumn> outcomes;
+};
+
 /// A line of the log.
 struct LogLine {
   std::int64_t number = 0;  ///< from 1, without gaps

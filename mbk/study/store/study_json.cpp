@@ -142,7 +142,7 @@ std::string to_json(const ShownRecording& shown) {
   return written(json);
 }
 
-std::string to_json(const StudyList& list, const std::vector<OutcomeSummary>& outcomes) {
+std::string to_json(const StudyList& list, const std::vector<OutcomeSummary>& outcomes, const std::string& statistics) {
   Document json = new_document("mbk.study_summary/1");
   json["title"] = list.facts.title;
   json["analysis"] = list.analysis ? analysis_json(*list.analysis) : Document();
@@ -159,6 +159,7 @@ std::string to_json(const StudyList& list, const std::vector<OutcomeSummary>& ou
                                 {"minimum", one.minimum},
                                 {"maximum", one.maximum}});
   }
+  json.update(Document::parse(statistics));
   return written(json);
 }
 

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
 
 namespace mbk::store {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// What is summed up of one participant's results.
 struct Sums {
@@ -18,23 +21,19 @@ struct Sums {
 };
 
 struct Group {
-  std::map<std::int64_t, Sums> of_participant;
+  std::vector<Sums> participants;
+  std::int64_t last = 0;  ///< whose sums are the last ones
   double minimum = std::numeric_limits<double>::infinity(), maximum = -std::numeric_limits<double>::infinity();
 };
 
-/// An angle of an axis is the same 180° further.
-bool is_axis(const std::string& outcome) {
-  return outcome.ends_with("_orientation");
-}
-
 void mean_of_axes(const Group& group, OutcomeSummary& summary) {
   double cosine = 0.0, sine = 0.0;
-  for (const auto& [participant, sums] : group.of_participant) {
+  for (const Sums& sums : group.participants) {
     const double length = std::hypot(sums.cosine, sums.sine);
     if (length > 0.0) cosine += sums.cosine / length;
     if (length > 0.0) sine += sums.sine / length;
   }
-  const double n = static_cast<double>(group.of_participant.size());
+  const double n = static_cast<double>(group.participants.size());
   const double angle = std::atan2(sine, cosine) / (2.0 * kDegree);
   summary.mean = angle < 0.0 ? angle + 180.0 : angle;
   const double length = std::min(1.0, std::hypot(cosine, sine) / n);
@@ -43,48 +42,99 @@ void mean_of_axes(const Group& group, OutcomeSummary& summary) {
 
 void mean_of_numbers(const Group& group, OutcomeSummary& summary) {
   double sum = 0.0, squares = 0.0;
-  for (const auto& [participant, sums] : group.of_participant) sum += sums.value / static_cast<double>(sums.count);
-  const double n = static_cast<double>(group.of_participant.size());
+  for (const Sums& sums : group.participants) sum += sums.value / static_cast<double>(sums.count);
+  const double n = static_cast<double>(group.participants.size());
   summary.mean = sum / n;
-  for (const auto& [participant, sums] : group.of_participant) {
+  for (const Sums& sums : group.participants) {
     const double difference = sums.value / static_cast<double>(sums.count) - summary.mean;
     squares += difference * difference;
   }
   if (n > 1.0) summary.standard_deviation = std::sqrt(squares / (n - 1.0));
 }
 
+void add_to(Group& group, std::int64_t participant, double value, bool axis) {
+  if (group.participants.empty() || group.last != participant) {
+    group.participants.emplace_back();
+    group.last = participant;
+  }
+  Sums& sums = group.participants.back();
+  ++sums.count;
+  sums.value += value;
+  if (axis) {
+    sums.cosine += std::cos(2.0 * kDegree * value);
+    sums.sine += std::sin(2.0 * kDegree * value);
+  }
+  group.minimum = std::min(group.minimum, value);
+  group.maximum = std::max(group.maximum, value);
+}
+
 }  // namespace
 
-std::vector<OutcomeSummary> summarise_outcomes(const ObservationTable& table) {
-  const std::size_t outcomes = table.outcomes.size();
-  std::vector<Group> groups(table.conditions.size() * outcomes);
-  for (const Observation& one : table.observations) {
-    Group& group = groups[static_cast<std::size_t>(one.condition) * outcomes + static_cast<std::size_t>(one.outcome)];
-    Sums& sums = group.of_participant[one.participant];
-    ++sums.count;
-    sums.value += one.value;
-    if (is_axis(table.outcomes[static_cast<std::size_t>(one.outcome)])) {
-      sums.cosine += std::cos(2.0 * kDegree * one.value);
-      sums.sine += std::sin(2.0 * kDegree * one.value);
+bool is_orientation(std::string_view outcome) {
+  return outcome.ends_with("_orientation");
+}
+
+std::vector<OutcomeSummary> summarise_outcomes(const OutcomeColumns& columns) {
+  std::vector<std::vector<Group>> of_outcome;
+  for (const OutcomeColumn& column : columns.outcomes) {
+    std::vector<Group>& groups = of_outcome.emplace_back(columns.conditions.size());
+    const bool axis = is_orientation(column.name);
+    for (std::size_t k = 0; k < columns.trials.size(); ++k) {
+      const TrialRow& trial = columns.trials[k];
+      if (std::isnan(column.values[k])) continue;
+      add_to(groups[static_cast<std::size_t>(trial.condition)], trial.participant, column.values[k], axis);
     }
-    group.minimum = std::min(group.minimum, one.value);
-    group.maximum = std::max(group.maximum, one.value);
   }
   std::vector<OutcomeSummary> summaries;
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    const Group& group = groups[k];
-    if (group.of_participant.empty()) continue;
-    OutcomeSummary summary{.condition = table.conditions[k / outcomes],
-                           .outcome = table.outcomes[k % outcomes],
-                           .unit = table.units[k % outcomes]};
-    for (const auto& [participant, sums] : group.of_participant) summary.results += sums.count;
-    summary.participants = std::ssize(group.of_participant);
-    summary.minimum = group.minimum;
-    summary.maximum = group.maximum;
-    is_axis(summary.outcome) ? mean_of_axes(group, summary) : mean_of_numbers(group, summary);
-    summaries.push_back(std::move(summary));
+  for (std::size_t condition = 0; condition < columns.conditions.size(); ++condition) {
+    for (std::size_t k = 0; k < columns.outcomes.size(); ++k) {
+      const Group& group = of_outcome[k][condition];
+      if (group.participants.empty()) continue;
+      OutcomeSummary summary{.condition = columns.conditions[condition],
+                             .outcome = columns.outcomes[k].name,
+                             .unit = columns.outcomes[k].unit};
+      for (const Sums& sums : group.participants) summary.results += sums.count;
+      summary.participants = std::ssize(group.participants);
+      summary.minimum = group.minimum;
+      summary.maximum = group.maximum;
+      is_orientation(summary.outcome) ? mean_of_axes(group, summary) : mean_of_numbers(group, summary);
+      summaries.push_back(std::move(summary));
+    }
   }
   return summaries;
+}
+
+OutcomeColumns columns_of(const ObservationTable& table) {
+  OutcomeColumns columns;
+  columns.conditions = table.conditions;
+  std::unordered_map<std::int64_t, std::size_t> row_of;
+  for (const Observation& one : table.observations) {
+    if (!row_of.emplace(one.recording, row_of.size()).second) continue;
+    columns.trials.push_back({one.recording, one.participant, one.session, one.trial, one.condition});
+  }
+  std::vector<std::size_t> order(columns.trials.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) {
+    const TrialRow& row = columns.trials[k];
+    return std::tuple(row.participant, row.session, row.trial, row.recording);
+  });
+  std::vector<TrialRow> sorted;
+  for (const std::size_t k : order) sorted.push_back(columns.trials[k]);
+  columns.trials = std::move(sorted);
+  for (std::size_t k = 0; k < columns.trials.size(); ++k) row_of[columns.trials[k].recording] = k;
+  for (std::size_t k = 0; k < table.outcomes.size(); ++k) {
+    columns.outcomes.push_back(
+        {table.outcomes[k], table.units[k], std::vector<double>(columns.trials.size(), kNone), {}});
+  }
+  for (const Observation& one : table.observations) {
+    OutcomeColumn& column = columns.outcomes[static_cast<std::size_t>(one.outcome)];
+    const std::size_t row = row_of[one.recording];
+    column.values[row] = one.value;
+    if (std::isnan(one.standard_error)) continue;
+    column.standard_errors.resize(columns.trials.size(), kNone);
+    column.standard_errors[row] = one.standard_error;
+  }
+  return columns;
 }
 
 }  // namespace mbk::store

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mbk/study/store/store_values.h"
@@ -20,7 +21,13 @@ struct OutcomeSummary {
   double minimum = 0.0, maximum = 0.0;  ///< of all results
 };
 
-/// By condition and outcome, each in the order in which the table has them.
-[[nodiscard]] std::vector<OutcomeSummary> summarise_outcomes(const ObservationTable& table);
+/// By condition and outcome, each in the order in which the columns have them.
+[[nodiscard]] std::vector<OutcomeSummary> summarise_outcomes(const OutcomeColumns& columns);
+
+/// Whether an outcome is an angle of an axis [°], which is the same 180° further.
+[[nodiscard]] bool is_orientation(std::string_view outcome);
+
+/// The same numbers, a column for each outcome.
+[[nodiscard]] OutcomeColumns columns_of(const ObservationTable& table);
 
 }  // namespace mbk::store

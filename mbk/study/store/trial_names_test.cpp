@@ -108,12 +108,14 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
   EXPECT_FALSE(outcomes_of("{\"model\":"));
 }
 
-/// Observations of one outcome under one condition.
-ObservationTable table_of(const std::string& outcome, const std::vector<std::pair<int, double>>& values) {
+/// Results of one outcome under one condition.
+OutcomeColumns table_of(const std::string& outcome, const std::vector<std::pair<int, double>>& values) {
   ObservationTable table{{"relaxed"}, {outcome}, {"N/m"}, {}};
-  for (const auto& [participant, value] : values)
-    table.observations.push_back({.participant = participant, .value = value});
-  return table;
+  for (const auto& [participant, value] : values) {
+    table.observations.push_back(
+        {.recording = std::ssize(table.observations), .participant = participant, .value = value});
+  }
+  return columns_of(table);
 }
 
 TEST(ASummary, CountsEachParticipantOnce) {

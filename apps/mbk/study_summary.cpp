@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <string_view>
+
+#include "apps/mbk/messages.h"
+#include "apps/mbk/option_checks.h"
+#include "apps/mbk/study_commands.h"
+#include "apps/mbk/study_listing.h"
+#include "mbk/study/statistics/study_statistics.h"
+
+namespace mbk::app {
+namespace {
+
+struct SummaryArguments : AnalysisArguments {
+  std::vector<std::string> outcomes, compare, groups;
+  statistics::StatisticsOptions options;
+};
+
+/// "patients=1-10,12": a name and the numbers of its people.
+Result<statistics::PeopleGroup> group_of(const std::string& text) {
+  const auto wrong = [&] {
+    return bad_usage(fmt::format("{} is no group", quoted(text)),
+                     "write a name and its participants, as in patients=1-10,12");
+  };
+  const std::size_t equal = text.find('=');
+  if (equal == 0 || equal == std::string::npos) return wrong();
+  statistics::PeopleGroup group{text.substr(0, equal), {}};
+  std::string_view rest = std::string_view(text).substr(equal + 1);
+  const auto number = [](std::string_view& from, std::int64_t& value) {
+    const auto [end, code] = std::from_chars(from.data(), from.data() + from.size(), value);
+    if (code != std::errc() || value < 1) return false;
+    from.remove_prefix(static_cast<std::size_t>(end - from.data()));
+    return true;
+  };
+  constexpr std::int64_t kMost = 1'000'000;
+  while (true) {
+    std::int64_t first = 0, last = 0;
+    if (!number(rest, first)) return wrong();
+    last = first;
+    if (rest.starts_with('-')) {
+      rest.remove_prefix(1);
+      if (!number(rest, last) || last < first || last - first > kMost) return wrong();
+    }
+    for (std::int64_t one = first; one <= last; ++one) group.participants.push_back(one);
+    if (rest.empty()) return group;
+    if (!rest.starts_with(',')) return wrong();
+    rest.remove_prefix(1);
+  }
+}
+
+Result<statistics::StatisticsOptions> statistics_options(const SummaryArguments& arguments) {
+  statistics::StatisticsOptions options = arguments.options;
+  options.outcomes = arguments.outcomes;
+  for (const std::string& text : arguments.groups) {
+    auto group = group_of(text);
+    if (!group) return tl::unexpected(group.error());
+    const auto same = std::ranges::find(options.groups, group->name, &statistics::PeopleGroup::name);
+    if (same == options.groups.end()) {
+      options.groups.push_back(std::move(*group));
+    } else {
+      same->participants.insert(same->participants.end(), group->participants.begin(), group->participants.end());
+    }
+  }
+  if (arguments.compare.empty()) {
+    if (!options.groups.empty())
+      return bad_usage("--group says who is in which group, and nothing compares them", "pass --compare group");
+    return options;
+  }
+  const auto by = value_of<statistics::ComparedBy>(arguments.compare.front());
+  if (!by) {
+    return bad_usage(fmt::format("{} cannot be compared", quoted(arguments.compare.front())),
+                     "pass --compare condition, group or session, and then which, if not all");
+  }
+  if (*by != statistics::ComparedBy::group && !options.groups.empty()) {
+    return bad_usage("--group says who is in which group, and nothing compares them", "pass --compare group");
+  }
+  options.comparing = {*by, {arguments.compare.begin() + 1, arguments.compare.end()}};
+  return options;
+}
+
+int run_summary(const SummaryArguments& arguments) {
+  const auto options = statistics_options(arguments);
+  if (!options) return report_error(options.error());
+  std::optional<store::Store> study;
+  const auto list = listed_study(arguments, study);
+  if (!list) return report_error(list.error());
+  store::OutcomeColumns columns;
+  if (list->analysis) {
+    auto found = study->columns(list->analysis->number);
+    if (!found) return report_error(found.error());
+    columns = std::move(*found);
+  }
+  statistics::add_matrix_numbers(columns);
+  const auto found = statistics::study_statistics(columns, *options);
+  if (!found) return report_error(found.error());
+  const auto outcomes = store::summarise_outcomes(columns);
+  const std::string text = store::to_json(*list, outcomes, statistics::to_json(*found));
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_study_summary(CLI::App& group) {
+  auto arguments = std::make_shared<SummaryArguments>();
+  CLI::App* command = add_command(group, "summary", "each outcome: its size, how reliable it is, what differs");
+  command->footer(
+      "Examples:\n"
+      "  mbk study summary\n"
+      "  mbk study summary --json --out summary.json\n\n"
+      "Only usable results of recordings that are not excluded count; how many do not is said.");
+  add_study_option(*command, arguments->study);
+  add_analysis_option(*command, *arguments);
+  command->add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
+      ->type_name("NAME...");
+  command->add_option("--compare", arguments->compare, "condition, group or session, and which of them (all)")
+      ->type_name("WHAT [NAME...]");
+  command->add_option("--group", arguments->groups, "who is in a group: patients=1-10,12")->type_name("NAME=N,...");
+  add_output_options(*command, arguments->output, "mbk.study_summary/1");
+  return [arguments] { return run_summary(*arguments); };
+}
+
+}  // namespace mbk::app

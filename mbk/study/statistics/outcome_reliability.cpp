@@ -1,0 +1,173 @@
+// How reliable one outcome is under one condition.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/study/statistics/outcome_rows.h"
+
+namespace mbk::statistics {
+namespace {
+
+/// Above so many results weights cost much and change little.
+constexpr std::size_t kMostWeighted = 5'000;
+/// Above so many people no single one decides, and looking at each costs their square.
+constexpr Index kMostLookedAt = 1'000;
+
+/// Single trials of the session in which most people have two or more, the earliest of those.
+std::vector<Cell> trials_of_one_session(const OutcomeRows& rows, const std::vector<Cell>& cells,
+                                        std::int64_t& session) {
+  std::map<std::int64_t, int> people;
+  for (const Cell& cell : cells) {
+    if (cell.count >= 2) ++people[cell.repetition];
+  }
+  session = 0;
+  int most = 0;
+  for (const auto& [number, count] : people) {
+    if (count <= most) continue;
+    most = count;
+    session = number;
+  }
+  std::vector<Cell> trials;
+  for (const OutcomeRow& row : rows.rows) {
+    if (most == 0 || row.session != session) continue;
+    const bool same = !trials.empty() && trials.back().participant == row.participant;
+    trials.push_back({row.participant, same ? trials.back().repetition + 1 : 1, row.value, 1});
+  }
+  return trials;
+}
+
+std::vector<SessionAgreement> agreements(const Repeated& sessions) {
+  std::vector<SessionAgreement> all;
+  if (sessions.support != Support::enough) return all;
+  for (Index k = 1; k < sessions.scores.cols(); ++k) {
+    auto limits = reliability::bland_altman(sessions.scores.col(k - 1), sessions.scores.col(k));
+    if (!limits) continue;
+    all.push_back({sessions.repetitions[static_cast<std::size_t>(k - 1)],
+                   sessions.repetitions[static_cast<std::size_t>(k)], *limits});
+  }
+  return all;
+}
+
+/// The person without whom ICC(A,1) is farthest from that of all.
+std::optional<Influence> influence_on_icc(const Repeated& sessions) {
+  const Index people = sessions.scores.rows();
+  if (sessions.support != Support::enough || people <= reliability::kMinPeople || people > kMostLookedAt) return {};
+  const double all = sessions.test_retest.icc[1].value;
+  std::optional<Influence> most;
+  Matrix others(people - 1, sessions.scores.cols());
+  for (Index i = 0; i < people; ++i) {
+    others << sessions.scores.topRows(i), sessions.scores.bottomRows(people - 1 - i);
+    const auto squares = reliability::mean_squares(others);
+    if (!squares) continue;
+    const double without = reliability::icc_of(reliability::IccForm::agreement, *squares);
+    if (!std::isfinite(without)) continue;
+    if (most && std::abs(without - all) <= std::abs(most->without - all)) continue;
+    most = {sessions.participants[static_cast<std::size_t>(i)], without};
+  }
+  return most;
+}
+
+reliability::Measurements measurements_of(const OutcomeRows& rows, bool weighted) {
+  reliability::Measurements m;
+  const auto count = static_cast<Index>(rows.rows.size());
+  m.values.resize(count);
+  if (weighted) m.known_variance.resize(count);
+  m.fixed = Matrix::Ones(count, 1);
+  m.names = {"mean"};
+  for (Index i = 0; i < count; ++i) {
+    const OutcomeRow& row = rows.rows[static_cast<std::size_t>(i)];
+    m.values[i] = row.value;
+    if (weighted) m.known_variance[i] = row.standard_error * row.standard_error;
+    m.participants.push_back(static_cast<int>(row.participant));
+    m.sessions.push_back(static_cast<int>(row.session));
+  }
+  return m;
+}
+
+MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Cell>& cells, int participants,
+                                   std::vector<std::string>& notes) {
+  MixedReliability result;
+  result.participants = participants;
+  result.sessions = static_cast<int>(cells.size());
+  result.results = static_cast<int>(rows.rows.size());
+  if (participants < reliability::kMinPeople) return result;
+  result.support = Support::too_few_sessions;
+  if (cells.size() == static_cast<std::size_t>(participants)) return result;
+  result.support = Support::no_variation;
+  std::vector<double> counts;
+  for (const Cell& cell : cells) counts.push_back(cell.count);
+  result.typical_trials = static_cast<int>(numeric::upper_median(std::move(counts)));
+  const bool known = all_known(rows.rows);
+  result.weighted = known && rows.rows.size() <= kMostWeighted;
+  if (known && !result.weighted) {
+    notes.push_back(
+        fmt::format("trials are not weighted by their standard errors: there are more than {}", kMostWeighted));
+  }
+  const reliability::Measurements m = measurements_of(rows, result.weighted);
+  const auto model = reliability::fit_mixed_model(m);
+  if (!model) {
+    notes.push_back("no mixed model: " + model.error().message);
+    return result;
+  }
+  result.participant = model->participant.value;
+  result.session = model->session.value;
+  result.residual = model->residual.value;
+  result.known = model->typical_known_variance;
+  for (const int trials : {1, result.typical_trials}) {
+    if (trials == 1 && !result.of_trials.empty()) continue;
+    auto of_trials = reliability::model_reliability(m, trials);
+    if (!of_trials) return result;
+    result.of_trials.push_back(*of_trials);
+  }
+  result.support = Support::enough;
+  return result;
+}
+
+}  // namespace
+
+OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
+  OutcomeReliability result = std::move(named);
+  result.axial = rows.axial;
+  const std::vector<Cell> cells = session_cells(rows);
+  result.results = static_cast<int>(rows.rows.size());
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const bool again = k > 0 && cells[k].participant == cells[k - 1].participant;
+    if (!again) ++result.participants;
+    const bool second = again && (k == 1 || cells[k - 2].participant != cells[k].participant);
+    if (second) ++result.repeated_participants;
+  }
+  if (!rows.trusted) {
+    result.notes.emplace_back(
+        "orientations lie more than 45° from their mean axis, so that no numbers can stand for them: look at the "
+        "shape, "
+        "near 1 it is a circle that has none");
+    result.between_sessions.support = result.within_session.support = result.mixed_model.support =
+        Support::no_variation;
+    return result;
+  }
+  result.between_sessions = repeated(cells);
+  result.agreement = agreements(result.between_sessions);
+  result.influence = influence_on_icc(result.between_sessions);
+  result.within_session = repeated(trials_of_one_session(rows, cells, result.session));
+  result.mixed_model = mixed_reliability(rows, cells, result.participants, result.notes);
+
+  const Repeated& sessions = result.between_sessions;
+  if (sessions.support == Support::no_variation) {
+    result.notes.emplace_back(
+        "the values of each person are the same in all sessions: check that they were not copied; no reliability");
+  }
+  if (result.influence) {
+    const auto [low, high] = sessions.test_retest.agreement_by_large_samples95;
+    const double without = result.influence->without;
+    if (without < low || without > high) {
+      result.notes.push_back(fmt::format("participant {} decides: without them ICC(A,1) is {:.2f}, not {:.2f}",
+                                         result.influence->participant, without, sessions.test_retest.icc[1].value));
+    }
+  }
+  return result;
+}
+
+}  // namespace mbk::statistics
