@@ -545,6 +545,20 @@ class StudySummary(Document):
 
         return pandas.DataFrame(self._values["outcomes"])
 
+    def reliability_table(self) -> pandas.DataFrame:
+        """A row for each condition and outcome that was repeated: ICC(A,1) between sessions with its 95 % interval,
+        standard error of measurement and minimal detectable change in the outcome's unit; `support` says whether the
+        data carry them."""
+        import pandas
+
+        return pandas.DataFrame(_tables.reliability_rows(self._values))
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """ICC(A,1) between sessions of each outcome with its 95 % interval."""
+        from mbk import _plots
+
+        return _plots.reliability(self)
+
 
 CLASSES: dict[str, Callable[[str, int], Document]] = {
     "result": Result, "results": Results, "passivity": Passivity, "passivities": Passivity, "explore": Exploration,

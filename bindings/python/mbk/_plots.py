@@ -53,25 +53,35 @@ def unit_text(unit: str) -> str:
 # ---- recordings
 
 
-KINDS = (("hand_", "hand position"), ("position", "position"), ("force_", "force of the hand"), ("reaction", "reaction"),
-         ("reference", "reference"), ("acceleration", "acceleration"), ("joint_", "joint angle"), ("torque_", "torque"),
-         ("voltage", "voltage"))
+# Channels that share a panel: what they begin with, and what the panel is called. Motion has one for each axis, with its
+# reference, since its places are apart by more than it moves.
+KINDS = (("force_", "force of the hand"), ("reaction", "reaction"), ("acceleration", "acceleration"),
+         ("torque_", "torque"), ("voltage", "voltage"), ("velocity", "velocity"))
+
+
+def panel_of(name: str, unit: str, units: dict[str, str]) -> tuple[str, str]:
+    end = name.rsplit("_", 1)[-1]
+    if name.startswith("reference"):
+        motion = next((one for one in (f"hand_{end}", "position") if units.get(one) == unit), None)
+        return (motion.replace("_", " "), unit) if motion else ("reference", unit)
+    kind = next((title for start, title in KINDS if name.startswith(start)), name.replace("_", " "))
+    return kind, unit
 
 
 def recording(what: Any, channels: list[str]) -> matplotlib.figure.Figure:
     units = what.units
     groups: dict[tuple[str, str], list[str]] = {}
-    for name in channels:
-        kind = next((title for start, title in KINDS if name.startswith(start)), name)
-        groups.setdefault((kind, units.get(name, "")), []).append(name)
+    for name in sorted(channels, key=lambda one: one.startswith("reference")):  # behind what they are drawn upon
+        groups.setdefault(panel_of(name, units.get(name, ""), units), []).append(name)
     made, axes = figure(len(groups), height=1.9, sharex=True)
     time = what.time
-    for panel, ((kind, unit), names) in zip(axes[:, 0], groups.items()):
+    for panel, ((kind, unit), names) in zip(axes[:, 0], sorted(groups.items())):
         for name, colour in zip(names, COLOURS * 4):
-            panel.plot(time, what[name], color=colour, linewidth=0.8, label=name)
+            dashed = name.startswith("reference") and len(names) > 1
+            panel.plot(time, what[name], color=colour, linewidth=0.8, linestyle="--" if dashed else "-", label=name)
         panel.set_ylabel(f"{kind}{unit_text(unit)}")
         if len(names) > 1:
-            panel.legend(loc="upper right", frameon=False, ncols=len(names))
+            panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), frameon=False, ncols=len(names), borderaxespad=0.0)
     axes[-1, 0].set_xlabel("time [s]")
     return made
 
@@ -347,4 +357,22 @@ def live(samples: dict[str, Any], reference_unit: str) -> matplotlib.figure.Figu
     force.set_ylabel("force of the hand [N]")
     force.set_xlabel("time [s]")
     position.legend(loc="upper right", frameon=False, ncols=2, title=None)
+    return made
+
+
+def reliability(document: Any) -> matplotlib.figure.Figure:
+    rows = [one for one in _tables.reliability_rows(document._values) if math.isfinite(one["ICC"])]
+    if not rows:
+        raise NotImplementedError("no outcome of this study was repeated often enough to have an ICC")
+    made, axes = figure(1, width=6.5, height=max(2.0, 0.3 * len(rows) + 0.9))
+    panel = axes[0, 0]
+    several = len({one["condition"] for one in rows}) > 1
+    for k, one in enumerate(rows):
+        panel.plot([one["ICC_low95"], one["ICC_high95"]], [k, k], color=BLUE, linewidth=1.5)
+        panel.plot(one["ICC"], k, "o", color=BLUE, markersize=5)
+    panel.set_yticks(range(len(rows)), [f"{one['condition']}: {one['outcome']}" if several else one["outcome"]
+                                        for one in rows], fontsize="small")
+    panel.invert_yaxis()
+    panel.set_xlim(min(0.0, min(one["ICC_low95"] for one in rows)) - 0.02, 1.02)
+    panel.set_xlabel("ICC(A,1) between sessions; bars: 95 % interval")
     return made

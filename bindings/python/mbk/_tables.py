@@ -172,6 +172,23 @@ def study_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
             for one in found["recordings"]]
 
 
+def reliability_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """What repeated sessions say of each outcome."""
+    rows = []
+    for one in found.get("reliability", []):
+        between = one.get("between_sessions", {})
+        icc = next((icc for icc in between.get("icc", []) if icc["form"] == "agreement" and icc["averaged"] == 1), {})
+        error = next((error for error in between.get("error", []) if error["form"] == "agreement"), {})
+        low, high = icc.get("interval95", (None, None))
+        rows.append({
+            "condition": one["condition"], "outcome": one["outcome"], "unit": one["unit"],
+            "participants": between.get("participants", one["participants"]),
+            "sessions": len(between.get("sessions", [])), "support": between.get("support"),
+            "ICC": number(icc.get("value")), "ICC_low95": number(low), "ICC_high95": number(high),
+            "SEM": number(error.get("sem")), "MDC95": number(error.get("mdc95"))})
+    return rows
+
+
 def flat(values: dict[str, Any]) -> list[dict[str, Any]]:
     """The first list of objects of a document, else its numbers and words."""
     for value in values.values():
