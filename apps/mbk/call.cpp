@@ -19,6 +19,7 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/reading_options.h"
+#include "mbk/files/recording/in_memory.h"
 
 namespace mbk::app {
 namespace {
@@ -46,8 +47,9 @@ struct Prepared {
 CLI::App* find_command(CLI::App& app, std::span<const std::string> path) {
   CLI::App* at = &app;
   for (const std::string& word : path) {
-    at = at->get_subcommand_no_throw(word);
-    if (at == nullptr) return nullptr;
+    const auto named = at->get_subcommands([&](const CLI::App* below) { return below->check_name(word); });
+    if (named.empty()) return nullptr;
+    at = named.front();
   }
   return at->get_subcommands({}).empty() ? at : nullptr;
 }
