@@ -39,7 +39,11 @@ int main(void) {
   mbk_answer* answer = NULL;
   mbk_error* error = NULL;
   /* The recording takes the numbers as they stand, and frees them. */
-  int code = mbk_recording_new(signals, 3, 0.0, free, numbers, &recording, &error);
+  mbk_facts facts = {0};
+  facts.size = sizeof facts;
+  facts.release = free;
+  facts.owner = numbers;
+  int code = mbk_recording_new(signals, 3, &facts, &recording, &error);
   if (code == MBK_FINE) {
     const mbk_option options[] = {{"json", "false"}};
     const mbk_recording* const recordings[] = {recording};

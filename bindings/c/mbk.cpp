@@ -1,6 +1,8 @@
 #include "bindings/c/mbk.h"
 
 #include <exception>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -72,6 +74,12 @@ int guarded(mbk_error** error, const Work& work) noexcept {
   } catch (...) {  // no memory for the error either
     return MBK_BAD_DATA;
   }
+}
+
+int wrong_size(const std::string& what, const std::string& type, mbk_error** error) {
+  return fail({ErrorKind::usage, "the size of the " + what + " is not that of this version",
+               "set 'size' to sizeof(" + type + ")", ""},
+              error);
 }
 
 std::string text_of(const char* text) {
@@ -167,13 +175,17 @@ void mbk_error_free(mbk_error* error) {
   delete error;
 }
 
-int mbk_recording_new(const mbk_signal* signals, size_t count, double rate_hz, void (*release)(void* owner),
-                      void* owner, mbk_recording** recording, mbk_error** error) {
+int mbk_recording_new(const mbk_signal* signals, size_t count, const mbk_facts* facts, mbk_recording** recording,
+                      mbk_error** error) {
   *recording = nullptr;
   return guarded(error, [&] {
+    constexpr mbk_facts kNone = {.size = sizeof(mbk_facts)};
+    const mbk_facts& known = facts == nullptr ? kNone : *facts;
+    if (known.size != sizeof(mbk_facts)) return wrong_size("facts", "mbk_facts", error);
     std::shared_ptr<const void> keeper;
-    if (release != nullptr) {
-      keeper = std::shared_ptr<const void>(nullptr, [release, owner](const void*) { release(owner); });
+    if (known.release != nullptr) {
+      keeper = std::shared_ptr<const void>(
+          signals, [release = known.release, owner = known.owner](const void*) { release(owner); });
     }
     std::vector<InMemory::Signal> made;
     for (std::size_t k = 0; k < count; ++k) {
@@ -181,7 +193,15 @@ int mbk_recording_new(const mbk_signal* signals, size_t count, double rate_hz, v
       if (!signal) return fail(signal.error(), error);
       made.push_back(std::move(*signal));
     }
-    auto whole = InMemory::of(std::move(made), rate_hz);
+    std::map<std::string, std::string> metadata;
+    for (std::size_t k = 0; k < known.metadata_count; ++k) {
+      metadata[text_of(known.metadata[k].name)] = text_of(known.metadata[k].value);
+    }
+    std::vector<mbk::Event> events;
+    for (std::size_t k = 0; k < known.event_count; ++k) {
+      events.push_back({known.events[k].time, text_of(known.events[k].name), known.events[k].value});
+    }
+    auto whole = InMemory::of(std::move(made), known.rate_hz, std::move(metadata), std::move(events));
     if (!whole) return fail(whole.error(), error);
     *recording = new mbk_recording{std::make_shared<const InMemory>(std::move(*whole))};
     return static_cast<int>(MBK_FINE);
@@ -226,6 +246,24 @@ const double* mbk_recording_signal_values(const mbk_recording* recording, size_t
   return values.data();
 }
 
+size_t mbk_recording_metadata_count(const mbk_recording* recording) {
+  return recording->signals->metadata().size();
+}
+
+mbk_option mbk_recording_metadata(const mbk_recording* recording, size_t k) {
+  const auto entry = std::next(recording->signals->metadata().begin(), static_cast<std::ptrdiff_t>(k));
+  return {entry->first.c_str(), entry->second.c_str()};
+}
+
+size_t mbk_recording_event_count(const mbk_recording* recording) {
+  return recording->signals->events().size();
+}
+
+mbk_event mbk_recording_event(const mbk_recording* recording, size_t k) {
+  const mbk::Event& event = recording->signals->events()[k];
+  return {event.time, event.name.c_str(), event.value};
+}
+
 void mbk_recording_free(mbk_recording* recording) {
   delete recording;
 }
@@ -233,11 +271,7 @@ void mbk_recording_free(mbk_recording* recording) {
 int mbk_call(const mbk_request* request, mbk_answer** answer, mbk_error** error) {
   *answer = nullptr;
   return guarded(error, [&] {
-    if (request->size != sizeof(mbk_request)) {
-      return fail({ErrorKind::usage, "the size of the request is not that of this version",
-                   "set 'size' to sizeof(mbk_request)", ""},
-                  error);
-    }
+    if (request->size != sizeof(mbk_request)) return wrong_size("request", "mbk_request", error);
     auto found = mbk::app::call(call_of(*request));
     if (!found) return fail(found.error(), error);
     auto made = std::make_unique<mbk_answer>();

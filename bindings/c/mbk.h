@@ -9,7 +9,7 @@
  *   mbk_recording* recording = NULL;
  *   mbk_answer* answer = NULL;
  *   mbk_error* error = NULL;
- *   if (mbk_recording_new(signals, 3, 0.0, NULL, NULL, &recording, &error) == 0) {
+ *   if (mbk_recording_new(signals, 3, NULL, &recording, &error) == 0) {
  *     mbk_request request = {.size = sizeof request, .command = "measure",
  *                            .recordings = (const mbk_recording* const*)&recording, .recording_count = 1};
  *     if (mbk_call(&request, &answer, &error) == 0) puts(mbk_answer_text(answer));
@@ -88,18 +88,37 @@ typedef struct mbk_signal {
   ptrdiff_t stride; /* from one number to the next, in numbers; 0 means 1. Others than 1 are copied. */
 } mbk_signal;
 
-/* Signals as a recording. With `release` the numbers are not copied: they must stay as they are until release(owner) is
- * called, which happens once, on any thread, when nobody needs them any more; where the call fails, before it returns.
- * rate_hz: of all of them, where no signal is the time; otherwise 0. */
-MBK_API int mbk_recording_new(const mbk_signal* signals, size_t count, double rate_hz, void (*release)(void* owner),
-                              void* owner, mbk_recording** recording, mbk_error** error);
-
 /* An option, as on the command line without the dashes. value NULL: a flag. An option with several values is given
- * several times in a row. */
+ * several times in a row. Also an entry of metadata. */
 typedef struct mbk_option {
   const char* name;
   const char* value;
 } mbk_option;
+
+/* Something that happened at an instant, as the onset of a perturbation ("perturbation_start"). */
+typedef struct mbk_event {
+  double time; /* s, on the clock of the recording */
+  const char* name;
+  double value;
+} mbk_event;
+
+/* What is known of a recording beside its signals. */
+typedef struct mbk_facts {
+  size_t size;                /* sizeof(mbk_facts) */
+  double rate_hz;             /* of all signals, where none of them is the time; otherwise 0 */
+  const mbk_option* metadata; /* "handle_mass_kg", "participant", … as files hold them */
+  size_t metadata_count;
+  const mbk_event* events;
+  size_t event_count;
+  /* With `release` the numbers are not copied: they must stay as they are until release(owner) is called, which happens
+   * once, on any thread, when nobody needs them any more; where the call fails, before it returns. */
+  void (*release)(void* owner);
+  void* owner;
+} mbk_facts;
+
+/* Signals as a recording. facts: may be NULL. */
+MBK_API int mbk_recording_new(const mbk_signal* signals, size_t count, const mbk_facts* facts,
+                              mbk_recording** recording, mbk_error** error);
 
 /* The recording of a file. options: of reading, such as channels, variable, rate, trial. A file that holds several
  * needs the option trial. */
@@ -111,6 +130,10 @@ MBK_API size_t mbk_recording_signal_count(const mbk_recording* recording);
 MBK_API const char* mbk_recording_signal_name(const mbk_recording* recording, size_t k);
 MBK_API const char* mbk_recording_signal_unit(const mbk_recording* recording, size_t k);
 MBK_API const double* mbk_recording_signal_values(const mbk_recording* recording, size_t k, size_t* count);
+MBK_API size_t mbk_recording_metadata_count(const mbk_recording* recording);
+MBK_API mbk_option mbk_recording_metadata(const mbk_recording* recording, size_t k);
+MBK_API size_t mbk_recording_event_count(const mbk_recording* recording);
+MBK_API mbk_event mbk_recording_event(const mbk_recording* recording, size_t k);
 MBK_API void mbk_recording_free(mbk_recording* recording);
 
 /* ---- commands ---- */

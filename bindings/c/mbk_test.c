@@ -47,7 +47,17 @@ static mbk_recording* trial(void (*let_go)(void*), void* owner) {
                                 {"F", "N.m", numbers[2], kCount, 0, 1}};
   mbk_recording* recording = NULL;
   mbk_error* error = NULL;
-  EXPECT(mbk_recording_new(signals, 3, 0.0, let_go, owner, &recording, &error) == MBK_FINE);
+  const mbk_option metadata[] = {{"participant", "7"}, {"handle_mass_kg", "0"}};
+  const mbk_event events[] = {{0.5, "mark", 2.0}};
+  mbk_facts facts = {0};
+  facts.size = sizeof facts;
+  facts.metadata = metadata;
+  facts.metadata_count = 2;
+  facts.events = events;
+  facts.event_count = 1;
+  facts.release = let_go;
+  facts.owner = owner;
+  EXPECT(mbk_recording_new(signals, 3, &facts, &recording, &error) == MBK_FINE);
   EXPECT(error == NULL);
   return recording;
 }
@@ -64,9 +74,10 @@ static int measure(const mbk_recording* recording, const mbk_option* options, si
   return mbk_call(&request, answer, error);
 }
 
-/* The number behind `"K": [[`. */
+/* The number behind "K": [[ of the model. */
 static double stiffness_in(const char* document) {
-  const char* const at = strstr(document, "\"K\":");
+  const char* const model = strstr(document, "\"model\":");
+  const char* const at = model == NULL ? NULL : strstr(model, "\"K\":");
   return at == NULL ? NAN : strtod(at + strcspn(at, "-0123456789"), NULL);
 }
 
@@ -80,6 +91,11 @@ static void test_measures_what_is_in_memory(void) {
   EXPECT(strcmp(mbk_recording_signal_unit(recording, 1), "rad") == 0);
   EXPECT(mbk_recording_signal_values(recording, 1, &count) == numbers[1]); /* not copied */
   EXPECT(count == kCount);
+  EXPECT(mbk_recording_metadata_count(recording) == 2);
+  EXPECT(strcmp(mbk_recording_metadata(recording, 1).name, "participant") == 0);
+  EXPECT(strcmp(mbk_recording_metadata(recording, 1).value, "7") == 0);
+  EXPECT(mbk_recording_event_count(recording) == 1);
+  EXPECT(mbk_recording_event(recording, 0).time == 0.5);
 
   mbk_answer* answer = NULL;
   mbk_error* error = NULL;
@@ -106,7 +122,7 @@ static void test_copies_what_stands_apart(void) {
                                 {"x", NULL, interleaved + 1, kCount, 0, 3},
                                 {"F", NULL, interleaved + 2, kCount, 0, 3}};
   mbk_recording* apart = NULL;
-  EXPECT(mbk_recording_new(signals, 3, 0.0, NULL, NULL, &apart, NULL) == MBK_FINE);
+  EXPECT(mbk_recording_new(signals, 3, NULL, &apart, NULL) == MBK_FINE);
   size_t count = 0;
   const double* const values = mbk_recording_signal_values(apart, 2, &count);
   EXPECT(memcmp(values, numbers[2], sizeof numbers[2]) == 0);
@@ -136,10 +152,16 @@ static void test_says_what_is_wrong(void) {
   const mbk_signal unequal[] = {{"time", NULL, numbers[0], kCount, 0, 1}, {"x", NULL, numbers[1], 5, 0, 1}};
   int owner = 1;
   released = 0;
-  EXPECT(mbk_recording_new(unequal, 2, 0.0, release, &owner, &missing, &error) == MBK_BAD_DATA);
+  mbk_facts facts = {0};
+  facts.size = sizeof facts;
+  facts.release = release;
+  facts.owner = &owner;
+  EXPECT(mbk_recording_new(unequal, 2, &facts, &missing, &error) == MBK_BAD_DATA);
   EXPECT(released == 1);
   mbk_error_free(error);
-  EXPECT(mbk_recording_new(unequal, 0, 0.0, NULL, NULL, &missing, NULL) == MBK_WRONG_USAGE);
+  EXPECT(mbk_recording_new(unequal, 0, NULL, &missing, NULL) == MBK_WRONG_USAGE);
+  facts.size = 1;
+  EXPECT(mbk_recording_new(unequal, 1, &facts, &missing, NULL) == MBK_WRONG_USAGE);
 
   mbk_request request = {0};
   request.command = "measure";

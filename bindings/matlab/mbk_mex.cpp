@@ -1,12 +1,14 @@
 // The MEX file of mbk for MATLAB and Octave: one entry to the C interface. People call the functions of +mbk.
 //
-//   [result, text, warnings, exit_code, messages] = mbk_mex('call', command, options, signals, words, documents)
-//   signals = mbk_mex('read', file, options)
+//   [result, text, warnings, exit_code, messages] =
+//       mbk_mex('call', command, options, words, documents, signals, metadata, events)
+//   [signals, metadata, events] = mbk_mex('read', file, options)
 //   version = mbk_mex('version')
 //
 // options: cell row of names and values, all char; signals: struct array with the fields name, unit, values (double,
-// real), or []; words: cell of char; documents: cell of
-// results as JSON. result: the JSON document as MATLAB's jsondecode gives it, with every digit.
+// real), or []; metadata: as options; events: struct array with the fields time, name, value, or []; words: cell of
+// char; documents: cell of results as JSON. result: the JSON document as MATLAB's jsondecode gives it, with every
+// digit.
 #include <mex.h>
 
 #include <cstdio>
@@ -39,7 +41,8 @@ std::vector<std::string> texts_of(const mxArray* cell, const char* what) {
   std::vector<std::string> texts;
   if (cell == nullptr || mxIsEmpty(cell)) return texts;
   if (!mxIsCell(cell)) throw Failure{"mbk:usage", std::string(what) + " is no cell of texts"};
-  for (mwIndex k = 0; k < mxGetNumberOfElements(cell); ++k) texts.push_back(text_of(mxGetCell(cell, k), what));
+  for (mwIndex k = 0; k < static_cast<mwIndex>(mxGetNumberOfElements(cell)); ++k)
+    texts.push_back(text_of(mxGetCell(cell, k), what));
   return texts;
 }
 
@@ -65,16 +68,25 @@ std::vector<mbk_option> options_of(const std::vector<std::string>& texts) {
 /// Signals where they stand in the arrays of the caller, who keeps them for as long as the call lasts.
 class Signals {
  public:
-  explicit Signals(const mxArray* given) {
+  Signals(const mxArray* given, const mxArray* metadata, const mxArray* events) {
     if (given == nullptr || mxIsEmpty(given)) return;
     if (!mxIsStruct(given)) throw Failure{"mbk:usage", "signals are no struct"};
-    const mwSize count = mxGetNumberOfElements(given);
+    const auto count = static_cast<std::size_t>(mxGetNumberOfElements(given));
     names_.reserve(2 * count);  // their texts stay where they are
     std::vector<mbk_signal> signals;
-    for (mwIndex k = 0; k < count; ++k) signals.push_back(signal_of(given, k));
+    for (std::size_t k = 0; k < count; ++k) signals.push_back(signal_of(given, static_cast<mwIndex>(k)));
     mbk_error* error = nullptr;
-    const auto keep = [](void*) {};
-    if (mbk_recording_new(signals.data(), signals.size(), 0.0, keep, nullptr, &recording_, &error) != MBK_FINE) {
+    const std::vector<std::string> entry_texts = texts_of(metadata, "metadata");
+    const std::vector<mbk_option> entries = options_of(entry_texts);
+    const std::vector<mbk_event> happened = events_of(events);
+    mbk_facts facts{};
+    facts.size = sizeof facts;
+    facts.metadata = entries.data();
+    facts.metadata_count = entries.size();
+    facts.events = happened.data();
+    facts.event_count = happened.size();
+    facts.release = [](void*) {};
+    if (mbk_recording_new(signals.data(), signals.size(), &facts, &recording_, &error) != MBK_FINE) {
       fail(error);
     }
   }
@@ -85,6 +97,24 @@ class Signals {
   [[nodiscard]] const mbk_recording* recording() const { return recording_; }
 
  private:
+  std::vector<mbk_event> events_of(const mxArray* given) {
+    std::vector<mbk_event> events;
+    if (given == nullptr || mxIsEmpty(given)) return events;
+    if (!mxIsStruct(given)) throw Failure{"mbk:usage", "events are no struct"};
+    const auto count = static_cast<std::size_t>(mxGetNumberOfElements(given));
+    event_names_.reserve(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto at = static_cast<mwIndex>(k);
+      const mxArray *const time = mxGetField(given, at, "time"), *const value = mxGetField(given, at, "value");
+      if (time == nullptr || value == nullptr || mxIsEmpty(time) || mxIsEmpty(value)) {
+        throw Failure{"mbk:usage", "an event has the fields time, name and value"};
+      }
+      event_names_.push_back(text_of(mxGetField(given, at, "name"), "the name of an event"));
+      events.push_back({mxGetScalar(time), event_names_.back().c_str(), mxGetScalar(value)});
+    }
+    return events;
+  }
+
   mbk_signal signal_of(const mxArray* given, mwIndex k) {
     names_.push_back(text_of(mxGetField(given, k, "name"), "the name of a signal"));
     const std::string& name = names_.back();
@@ -100,7 +130,7 @@ class Signals {
     return {name.c_str(), names_.back().c_str(), mxGetPr(values), rows * columns, matrix ? rows : 0, 1};
   }
 
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, event_names_;
   mbk_recording* recording_ = nullptr;
 };
 
@@ -242,12 +272,12 @@ mxArray* messages_of(const mbk_answer* answer) {
 }
 
 void call(int results, mxArray* result[], int count, const mxArray* given[]) {
-  if (count != 6) throw Failure{"mbk:usage", "mbk_mex('call', command, options, signals, words, documents)"};
+  if (count != 8) throw Failure{"mbk:usage", "mbk_mex('call', command, options, words, documents, signals, …)"};
   const std::string command = text_of(given[1], "the command");
-  const std::vector<std::string> option_texts = texts_of(given[2], "options"), words = texts_of(given[4], "words");
-  const std::vector<std::string> documents = texts_of(given[5], "documents");
+  const std::vector<std::string> option_texts = texts_of(given[2], "options"), words = texts_of(given[3], "words");
+  const std::vector<std::string> documents = texts_of(given[4], "documents");
   const std::vector<mbk_option> options = options_of(option_texts);
-  const Signals signals(given[3]);
+  const Signals signals(given[5], given[6], given[7]);
   const mbk_recording* const recording = signals.recording();
   std::vector<const char*> word_texts, document_texts;
   for (const std::string& word : words) word_texts.push_back(word.c_str());
@@ -278,7 +308,31 @@ void call(int results, mxArray* result[], int count, const mxArray* given[]) {
   mbk_answer_free(answer);
 }
 
-void read(mxArray* result[], int count, const mxArray* given[]) {
+mxArray* metadata_of(const mbk_recording* recording) {
+  const std::size_t count = mbk_recording_metadata_count(recording);
+  mxArray* const entries = mxCreateCellMatrix(count, 2);
+  for (std::size_t k = 0; k < count; ++k) {
+    const mbk_option entry = mbk_recording_metadata(recording, k);
+    mxSetCell(entries, k, mxCreateString(entry.name));
+    mxSetCell(entries, count + k, mxCreateString(entry.value));
+  }
+  return entries;
+}
+
+mxArray* events_of(const mbk_recording* recording) {
+  const char* fields[] = {"time", "name", "value"};
+  const std::size_t count = mbk_recording_event_count(recording);
+  mxArray* const events = mxCreateStructMatrix(count, 1, 3, fields);
+  for (std::size_t k = 0; k < count; ++k) {
+    const mbk_event event = mbk_recording_event(recording, k);
+    mxSetFieldByNumber(events, k, 0, mxCreateDoubleScalar(event.time));
+    mxSetFieldByNumber(events, k, 1, mxCreateString(event.name));
+    mxSetFieldByNumber(events, k, 2, mxCreateDoubleScalar(event.value));
+  }
+  return events;
+}
+
+void read(int results, mxArray* result[], int count, const mxArray* given[]) {
   if (count != 3) throw Failure{"mbk:usage", "mbk_mex('read', file, options)"};
   const std::string file = text_of(given[1], "the name of the file");
   const std::vector<std::string> option_texts = texts_of(given[2], "options");
@@ -298,6 +352,8 @@ void read(mxArray* result[], int count, const mxArray* given[]) {
     mxSetFieldByNumber(result[0], k, 1, mxCreateString(mbk_recording_signal_unit(recording, k)));
     mxSetFieldByNumber(result[0], k, 2, column);
   }
+  if (results > 1) result[1] = metadata_of(recording);
+  if (results > 2) result[2] = events_of(recording);
   mbk_recording_free(recording);
 }
 
@@ -306,7 +362,7 @@ void run(int results, mxArray* result[], int count, const mxArray* given[]) {
   if (what == "call") {
     call(results, result, count, given);
   } else if (what == "read") {
-    read(result, count, given);
+    read(results, result, count, given);
   } else if (what == "version") {
     result[0] = mxCreateString(mbk_version());
   } else {

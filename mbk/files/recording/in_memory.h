@@ -41,6 +41,8 @@ class InMemory {
   [[nodiscard]] Contents contents() const;
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
+  [[nodiscard]] const std::map<std::string, std::string>& metadata() const { return metadata_; }
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   /// By the name of a signal, or of the channel that it is; nullptr: there is none.
   [[nodiscard]] const Signal* find(std::string_view name) const;
 

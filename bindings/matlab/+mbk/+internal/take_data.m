@@ -1,7 +1,7 @@
-function [signals, words, documents, rest] = take_data(inputs)
+function [data, words, documents, rest] = take_data(inputs)
 % Data before the options: names of files; time, position, force and so on as arrays; a struct, table, timetable or
 % iddata; or what a function of mbk gave as its second output. rest: the options.
-  signals = [];
+  data = struct('signals', [], 'metadata', {{}}, 'events', []);
   words = {};
   documents = {};
   rest = inputs;
@@ -27,12 +27,12 @@ function [signals, words, documents, rest] = take_data(inputs)
     while count < numel(inputs) && isnumeric(inputs{count + 1})
       count = count + 1;
     end
-    signals = of_arrays(inputs(1:count));
+    data.signals = of_arrays(inputs(1:count));
     rest = inputs(count + 1:end);
   else
-    [signals, documents] = of_one(first);
+    [data, documents] = of_one(data, first);
     rest = inputs(2:end);
-    while ~isempty(rest) && isempty(signals) && is_document(rest{1})
+    while ~isempty(rest) && isempty(data.signals) && is_document(rest{1})
       documents{end + 1} = rest{1}.text;
       rest = rest(2:end);
     end
@@ -82,22 +82,21 @@ function signals = of_arrays(arrays)
   end
 end
 
-function [signals, documents] = of_one(data)
-  signals = [];
+function [data, documents] = of_one(data, given)
   documents = {};
-  if is_document(data)
-    documents = {data.text};
-  elseif isa(data, 'timetable')
-    signals = of_timetable(data);
-  elseif isa(data, 'table')
-    signals = of_columns(empty_signals(), data, data.Properties.VariableNames, data.Properties.VariableUnits);
-  elseif isa(data, 'iddata') || (isstruct(data) && isfield(data, 'OutputData') && isfield(data, 'InputData'))
-    signals = of_iddata(data);
-  elseif isstruct(data) && numel(data) == 1
-    signals = of_struct(data);
+  if is_document(given)
+    documents = {given.text};
+  elseif isa(given, 'timetable')
+    data.signals = of_timetable(given);
+  elseif isa(given, 'table')
+    data.signals = of_columns(empty_signals(), given, given.Properties.VariableNames, given.Properties.VariableUnits);
+  elseif isa(given, 'iddata') || (isstruct(given) && isfield(given, 'OutputData') && isfield(given, 'InputData'))
+    data.signals = of_iddata(given);
+  elseif isstruct(given) && numel(given) == 1
+    data = of_struct(data, given);
   else
     error('mbk:usage', 'data of class %s: give names of files, arrays, a struct, a table, a timetable or iddata', ...
-          class(data));
+          class(given));
   end
 end
 
@@ -105,20 +104,26 @@ function signals = empty_signals()
   signals = struct('name', {}, 'unit', {}, 'values', {});
 end
 
-function signals = of_struct(data)
-% Fields are signals; the field units, where there is one, is a struct with their units.
+function data = of_struct(data, given)
+% Fields are signals; beside them may stand units, metadata and events, as mbk.read gives them.
   signals = empty_signals();
-  names = fieldnames(data);
+  names = fieldnames(given);
   for k = 1:numel(names)
-    if strcmp(names{k}, 'units')
-      continue
+    name = names{k};
+    if strcmp(name, 'metadata')
+      entries = given.metadata';
+      data.metadata = entries(:)';
+    elseif strcmp(name, 'events')
+      data.events = given.events;
+    elseif ~strcmp(name, 'units')
+      unit = '';
+      if isfield(given, 'units') && isfield(given.units, name)
+        unit = given.units.(name);
+      end
+      signals = added(signals, name, unit, given.(name));
     end
-    unit = '';
-    if isfield(data, 'units') && isfield(data.units, names{k})
-      unit = data.units.(names{k});
-    end
-    signals = added(signals, names{k}, unit, data.(names{k}));
   end
+  data.signals = signals;
 end
 
 function signals = of_timetable(data)
