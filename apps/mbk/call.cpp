@@ -19,6 +19,8 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/reading_options.h"
+#include "mbk/base/core/edit_distance.h"
+#include "mbk/files/recording/in_memory.h"
 
 namespace mbk::app {
 namespace {
@@ -46,8 +48,9 @@ struct Prepared {
 CLI::App* find_command(CLI::App& app, std::span<const std::string> path) {
   CLI::App* at = &app;
   for (const std::string& word : path) {
-    at = at->get_subcommand_no_throw(word);
-    if (at == nullptr) return nullptr;
+    const auto named = at->get_subcommands([&](const CLI::App* below) { return below->check_name(word); });
+    if (named.empty()) return nullptr;
+    at = named.front();
   }
   return at->get_subcommands({}).empty() ? at : nullptr;
 }
@@ -70,9 +73,21 @@ std::string key_of(const Call& call, std::span<const std::string> words) {
   return key;
 }
 
-bool is_name(std::string_view name) {
-  return !name.empty() && !name.starts_with('-') &&
-         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string_view::npos;
+/// With the name that was perhaps meant.
+tl::unexpected<Error> no_option(const CLI::App& command, const std::string& name) {
+  std::string nearest;
+  std::size_t least = 3;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& known : option->get_lnames()) {
+      const auto distance = static_cast<std::size_t>(edit_distance(known, name));
+      if (distance < least) {
+        least = distance;
+        nearest = known;
+      }
+    }
+  }
+  return bad_usage(fmt::format("'{}' is no option of {}", name, command.get_name()),
+                   nearest.empty() ? "" : fmt::format("'{}' is one", nearest));
 }
 
 /// As it would be typed, word by word.
@@ -92,12 +107,12 @@ std::vector<std::string> typed_option(const CLI::App& command, const CallOption&
 }
 
 /// What would be typed behind the command.
-/// @fails  usage: no name of an option
+/// @fails  usage: no option of the command
 Result<std::vector<std::string>> typed_words(const CLI::App& command, const Call& call,
                                              const std::vector<std::string>& words) {
   std::vector<std::string> typed;
   for (const CallOption& option : call.options) {
-    if (!is_name(option.name)) return bad_usage(fmt::format("'{}' is no name of an option", option.name));
+    if (command.get_option_no_throw("--" + option.name) == nullptr) return no_option(command, option.name);
     const std::vector<std::string> more = typed_option(command, option);
     typed.insert(typed.end(), more.begin(), more.end());
   }
@@ -274,7 +289,7 @@ std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answe
 Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call& call) {
   ReadingArguments reading;
   SensorArguments sensor;
-  CLI::App command;
+  CLI::App command("", "read");
   add_reading_options(command, reading);
   add_sensor_options(command, sensor);
   auto typed = typed_words(command, call, all_words(call));

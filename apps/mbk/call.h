@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/files/recording/in_memory.h"
+
+namespace mbk::recording {
+class InMemory;
+}
 
 namespace mbk::app {
 

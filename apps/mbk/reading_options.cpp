@@ -6,6 +6,7 @@
 #include "apps/mbk/option_checks.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/in_memory.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 

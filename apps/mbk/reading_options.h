@@ -9,10 +9,13 @@
 
 #include "apps/mbk/sensor_options.h"
 #include "mbk/base/core/result.h"
-#include "mbk/files/recording/in_memory.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/calibration/sensor_force.h"
 #include "mbk/model/trial/recording.h"
+
+namespace mbk::recording {
+class InMemory;
+}
 
 namespace mbk::app {
 

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -25,6 +26,7 @@ namespace {
 
 using mbk::Error;
 using mbk::Index;
+using mbk::Samples;
 
 using mbk::recording::InMemory;
 using Recording = std::shared_ptr<const InMemory>;
@@ -113,13 +115,15 @@ InMemory::Signal signal_of(const std::string& name, const std::string& unit, con
     if (!plain) throw py::error_already_set();
     const double* const data = plain.data();
     const Index size = plain.size();
-    signal.values = Eigen::Map<const mbk::Vector>(data, size);
+    signal.values = Samples(data, size, keep(std::move(plain)));
     return signal;
   }
   auto plain = py::array_t<double, py::array::f_style | py::array::forcecast>::ensure(array);
   if (!plain) throw py::error_already_set();
   signal.rows = plain.shape(0);
-  signal.values = Eigen::Map<const mbk::Vector>(plain.data(), plain.size());
+  const double* const data = plain.data();
+  const Index size = plain.size();
+  signal.values = Samples(data, size, keep(std::move(plain)));
   return signal;
 }
 
@@ -152,20 +156,12 @@ Recording make_recording(const py::dict& channels, double rate_hz, const std::ma
       value_or_raise(InMemory::of(std::move(signals), rate_hz, metadata, std::move(happened))));
 }
 
-/// Why there is no meaning, as an exception.
-const mbk::Recording& meaning_of(const Recording& recording) {
-  if (recording->recording()) return *recording->recording();
-  raise(recording->read({}).error());
+/// What it is without any options.
+mbk::Recording meaning_of(const InMemory& recording) {
+  return value_or_raise(recording.read({}));
 }
 
 py::array channel_of(const Recording& recording, const std::string& name) {
-  if (recording->recording()) {
-    const mbk::Recording& meaning = *recording->recording();
-    if (name == "time") return to_numpy(meaning.time, recording);
-    for (const mbk::Channel& channel : meaning.channels) {
-      if (channel.name == name || channel.origin.alias == name) return to_numpy(channel.values, recording);
-    }
-  }
   const InMemory::Signal* const signal = recording->find(name);
   if (signal == nullptr) throw py::key_error(name);
   return to_numpy(signal->values, recording);
@@ -310,29 +306,29 @@ PYBIND11_MODULE(_mbk, m) {
           "Names and units as they were given.")
       .def_property_readonly(
           "channels",
-          [](const std::shared_ptr<InMemory>& self) {
+          [](const InMemory& self) {
             std::vector<std::tuple<std::string, std::string, std::string>> channels;
-            for (const mbk::Channel& c : meaning_of(self).channels) channels.emplace_back(c.name, c.unit, c.frame);
+            const mbk::Recording meaning = meaning_of(self);
+            for (const mbk::Channel& c : meaning.channels) channels.emplace_back(c.name, c.unit, c.frame);
             return channels;
           },
           "Names, SI units and frames of what was recognised.")
-      .def_property_readonly("samples",
-                             [](const std::shared_ptr<InMemory>& self) { return meaning_of(self).samples(); })
-      .def_property_readonly("metadata",
-                             [](const std::shared_ptr<InMemory>& self) { return meaning_of(self).metadata; })
-      .def_property_readonly("notes", [](const std::shared_ptr<InMemory>& self) { return meaning_of(self).notes; })
+      .def_property_readonly("samples", [](const InMemory& self) { return meaning_of(self).samples(); })
+      .def_property_readonly("metadata", [](const InMemory& self) { return meaning_of(self).metadata; })
+      .def_property_readonly("notes", [](const InMemory& self) { return meaning_of(self).notes; })
       .def_property_readonly("events",
-                             [](const std::shared_ptr<InMemory>& self) {
+                             [](const InMemory& self) {
                                std::vector<std::tuple<double, std::string, double>> events;
-                               for (const mbk::Event& e : meaning_of(self).events)
-                                 events.emplace_back(e.time, e.name, e.value);
+                               const mbk::Recording meaning = meaning_of(self);
+                               for (const mbk::Event& e : meaning.events) events.emplace_back(e.time, e.name, e.value);
                                return events;
                              })
       .def_property_readonly(
           "sources",
-          [](const std::shared_ptr<InMemory>& self) {
+          [](const InMemory& self) {
             std::vector<std::map<std::string, std::string>> sources;
-            for (const mbk::SourceFile& s : meaning_of(self).sources) {
+            const mbk::Recording meaning = meaning_of(self);
+            for (const mbk::SourceFile& s : meaning.sources) {
               sources.push_back({{"path", s.path}, {"format", s.format}, {"sha256", s.sha256}, {"trial", s.trial}});
             }
             return sources;

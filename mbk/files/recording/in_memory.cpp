@@ -60,21 +60,20 @@ Result<InMemory> InMemory::of(std::vector<Signal> signals, double rate_hz, std::
   made.rate_hz_ = rate_hz;
   made.metadata_ = std::move(metadata);
   made.events_ = std::move(events);
-  if (auto recording = assemble(made.contents(), {})) {
-    made.recording_ = std::make_shared<const Recording>(std::move(*recording));
-  }
   return made;
 }
 
 InMemory InMemory::of(Recording recording) {
   InMemory made;
-  made.signals_.push_back({"time", "s", recording.time, 0});
-  for (const Channel& channel : recording.channels)
-    made.signals_.push_back({channel.name, channel.unit, channel.values});
-  made.metadata_ = recording.metadata;
-  made.events_ = recording.events;
-  made.sources_ = recording.sources;
   made.recording_ = std::make_shared<const Recording>(std::move(recording));
+  const Recording& whole = *made.recording_;
+  const auto shared = [&](const Vector& values) { return Samples(values.data(), values.size(), made.recording_); };
+  made.signals_.push_back({"time", "s", shared(whole.time), 0});
+  for (const Channel& channel : whole.channels) {
+    made.signals_.push_back({channel.name, channel.unit, shared(channel.values), 0});
+  }
+  made.metadata_ = whole.metadata;
+  made.events_ = whole.events;
   return made;
 }
 
@@ -85,7 +84,7 @@ Contents InMemory::contents() const {
   for (const Signal& signal : signals_) {
     Array array{.name = signal.name, .values = {}};
     if (signal.rows == 0) {
-      array.values = SharedMatrix::of_column(signal.values);
+      array.values = SharedMatrix::of_column(Vector(signal.values));
     } else {
       array.values = SharedMatrix(Matrix(signal.values.reshaped(signal.rows, signal.values.size() / signal.rows)));
     }
@@ -103,7 +102,7 @@ Result<Recording> InMemory::read(const ReadOptions& options) const {
   if (recording_ && without_options(options)) return *recording_;
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
   auto recording = assemble(contents(), options);
-  if (recording) recording->sources = sources_;
+  if (recording && recording_) recording->sources = recording_->sources;
   return recording;
 }
 

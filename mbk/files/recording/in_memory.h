@@ -9,10 +9,9 @@
 #include "mbk/base/core/result.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/model/trial/recording.h"
+#include "mbk/model/trial/samples.h"
 
 namespace mbk::recording {
-
-using Samples = Vector;
 
 /// Signals in the memory of whoever measures them, under the names and in the units that they have there. What they
 /// mean is decided where they are read, by the rules and options of a file: x, Fx and "hand_x_mm" are recognised, and a
@@ -33,7 +32,7 @@ class InMemory {
   [[nodiscard]] static Result<InMemory> of(std::vector<Signal> signals, double rate_hz = 0.0,
                                            std::map<std::string, std::string> metadata = {},
                                            std::vector<Event> events = {});
-  /// What was read from a file: it stays known by the file's name and hash.
+  /// What was read from a file: it stays known by the file's name and hash, and its signals are its channels in SI.
   [[nodiscard]] static InMemory of(Recording recording);
 
   /// @fails  as recording::read
@@ -42,18 +41,17 @@ class InMemory {
   [[nodiscard]] Contents contents() const;
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
+  [[nodiscard]] const std::map<std::string, std::string>& metadata() const { return metadata_; }
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   /// By the name of a signal, or of the channel that it is; nullptr: there is none.
   [[nodiscard]] const Signal* find(std::string_view name) const;
-  /// What all of it is without any options; nullptr where that takes some.
-  [[nodiscard]] const std::shared_ptr<const Recording>& recording() const { return recording_; }
 
  private:
   std::vector<Signal> signals_;
   double rate_hz_ = 0.0;
   std::map<std::string, std::string> metadata_;
   std::vector<Event> events_;
-  std::vector<SourceFile> sources_;
-  std::shared_ptr<const Recording> recording_;
+  std::shared_ptr<const Recording> recording_;  ///< that was read from a file; nullptr where there was none
 };
 
 }  // namespace mbk::recording
