@@ -14,6 +14,7 @@ Action add_study_show(CLI::App& group);
 Action add_study_measure(CLI::App& group);
 Action add_study_exclude(CLI::App& group);
 Action add_study_summary(CLI::App& group);
+Action add_study_plan(CLI::App& group);
 Action add_study_export(CLI::App& group);
 Action add_study_forget(CLI::App& group);
 Action add_study_check(CLI::App& group);

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "apps/mbk/option_checks.h"
@@ -49,6 +51,24 @@ Result<std::string> hash_of_file(const std::string& option, const std::filesyste
   if (!robot) return tl::unexpected(robot.error());
   const std::string text = *sum + robot->toml + '\0' + robot->urdf;
   return recording::sha256(std::as_bytes(std::span(text)));
+}
+
+/// A number in the shortest way that says it: 5 for 5.0 and 05, so that a way of measuring has one key. Anything else
+/// as it is.
+std::string canonical(const std::string& value) {
+  const std::string_view digits = std::string_view(value).substr(value.starts_with('+') ? 1 : 0);
+  double number = 0.0;
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool whole = code == std::errc() && end == digits.data() + digits.size() && std::isfinite(number);
+  return whole ? fmt::format("{}", number) : value;
+}
+
+GivenOptions canonical(GivenOptions given) {
+  for (auto& [name, values] : given) {
+    if (std::ranges::find(options_with_files(), name) != options_with_files().end()) continue;
+    for (std::string& value : values) value = canonical(value);
+  }
+  return given;
 }
 
 /// JSON without the blanks between its parts; every digit stays.
@@ -184,7 +204,7 @@ Result<std::shared_ptr<const Measuring>> measuring_of(const GivenOptions& given)
   auto options = measurement_options(measuring->arguments, measuring->arguments.analyse);
   if (!options) return tl::unexpected(options.error());
   measuring->options = std::move(*options);
-  GivenOptions key = given;
+  GivenOptions key = canonical(given);
   for (const std::string& name : options_with_files()) {
     const auto found = key.find(name);
     if (found == key.end()) continue;

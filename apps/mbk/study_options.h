@@ -55,7 +55,8 @@ void add_measuring_options(CLI::App& command, MeasuringArguments& arguments);
 struct Measuring {
   MeasuringArguments arguments;
   measurement::Options options;
-  std::string key;  ///< `options_to_json` with the hashes of files in place of their names: what a result depends on
+  std::string key;  ///< `options_to_json` with numbers in one way of writing and hashes of files in place of their
+                    ///< names: what a result depends on
 };
 
 /// @fails  usage: options that are none or do not belong together; a file that one of them names cannot be read.

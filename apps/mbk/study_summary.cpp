@@ -1,3 +1,5 @@
+#include "mbk/study/store/study_summary.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_listing.h"
 #include "mbk/study/statistics/study_statistics.h"
+#include "mbk/study/statistics/study_statistics_text.h"
 
 namespace mbk::app {
 namespace {
@@ -81,6 +84,15 @@ Result<statistics::StatisticsOptions> statistics_options(const SummaryArguments&
   return options;
 }
 
+std::string summary_text(const store::StudyList& list, const std::vector<store::OutcomeSummary>& outcomes,
+                         const statistics::StudyStatistics& found, bool details) {
+  const std::string text = study_head_text(list);
+  if (!list.analysis) return text + "  nothing was measured: 'mbk study measure'\n";
+  if (outcomes.empty()) return text + "  no result is usable: 'mbk study list' says why\n";
+  return text + statistics::outcomes_text(outcomes) + statistics::reliability_text(found, details) +
+         statistics::comparison_text(found, details) + statistics::notes_text(found.notes);
+}
+
 int run_summary(const SummaryArguments& arguments) {
   const auto options = statistics_options(arguments);
   if (!options) return report_error(options.error());
@@ -96,8 +108,14 @@ int run_summary(const SummaryArguments& arguments) {
   statistics::add_matrix_numbers(columns);
   const auto found = statistics::study_statistics(columns, *options);
   if (!found) return report_error(found.error());
+  if (!options->outcomes.empty()) {
+    std::erase_if(columns.outcomes, [&](const store::OutcomeColumn& column) {
+      return std::ranges::find(options->outcomes, column.name) == options->outcomes.end();
+    });
+  }
   const auto outcomes = store::summarise_outcomes(columns);
-  const std::string text = store::to_json(*list, outcomes, statistics::to_json(*found));
+  const std::string text = arguments.output.json ? store::to_json(*list, outcomes, statistics::to_json(*found))
+                                                 : summary_text(*list, outcomes, *found, !options->outcomes.empty());
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -110,6 +128,13 @@ Action add_study_summary(CLI::App& group) {
   command->footer(
       "Examples:\n"
       "  mbk study summary\n"
+      "  mbk study summary --outcome K_xx\n"
+      "      every form of ICC, limits of agreement, trials within a session, the mixed model\n"
+      "  mbk study summary --compare condition relaxed tensed\n"
+      "      in the same people where they have both, else between two sets of people\n"
+      "  mbk study summary --compare group --group patients=1-10 --group controls=11-20\n"
+      "  mbk study summary --compare session 1 2 --outcome K_xx K_yy\n"
+      "      p-values are adjusted for as many tests as there are: name the outcomes before you look\n"
       "  mbk study summary --json --out summary.json\n\n"
       "Only usable results of recordings that are not excluded count; how many do not is said.");
   add_study_option(*command, arguments->study);

@@ -32,8 +32,8 @@ TYPED = {  # what has been typed → what is offered
     ("teleop", "--sim"): ["--simulate"],
     ("validate", "springs", "--ru"): ["--runs"],  # springs is a study here, not the command
     ("validate", ""): ["after-onset", "change", "closed-loop", "coverage", "faults", "frequency-response", "live-estimate",
-                       "misspecification", "one-dimensional", "participant", "passivity", "ramp-and-hold", "recovery",
-                       "reflex", "reliability", "robot", "servo-displacement", "springs",
+                       "misspecification", "one-dimensional", "participant", "passivity", "ramp-and-hold",
+                       "recorded-reliability", "recovery", "reflex", "reliability", "robot", "servo-displacement", "springs",
                        "teleoperation",
                        "transfer-function", "virtual-sensor"],
     ("rep",): ["reproduce"],

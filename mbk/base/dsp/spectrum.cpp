@@ -9,20 +9,25 @@
 #include "mbk/base/dsp/complex_transform.h"
 namespace mbk::dsp {
 
-Index fast_length_below(Index n) {
-  for (; n > 1; --n) {
-    Index rest = n;
-    for (const Index factor : {2, 3, 5}) {
-      while (rest % factor == 0) rest /= factor;
-    }
-    if (rest == 1) break;
+namespace {
+
+bool is_fast(Index n) {
+  for (const Index factor : {2, 3, 5}) {
+    while (n % factor == 0) n /= factor;
   }
+  return n == 1;
+}
+
+}  // namespace
+
+Index fast_length_below(Index n) {
+  while (n > 1 && !is_fast(n)) --n;
   return n;
 }
 
 Index fast_length_above(Index n) {
   Index length = std::max<Index>(2, n + n % 2);
-  while (fast_length_below(length) != length) length += 2;
+  while (!is_fast(length)) length += 2;
   return length;
 }
 

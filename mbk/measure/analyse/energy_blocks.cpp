@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "mbk/base/core/nan.h"
@@ -46,6 +47,17 @@ std::vector<EnergySums> hull_from(const EnergyBlock& block, std::size_t vertex) 
     hull.push_back(block.sums[block.next[vertex]]);
   }
   return hull;
+}
+
+/// Whether no sample of the block can reach λ, by bounds of its sums: −E₀ − E ≤ λ (S₀ + S) for each. What is that close
+/// to it that rounding decides is looked at.
+bool stays_below(const EnergyBlock& block, const EnergySums& before, double largest) {
+  if (std::isnan(largest)) return false;
+  const double s = before.squared_velocity + (largest >= 0.0 ? block.hull.front() : block.total).squared_velocity;
+  const double reached = -before.absorbed - block.least_absorbed, limit = largest * s;
+  constexpr double kRounding = 1e-12;
+  const double size = std::abs(before.absorbed) + std::abs(block.least_absorbed) + std::abs(limit);
+  return reached < limit - kRounding * size;
 }
 
 /// What a bootstrap is about.
@@ -135,6 +147,7 @@ EnergyBlock energy_block(double duration, std::vector<EnergySums> sums) {
   block.next = next_vertices(sums);
   block.sums = std::move(sums);
   block.hull = hull_from(block, 0);
+  block.least_absorbed = std::ranges::min(block.hull, {}, &EnergySums::absorbed).absorbed;
   return block;
 }
 
@@ -161,19 +174,25 @@ double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vecto
     const auto shortage = [&](const EnergySums& sum) {
       return -(before.absorbed + sum.absorbed) / (before.squared_velocity + sum.squared_velocity);
     };
-    if (!too_early(block.total)) {
+    if (!too_early(block.total) && !stays_below(block, before, largest)) {
       const bool cut = too_early(block.hull.front()), made = cut && block.sums.empty();
       const EnergyBlock whole = made ? energy_block(block.duration, block.again()) : EnergyBlock();
       const EnergyBlock& inside = made ? whole : block;
       const auto vertex = cut ? std::ranges::partition_point(inside.sums, too_early) - inside.sums.begin() : 0;
-      const std::vector<EnergySums> part =
-          cut ? hull_from(inside, static_cast<std::size_t>(vertex)) : std::vector<EnergySums>();
       // Along the hull the slope rises to the vertex that the steepest line touches, and falls from there on.
       double highest = -std::numeric_limits<double>::infinity();
-      for (const EnergySums& sum : cut ? part : block.hull) {
+      const auto falls = [&](const EnergySums& sum) {
         const double following = shortage(sum);
-        if (following < highest) break;
+        if (following < highest) return true;
         highest = following;
+        return false;
+      };
+      if (cut) {
+        for (auto at = static_cast<std::size_t>(vertex); !falls(inside.sums[at]) && inside.next[at] != at;) {
+          at = inside.next[at];
+        }
+      } else {
+        std::ignore = std::ranges::any_of(block.hull, falls);
       }
       if (!(highest <= largest)) largest = highest;
     }

@@ -152,6 +152,9 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
   result.agreement = agreements(result.between_sessions);
   result.influence = influence_on_icc(result.between_sessions);
   result.within_session = repeated(trials_of_one_session(rows, cells, result.session));
+  if (result.session == 0 && result.participants >= reliability::kMinPeople) {
+    result.within_session.support = Support::too_few_sessions;
+  }
   result.mixed_model = mixed_reliability(rows, cells, result.participants, result.notes);
 
   const Repeated& sessions = result.between_sessions;
@@ -161,10 +164,12 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
   }
   if (result.influence) {
     const auto [low, high] = sessions.test_retest.agreement_by_large_samples95;
-    const double without = result.influence->without;
+    // Below 0 the interval ends, and one ICC says what another does.
+    const double without = std::max(0.0, result.influence->without);
     if (without < low || without > high) {
       result.notes.push_back(fmt::format("participant {} decides: without them ICC(A,1) is {:.2f}, not {:.2f}",
-                                         result.influence->participant, without, sessions.test_retest.icc[1].value));
+                                         result.influence->participant, result.influence->without,
+                                         sessions.test_retest.icc[1].value));
     }
   }
   return result;

@@ -162,6 +162,11 @@ inline constexpr int kTrialsWithoutController = 16;
 /// to 6.5 % of false positives at 5 %.
 [[nodiscard]] Result<ValidationTable> reliability_study(const StudyOptions& options);
 
+/// Does a study say of its recordings what is true of the people in it? A run is a study of 20 people in three sessions
+/// with a simulated recording in each, whose stiffness differs by known amounts, measured and summed up as `mbk study`
+/// does. Expected: ICC(A,1) within 0.02 and MDC within 5 % of those of the same people's true stiffness.
+[[nodiscard]] Result<ValidationTable> recorded_reliability_study(const StudyOptions& options);
+
 /// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of
 /// the four architectures, half of them with delay, held by random terminations where it is stable, and by the
 /// terminations that teleop::worst_terminations constructs where it is not; each with a passive operator, with one who

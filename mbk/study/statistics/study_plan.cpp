@@ -1,0 +1,261 @@
+#include "mbk/study/statistics/study_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "mbk/base/core/version.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/base/numeric/random.h"
+#include "mbk/base/numeric/statistics.h"
+#include "mbk/study/statistics/outcome_rows.h"
+
+namespace mbk::statistics {
+namespace {
+
+using reliability::Pairing;
+using reliability::VarianceComponents;
+
+/// Results of a pilot as the mixed model takes them. A person's results of one session under one condition are a
+/// session of the model.
+Result<reliability::Measurements> pilot_measurements(const store::OutcomeColumns& columns,
+                                                     const store::OutcomeColumn& column,
+                                                     const std::vector<int>& conditions) {
+  std::vector<bool> keep(columns.trials.size());
+  for (std::size_t k = 0; k < keep.size(); ++k) {
+    keep[k] = std::ranges::find(conditions, columns.trials[k].condition) != conditions.end();
+  }
+  const OutcomeRows rows = rows_of(columns, column, -1, keep);
+  if (!rows.trusted) {
+    return bad_data("its orientations lie more than 45° from their mean axis", "plan for another outcome");
+  }
+  reliability::Measurements m;
+  const auto count = static_cast<Index>(rows.rows.size());
+  const auto effects = static_cast<Index>(conditions.size());
+  m.values.resize(count);
+  m.fixed = Matrix::Ones(count, effects);
+  m.names = {"mean", "difference"};
+  m.names.resize(conditions.size());
+  std::map<std::pair<std::int64_t, int>, int> sessions;
+  for (Index i = 0; i < count; ++i) {
+    const OutcomeRow& row = rows.rows[static_cast<std::size_t>(i)];
+    const int condition = columns.trials[row.trial].condition;
+    m.values[i] = row.value;
+    if (effects == 2) m.fixed(i, 1) = condition == conditions[1] ? 1.0 : 0.0;
+    m.participants.push_back(static_cast<int>(row.participant));
+    m.sessions.push_back(sessions.emplace(std::pair(row.session, condition), std::ssize(sessions)).first->second);
+  }
+  return m;
+}
+
+VarianceComponents components_of(const reliability::MixedModel& model) {
+  return {model.participant.value, model.session.value, model.residual.value};
+}
+
+/// Values of the same people, sessions and trials, drawn from the variances.
+void redraw(reliability::Measurements& m, const VarianceComponents& variances, numeric::Random& random) {
+  std::map<int, double> people;
+  std::map<std::pair<int, int>, double> sessions;
+  const auto drawn = [&](double variance) { return std::sqrt(variance) * random.normal(); };
+  for (Index i = 0; i < m.values.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto person = people.try_emplace(m.participants[k], 0.0);
+    if (person.second) person.first->second = drawn(variances.participant);
+    const auto session = sessions.try_emplace({m.participants[k], m.sessions[k]}, 0.0);
+    if (session.second) session.first->second = drawn(variances.session);
+    m.values[i] = person.first->second + session.first->second + drawn(variances.residual);
+  }
+}
+
+double error_of_mean(const VarianceComponents& variances, int sessions, int trials) {
+  return (variances.session + variances.residual / trials) / sessions;
+}
+
+double planned_variance(const VarianceComponents& variances, Pairing pairing, int sessions, int trials) {
+  const double error = error_of_mean(variances, sessions, trials);
+  return pairing == Pairing::paired ? 2.0 * error : variances.participant + error;
+}
+
+/// V²/V* at the ends of 95 % of the V*.
+template <class Function>
+Interval variance_interval(const Pilot& pilot, double variance, const Function& function) {
+  if (pilot.redrawn.empty()) return {kNaN, kNaN};
+  Vector drawn(std::ssize(pilot.redrawn));
+  for (Index i = 0; i < drawn.size(); ++i) drawn[i] = function(pilot.redrawn[static_cast<std::size_t>(i)]);
+  std::sort(drawn.begin(), drawn.end());
+  const auto end = [&](double p) {
+    const double star = numeric::quantile(drawn, p);
+    return star > 0.0 ? variance * variance / star : std::numeric_limits<double>::infinity();
+  };
+  return {end(1.0 - reliability::kTail95), end(reliability::kTail95)};
+}
+
+/// How many of so many studies found the difference, each drawn from the variances trial by trial.
+Planned simulated(const VarianceComponents& variances, const PlanGoal& goal, const StudyPlan& plan, int people) {
+  constexpr int kBlocks = 64;  // each with its own numbers, so that threads do not matter
+  std::vector<int> found(kBlocks, 0);
+  std::ignore = numeric::parallel_for(kBlocks, 0, [&](int block) -> Result<void> {
+    numeric::Random random(goal.seed, static_cast<std::uint32_t>(block + 1));
+    const auto drawn = [&](double variance) { return std::sqrt(variance) * random.normal(); };
+    const auto person_mean = [&](double own) {
+      double sum = 0.0;
+      for (int session = 0; session < plan.sessions; ++session) {
+        const double of_session = drawn(variances.session);
+        for (int trial = 0; trial < plan.trials; ++trial) sum += own + of_session + drawn(variances.residual);
+      }
+      return sum / (double(plan.sessions) * plan.trials);
+    };
+    const bool paired = goal.pairing == Pairing::paired;
+    Vector first(people), second(people);
+    for (int study = block; study < goal.simulated_studies; study += kBlocks) {
+      for (Index i = 0; i < people; ++i) {
+        const double own = drawn(variances.participant);
+        first[i] = person_mean(own);
+        second[i] = *goal.difference + person_mean(paired ? own : drawn(variances.participant));
+      }
+      if (reliability::difference_p(first, second, goal.pairing) <= goal.level) ++found[std::size_t(block)];
+    }
+    return {};
+  });
+  int all = 0;
+  for (const int one : found) all += one;
+  constexpr double kConfidence = 0.95;
+  return {double(all) / goal.simulated_studies, numeric::binomial_interval(all, goal.simulated_studies, kConfidence)};
+}
+
+Result<void> check_goal(const PlanGoal& goal) {
+  if (!goal.difference && !goal.change) {
+    return bad_usage("nothing is wanted of the study", "pass --difference or --mdc, in the unit of the outcome");
+  }
+  for (const auto& wanted : {goal.difference, goal.change}) {
+    if (wanted && !(*wanted > 0.0 && std::isfinite(*wanted))) {
+      return bad_usage(fmt::format("{:g} is wanted", *wanted), "ask for more than 0");
+    }
+  }
+  return {};
+}
+
+Result<void> plan_people(const Pilot& pilot, const PlanGoal& goal, StudyPlan& plan) {
+  const auto variance_of = [&](const VarianceComponents& variances) {
+    return planned_variance(variances, goal.pairing, plan.sessions, plan.trials);
+  };
+  const double variance = variance_of(pilot.variances);
+  if (!(variance > 0.0)) return bad_usage("all variances are 0", "give those of a reliability study");
+  const Interval between = variance_interval(pilot, variance, variance_of);
+  const auto people_for = [&](double V) -> Result<double> {
+    if (std::isnan(V)) return kNaN;
+    if (std::isinf(V)) return V;
+    const auto people =
+        reliability::people_for_effect(*goal.difference / std::sqrt(V), goal.power, goal.pairing, goal.level);
+    if (!people) return tl::unexpected(people.error());
+    return double(*people);
+  };
+  if (goal.people) {
+    plan.people.value = *goal.people;
+  } else {
+    const auto value = people_for(variance), low = people_for(between.first);
+    if (!value) return tl::unexpected(value.error());
+    if (!low) return tl::unexpected(low.error());
+    const auto high = people_for(between.second);
+    plan.people = {*value, {*low, high ? *high : std::numeric_limits<double>::infinity()}};
+  }
+  const int people = static_cast<int>(plan.people.value);
+  const auto power_at = [&](double V) {
+    if (std::isnan(V)) return kNaN;
+    return std::isinf(V)
+               ? goal.level
+               : reliability::power_of_t_test(*goal.difference / std::sqrt(V), people, goal.pairing, goal.level);
+  };
+  plan.power = {power_at(variance), {power_at(between.second), power_at(between.first)}};
+  if (goal.simulated_studies > 0) plan.simulated_power = simulated(pilot.variances, goal, plan, people);
+  return {};
+}
+
+}  // namespace
+
+Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& outcome,
+                       const std::vector<std::string>& conditions, int draws, std::uint64_t seed) {
+  const auto column = std::ranges::find(columns.outcomes, outcome, &store::OutcomeColumn::name);
+  if (column == columns.outcomes.end()) {
+    return bad_usage(fmt::format("there is no outcome '{}' with usable results", printable(outcome)),
+                     "'mbk study summary' lists those that there are");
+  }
+  Pilot pilot;
+  pilot.outcome = outcome;
+  pilot.unit = column->unit;
+  pilot.conditions = conditions;
+  std::vector<int> places;
+  for (const std::string& condition : conditions) {
+    const auto found = std::ranges::find(columns.conditions, condition);
+    if (found == columns.conditions.end()) {
+      return bad_usage(fmt::format("there is no condition '{}' with usable results", printable(condition)),
+                       "'mbk study summary' lists those that there are");
+    }
+    places.push_back(static_cast<int>(found - columns.conditions.begin()));
+  }
+  auto m = pilot_measurements(columns, *column, places);
+  if (!m) return tl::unexpected(m.error().in(outcome));
+  std::vector<int> people = m->participants;
+  people.erase(std::unique(people.begin(), people.end()), people.end());
+  pilot.participants = static_cast<int>(people.size());
+  if (pilot.participants < reliability::kMinPeople) {
+    return bad_data(fmt::format("{} people are too few for a pilot: how much people differ is not known from them",
+                                pilot.participants),
+                    fmt::format("measure at least {}, or state the variances with --sd-people, --sd-sessions and "
+                                "--sd-trials",
+                                reliability::kMinPeople),
+                    outcome);
+  }
+  const auto model = reliability::fit_mixed_model(*m);
+  if (!model) return tl::unexpected(model.error().in(outcome));
+  if (model->rows == model->participants) {
+    return bad_data("nobody has two results, so that nothing is known of sessions and trials",
+                    "measure people again, or state the variances with --sd-people, --sd-sessions and --sd-trials",
+                    outcome);
+  }
+  pilot.sessions = model->sessions;
+  pilot.results = model->rows;
+  pilot.variances = components_of(*model);
+  pilot.redrawn.resize(static_cast<std::size_t>(draws));
+  const auto ok = numeric::parallel_for(draws, 0, [&](int draw) -> Result<void> {
+    reliability::Measurements again = *m;
+    numeric::Random random(seed, static_cast<std::uint32_t>(draw + 1));
+    redraw(again, pilot.variances, random);
+    const auto refitted = reliability::fit_mixed_model(again);
+    if (!refitted) return tl::unexpected(refitted.error().in(outcome));
+    pilot.redrawn[static_cast<std::size_t>(draw)] = components_of(*refitted);
+    return {};
+  });
+  if (!ok) return tl::unexpected(ok.error());
+  return pilot;
+}
+
+Result<std::vector<StudyPlan>> study_plans(const Pilot& pilot, const PlanGoal& goal) {
+  if (auto ok = check_goal(goal); !ok) return tl::unexpected(ok.error());
+  std::vector<StudyPlan> plans;
+  constexpr double kChange = reliability::kPublishedNormal95 * std::numbers::sqrt2;
+  for (int sessions = 1; sessions <= goal.most_sessions; ++sessions) {
+    for (int trials = 1; trials <= goal.most_trials; ++trials) {
+      StudyPlan plan{.sessions = sessions, .trials = trials};
+      const auto error = [&](const VarianceComponents& variances) {
+        return error_of_mean(variances, sessions, trials);
+      };
+      const double of_mean = error(pilot.variances);
+      const Interval between = variance_interval(pilot, of_mean, error);
+      plan.mdc95 = {kChange * std::sqrt(of_mean),
+                    {kChange * std::sqrt(between.first), kChange * std::sqrt(between.second)}};
+      if (goal.change) plan.change_is_detectable = plan.mdc95.value <= *goal.change;
+      if (goal.difference) {
+        if (auto ok = plan_people(pilot, goal, plan); !ok) return tl::unexpected(ok.error());
+      }
+      plans.push_back(plan);
+    }
+  }
+  return plans;
+}
+
+}  // namespace mbk::statistics

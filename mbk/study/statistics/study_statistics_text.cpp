@@ -1,0 +1,339 @@
+#include "mbk/study/statistics/study_statistics_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mbk/present/report/text.h"
+#include "mbk/study/statistics/outcome_rows.h"
+
+namespace mbk::statistics {
+namespace {
+
+constexpr std::size_t kWidth = 80;
+
+std::string digits(double value, int count = 3) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, count) : "–";
+}
+
+/// "0.91", and "1.00" for what is just below 1.
+std::string share(double value) {
+  return std::isfinite(value) ? fmt::format("{:.2f}", value) : "–";
+}
+
+std::string p_text(double p) {
+  if (!std::isfinite(p)) return "–";
+  return p < 0.001 ? "<0.001" : fmt::format("{:.3f}", p);
+}
+
+std::string range(const Interval& interval) {
+  return fmt::format("{} to {}", digits(interval.first), digits(interval.second));
+}
+
+std::string shares(const Interval& interval) {
+  return fmt::format("{} to {}", share(interval.first), share(interval.second));
+}
+
+/// "first" and what follows under each other, in lines that fit.
+std::string item(const std::string& first, const std::string& text) {
+  std::string lines = first;
+  for (const char c : report::wrapped(text, kWidth - first.size())) {
+    lines += c;
+    if (c == '\n') lines.append(first.size(), ' ');
+  }
+  return lines + "\n";
+}
+
+std::string condition_title(const std::string& condition) {
+  return condition.empty() ? "no condition" : condition;
+}
+
+/// Why there is no number, with the count that is too small.
+std::string why_not(Support support, int people) {
+  switch (support) {
+    case Support::too_few_people:
+      return fmt::format("too few people ({} of {} needed)", people, reliability::kMinPeople);
+    case Support::too_few_sessions:
+      return "nobody was measured in two sessions";
+    case Support::no_variation:
+      return "no variation that could be compared";
+    case Support::enough:
+      break;
+  }
+  return "";
+}
+
+/// People and sessions of an outcome, as far as it has repeated people.
+int people_of(const OutcomeReliability& one) {
+  return one.between_sessions.participants.empty() ? one.repeated_participants
+                                                   : static_cast<int>(one.between_sessions.participants.size());
+}
+
+std::string reliability_line(const OutcomeReliability& one) {
+  const Repeated& sessions = one.between_sessions;
+  const std::string name = fmt::format("  {:<23}", one.outcome);
+  if (sessions.support != Support::enough) return name + " " + why_not(sessions.support, people_of(one)) + "\n";
+  const reliability::TestRetest& found = sessions.test_retest;
+  return name + fmt::format(" {:>6}  {:>5}  {:>13} {:>8} {:>8}  {}\n",
+                            fmt::format("{}×{}", sessions.participants.size(), sessions.repetitions.size()),
+                            share(found.icc[1].value), shares(found.agreement_by_large_samples95),
+                            digits(found.error[0].sem), digits(found.error[0].mdc95), one.unit);
+}
+
+std::string reliability_table(const std::vector<OutcomeReliability>& all) {
+  std::string text;
+  for (std::size_t begin = 0; begin < all.size();) {
+    const auto end = static_cast<std::size_t>(
+        std::find_if(all.begin() + std::ptrdiff_t(begin), all.end(),
+                     [&](const OutcomeReliability& one) { return one.condition != all[begin].condition; }) -
+        all.begin());
+    text += fmt::format("\nreliability between sessions, {}\n", condition_title(all[begin].condition));
+    const bool any =
+        std::any_of(all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(end),
+                    [](const OutcomeReliability& one) { return one.between_sessions.support == Support::enough; });
+    const Support first = all[begin].between_sessions.support;
+    const bool alike =
+        std::all_of(all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(end),
+                    [&](const OutcomeReliability& one) { return one.between_sessions.support == first; });
+    if (!any && alike) {
+      text += item("  ", "none is stated: " + why_not(first, people_of(all[begin])));
+    } else {
+      text += fmt::format("  {:<23} {:>6}  {:>5}  {:>13} {:>8} {:>8}  {}\n", "outcome", "n×k", "ICC", "95 %", "SEM",
+                          "MDC", "unit");
+      for (std::size_t k = begin; k < end; ++k) text += reliability_line(all[k]);
+    }
+    for (std::size_t k = begin; k < end; ++k) {
+      for (const std::string& note : all[k].notes) text += item("  ! ", all[k].outcome + ": " + note);
+    }
+    begin = end;
+  }
+  return text;
+}
+
+std::string form_name(const reliability::Icc& icc) {
+  const char* form = icc.form == reliability::IccForm::one_way     ? "1"
+                     : icc.form == reliability::IccForm::agreement ? "A"
+                                                                   : "C";
+  if (icc.form == reliability::IccForm::one_way) return icc.averaged == 1 ? "ICC(1)" : "ICC(k)";
+  return fmt::format("ICC({},{})", form, icc.averaged == 1 ? "1" : "k");
+}
+
+std::string repeated_details(const Repeated& repeated) {
+  std::string text;
+  const reliability::TestRetest& found = repeated.test_retest;
+  for (std::size_t k = 0; k < found.icc.size(); ++k) {
+    text += fmt::format("    {:<10} {:>5} ({})", form_name(found.icc[k]), share(found.icc[k].value),
+                        shares(found.icc[k].interval95));
+    if (k == 1) text += fmt::format(", by large samples ({})", shares(found.agreement_by_large_samples95));
+    text += "\n";
+  }
+  for (const reliability::MeasurementError& one : found.error) {
+    text += fmt::format("    {:<16} {} ({}), MDC {} ({})\n", fmt::format("SEM {}", word_of(one.form)), digits(one.sem),
+                        range(one.sem95), digits(one.mdc95), range(one.mdc95_interval));
+  }
+  return text;
+}
+
+std::string model_details(const MixedReliability& model) {
+  if (model.support != Support::enough) {
+    return item("  mixed model: ", why_not(model.support, model.participants));
+  }
+  std::string text = item("  mixed model (REML): ",
+                          fmt::format("{} results of {} people in {} sessions{}", model.results, model.participants,
+                                      model.sessions, model.weighted ? ", weighted by their standard errors" : ""));
+  text +=
+      item("    ",
+           fmt::format("variance between people {}, sessions {}, trials {}{}", digits(model.participant),
+                       digits(model.session), digits(model.residual),
+                       model.weighted ? fmt::format(" beside {} by their standard errors", digits(model.known)) : ""));
+  for (const reliability::ModelReliability& one : model.of_trials) {
+    const std::string what = one.trials == 1 ? "one trial" : fmt::format("mean of {} trials", one.trials);
+    text += item(fmt::format("    {}: ", what),
+                 fmt::format("ICC {} ({}); SEM between sessions {} ({}), MDC {}; SEM within a session {} ({}), MDC {}",
+                             share(one.icc), shares(one.icc95), digits(one.sem_between), range(one.sem_between95),
+                             digits(one.mdc95_between), digits(one.sem_within), range(one.sem_within95),
+                             digits(one.mdc95_within)));
+  }
+  return text;
+}
+
+std::string details_of(const OutcomeReliability& one) {
+  std::string text = fmt::format("\n{}, {}{}\n", one.outcome, condition_title(one.condition),
+                                 one.unit.empty() ? "" : " [" + one.unit + "]");
+  const Repeated& sessions = one.between_sessions;
+  if (sessions.support == Support::enough) {
+    text += item("  between sessions ",
+                 fmt::format("{}: {} people{}, the mean of each session's trials", listed(sessions.repetitions),
+                             sessions.participants.size(),
+                             sessions.left_out > 0 ? fmt::format(" ({} lack a session)", sessions.left_out) : ""));
+    text += repeated_details(sessions);
+  } else {
+    text += item("  between sessions: ", why_not(sessions.support, people_of(one)));
+  }
+  for (const SessionAgreement& agreement : one.agreement) {
+    const reliability::BlandAltman& limits = agreement.limits;
+    text += item(fmt::format("  session {} − {}: ", agreement.second_session, agreement.first_session),
+                 limits.support == Support::enough
+                     ? fmt::format("bias {} ({}); limits of agreement {} ({}) and {} ({})", digits(limits.bias),
+                                   range(limits.bias95), digits(limits.lower.value), range(limits.lower.interval95),
+                                   digits(limits.upper.value), range(limits.upper.interval95))
+                     : why_not(limits.support, limits.people));
+  }
+  const Repeated& trials = one.within_session;
+  if (trials.support == Support::enough) {
+    text += item("  within ",
+                 fmt::format("session {}: {} people{}, {} trials each", one.session, trials.participants.size(),
+                             trials.left_out > 0 ? fmt::format(" ({} have fewer)", trials.left_out) : "",
+                             trials.repetitions.size()));
+    text += repeated_details(trials);
+  } else {
+    text += item("  within a session: ", trials.support == Support::too_few_sessions
+                                             ? "nobody has two trials in one"
+                                             : why_not(trials.support, static_cast<int>(trials.participants.size())));
+  }
+  text += model_details(one.mixed_model);
+  for (const std::string& note : one.notes) text += item("  ! ", note);
+  return text;
+}
+
+std::string matrices_text(const std::vector<MatrixSpread>& matrices) {
+  std::string rows;
+  int left_out = 0;
+  for (const MatrixSpread& one : matrices) {
+    if (one.support != Support::enough) continue;
+    const auto quartiles = [](const Quartiles& q) {
+      return fmt::format("{} ({} to {})", digits(q.median), digits(q.lower), digits(q.upper));
+    };
+    left_out += one.left_out;
+    rows += fmt::format("  {:<20} {:<2} {:>22} {:>22} {:>8}\n", condition_title(one.condition), one.matrix,
+                        quartiles(one.within), quartiles(one.between), share(one.closer));
+  }
+  if (rows.empty()) return "";
+  if (left_out > 0) {
+    rows += item("  ", fmt::format("without {} sessions whose mean matrix is not positive definite", left_out));
+  }
+  return fmt::format("\nimpedance width between whole matrices: median (quartiles)\n  {:<23} {:>22} {:>22} {:>8}\n",
+                     "condition, matrix", "sessions of a person", "people", "closer") +
+         rows +
+         "  closer: chance that two sessions of a person are closer than two people\n"
+         "  (0.5: the matrix does not tell people apart)\n";
+}
+
+std::string people_text(const reliability::Difference& difference) {
+  return difference.pairing == reliability::Pairing::paired
+             ? fmt::format("{}", difference.first_count)
+             : fmt::format("{}+{}", difference.first_count, difference.second_count);
+}
+
+std::string comparison_line(const OutcomeComparison& one) {
+  const std::string name = fmt::format("  {:<23} {:>6} ", one.outcome, people_text(one.difference));
+  if (one.verdict == Verdict::no_variation) return name + "no variation that could be compared\n";
+  if (one.difference.support != Support::enough) return name + "too few people\n";
+  return name + fmt::format("{:>9} {:>20} {:>5} {:>6}{}\n", digits(one.difference.value),
+                            range(one.difference.interval95), digits(one.difference.effect.g, 2), p_text(one.p_holm),
+                            one.verdict == Verdict::differs          ? " *"
+                            : one.verdict == Verdict::too_few_people ? " ?"
+                                                                     : "");
+}
+
+std::string comparison_details(const OutcomeComparison& one) {
+  if (one.difference.support != Support::enough) return "";
+  std::string text;
+  text += item("      ", fmt::format("means {} and {}; g {} ({}), d {}", digits(one.first_mean, 4),
+                                     digits(one.second_mean, 4), digits(one.difference.effect.g),
+                                     range(one.difference.effect.interval95), digits(one.difference.effect.d)));
+  text +=
+      item("      ", fmt::format("p {}, Benjamini–Hochberg {}; permutation p {} ({} {} arrangements)",
+                                 p_text(one.difference.p), p_text(one.p_benjamini_hochberg), p_text(one.permutation.p),
+                                 one.permutation.exact ? "all" : "drawn", one.permutation.arrangements));
+  if (one.mixed_model) {
+    text += item("      ",
+                 fmt::format("mixed model of {} people{}: {} ({}), p {}", one.mixed_model->participants,
+                             one.mixed_model->weighted ? ", weighted by standard errors" : "",
+                             digits(one.mixed_model->difference.value), range(one.mixed_model->difference.interval95),
+                             p_text(one.mixed_model->difference.p)));
+  }
+  if (one.left_out > 0) text += item("      ", fmt::format("{} people have one of the two only", one.left_out));
+  return text;
+}
+
+}  // namespace
+
+std::string outcomes_text(const std::vector<store::OutcomeSummary>& outcomes) {
+  std::string text;
+  const std::string* condition = nullptr;
+  for (const store::OutcomeSummary& one : outcomes) {
+    if (condition == nullptr || *condition != one.condition) {
+      condition = &one.condition;
+      text += fmt::format("\n{}\n  {:<23} {:>8} {:>8} {:>8} {:>8}  {:<8} {}\n", condition_title(one.condition),
+                          "outcome", "mean", "sd", "min", "max", "unit", "n");
+    }
+    text += fmt::format("  {:<23} {:>8} {:>8} {:>8} {:>8}  {:<8} {} ({})\n", one.outcome, digits(one.mean, 4),
+                        digits(one.standard_deviation), digits(one.minimum), digits(one.maximum), one.unit,
+                        one.participants, one.results);
+  }
+  return text +
+         "\nn: participants (results). mean and sd over participants, each with the mean\n"
+         "of their usable results; min and max of all results. Orientations are axes:\n"
+         "179° and 1° are 2° apart.\n";
+}
+
+std::string reliability_text(const StudyStatistics& statistics, bool details) {
+  std::string text;
+  if (details) {
+    for (const OutcomeReliability& one : statistics.reliability) text += details_of(one);
+    return text;
+  }
+  text = reliability_table(statistics.reliability) + matrices_text(statistics.matrices);
+  const bool any = std::ranges::any_of(statistics.reliability, [](const OutcomeReliability& one) {
+    return one.between_sessions.support == Support::enough;
+  });
+  if (any) {
+    text +=
+        "\nn×k: people who have each of k sessions. ICC(A,1) with its 95 % interval; SEM:\n"
+        "standard error of measurement (agreement) of a session's mean; MDC: 1.96 √2 SEM.\n"
+        "--outcome NAME shows all forms, limits of agreement, trials, the mixed model.\n";
+  }
+  return text;
+}
+
+std::string comparison_text(const StudyStatistics& statistics, bool details) {
+  if (!statistics.comparison) return "";
+  const Comparison& comparison = *statistics.comparison;
+  std::string text;
+  const OutcomeComparison* before = nullptr;
+  for (const OutcomeComparison& one : comparison.outcomes) {
+    if (before == nullptr || before->condition != one.condition || before->first != one.first ||
+        before->second != one.second) {
+      const std::string what(word_of(comparison.by));
+      text +=
+          fmt::format("\n{} {} − {}{}\n  {:<23} {:>6} {:>9} {:>20} {:>5} {:>6}\n", what, condition_title(one.second),
+                      condition_title(one.first), one.condition.empty() ? "" : ", " + one.condition, "outcome", "n",
+                      "change", "95 %", "g", "p");
+    }
+    before = &one;
+    text += comparison_line(one);
+    if (details) text += comparison_details(one);
+    for (const std::string& note : one.notes) text += item("    ! ", note);
+  }
+  if (comparison.outcomes.empty()) return "\nnothing to compare: no outcome has results on both sides\n";
+  const bool few = std::ranges::any_of(
+      comparison.outcomes, [](const OutcomeComparison& one) { return one.verdict == Verdict::too_few_people; });
+  text += fmt::format(
+      "\nn: people, each with the mean of their results (one number: pairs). g: Hedges.\n"
+      "p: Student's t of pairs, else Welch's, adjusted for all {} tests (Holm). * p is\n"
+      "at most 0.05. Without *, a difference was not shown, which does not show that\n"
+      "there is none. --outcome NAME shows permutation test and mixed model.\n",
+      comparison.tests);
+  if (few) text += "? too few people: whatever they did, no permutation of them could reach 0.05.\n";
+  return text;
+}
+
+std::string notes_text(const std::vector<std::string>& notes) {
+  std::string text;
+  for (const std::string& note : notes) text += item("! ", note);
+  return text.empty() ? text : "\n" + text;
+}
+
+}  // namespace mbk::statistics

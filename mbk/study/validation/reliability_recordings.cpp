@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "mbk/base/numeric/random.h"
+#include "mbk/study/statistics/study_statistics.h"
+#include "mbk/study/validation/rows.h"
+#include "mbk/study/validation/simulated_trials.h"
+#include "mbk/study/validation/study.h"
+
+namespace mbk::validation {
+namespace recorded_reliability {
+
+constexpr int kRecordedPeople = 20, kRecordedSessions = 3;
+/// Standard deviations of a person's stiffness, and of it from session to session, as shares of the arm's.
+constexpr double kOfPeople = 0.2, kOfSessions = 0.1;
+constexpr double kRecordedSeconds = 14.0;
+constexpr const char* kOutcomes[] = {"K_xx", "K_yy", "stiffness_lambda_max"};
+
+/// The trials of one study: the same arm with joints that are stiffer or softer.
+std::vector<TrialPlan> trials_of_study(const laboratory::Scenario& scenario, std::uint64_t seed) {
+  std::vector<TrialPlan> plans;
+  numeric::Random random(seed, 1);
+  for (int person = 0; person < kRecordedPeople; ++person) {
+    const double own = 1.0 + kOfPeople * random.normal();
+    for (int session = 0; session < kRecordedSessions; ++session) {
+      constexpr double kSoftest = 0.2;  // four standard deviations away
+      const double scale = std::max(kSoftest, own + kOfSessions * random.normal());
+      plans.push_back({scenario, measurement::Options()});
+      plans.back().scenario.seed = 1000 * seed + plans.size();
+      auto& arm =
+          std::get<participant::ArmOptions>(std::get<laboratory::PlanarTrial>(plans.back().scenario.trial).load);
+      std::get<participant::TwoLinkArm::Options>(arm.limb).joints.stiffness *= scale;
+    }
+  }
+  return plans;
+}
+
+/// Elements of a stiffness with their standard errors as a study stores them.
+store::OutcomeColumns columns_of_study(std::span<const SimulatedTrial> trials, bool truth) {
+  store::OutcomeColumns columns;
+  columns.conditions = {"relaxed"};
+  for (const char* name : {"K_xx", "K_xy", "K_yx", "K_yy"}) columns.outcomes.push_back({name, "N/m", {}, {}});
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const auto number = static_cast<std::int64_t>(k);
+    const SimulatedTrial& trial = trials[k];
+    if (!trial.identification.usable) continue;  // as in the store
+    columns.trials.push_back({number + 1, number / kRecordedSessions + 1, number % kRecordedSessions + 1, 1, 0});
+    for (Index at = 0; at < 4; ++at) {
+      store::OutcomeColumn& column = columns.outcomes[static_cast<std::size_t>(at)];
+      column.values.push_back((truth ? trial.truth : trial.identification.model).K(at / 2, at % 2));
+      if (!truth) column.standard_errors.push_back(trial.identification.standard_error.K(at / 2, at % 2));
+    }
+  }
+  statistics::add_matrix_numbers(columns);
+  return columns;
+}
+
+/// What one study says of one outcome.
+struct RecordedAnswer {
+  double icc = kNaN, mdc = kNaN, icc_of_truth = kNaN, mdc_of_truth = kNaN;
+  bool icc_held = false;
+};
+
+Result<std::vector<RecordedAnswer>> answers_of(std::span<const SimulatedTrial> trials) {
+  statistics::StatisticsOptions options;
+  options.outcomes.assign(std::begin(kOutcomes), std::end(kOutcomes));
+  options.threads = 1;
+  const auto measured = statistics::study_statistics(columns_of_study(trials, false), options);
+  const auto truth = statistics::study_statistics(columns_of_study(trials, true), options);
+  if (!measured) return tl::unexpected(measured.error());
+  if (!truth) return tl::unexpected(truth.error());
+  constexpr double kTrueIcc = kOfPeople * kOfPeople / (kOfPeople * kOfPeople + kOfSessions * kOfSessions);
+  std::vector<RecordedAnswer> answers;
+  for (std::size_t k = 0; k < measured->reliability.size(); ++k) {
+    const auto& found = measured->reliability[k].between_sessions;
+    const auto& true_one = truth->reliability[k].between_sessions;
+    if (found.support != reliability::Support::enough || true_one.support != reliability::Support::enough) {
+      return bad_data(fmt::format("{} of simulated recordings has no reliability", measured->reliability[k].outcome));
+    }
+    const auto& [low, high] = found.test_retest.agreement_by_large_samples95;
+    answers.push_back({found.test_retest.icc[1].value, found.test_retest.error[0].mdc95,
+                       true_one.test_retest.icc[1].value, true_one.test_retest.error[0].mdc95,
+                       low <= kTrueIcc && kTrueIcc <= high});
+  }
+  return answers;
+}
+
+}  // namespace recorded_reliability
+
+Result<ValidationTable> recorded_reliability_study(const StudyOptions& options) {
+  using namespace recorded_reliability;
+  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 1 or more");
+  const auto scenarios = ready("relaxed_sinusoidal");
+  if (!scenarios) return tl::unexpected(scenarios.error());
+  laboratory::Scenario scenario = scenarios->front();
+  std::get<perturbation::MultisinePlan>(scenario.perturbation.kind).duration = kRecordedSeconds;
+  std::vector<TrialPlan> plans;
+  for (int run = 0; run < options.runs; ++run) {
+    const auto of_study = trials_of_study(scenario, options.seed + static_cast<std::uint64_t>(run));
+    plans.insert(plans.end(), of_study.begin(), of_study.end());
+  }
+  const auto trials = run_trials(plans, options);
+  if (!trials) return tl::unexpected(trials.error());
+  constexpr std::size_t kOfStudy = std::size_t{kRecordedPeople} * kRecordedSessions;
+  std::vector<std::vector<RecordedAnswer>> runs;
+  for (int run = 0; run < options.runs; ++run) {
+    auto answers = answers_of(std::span(*trials).subspan(static_cast<std::size_t>(run) * kOfStudy, kOfStudy));
+    if (!answers) return tl::unexpected(answers.error());
+    runs.push_back(std::move(*answers));
+  }
+
+  ValidationTable table;
+  table.study = "recorded-reliability";
+  table.question = "does a study say of its recordings what is true of the people in it?";
+  table.unit = "";
+  table.runs = options.runs;
+  table.seed = options.seed;
+  table.rows.push_back(share_row(
+      "recordings that are usable", *trials, [](const SimulatedTrial& trial) { return trial.identification.usable; },
+      kNearlyAlways));
+  const auto all = [&](std::size_t outcome, const auto& number) {
+    Vector values(options.runs);
+    for (Index i = 0; i < values.size(); ++i) values[i] = number(runs[static_cast<std::size_t>(i)][outcome]);
+    return values;
+  };
+  constexpr double kOfIcc = 0.02, kOfMdc = 5.0;
+  for (std::size_t k = 0; k < std::size(kOutcomes); ++k) {
+    const std::string name = kOutcomes[k];
+    table.rows.push_back(bias_row(name + ": ICC(A,1), less that of the true stiffness",
+                                  all(k, [](const RecordedAnswer& run) { return run.icc - run.icc_of_truth; }), kOfIcc,
+                                  ""));
+    table.rows.push_back(bias_row(
+        name + ": MDC, off from that of the true stiffness by",
+        all(k, [](const RecordedAnswer& run) { return 100.0 * (run.mdc / run.mdc_of_truth - 1.0); }), kOfMdc, "%"));
+    table.rows.push_back(share_row(
+        name + ": 95 % interval of ICC(A,1) holds the truth", runs,
+        [k](const std::vector<RecordedAnswer>& run) { return run[k].icc_held; }, std::nullopt));
+  }
+  table.notes = {
+      fmt::format(
+          "A run is one study of {} people in {} sessions, each a simulated recording of {:g} s that is measured "
+          "as 'mbk measure' does. People's stiffness differs by {:g} %, that of their sessions by {:g} % more.",
+          kRecordedPeople, kRecordedSessions, kRecordedSeconds, 100.0 * kOfPeople, 100.0 * kOfSessions),
+      "How often an interval holds the truth takes thousands of studies to see, which 'mbk validate reliability' "
+      "draws; "
+      "what these say of the same people's true stiffness takes few."};
+  return table;
+}
+
+}  // namespace mbk::validation

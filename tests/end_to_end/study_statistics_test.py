@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""mbk study summary and plan: what a study says of people, through the command alone."""
+
+import csv
+import io
+import pathlib
+import statistics
+
+import command
+from command import BAD_DATA, FINE, WRONG_USAGE, run
+
+PEOPLE, SESSIONS = 6, 2
+SCENARIO = pathlib.Path(__file__).resolve().parents[2] / "examples" / "scenarios" / "relaxed_sinusoidal.toml"
+
+
+def made_study(folder):
+    """Six people in two sessions: of a recording of 12 s each, the even sessions of odd people tensed."""
+    text = SCENARIO.read_text(encoding="utf-8").replace("duration_s = 62.1", "duration_s = 12.0")
+    assert "12.0" in text
+    (folder / "short.toml").write_text(text, encoding="utf-8")
+    study = folder / "study"
+    assert run("study", "init", study, "--title", "A study").code == FINE
+    for person in range(1, PEOPLE + 1):
+        for session in range(1, SESSIONS + 1):
+            file = folder / f"{person}_{session}.h5"
+            assert run("simulate", folder / "short.toml", "--seed", 10 * person + session, "--quiet", "--out",
+                       file).code == FINE
+            condition = "relaxed" if person <= 3 else "tensed"
+            assert run("study", "add", file, "--participant", person, "--session", session, "--condition", condition,
+                       "--study", study).code == FINE
+    assert run("study", "measure", "--quiet", "--study", study).code == FINE
+    return study
+
+
+class StatisticsOfAStudy(command.Case):
+    study = None
+
+    def setUp(self):
+        super().setUp()
+        if StatisticsOfAStudy.study is None:
+            StatisticsOfAStudy.study = made_study(command.folder_of_logs())
+
+    def do(self, name, *arguments, code=FINE, **options):
+        return self.mbk("study", name, *arguments, "--study", self.study, code=code, **options)
+
+    def rows(self, outcome):
+        rows = csv.DictReader(io.StringIO(self.do("export").out))
+        return [row for row in rows if row["outcome"] == outcome and row["state"] == "usable"]
+
+    def test_no_reliability_is_stated_of_three_people_and_text_and_json_agree(self):
+        summary = self.do("summary", "--json").json
+        for one in summary["reliability"]:
+            self.assertEqual(one["between_sessions"]["support"], "too few people", one["outcome"])
+            self.assertEqual(one["between_sessions"]["icc"], [])
+        text = self.do("summary").out
+        self.assertIn("too few people (3 of 5 needed)", text)
+        self.assertNotIn("ICC(A,1)", text)
+        self.assertLessEqual(max(map(len, text.splitlines())), 80)
+        self.assertNotIn("comparison", summary)
+
+    def test_groups_are_compared_by_the_means_of_their_people(self):
+        groups = ("--group", "even=2,4,6", "--group", "odd=1,3,5")
+        one = self.do("summary", "--compare", "condition", "--outcome", "K_xx", "--json").json["comparison"]
+        self.assertEqual(one["levels"], ["relaxed", "tensed"])
+        (row,) = one["outcomes"]
+        of_person = {}
+        for result in self.rows("K_xx"):
+            of_person.setdefault((result["condition"], result["participant"]), []).append(float(result["value"]))
+        means = {c: [statistics.fmean(v) for (condition, _), v in of_person.items() if condition == c]
+                 for c in one["levels"]}
+        self.assertAlmostEqual(row["difference"], statistics.fmean(means["tensed"]) - statistics.fmean(means["relaxed"]),
+                               places=9)
+        self.assertEqual((row["pairing"], row["first_participants"], row["second_participants"]), ("unpaired", 3, 3))
+        self.assertEqual(row["verdict"], "too few people")  # three against three: no permutation reaches 0.05
+        self.assertGreater(row["permutation"]["smallest_p"], 0.05)
+        ran = self.do("summary", "--compare", "group", *groups)
+        self.assertIn("too few people", ran.out)
+        self.assertNotIn(" *\n", ran.out)
+        self.assertLessEqual(max(map(len, ran.out.splitlines())), 80)
+
+    def test_sessions_are_compared_in_the_same_people(self):
+        rows = self.do("summary", "--compare", "session", "1", "2", "--outcome", "K_xx", "--json").json["comparison"]
+        self.assertEqual({row["condition"] for row in rows["outcomes"]}, {"relaxed", "tensed"})
+        for row in rows["outcomes"]:
+            self.assertEqual((row["pairing"], row["first_participants"]), ("paired", 3))
+
+    def test_what_is_not_there_is_refused(self):
+        for arguments in (("--outcome", "stifness"), ("--compare", "colour"), ("--compare", "condition", "relaxed"),
+                          ("--compare", "group"), ("--group", "a=1"), ("--compare", "group", "--group", "a=1-"),
+                          ("--compare", "group", "--group", "a=1-3", "--group", "b=3-4"),
+                          ("--compare", "condition", "relaxed", "asleep")):
+            self.do("summary", *arguments, code=WRONG_USAGE)
+
+    def test_numbers_are_compared_however_they_are_typed(self):
+        self.assertIn("12 measured", self.do("measure", "--quiet", "--cutoff", "8").out)
+        for same in ("8.0", "08", "8e0"):
+            self.assertEqual(self.do("measure", "--quiet", "--cutoff", same).out, "nothing new to measure\n")
+        self.assertIn("12 measured", self.do("measure", "--quiet", "--cutoff", "8.5").out)
+
+
+class APlan(command.Case):
+    def test_of_stated_variances_is_what_simulated_studies_show(self):
+        plan = self.mbk("study", "plan", "--sd-people", "60", "--sd-sessions", "15", "--sd-trials", "25",
+                        "--difference", "50", "--trials", "2", "--simulate", "2000", "--json").json
+        self.assertEqual(len(plan["plans"]), 2)
+        for one in plan["plans"]:
+            self.assertGreaterEqual(one["power"]["value"], 0.8)
+            low, high = one["simulated_power"]["interval95"]
+            self.assertTrue(low - 0.02 <= one["power"]["value"] <= high + 0.02, one)
+        self.assertIsNone(plan["pilot"])
+        text = self.mbk("study", "plan", "--sd-people", "60", "--sd-trials", "25", "--mdc", "60").out
+        self.assertIn("*", text)
+
+    def test_needs_to_know_what_is_wanted_and_of_what(self):
+        for arguments in (("--sd-people", "60", "--sd-trials", "25"), ("--sd-people", "60", "--mdc", "5"),
+                          ("--sd-people", "60", "--sd-trials", "25", "--difference", "0"),
+                          ("--difference", "5", "--study", self.folder)):
+            self.mbk("study", "plan", *arguments, code=WRONG_USAGE)
+
+    def test_is_not_made_from_a_pilot_of_three(self):
+        if StatisticsOfAStudy.study is None:
+            StatisticsOfAStudy.study = made_study(command.folder_of_logs())
+        ran = self.mbk("study", "plan", "--outcome", "K_xx", "--condition", "relaxed", "--difference", "50", "--study",
+                       StatisticsOfAStudy.study, code=BAD_DATA)
+        self.assertIn("3 people are too few for a pilot", ran.err)
+        ran = self.mbk("study", "plan", "--outcome", "K_xx", "--condition", "relaxed", "tensed", "--difference", "50",
+                       "--study", StatisticsOfAStudy.study, "--json")
+        self.assertEqual(ran.json["pilot"]["participants"], 6)
+        low, high = ran.json["plans"][0]["people"]["interval95"]
+        self.assertTrue(low <= ran.json["plans"][0]["people"]["value"] and (high is None or high >= low), ran)
+
+
+if __name__ == "__main__":
+    command.main()
