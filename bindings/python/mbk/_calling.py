@@ -170,7 +170,7 @@ def simulate(command: str, sources: Sequence[Any], options: Mapping[str, Any], s
         files = sorted(pathlib.Path(folder).iterdir())
         with _errors.translated():
             cores = [_mbk.read_all([file], {})[0] for file in files]
-    recordings = [Recording(Recording._of(core), events=core.events) for core in cores]
+    recordings = [Recording(Recording._of(core), metadata=core.metadata, events=core.events) for core in cores]
     return recordings[0] if len(recordings) == 1 else recordings
 
 

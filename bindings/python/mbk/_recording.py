@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import html
+import re
+import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from mbk._documents import Information
 
 Array = npt.NDArray[np.float64]
+_ALIAS = re.compile(r"t|x|y|a|F|xr|yr|Fx|Fy|ax|ay|Vx|Vy|(?:q|tau|qr)[1-8]")  # names that carry no unit
 
 
 class Recording:
@@ -53,6 +56,8 @@ class Recording:
     1000.0
     >>> recording["x"].shape
     (5000,)
+    >>> mbk.Recording({"t": t, "x": 5 * np.sin(t), "F": t}, units={"x": "mm"}).units["position"]
+    'm'
     """
 
     def __init__(
@@ -75,29 +80,77 @@ class Recording:
         happened = [(float(one[0]), str(one[1]), float(one[2]) if len(one) > 2 else float("nan")) for one in events]
         with _errors.translated():
             self._core: _mbk.Recording = _mbk.Recording(signals, rate_hz or 0.0, known_units, known_metadata, happened)
+        self._rate_hz = float(rate_hz or 0.0)
 
     @classmethod
     def _of(cls, core: _mbk.Recording) -> Recording:
         made = cls.__new__(cls)
-        made._core = core
+        made._core, made._rate_hz = core, 0.0
         return made
 
     # What is in it
 
+    def _given(self) -> dict[str, str]:
+        """Names and units as they were given; read once, since nothing of it changes."""
+        found: dict[str, str] | None = self.__dict__.get("_signals")
+        if found is None:
+            found = self.__dict__["_signals"] = dict(self._core.signals)
+        return found
+
+    def _meaning(self) -> list[tuple[str, str, str]]:
+        """Names, SI units and frames of what was recognised; read once."""
+        found: list[tuple[str, str, str]] | None = self.__dict__.get("_recognised")
+        if found is None:
+            with _errors.translated():
+                found = self.__dict__["_recognised"] = list(self._core.channels)
+        return found
+
+    def _si(self) -> _mbk.Recording:
+        """The same with every channel in SI units: itself, where it was given so."""
+        found: _mbk.Recording | None = self.__dict__.get("_converted")
+        if found is None:
+            found = self.__dict__["_converted"] = self._core if self._is_si() else self._by_way_of_a_file()
+        return found
+
+    def _is_si(self) -> bool:
+        given = self._given()
+        places = {self._core.channel(name).__array_interface__["data"][0]: name for name in given}
+        for name, unit, _ in self._meaning():
+            signal = places.get(self._core.channel(name).__array_interface__["data"][0])
+            if signal is None or given[signal] not in ("", unit) or not (signal == name or _ALIAS.fullmatch(signal)):
+                return False
+        return given.get("time", "s") in ("", "s")
+
+    def _by_way_of_a_file(self) -> _mbk.Recording:
+        with tempfile.TemporaryDirectory(prefix="mbk-") as folder, _errors.translated():
+            file = f"{folder}/recording.h5"
+            _mbk.call("convert", {"quiet": True}, [self._core], [_mbk.recording_word(0), file])
+            return _mbk.read_all([file], {})[0]
+
     def __getitem__(self, name: str) -> Array:
-        """A channel as a read-only array of float64, without a copy.
+        """A channel, or a signal as it was given.
 
         Parameters
         ----------
         name : str
-            Of a channel (``hand_x``) or its alias (``x``), or of the signal as it was given.
+            ``hand_x``, a channel: in SI units. Another name that was given: those numbers as they stand.
 
         Returns
         -------
         numpy.ndarray
-            Shape (samples,), in SI units where it is a channel.
+            Shape (samples,), float64, to be read only. It is the memory of the recording, without a copy, but for channels
+            that were given in another unit than SI.
         """
-        return self._core.channel(name)
+        given = self._given()
+        if given.get(name) == "":
+            return self._core.channel(name)
+        try:
+            channels = [one for one, _, _ in self._meaning()]
+        except _errors.Error:
+            channels = []
+        if name in given and name not in channels:
+            return self._core.channel(name)
+        return self._si().channel(name) if channels else self._core.channel(name)
 
     def __contains__(self, name: object) -> bool:
         try:
@@ -111,40 +164,41 @@ class Recording:
 
     def __len__(self) -> int:
         """Number of samples."""
-        with _errors.translated():
-            return self._core.samples
+        return int(self._core.channel(next(iter(self._given()))).size)
 
     @property
     def signals(self) -> dict[str, str]:
         """Names and units of what was given, as they were given."""
-        return dict(self._core.signals)
+        return dict(self._given())
 
     @property
     def channels(self) -> list[str]:
         """Names of what was recognised, without the time."""
-        with _errors.translated():
-            return [name for name, _, _ in self._core.channels]
+        return [name for name, _, _ in self._meaning()]
 
     @property
     def units(self) -> dict[str, str]:
         """SI units of the channels."""
-        with _errors.translated():
-            return {name: unit for name, unit, _ in self._core.channels}
+        return {name: unit for name, unit, _ in self._meaning()}
 
     @property
     def frames(self) -> dict[str, str]:
         """Coordinate frames of the channels."""
-        with _errors.translated():
-            return {name: frame for name, _, frame in self._core.channels}
+        return {name: frame for name, _, frame in self._meaning()}
 
     @property
     def time(self) -> Array:
         """Time of each sample [s]; shape (samples,)."""
-        return self["time"]
+        try:
+            return self._si().channel("time")
+        except KeyError:  # there is only a rate
+            return np.arange(len(self)) / self._rate_hz
 
     @property
     def rate_hz(self) -> float:
         """Sample rate [Hz]: one over the median interval."""
+        if self._rate_hz:
+            return self._rate_hz
         time = self.time
         return round(1.0 / float(np.median(np.diff(time))), 6) if time.size > 1 else float("nan")
 
@@ -182,7 +236,7 @@ class Recording:
 
     def to_dict(self) -> dict[str, Array]:
         """The time and every channel by name, without a copy."""
-        return {name: self[name] for name in ("time", *self.channels)}
+        return {"time": self.time, **{name: self[name] for name in self.channels}}
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A table with the time [s] as its index and a column for each channel; units are in ``.attrs["units"]``."""
@@ -239,7 +293,7 @@ class Recording:
 
     def _repr_html_(self) -> str:
         try:
-            rows = [(name, self.units[name], self[name]) for name in self.channels]
+            rows = [(name, unit, self[name]) for name, unit in self.units.items()]
             head = f"{self.duration_s:.6g} s at {self.rate_hz:.6g} Hz"
         except (_errors.Error, KeyError):
             rows = [(name, unit, self[name]) for name, unit in self.signals.items()]

@@ -177,8 +177,9 @@ def reliability_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
     rows = []
     for one in found.get("reliability", []):
         between = one.get("between_sessions", {})
-        icc = next((icc for icc in between.get("icc", []) if icc["form"] == "agreement" and icc["averaged"] == 1), {})
-        error = next((error for error in between.get("error", []) if error["form"] == "agreement"), {})
+        icc: dict[str, Any] = next((one for one in between.get("icc", [])
+                                    if one["form"] == "agreement" and one["averaged"] == 1), {})
+        error: dict[str, Any] = next((one for one in between.get("error", []) if one["form"] == "agreement"), {})
         low, high = icc.get("interval95", (None, None))
         rows.append({
             "condition": one["condition"], "outcome": one["outcome"], "unit": one["unit"],
